@@ -1,0 +1,254 @@
+//! Every way an input can be unphysical, each with the number that offends, the law and the way out.
+
+use thiserror::Error as ThisError;
+
+/// What kind of mistake an [`Error`] reports, for callers that map errors to classes of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// A number or option outside its domain.
+    Argument,
+    /// Mass properties that no real body has.
+    Inertia,
+    /// A mesh that does not bound a solid.
+    Mesh,
+    /// A file that is not what it says.
+    File,
+    /// An attitude at which the quantity asked for is not defined.
+    SingularAttitude,
+    /// An integration that could not go on.
+    Integration,
+}
+
+/// An input that breaks a law of mechanics, of geometry or of the numbers themselves.
+#[derive(Clone, Debug, PartialEq, ThisError)]
+#[non_exhaustive]
+pub enum Error {
+    /// A number is NaN or infinite.
+    #[error("{what} must be finite, got {value:?}")]
+    NonFinite {
+        /// The argument.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A length, scale or density is negative, or zero where it must not be.
+    #[error("{what} must be {law}, got {value:?}")]
+    OutOfDomain {
+        /// The argument.
+        what: &'static str,
+        /// What it must be.
+        law: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// The total mass is not positive.
+    #[error("mass must be positive, got {mass:?}")]
+    NonPositiveMass {
+        /// The total mass.
+        mass: f64,
+    },
+    /// One particle has negative mass.
+    #[error(
+        "masses must not be negative: masses[{index}] is {mass:?}; model a cavity by subtracting a body"
+    )]
+    NegativeMass {
+        /// Which particle.
+        index: usize,
+        /// Its mass.
+        mass: f64,
+    },
+    /// The particles have no mass in all.
+    #[error("the total mass of the {count} particles must be positive, got {mass:?}")]
+    NoMass {
+        /// How many particles.
+        count: usize,
+        /// Their total mass.
+        mass: f64,
+    },
+    /// The tensor is not symmetric.
+    #[error(
+        "inertia must be symmetric: element [{row}][{column}] is {a:?} but [{column}][{row}] is {b:?}, a relative \
+         difference of {relative:.2e} where {allowed:.1e} is allowed; pass rtol= for a table printed to few digits"
+    )]
+    NotSymmetric {
+        /// Row of the first element.
+        row: usize,
+        /// Column of the first element.
+        column: usize,
+        /// The first element.
+        a: f64,
+        /// Its mirror image.
+        b: f64,
+        /// Difference over the largest element.
+        relative: f64,
+        /// What is allowed.
+        allowed: f64,
+    },
+    /// A principal moment about the centre of mass is negative.
+    #[error(
+        "inertia must have no negative principal moment: they are {:?}, {:?}, {:?} about the centre of mass{hint}",
+        moments[0], moments[1], moments[2]
+    )]
+    NegativeMoment {
+        /// The three, ascending.
+        moments: [f64; 3],
+        /// What may have gone wrong.
+        hint: &'static str,
+    },
+    /// The two smaller principal moments sum to less than the largest.
+    #[error(
+        "principal moments {:?}, {:?}, {:?} break the triangle inequality I1 + I2 >= I3 by {deficit:?}, {relative:.2e} of \
+         their sum: no distribution of mass has them; pass rtol= if the table was printed to few digits",
+        moments[0], moments[1], moments[2]
+    )]
+    TriangleInequality {
+        /// The three, ascending.
+        moments: [f64; 3],
+        /// `I₃ − I₁ − I₂`.
+        deficit: f64,
+        /// The deficit over the sum of the moments.
+        relative: f64,
+    },
+    /// A matrix is not a rotation.
+    #[error(
+        "{what} must be a right-handed rotation matrix: its columns deviate from an orthonormal set by {deviation:.2e} \
+         and its determinant is {determinant:?}"
+    )]
+    NotARotation {
+        /// The argument.
+        what: &'static str,
+        /// Largest element of `RᵀR − 1`.
+        deviation: f64,
+        /// The determinant.
+        determinant: f64,
+    },
+    /// A quaternion does not have unit length.
+    #[error(
+        "{what} must be a unit quaternion (x, y, z, w): its norm is {norm:?}; divide it by its norm"
+    )]
+    NotAUnitQuaternion {
+        /// The argument.
+        what: &'static str,
+        /// Its norm.
+        norm: f64,
+    },
+    /// A direction of zero length.
+    #[error("{what} must not be the zero vector: it has no direction")]
+    NoDirection {
+        /// The argument.
+        what: &'static str,
+    },
+    /// A torque about an axis with no moment of inertia.
+    #[error(
+        "torque has the component {torque:?} along a principal axis whose moment of inertia is zero: \
+         the angular acceleration would be infinite; give the body a thickness or remove that component"
+    )]
+    TorqueAlongMasslessAxis {
+        /// The component.
+        torque: f64,
+    },
+    /// An unknown Euler sequence.
+    #[error(
+        "sequence must be three axes such as \"ZXZ\" (intrinsic) or \"zxz\" (extrinsic), neighbours different, \
+         or \"goldstein\", \"landau\", \"aerospace\"; got {got:?}"
+    )]
+    EulerSequence {
+        /// What was given.
+        got: String,
+    },
+    /// First and third Euler angle are not defined.
+    #[error(
+        "the first and third Euler angles are not defined where the middle angle is {middle:?} rad: \
+         only their sum or difference is; pass singular=\"nan\" or choose another sequence"
+    )]
+    GimbalLock {
+        /// The middle angle.
+        middle: f64,
+    },
+    /// The mesh cannot be used; the message says which part of it and why.
+    #[error(transparent)]
+    Mesh(#[from] crate::mass::polyhedron::MeshFault),
+    /// The file cannot be used; the message says where and why.
+    #[error(transparent)]
+    File(#[from] crate::io::FileFault),
+    /// Output times do not run in one direction.
+    #[error("t must be strictly monotone: t[{index}] = {next:?} follows {previous:?}")]
+    NotMonotone {
+        /// The index of the later time.
+        index: usize,
+        /// The earlier time.
+        previous: f64,
+        /// The later time.
+        next: f64,
+    },
+    /// There is nothing where something is needed.
+    #[error("{what} must not be empty")]
+    Empty {
+        /// The argument.
+        what: &'static str,
+    },
+    /// The step of an integration fell below what the clock can tell apart.
+    #[error(
+        "the integration cannot go on at t = {time:?}: its step would have to be {step:.2e}, too small to advance the \
+         time; the motion or the load is singular there, or rtol is tighter than the load is smooth"
+    )]
+    StepTooSmall {
+        /// Where.
+        time: f64,
+        /// The step asked for.
+        step: f64,
+    },
+    /// The equations of motion gave a number that is not finite.
+    #[error(
+        "the equations of motion are not finite at t = {time:?}: check the load at that time and state"
+    )]
+    NotFiniteMotion {
+        /// Where.
+        time: f64,
+    },
+}
+
+impl Error {
+    /// The kind of mistake.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::NonFinite {
+                what: "mass" | "masses" | "inertia" | "moments" | "center_of_mass",
+                ..
+            }
+            | Self::NonPositiveMass { .. }
+            | Self::NegativeMass { .. }
+            | Self::NoMass { .. }
+            | Self::NotSymmetric { .. }
+            | Self::NegativeMoment { .. }
+            | Self::TriangleInequality { .. }
+            | Self::TorqueAlongMasslessAxis { .. } => Kind::Inertia,
+            Self::Mesh(_) => Kind::Mesh,
+            Self::File(_) => Kind::File,
+            Self::GimbalLock { .. } => Kind::SingularAttitude,
+            Self::StepTooSmall { .. } | Self::NotFiniteMotion { .. } => Kind::Integration,
+            _ => Kind::Argument,
+        }
+    }
+}
+
+/// `Ok` with a finite number, else [`Error::NonFinite`].
+pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, Error> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Error::NonFinite { what, value })
+    }
+}
+
+/// `Ok` when every number is finite, else [`Error::NonFinite`] with the first that is not.
+pub(crate) fn all_finite<'a>(
+    what: &'static str,
+    values: impl IntoIterator<Item = &'a f64>,
+) -> Result<(), Error> {
+    values
+        .into_iter()
+        .try_for_each(|&value| finite(what, value).map(drop))
+}

@@ -1,0 +1,137 @@
+//! Binary STL: 80 bytes of anything, the number of triangles, then 50 bytes a triangle.
+
+use std::collections::HashMap;
+use std::io::{self, Read};
+
+use super::{FileFault, TriangleMesh};
+
+const HEADER: usize = 84;
+const RECORD: usize = 50;
+/// Triangles read at a time.
+const CHUNK: usize = 1024;
+
+/// Why a binary STL cannot be read.
+#[derive(Debug)]
+pub enum StlError {
+    /// The operating system says so.
+    Io(io::Error),
+    /// The contents say so.
+    Fault(FileFault),
+}
+
+impl From<io::Error> for StlError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+/// Reads a binary STL of `held` bytes; corners with the same coordinates (−0 equals +0) become one vertex.
+///
+/// The length is checked against the header before anything is allocated; the stored normals and attributes are not read,
+/// since the order of the corners says the same.
+///
+/// # Errors
+/// When reading fails or the length is not what the header promises.
+pub fn read(mut source: impl Read, held: u64) -> Result<TriangleMesh, StlError> {
+    let mut header = [0; HEADER];
+    if held < HEADER as u64 {
+        return Err(StlError::Fault(FileFault::NoStlHeader { held }));
+    }
+    source.read_exact(&mut header)?;
+    let triangles = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
+    let promised = HEADER as u64 + RECORD as u64 * u64::from(triangles);
+    if held < promised {
+        return Err(StlError::Fault(FileFault::TruncatedStl {
+            held,
+            promised,
+            triangles,
+        }));
+    }
+    if held > promised {
+        return Err(StlError::Fault(FileFault::NotStl {
+            held,
+            promised,
+            triangles,
+        }));
+    }
+    let count = triangles as usize;
+    let mut welder = Welder::default();
+    let mut faces = Vec::with_capacity(count);
+    let mut buffer = vec![0; RECORD * CHUNK.min(count)];
+    while faces.len() < count {
+        let records = &mut buffer[..RECORD * CHUNK.min(count - faces.len())];
+        source.read_exact(records)?;
+        faces.extend(
+            records
+                .chunks_exact(RECORD)
+                .map(|record| [12, 24, 36].map(|at| welder.vertex(&record[at..at + 12]))),
+        );
+    }
+    Ok(TriangleMesh {
+        vertices: welder.vertices,
+        faces,
+    })
+}
+
+/// Gives equal corners the same number.
+#[derive(Default)]
+struct Welder {
+    numbers: HashMap<[u32; 3], usize>,
+    vertices: Vec<[f64; 3]>,
+}
+
+impl Welder {
+    fn vertex(&mut self, corner: &[u8]) -> usize {
+        let at =
+            |k: usize| f32::from_le_bytes([corner[k], corner[k + 1], corner[k + 2], corner[k + 3]]);
+        let point = [at(0), at(4), at(8)].map(|x| x + 0.0);
+        let next = self.vertices.len();
+        let number = *self.numbers.entry(point.map(f32::to_bits)).or_insert(next);
+        if number == next {
+            self.vertices.push(point.map(f64::from));
+        }
+        number
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(triangles: u32, corners: &[[f32; 3]]) -> Vec<u8> {
+        let mut bytes = vec![b' '; 80];
+        bytes.extend(triangles.to_le_bytes());
+        for triangle in corners.chunks_exact(3) {
+            bytes.extend([0; 12]);
+            bytes.extend(triangle.iter().flatten().flat_map(|x| x.to_le_bytes()));
+            bytes.extend([0; 2]);
+        }
+        bytes
+    }
+
+    #[test]
+    fn corners_are_welded() {
+        let a = [0.0, 0.0, 0.0];
+        let b = [1.0, 0.0, -0.0];
+        let c = [0.0, 1.0, 0.0];
+        let bytes = file(2, &[a, b, c, c, [1.0, -0.0, 0.0], [1.0, 1.0, 0.0]]);
+        let mesh = read(&bytes[..], bytes.len() as u64).expect("valid");
+        assert_eq!(mesh.vertices.len(), 4);
+        assert_eq!(mesh.faces, [[0, 1, 2], [2, 1, 3]]);
+    }
+
+    #[test]
+    fn a_boastful_header_allocates_nothing() {
+        let bytes = file(4_000_000_000, &[]);
+        let error = read(&bytes[..], bytes.len() as u64).expect_err("truncated");
+        assert!(matches!(
+            error,
+            StlError::Fault(FileFault::TruncatedStl { held: 84, .. })
+        ));
+        let error = read(&bytes[..10], 10).expect_err("too short");
+        assert!(matches!(
+            error,
+            StlError::Fault(FileFault::NoStlHeader { held: 10 })
+        ));
+    }
+}

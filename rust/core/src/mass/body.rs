@@ -1,0 +1,500 @@
+//! The rigid body (m, C, `I_C`): what makes one possible, how bodies add, how they change frames.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::parallel_axis::{from_center_of_mass, point_inertia, to_center_of_mass};
+use super::second_moment::SecondMoment;
+use crate::error::{Error, all_finite, finite};
+use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
+
+/// Violations of a law up to this times the trace of the tensor are rounding, not physics.
+pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Asymmetry up to this times the largest element is rounding: the mean of the two elements is taken.
+pub const ASYMMETRY: f64 = 8.0 * f64::EPSILON;
+
+/// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
+///
+/// Only possible bodies exist: the constructors check that `I_C` is finite, symmetric, positive and obeys the triangle
+/// inequality, each relative to the tensor's own size. `I_ij = ∫ (r² δ_ij − r_i r_j) dm`: the off-diagonal elements
+/// are *minus* the products of inertia.
+///
+/// What defined the body is kept exactly, its moments and axes or its tensor; the other form is derived from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(alias = "mass properties")]
+pub struct RigidBody {
+    mass: f64,
+    center_of_mass: Vector3<f64>,
+    inertia: Matrix3<f64>,
+    principal: PrincipalAxes,
+}
+
+impl RigidBody {
+    /// From mass, tensor about the centre of mass C, and C.
+    ///
+    /// `rtol` admits tables printed to few digits: asymmetry and violations of the triangle inequality up to that
+    /// fraction are accepted; zero admits rounding alone ([`ASYMMETRY`], [`ROUNDING`]).
+    /// A principal moment below [`ROUNDING`] times the trace is stored as exactly zero, since a float64 tensor cannot
+    /// tell it from zero.
+    ///
+    /// # Errors
+    /// The law that fails, with its numbers.
+    pub fn new(
+        mass: f64,
+        inertia: &Matrix3<f64>,
+        center_of_mass: &Vector3<f64>,
+        rtol: f64,
+    ) -> Result<Self, Error> {
+        check_mass(mass)?;
+        all_finite("center_of_mass", center_of_mass)?;
+        let inertia = symmetrized(inertia, rtol)?;
+        Self::from_symmetric(mass, inertia, center_of_mass, trace(&inertia), rtol, "")
+    }
+
+    /// From mass, tensor about the origin O of the body frame, and the centre of mass C.
+    ///
+    /// `I_C = I_O − m (c² 1 − c cᵀ)`; what that difference leaves must be the tensor of a body.
+    ///
+    /// # Errors
+    /// The law that fails, with its numbers.
+    pub fn from_inertia_about_origin(
+        mass: f64,
+        inertia_about_origin: &Matrix3<f64>,
+        center_of_mass: &Vector3<f64>,
+        rtol: f64,
+    ) -> Result<Self, Error> {
+        check_mass(mass)?;
+        all_finite("center_of_mass", center_of_mass)?;
+        let about_origin = symmetrized(inertia_about_origin, rtol)?;
+        let inertia = to_center_of_mass(&about_origin, mass, center_of_mass);
+        let hint = "; inertia_about_origin= must be about the origin of the body frame: \
+                    if it is about the centre of mass pass it as inertia=";
+        Self::from_symmetric(
+            mass,
+            inertia,
+            center_of_mass,
+            trace(&about_origin),
+            rtol,
+            hint,
+        )
+    }
+
+    /// From mass, principal moments about C (in any order), the axes they belong to (columns) and C.
+    ///
+    /// The moments are kept exactly as given.
+    ///
+    /// # Errors
+    /// The law that fails, with its numbers; axes that are not a right-handed orthonormal set.
+    pub fn from_principal(
+        mass: f64,
+        moments: &[f64; 3],
+        axes: &Matrix3<f64>,
+        center_of_mass: &Vector3<f64>,
+        rtol: f64,
+    ) -> Result<Self, Error> {
+        check_mass(mass)?;
+        all_finite("moments", moments)?;
+        all_finite("center_of_mass", center_of_mass)?;
+        check_rotation("axes", axes)?;
+        let principal = sorted(moments, axes);
+        let allowed = ROUNDING.max(rtol);
+        check_moments(&principal.moments, 0.0, allowed, "")?;
+        Ok(Self {
+            mass,
+            center_of_mass: *center_of_mass,
+            inertia: tensor(&principal),
+            principal,
+        })
+    }
+
+    /// From matter: its second moment about its own centre of mass.
+    ///
+    /// # Errors
+    /// When the mass is not positive or a number is not finite.
+    pub fn from_second_moment(matter: &SecondMoment) -> Result<Self, Error> {
+        check_mass(matter.mass)?;
+        all_finite("center_of_mass", &matter.center_of_mass)?;
+        let inertia = matter.inertia();
+        all_finite("inertia", &inertia)?;
+        Ok(Self {
+            mass: matter.mass,
+            center_of_mass: matter.center_of_mass,
+            inertia,
+            principal: matter.principal_axes(),
+        })
+    }
+
+    /// The tail of every constructor that starts from a tensor; `scale` is the trace its rounding is relative to.
+    fn from_symmetric(
+        mass: f64,
+        inertia: Matrix3<f64>,
+        center_of_mass: &Vector3<f64>,
+        scale: f64,
+        rtol: f64,
+        hint: &'static str,
+    ) -> Result<Self, Error> {
+        all_finite("inertia", &inertia)?;
+        let mut principal = principal_axes(&inertia);
+        let noise = ROUNDING * scale;
+        check_moments(&principal.moments, noise, ROUNDING.max(rtol), hint)?;
+        for moment in &mut principal.moments {
+            if *moment <= noise {
+                *moment = 0.0;
+            }
+        }
+        Ok(Self {
+            mass,
+            center_of_mass: *center_of_mass,
+            inertia,
+            principal,
+        })
+    }
+
+    /// Mass m.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// Centre of mass C, from the origin of the body frame.
+    #[must_use]
+    pub fn center_of_mass(&self) -> Vector3<f64> {
+        self.center_of_mass
+    }
+
+    /// Inertia tensor `I_C` about the centre of mass.
+    #[must_use]
+    pub fn inertia(&self) -> Matrix3<f64> {
+        self.inertia
+    }
+
+    /// Principal moments and axes about the centre of mass.
+    #[must_use]
+    pub fn principal(&self) -> PrincipalAxes {
+        self.principal
+    }
+
+    /// Inertia tensor `I_P` about the point P (from the origin of the body frame).
+    #[must_use]
+    pub fn inertia_about(&self, point: &Vector3<f64>) -> Matrix3<f64> {
+        from_center_of_mass(&self.inertia, self.mass, &(point - self.center_of_mass))
+    }
+
+    /// Principal moments and axes about the point P.
+    #[must_use]
+    pub fn principal_about(&self, point: &Vector3<f64>) -> PrincipalAxes {
+        if *point == self.center_of_mass {
+            return self.principal;
+        }
+        let mut about = principal_axes(&self.inertia_about(point));
+        // About P the moments are at least those about C, hence never negative but for rounding.
+        for moment in &mut about.moments {
+            *moment = moment.max(0.0);
+        }
+        about
+    }
+
+    /// Moment of inertia about the axis through P with direction `axis`: `n·I_P·n`, n the unit vector along `axis`.
+    ///
+    /// # Errors
+    /// When `axis` is zero or not finite.
+    pub fn moment_about(&self, axis: &Vector3<f64>, point: &Vector3<f64>) -> Result<f64, Error> {
+        all_finite("axis", axis)?;
+        let n = axis
+            .try_normalize(0.0)
+            .ok_or(Error::NoDirection { what: "axis" })?;
+        let (n_p, lever) = (
+            self.principal.axes.tr_mul(&n),
+            n.cross(&(point - self.center_of_mass)),
+        );
+        let [i1, i2, i3] = self.principal.moments;
+        Ok(i1 * n_p.x * n_p.x
+            + i2 * n_p.y * n_p.y
+            + i3 * n_p.z * n_p.z
+            + self.mass * lever.dot(&lever))
+    }
+
+    /// Radii of gyration `√(I_k / m)` about the principal axes through C, ascending.
+    #[must_use]
+    pub fn radii_of_gyration(&self) -> [f64; 3] {
+        self.principal
+            .moments
+            .map(|moment| (moment / self.mass).sqrt())
+    }
+
+    /// The body moved by `d`.
+    ///
+    /// # Errors
+    /// When the new centre of mass is not finite.
+    pub fn translated(&self, d: &Vector3<f64>) -> Result<Self, Error> {
+        all_finite("displacement", d)?;
+        let center_of_mass = self.center_of_mass + d;
+        all_finite("center_of_mass", &center_of_mass)?;
+        Ok(Self {
+            center_of_mass,
+            ..*self
+        })
+    }
+
+    /// The body turned about the origin by the rotation matrix R: `C → R C`, `I → R I Rᵀ`; its moments stay as they are.
+    ///
+    /// # Errors
+    /// When R is not a rotation.
+    pub fn rotated(&self, rotation: &Matrix3<f64>) -> Result<Self, Error> {
+        check_rotation("rotation", rotation)?;
+        let turned = rotation * self.inertia * rotation.transpose();
+        Ok(Self {
+            mass: self.mass,
+            center_of_mass: rotation * self.center_of_mass,
+            inertia: mean_of_halves(&turned),
+            principal: PrincipalAxes {
+                moments: self.principal.moments,
+                axes: with_sign_rule(rotation * self.principal.axes),
+            },
+        })
+    }
+
+    /// The same shape `length` times as large and `mass` times as heavy: `m → k m`, `C → s C`, `I → k s² I`.
+    ///
+    /// # Errors
+    /// When a factor is not positive and finite, or the result overflows.
+    pub fn scaled(&self, length: f64, mass: f64) -> Result<Self, Error> {
+        for (what, value) in [("length", length), ("mass", mass)] {
+            finite(what, value)?;
+            if value <= 0.0 {
+                return Err(Error::OutOfDomain {
+                    what,
+                    law: "positive",
+                    value,
+                });
+            }
+        }
+        let scale = |x: f64| x * mass * length * length;
+        let scaled = Self {
+            mass: self.mass * mass,
+            center_of_mass: self.center_of_mass * length,
+            inertia: self.inertia.map(scale),
+            principal: PrincipalAxes {
+                moments: self.principal.moments.map(scale),
+                ..self.principal
+            },
+        };
+        check_mass(scaled.mass)?;
+        all_finite("inertia", &scaled.inertia)?;
+        all_finite("center_of_mass", &scaled.center_of_mass)?;
+        Ok(scaled)
+    }
+
+    /// Both bodies as one rigid body.
+    ///
+    /// Composed from centre to centre, `I = I_1 + I_2 + μ (d² 1 − d dᵀ)` with the reduced mass `μ = m₁m₂/(m₁+m₂)` and
+    /// `d = C₂ − C₁`, so that bodies far from the origin lose nothing.
+    ///
+    /// # Errors
+    /// When the sum overflows.
+    pub fn combined(&self, other: &Self) -> Result<Self, Error> {
+        let mass = self.mass + other.mass;
+        check_mass(mass)?;
+        let d = other.center_of_mass - self.center_of_mass;
+        let share = other.mass / mass;
+        let center_of_mass = self.center_of_mass + d * share;
+        let inertia = self.inertia + other.inertia + point_inertia(self.mass * share, &d);
+        all_finite("center_of_mass", &center_of_mass)?;
+        Self::from_symmetric(mass, inertia, &center_of_mass, trace(&inertia), 0.0, "")
+    }
+
+    /// Whether the two agree: mass to `rtol` of itself, the tensor to `rtol` of its largest element, the centre of mass
+    /// to `rtol` of its distance from the origin or of the radius of gyration, whichever is larger; each `+ atol`.
+    #[must_use]
+    pub fn is_close(&self, other: &Self, rtol: f64, atol: f64) -> bool {
+        let size = (trace(&other.inertia) / other.mass)
+            .sqrt()
+            .max(other.center_of_mass.norm());
+        (self.mass - other.mass).abs() <= atol + rtol * other.mass
+            && (self.center_of_mass - other.center_of_mass).norm() <= atol + rtol * size
+            && (self.inertia - other.inertia).abs().max() <= atol + rtol * other.inertia.abs().max()
+    }
+}
+
+/// m > 0 and finite.
+fn check_mass(mass: f64) -> Result<(), Error> {
+    finite("mass", mass)?;
+    if mass > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::NonPositiveMass { mass })
+    }
+}
+
+/// Positive, and no two moments less than the third. `noise` is an absolute, `allowed` a relative bound of rounding.
+fn check_moments(
+    moments: &[f64; 3],
+    noise: f64,
+    allowed: f64,
+    hint: &'static str,
+) -> Result<(), Error> {
+    let [i1, i2, i3] = *moments;
+    if i1 < -noise.max(allowed * i3) {
+        return Err(Error::NegativeMoment {
+            moments: *moments,
+            hint,
+        });
+    }
+    // In fractions of the largest, so that moments near the ends of the float64 range do not overflow.
+    let deficit = 1.0 - i1 / i3 - i2 / i3;
+    let relative = deficit / (1.0 + i1 / i3 + i2 / i3);
+    if i3 > 0.0 && relative > allowed && deficit * i3 > noise {
+        return Err(Error::TriangleInequality {
+            moments: *moments,
+            deficit: deficit * i3,
+            relative,
+        });
+    }
+    Ok(())
+}
+
+/// The mean of a tensor and its transpose, when they differ by rounding or by `rtol` at most.
+fn symmetrized(inertia: &Matrix3<f64>, rtol: f64) -> Result<Matrix3<f64>, Error> {
+    all_finite("inertia", inertia)?;
+    finite("rtol", rtol)?;
+    if !(0.0..1.0).contains(&rtol) {
+        return Err(Error::OutOfDomain {
+            what: "rtol",
+            law: "between 0 and 1",
+            value: rtol,
+        });
+    }
+    let largest = inertia.abs().max();
+    let allowed = ASYMMETRY.max(rtol);
+    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+        let (a, b) = (inertia[(row, column)], inertia[(column, row)]);
+        let relative = (a / largest - b / largest).abs();
+        if relative > allowed {
+            return Err(Error::NotSymmetric {
+                row,
+                column,
+                a,
+                b,
+                relative,
+                allowed,
+            });
+        }
+    }
+    Ok(mean_of_halves(inertia))
+}
+
+/// `(A + Aᵀ)/2`, halved before it is added so that nothing overflows.
+fn mean_of_halves(a: &Matrix3<f64>) -> Matrix3<f64> {
+    let mut mean = *a;
+    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+        let (x, y) = (a[(row, column)], a[(column, row)]);
+        let m = if x == y { x } else { 0.5 * x + 0.5 * y };
+        mean[(row, column)] = m;
+        mean[(column, row)] = m;
+    }
+    mean
+}
+
+/// `RᵀR = 1` and `det R = +1`, to what a few multiplications of rotations may leave.
+pub(crate) fn check_rotation(what: &'static str, rotation: &Matrix3<f64>) -> Result<(), Error> {
+    all_finite(what, rotation)?;
+    let deviation = (rotation.tr_mul(rotation) - Matrix3::identity())
+        .abs()
+        .max();
+    let determinant = rotation.determinant();
+    if deviation <= 1e-12 && determinant > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::NotARotation {
+            what,
+            deviation,
+            determinant,
+        })
+    }
+}
+
+/// Moments in ascending order, each with its axis, under the sign rule.
+fn sorted(moments: &[f64; 3], axes: &Matrix3<f64>) -> PrincipalAxes {
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
+    let [first, second, _] = order;
+    let (u, v) = (
+        axes.column(first).into_owned(),
+        axes.column(second).into_owned(),
+    );
+    PrincipalAxes {
+        moments: order.map(|k| moments[k] + 0.0), // no negative zero
+        axes: with_sign_rule(Matrix3::from_columns(&[u, v, u.cross(&v)])),
+    }
+}
+
+/// `V diag(I) Vᵀ`, exactly symmetric; exactly diagonal where the axes are the coordinate axes.
+fn tensor(principal: &PrincipalAxes) -> Matrix3<f64> {
+    let scaled = principal.axes * Matrix3::from_diagonal(&Vector3::from(principal.moments));
+    mean_of_halves(&(scaled * principal.axes.transpose()))
+}
+
+fn trace(a: &Matrix3<f64>) -> f64 {
+    a[(0, 0)].abs() + a[(1, 1)].abs() + a[(2, 2)].abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn diagonal(x: f64, y: f64, z: f64) -> Matrix3<f64> {
+        Matrix3::from_diagonal(&Vector3::new(x, y, z))
+    }
+
+    #[test]
+    fn triangle_inequality_is_relative_at_every_scale() {
+        for scale in [1e-300, 1e-47, 1.0, 1e37, 1e300] {
+            let body =
+                |x, y, z| RigidBody::new(1.0, &(diagonal(x, y, z) * scale), &Vector3::zeros(), 0.0);
+            assert!(body(1.0, 2.0, 3.0).is_ok());
+            assert!(body(1.0, 1.0, 0.0).is_ok());
+            let fault = body(1.0, 1.0, 2.0001).expect_err("impossible");
+            assert!(matches!(fault, Error::TriangleInequality { .. }), "{fault}");
+            assert!(matches!(
+                body(1.0, 1.0, -1.0),
+                Err(Error::NegativeMoment { .. })
+            ));
+        }
+    }
+
+    #[test]
+    fn moment_within_rounding_of_zero_is_stored_as_zero() {
+        let body = RigidBody::new(1.0, &diagonal(-1e-16, 1.0, 1.0), &Vector3::zeros(), 0.0)
+            .expect("rounding");
+        assert_eq!(body.principal().moments[0], 0.0);
+    }
+
+    #[test]
+    fn two_particles_are_a_dumbbell_wherever_they_are() {
+        let point = |m, x| {
+            RigidBody::new(m, &Matrix3::zeros(), &Vector3::new(x, 0.0, 0.0), 0.0).expect("point")
+        };
+        let dumbbell = point(1.0, 1e8)
+            .combined(&point(3.0, 1e8 + 4.0))
+            .expect("sum");
+        assert_eq!(dumbbell.principal().moments, [0.0, 12.0, 12.0]);
+        assert_eq!(dumbbell.center_of_mass().x, 1e8 + 3.0);
+    }
+
+    #[test]
+    fn moments_survive_rotations_exactly() {
+        let axes = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+        let body = RigidBody::from_principal(
+            2.0,
+            &[3.0, 2.0, 4.0],
+            &Matrix3::identity(),
+            &Vector3::x(),
+            0.0,
+        )
+        .expect("body");
+        let turned = body.rotated(&axes).expect("turned");
+        assert_eq!(turned.principal().moments, [2.0, 3.0, 4.0]);
+        assert_eq!(turned.inertia(), diagonal(2.0, 3.0, 4.0));
+        assert_eq!(turned.center_of_mass(), Vector3::y());
+    }
+}

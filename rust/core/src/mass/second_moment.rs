@@ -1,0 +1,78 @@
+//! The second moment of a mass distribution, from which its inertia tensor comes.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::numerics::eigen3::eigen3;
+use crate::principal::{PrincipalAxes, with_sign_rule};
+
+/// Mass, centre of mass and second moment `S = ∫ (r − c)(r − c)ᵀ dm` about it.
+///
+/// The inertia tensor is `I = tr(S) 1 − S`. Working with S keeps the smallest principal moment of a thin body:
+/// `I₁ = s₁ + s₂` is a sum of positive numbers, where the same moment from a rounded I is a difference of large ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SecondMoment {
+    /// ∫ dm.
+    pub mass: f64,
+    /// C, from the origin of the body frame.
+    pub center_of_mass: Vector3<f64>,
+    /// S = V `central` Vᵀ: about C, in the axes V, symmetric.
+    pub central: Matrix3<f64>,
+    /// V: a rotation whose columns are the axes that `central` is expressed in.
+    pub axes: Matrix3<f64>,
+}
+
+impl SecondMoment {
+    /// From sums about a reference point: mass, `∫ d dm` and `∫ d dᵀ dm` with `d = r − reference`.
+    ///
+    /// The reference should lie within the body: the parallel-axis step then costs no digits.
+    #[must_use]
+    pub fn about_reference(
+        reference: &Vector3<f64>,
+        mass: f64,
+        first: &Vector3<f64>,
+        second: &Matrix3<f64>,
+    ) -> Self {
+        let d = first / mass;
+        Self {
+            mass,
+            center_of_mass: reference + d,
+            central: second - first * d.transpose(),
+            axes: Matrix3::identity(),
+        }
+    }
+
+    /// `S` in body axes.
+    #[must_use]
+    pub fn in_body_axes(&self) -> Matrix3<f64> {
+        if self.axes == Matrix3::identity() {
+            return self.central;
+        }
+        let turned = self.axes * self.central * self.axes.transpose();
+        (turned + turned.transpose()) * 0.5
+    }
+
+    /// Inertia tensor about C in body axes, `I = tr(S) 1 − S`, each diagonal element a sum of two of S's.
+    #[must_use]
+    pub fn inertia(&self) -> Matrix3<f64> {
+        let s = self.in_body_axes();
+        let (xy, xz, yz) = (0.0 - s[(0, 1)], 0.0 - s[(0, 2)], 0.0 - s[(1, 2)]); // no negative zeros
+        let (x, y, z) = (s[(0, 0)], s[(1, 1)], s[(2, 2)]);
+        Matrix3::new(y + z, xy, xz, xy, x + z, yz, xz, yz, x + y)
+    }
+
+    /// Principal moments and axes about C, found before S is rounded to body axes.
+    ///
+    /// The largest principal value of S belongs to the axis of the smallest moment.
+    #[must_use]
+    pub fn principal_axes(&self) -> PrincipalAxes {
+        let s = eigen3(&self.central);
+        // S is a sum of squares: a negative value is rounding, and zero is what it stands for.
+        let [s1, s2, s3] = s.values.map(|value| value.max(0.0));
+        let column = |k: usize| self.axes * s.vectors.column(k);
+        let (u, v) = (column(2), column(1));
+        PrincipalAxes {
+            moments: [s1 + s2, s1 + s3, s2 + s3],
+            axes: with_sign_rule(Matrix3::from_columns(&[u, v, u.cross(&v)])),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Angular momentum of a rigid body in three parts.
+
+use nalgebra::Vector3;
+
+use crate::mass::RigidBody;
+
+/// `L = m R×v + m [R×(ω×c_P) + c_P×v] + I_P ω` about the inertial origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngularMomentum {
+    /// `m R×v`, of a particle of the body's mass at P.
+    pub orbital: Vector3<f64>,
+    /// `m [R×(ω×c_P) + c_P×v]`; zero for P = C.
+    pub mixed: Vector3<f64>,
+    /// `I_P ω`.
+    pub spin: Vector3<f64>,
+}
+
+impl AngularMomentum {
+    /// The sum of the three parts, which does not depend on P.
+    #[must_use]
+    pub fn total(&self) -> Vector3<f64> {
+        self.orbital + self.mixed + self.spin
+    }
+}
+
+/// Angular momentum of `body` about the inertial origin.
+///
+/// The point P of the body (`about`, from the origin of B) is at R (`position`) and moves with v (`velocity`) while the
+/// body turns with ω (`omega`); all components in B. `c_P = C − P`.
+#[must_use]
+pub fn angular_momentum(
+    body: &RigidBody,
+    omega: &Vector3<f64>,
+    velocity: &Vector3<f64>,
+    position: &Vector3<f64>,
+    about: &Vector3<f64>,
+) -> AngularMomentum {
+    let c = body.center_of_mass() - about;
+    let m = body.mass();
+    let swing = omega.cross(&c);
+    AngularMomentum {
+        orbital: position.cross(velocity) * m,
+        mixed: (position.cross(&swing) + c.cross(velocity)) * m,
+        spin: spin(body, omega) + c.cross(&swing) * m,
+    }
+}
+
+/// `I_C ω`, by the principal moments that define the body.
+fn spin(body: &RigidBody, omega: &Vector3<f64>) -> Vector3<f64> {
+    let principal = body.principal();
+    let w = principal.axes.tr_mul(omega);
+    principal.axes * Vector3::from(principal.moments).component_mul(&w)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mass::{Amount, solids::cuboid};
+
+    #[test]
+    fn total_does_not_depend_on_the_point() {
+        let body = cuboid(&[1.0, 2.0, 3.0], Amount::Mass(2.0))
+            .and_then(|b| b.translated(&Vector3::new(0.3, -1.0, 0.2)));
+        let body = body.expect("box");
+        let (omega, v, r) = (
+            Vector3::new(1.0, -2.0, 0.5),
+            Vector3::new(0.1, 0.7, -3.0),
+            Vector3::new(5.0, 1.0, 2.0),
+        );
+        let c = body.center_of_mass();
+        let about_c = angular_momentum(&body, &omega, &v, &r, &c);
+        assert_eq!(about_c.mixed, Vector3::zeros());
+        // The same motion told of another point P: r_P = R + (P − C), v_P = v + ω×(P − C).
+        let p = Vector3::new(-0.4, 0.9, 1.7);
+        let about_p = angular_momentum(
+            &body,
+            &omega,
+            &(v + omega.cross(&(p - c))),
+            &(r + p - c),
+            &p,
+        );
+        assert!((about_p.total() - about_c.total()).norm() < 1e-13 * about_c.total().norm());
+    }
+}

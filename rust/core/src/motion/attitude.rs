@@ -1,0 +1,84 @@
+//! The attitude `R_NB` as a unit quaternion: active, `v_N = R_NB v_B`, components (x, y, z, w).
+
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
+
+use crate::error::{Error, all_finite};
+use crate::mass::body::check_rotation;
+
+/// How far from one the norm of a quaternion may be and still be rounding.
+const UNIT: f64 = 1e-8;
+
+/// The rotation with the components (x, y, z, w), which must have unit length to rounding.
+///
+/// # Errors
+/// When a component is not finite or the norm is not one.
+pub fn from_components(components: &[f64; 4]) -> Result<UnitQuaternion<f64>, Error> {
+    all_finite("quaternion", components)?;
+    let [x, y, z, w] = *components;
+    let q = Quaternion::new(w, x, y, z);
+    let norm = q.norm();
+    if (norm - 1.0).abs() > UNIT {
+        return Err(Error::NotAUnitQuaternion {
+            what: "quaternion",
+            norm,
+        });
+    }
+    Ok(UnitQuaternion::new_normalize(q))
+}
+
+/// Components (x, y, z, w).
+#[must_use]
+pub fn components(q: &UnitQuaternion<f64>) -> [f64; 4] {
+    [q.i, q.j, q.k, q.w]
+}
+
+/// The quaternion of a rotation matrix, w ≥ 0.
+///
+/// # Errors
+/// When the matrix is not a rotation.
+pub fn from_matrix(rotation: &Matrix3<f64>) -> Result<UnitQuaternion<f64>, Error> {
+    check_rotation("matrix", rotation)?;
+    Ok(from_axes(rotation))
+}
+
+/// The quaternion of a matrix that is known to be a rotation, w ≥ 0.
+#[must_use]
+pub fn from_axes(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
+    let q = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation));
+    let q = UnitQuaternion::new_normalize(q.into_inner());
+    if q.w < 0.0 {
+        UnitQuaternion::new_unchecked(-q.into_inner())
+    } else {
+        q
+    }
+}
+
+/// `q̇ = ½ q ∘ (ω, 0)` for the attitude `q_NB` and ω of B relative to N, components in B.
+#[inline(always)]
+#[must_use]
+pub fn rate(q: &Quaternion<f64>, omega: &Vector3<f64>) -> Quaternion<f64> {
+    q * Quaternion::from_imag(omega * 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quarter_turn_about_z_takes_x_to_y() {
+        let h = 0.5_f64.sqrt();
+        let q = from_components(&[0.0, 0.0, h, h]).expect("unit");
+        assert!((q * Vector3::x() - Vector3::y()).norm() < 1e-15);
+        let back = from_matrix(&q.to_rotation_matrix().into_inner()).expect("rotation");
+        assert!(back.angle_to(&q) < 1e-15);
+    }
+
+    #[test]
+    fn rate_of_a_steady_spin() {
+        let q = Quaternion::identity();
+        assert_eq!(
+            rate(&q, &Vector3::new(0.0, 0.0, 2.0)),
+            Quaternion::new(0.0, 0.0, 0.0, 1.0)
+        );
+    }
+}

@@ -1,0 +1,154 @@
+//! Euler's equations (mln27): `I_P ω̇ + ω × I_P ω = N_P`.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::error::Error;
+use crate::mass::RigidBody;
+use crate::mass::body::ROUNDING;
+use crate::principal::PrincipalAxes;
+
+/// Euler's equations of one body about one point: its principal moments and axes there.
+///
+/// The point is the centre of mass of a body that moves freely, or a point of the body that is fixed in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EulerEquations {
+    moments: [f64; 3],
+    axes: Matrix3<f64>,
+}
+
+impl EulerEquations {
+    /// The equations of `body` about the point P (from the origin of B).
+    #[must_use]
+    pub fn about(body: &RigidBody, point: &Vector3<f64>) -> Self {
+        let PrincipalAxes { moments, axes } = body.principal_about(point);
+        Self { moments, axes }
+    }
+
+    /// Principal moments about P, ascending.
+    #[must_use]
+    pub fn moments(&self) -> [f64; 3] {
+        self.moments
+    }
+
+    /// Principal axes about P (columns, in B).
+    #[must_use]
+    pub fn axes(&self) -> &Matrix3<f64> {
+        &self.axes
+    }
+
+    /// Forward: the angular acceleration ω̇ under the torque N about P; components in B.
+    ///
+    /// # Errors
+    /// [`Error::TorqueAlongMasslessAxis`].
+    pub fn angular_acceleration(
+        &self,
+        omega: &Vector3<f64>,
+        torque: &Vector3<f64>,
+    ) -> Result<Vector3<f64>, Error> {
+        let (w, n) = (self.axes.tr_mul(omega), self.axes.tr_mul(torque));
+        Ok(self.axes * self.principal_acceleration(&w, &n)?)
+    }
+
+    /// Forward, all components in principal axes: `ω̇₁ = (N₁ + (I₂ − I₃) ω₂ ω₃)/I₁` and cyclic.
+    ///
+    /// Along an axis with zero moment ω stays constant, the limit of a thin symmetric rod.
+    ///
+    /// # Errors
+    /// [`Error::TorqueAlongMasslessAxis`].
+    #[inline(always)]
+    pub fn principal_acceleration(
+        &self,
+        w: &Vector3<f64>,
+        n: &Vector3<f64>,
+    ) -> Result<Vector3<f64>, Error> {
+        let [i1, i2, i3] = self.moments;
+        if i1 == 0.0 {
+            return self.massless_acceleration(w, n);
+        }
+        Ok(Vector3::new(
+            (n.x + (i2 - i3) * w.y * w.z) / i1,
+            (n.y + (i3 - i1) * w.z * w.x) / i2,
+            (n.z + (i1 - i2) * w.x * w.y) / i3,
+        ))
+    }
+
+    /// As [`Self::principal_acceleration`] where one or all moments are zero.
+    #[cold]
+    fn massless_acceleration(
+        &self,
+        w: &Vector3<f64>,
+        n: &Vector3<f64>,
+    ) -> Result<Vector3<f64>, Error> {
+        let [_, i2, i3] = self.moments;
+        let noise = ROUNDING * n.norm();
+        let along = |moment: f64, torque: f64, gyroscopic: f64| {
+            if moment > 0.0 {
+                Ok((torque + gyroscopic) / moment)
+            } else if torque.abs() <= noise {
+                Ok(0.0)
+            } else {
+                Err(Error::TorqueAlongMasslessAxis { torque })
+            }
+        };
+        Ok(Vector3::new(
+            along(0.0, n.x, 0.0)?,
+            along(i2, n.y, i3 * w.z * w.x)?,
+            along(i3, n.z, -i2 * w.x * w.y)?,
+        ))
+    }
+
+    /// Inverse: the torque about P that gives the angular acceleration ω̇; components in B.
+    #[must_use]
+    pub fn torque(
+        &self,
+        omega: &Vector3<f64>,
+        angular_acceleration: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        let (w, a) = (
+            self.axes.tr_mul(omega),
+            self.axes.tr_mul(angular_acceleration),
+        );
+        let [i1, i2, i3] = self.moments;
+        self.axes
+            * Vector3::new(
+                i1 * a.x - (i2 - i3) * w.y * w.z,
+                i2 * a.y - (i3 - i1) * w.z * w.x,
+                i3 * a.z - (i1 - i2) * w.x * w.y,
+            )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mass::{Amount, solids};
+
+    #[test]
+    fn inverse_undoes_forward() {
+        let body = solids::cuboid(&[1.0, 2.0, 3.0], Amount::Mass(2.0)).expect("box");
+        let equations = EulerEquations::about(&body, &Vector3::new(0.5, 0.1, -0.7));
+        let (omega, torque) = (Vector3::new(1.0, -2.0, 0.5), Vector3::new(0.3, 0.2, -4.0));
+        let acceleration = equations
+            .angular_acceleration(&omega, &torque)
+            .expect("solid");
+        assert!((equations.torque(&omega, &acceleration) - torque).norm() < 1e-14);
+    }
+
+    #[test]
+    fn rod_keeps_its_spin_and_refuses_to_be_twisted() {
+        let rod = solids::cylinder(0.0, 2.0, Amount::Mass(3.0)).expect("rod");
+        let equations = EulerEquations::about(&rod, &Vector3::zeros());
+        let omega = Vector3::new(0.0, 2.0, 5.0);
+        let free = equations
+            .angular_acceleration(&omega, &Vector3::zeros())
+            .expect("free");
+        assert_eq!(free.z, 0.0);
+        // Ω×L with I₁ = 0 along z: ω̇_x = −ω_y ω_z, ω̇_y = ω_z ω_x.
+        assert!((free.x - (-10.0)).abs() < 1e-14 || (free.x - 10.0).abs() < 1e-14);
+        let twisted = equations.angular_acceleration(&omega, &Vector3::z());
+        assert!(matches!(
+            twisted,
+            Err(Error::TorqueAlongMasslessAxis { .. })
+        ));
+    }
+}

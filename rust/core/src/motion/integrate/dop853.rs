@@ -1,0 +1,334 @@
+//! DOP853: the explicit Runge-Kutta method of order 8 by Dormand and Prince with step-size control by embedded estimates
+//! of orders 5 and 3 and a dense output of order 7 (Hairer, Nørsett & Wanner, Solving ODEs I, §II.5, §II.6, §II.10).
+
+use nalgebra::SVector;
+
+use super::tableau::{DENSE, ERROR_3, ERROR_5, EXTENDED_STAGES, NODES, Row, STAGE_WEIGHTS, STAGES};
+use super::{Compensated, System};
+use crate::error::Error;
+use crate::numerics::double_double::fast_two_sum;
+
+/// The factor by which a step may shrink or grow, and the part of the optimal factor that is used.
+const SHRINK: f64 = 1.0 / 3.0;
+const GROW: f64 = 6.0;
+const SAFETY: f64 = 0.9;
+/// One over the order of the error that the estimate controls.
+const EXPONENT: f64 = 1.0 / 8.0;
+
+/// An integration under way.
+#[derive(Clone, Debug)]
+pub struct Dop853<const N: usize> {
+    start: f64,
+    span: f64,
+    /// Time since the start, and what rounding has left out of it.
+    elapsed: (f64, f64),
+    state: Compensated<N>,
+    /// The step to try next.
+    step: f64,
+    /// The slopes of the last accepted step; the thirteenth is the slope at its end.
+    slopes: [SVector<f64, N>; EXTENDED_STAGES],
+    /// Time and state before the last accepted step, and its length.
+    last: (f64, SVector<f64, N>, f64),
+    /// Accepted steps.
+    pub steps: u64,
+    /// Evaluations of the equations.
+    pub evaluations: u64,
+}
+
+impl<const N: usize> Dop853<N> {
+    /// At the state `y` at time `start`, on the way to `end`.
+    ///
+    /// # Errors
+    /// What the equations refuse at the start; a slope there that is not finite.
+    pub fn new<S: System<N>>(
+        system: &mut S,
+        start: f64,
+        end: f64,
+        y: SVector<f64, N>,
+    ) -> Result<Self, S::Error> {
+        let mut state = Compensated::new(y);
+        system.accept(&mut state);
+        let mut stepper = Self {
+            start,
+            span: end - start,
+            elapsed: (0.0, 0.0),
+            state,
+            step: 0.0,
+            slopes: [SVector::zeros(); EXTENDED_STAGES],
+            last: (0.0, y, 0.0),
+            steps: 0,
+            evaluations: 0,
+        };
+        let slope = stepper.slope(system, 0.0, &state.value)?;
+        if !slope.iter().all(|x| x.is_finite()) {
+            return Err(Error::NotFiniteMotion { time: start }.into());
+        }
+        stepper.slopes[STAGES] = slope;
+        stepper.step = stepper.first_step(system)?;
+        Ok(stepper)
+    }
+
+    /// Time since the start.
+    #[must_use]
+    pub fn elapsed(&self) -> f64 {
+        self.elapsed.0
+    }
+
+    /// Whether the end is reached.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.elapsed.0 == self.span
+    }
+
+    /// The state now.
+    #[must_use]
+    pub fn state(&self) -> &SVector<f64, N> {
+        &self.state.value
+    }
+
+    /// One accepted step toward the end.
+    ///
+    /// # Errors
+    /// What the equations refuse; a step too small to advance the time.
+    pub fn advance<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
+        let mut largest = GROW;
+        loop {
+            let remaining = (self.span - self.elapsed.0) - self.elapsed.1;
+            let is_last = 1.01 * self.step.abs() >= remaining.abs();
+            let h = if is_last { remaining } else { self.step };
+            if self.elapsed.0 + h == self.elapsed.0 && !is_last {
+                return Err(self.stuck(h).into());
+            }
+            let y = self.state.value;
+            self.slopes[0] = self.slopes[STAGES];
+            let slope_at_start = self.slopes[0];
+            for stage in 1..STAGES {
+                self.slopes[stage] = self.stage_slope(system, stage, &y, h)?;
+            }
+            let state = self.state.plus(&(self.weighted(STAGE_WEIGHTS[STAGES]) * h));
+            let error = self.error(system, &y, &state.value, h);
+            let factor = SAFETY * error.powf(-EXPONENT); // infinite for no error, NaN for one that is not finite
+            if error <= 1.0 {
+                self.last = (self.elapsed.0, y, h);
+                self.state = state;
+                self.elapsed = if is_last {
+                    (self.span, 0.0)
+                } else {
+                    let (sum, rest) = fast_two_sum(self.elapsed.0, h + self.elapsed.1);
+                    (sum, rest)
+                };
+                self.step = h * factor.clamp(SHRINK, largest);
+                self.steps += 1;
+                system.accept(&mut self.state);
+                self.slopes[STAGES] =
+                    self.slope(system, self.elapsed.0, &self.state.value.clone())?;
+                return Ok(());
+            }
+            self.slopes[STAGES] = slope_at_start;
+            self.step = h * if factor.is_nan() {
+                SHRINK
+            } else {
+                factor.clamp(SHRINK, 1.0)
+            };
+            largest = 1.0;
+            if self.elapsed.0 + self.step == self.elapsed.0 {
+                return Err(if error.is_nan() {
+                    Error::NotFiniteMotion {
+                        time: self.start + self.elapsed.0,
+                    }
+                } else {
+                    self.stuck(self.step)
+                }
+                .into());
+            }
+        }
+    }
+
+    /// The states during the last accepted step as a polynomial in time.
+    ///
+    /// # Errors
+    /// What the equations refuse in the three more evaluations it takes.
+    pub fn dense<S: System<N>>(&mut self, system: &mut S) -> Result<Dense<N>, S::Error> {
+        let (start, y, h) = self.last;
+        for stage in STAGES + 1..EXTENDED_STAGES {
+            let weighted = self.weighted(STAGE_WEIGHTS[stage]);
+            self.slopes[stage] =
+                self.slope(system, start + NODES[stage] * h, &(y + weighted * h))?;
+        }
+        let change = self.state.value - y;
+        let (before, after) = (self.slopes[0] * h, self.slopes[STAGES] * h);
+        let mut coefficients = [change; 7];
+        coefficients[1] = before - change;
+        coefficients[2] = change * 2.0 - (after + before);
+        for (coefficient, row) in coefficients[3..].iter_mut().zip(DENSE) {
+            *coefficient = self.weighted(row) * h;
+        }
+        Ok(Dense {
+            start,
+            step: h,
+            y,
+            coefficients,
+        })
+    }
+
+    fn slope<S: System<N>>(
+        &mut self,
+        system: &mut S,
+        elapsed: f64,
+        y: &SVector<f64, N>,
+    ) -> Result<SVector<f64, N>, S::Error> {
+        self.evaluations += 1;
+        system.derivative(self.start + elapsed, y)
+    }
+
+    fn stage_slope<S: System<N>>(
+        &mut self,
+        system: &mut S,
+        stage: usize,
+        y: &SVector<f64, N>,
+        h: f64,
+    ) -> Result<SVector<f64, N>, S::Error> {
+        let y = y + self.weighted(STAGE_WEIGHTS[stage]) * h;
+        self.slope(system, self.elapsed.0 + NODES[stage] * h, &y)
+    }
+
+    fn weighted(&self, row: Row) -> SVector<f64, N> {
+        row.iter().fold(SVector::zeros(), |sum, &(stage, weight)| {
+            sum + self.slopes[stage] * weight
+        })
+    }
+
+    /// The estimate of order 5, damped by that of order 3, in units of what is allowed.
+    fn error<S: System<N>>(
+        &self,
+        system: &S,
+        y: &SVector<f64, N>,
+        y_new: &SVector<f64, N>,
+        h: f64,
+    ) -> f64 {
+        let norm = |row| system.error_norm(y, y_new, &(self.weighted(row) * h));
+        let (fifth, third) = (norm(ERROR_5), norm(ERROR_3));
+        if fifth == 0.0 {
+            0.0
+        } else {
+            fifth * (fifth / fifth.hypot(0.1 * third))
+        }
+    }
+
+    /// A first step from the sizes of state, slope and change of slope (Hairer, Nørsett & Wanner, §II.4).
+    fn first_step<S: System<N>>(&mut self, system: &mut S) -> Result<f64, S::Error> {
+        let (y, slope) = (self.state.value, self.slopes[STAGES]);
+        let (size, speed) = (
+            system.error_norm(&y, &y, &y),
+            system.error_norm(&y, &y, &slope),
+        );
+        let trial = if speed > 0.0 && speed.is_finite() {
+            0.01 * size / speed
+        } else {
+            1e-3 * self.span.abs()
+        };
+        let trial = trial.min(self.span.abs()).copysign(self.span);
+        let later = self.slope(system, trial, &(y + slope * trial))?;
+        let bend = system.error_norm(&y, &(y + slope * trial), &(later - slope)) / trial.abs();
+        let fastest = speed.max(bend);
+        let step = if fastest > 0.0 && fastest.is_finite() {
+            (0.01 / fastest).powf(EXPONENT).min(100.0 * trial.abs())
+        } else {
+            trial.abs()
+        };
+        Ok(step.min(self.span.abs()).copysign(self.span))
+    }
+
+    fn stuck(&self, step: f64) -> Error {
+        Error::StepTooSmall {
+            time: self.start + self.elapsed.0,
+            step,
+        }
+    }
+}
+
+/// The states during one step as a polynomial of degree 7 in time.
+#[derive(Clone, Debug)]
+pub struct Dense<const N: usize> {
+    start: f64,
+    step: f64,
+    y: SVector<f64, N>,
+    coefficients: [SVector<f64, N>; 7],
+}
+
+impl<const N: usize> Dense<N> {
+    /// The state at `elapsed` since the start of the integration.
+    #[must_use]
+    pub fn at(&self, elapsed: f64) -> SVector<f64, N> {
+        let x = (elapsed - self.start) / self.step;
+        let mut y = SVector::zeros();
+        for (i, coefficient) in self.coefficients.iter().enumerate().rev() {
+            y = (y + coefficient) * if i % 2 == 0 { x } else { 1.0 - x };
+        }
+        self.y + y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector2;
+
+    /// ẍ = −x, whose solution from (1, 0) is (cos t, −sin t).
+    struct Oscillator {
+        tolerance: f64,
+    }
+
+    impl System<2> for Oscillator {
+        type Error = Error;
+
+        fn derivative(&mut self, _t: f64, y: &Vector2<f64>) -> Result<Vector2<f64>, Error> {
+            Ok(Vector2::new(y.y, -y.x))
+        }
+
+        fn error_norm(&self, _: &Vector2<f64>, _: &Vector2<f64>, error: &Vector2<f64>) -> f64 {
+            error.norm() / self.tolerance
+        }
+
+        fn accept(&mut self, _: &mut Compensated<2>) {}
+    }
+
+    fn run(tolerance: f64, end: f64) -> (f64, f64, u64) {
+        let mut system = Oscillator { tolerance };
+        let mut stepper = Dop853::new(&mut system, 3.0, 3.0 + end, Vector2::x()).expect("finite");
+        let mut between: f64 = 0.0;
+        while !stepper.is_finished() {
+            let before = stepper.elapsed();
+            stepper.advance(&mut system).expect("smooth");
+            let dense = stepper.dense(&mut system).expect("smooth");
+            for part in [0.0, 0.3, 0.5, 0.9, 1.0] {
+                let t = before + part * (stepper.elapsed() - before);
+                between = between.max((dense.at(t) - Vector2::new(t.cos(), -t.sin())).norm());
+            }
+        }
+        let exact = Vector2::new(end.cos(), -end.sin());
+        ((stepper.state() - exact).norm(), between, stepper.steps)
+    }
+
+    #[test]
+    fn error_follows_the_tolerance_forward_and_backward() {
+        for end in [20.0, -20.0] {
+            for tolerance in [1e-6, 1e-9, 1e-12] {
+                let (error, between, _) = run(tolerance, end);
+                assert!(error < 50.0 * tolerance, "{error:e}");
+                assert!(between < 200.0 * tolerance, "{between:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn order_is_eight() {
+        // Work grows with the eighth root of the accuracy: 10⁴ times as accurate for 10^½ times the steps.
+        let (coarse, fine) = (run(1e-6, 200.0).2 as f64, run(1e-10, 200.0).2 as f64);
+        assert!(
+            (fine / coarse).log10() < 0.6 && (fine / coarse).log10() > 0.4,
+            "{}",
+            fine / coarse
+        );
+    }
+}

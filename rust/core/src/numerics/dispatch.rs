@@ -1,0 +1,183 @@
+//! Run-time dispatch: one binary, the widest lanes the machine at hand has.
+//!
+//! A [`Kernel`] is a piece of work generic over [`Lane`]. [`dispatch`] runs it compiled for the best
+//! [`Level`] of this machine. The levels with fused multiply-add give the same bits as each other;
+//! [`Level::Baseline`], which every machine has, rounds products and sums apart and agrees to the
+//! accuracy each kernel states. This is the only file of the crate with `unsafe` in it: calling a
+//! function compiled for an instruction set asserts that the machine has it.
+
+use std::fmt;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use super::lane::{Lane, Lanes};
+
+/// Work that runs on whatever lanes [`dispatch`] picks.
+pub trait Kernel {
+    /// What the work returns.
+    type Output;
+    /// Does the work. Mark the implementation, and every helper it calls, `#[inline(always)]`: what is
+    /// not inlined is compiled for the baseline.
+    fn run<L: Lane>(self) -> Self::Output;
+}
+
+/// An instruction set that kernels are compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Level {
+    /// What every processor of the architecture has, products and sums rounded apart.
+    Baseline = 1,
+    /// 64-bit ARM: two doubles to a register, fused multiply-add.
+    Neon = 2,
+    /// x86-64 with four doubles to a register and fused multiply-add.
+    Avx2 = 3,
+    /// x86-64 with eight doubles to a register.
+    Avx512 = 4,
+}
+
+impl Level {
+    /// All levels, narrowest first.
+    pub const ALL: [Self; 4] = [Self::Baseline, Self::Neon, Self::Avx2, Self::Avx512];
+
+    /// Whether this machine can run the level.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            Self::Neon => cfg!(target_arch = "aarch64"),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => {
+                is_x86_feature_detected!("avx2")
+                    && is_x86_feature_detected!("fma")
+                    && is_x86_feature_detected!("bmi1")
+                    && is_x86_feature_detected!("bmi2")
+                    && is_x86_feature_detected!("lzcnt")
+            }
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                Self::Avx2.is_available()
+                    && is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512bw")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512vl")
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => false,
+        }
+    }
+
+    /// The widest level this machine has.
+    #[must_use]
+    pub fn best() -> Self {
+        Self::ALL
+            .into_iter()
+            .rev()
+            .find(|level| level.is_available())
+            .unwrap_or(Self::Baseline)
+    }
+}
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Baseline => "baseline",
+            Self::Neon => "neon",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        })
+    }
+}
+
+/// The level in use; 0 until the first call has looked.
+static LEVEL: AtomicU8 = AtomicU8::new(0);
+
+/// The level that [`dispatch`] uses.
+#[inline]
+pub fn level() -> Level {
+    match LEVEL.load(Ordering::Relaxed) {
+        4 => Level::Avx512,
+        3 => Level::Avx2,
+        2 => Level::Neon,
+        1 => Level::Baseline,
+        _ => {
+            let best = Level::best();
+            LEVEL.store(best as u8, Ordering::Relaxed);
+            best
+        }
+    }
+}
+
+/// Makes the whole process use `level`, for tests and benchmarks; returns whether the machine has it
+/// (where it has not, nothing changes).
+pub fn set_level(level: Level) -> bool {
+    let available = level.is_available();
+    if available {
+        LEVEL.store(level as u8, Ordering::Relaxed);
+    }
+    available
+}
+
+/// Runs the kernel on the widest lanes of this machine.
+#[inline]
+pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    match level() {
+        #[cfg(target_arch = "x86_64")]
+        #[expect(
+            unsafe_code,
+            reason = "`level` is only ever a level whose instructions were detected"
+        )]
+        Level::Avx512 => unsafe { avx512(kernel) },
+        #[cfg(target_arch = "x86_64")]
+        #[expect(
+            unsafe_code,
+            reason = "`level` is only ever a level whose instructions were detected"
+        )]
+        Level::Avx2 => unsafe { avx2(kernel) },
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon => kernel.run::<Lanes<4, true>>(),
+        _ => kernel.run::<Lanes<4, false>>(),
+    }
+}
+
+// Eight lanes on AVX2 are two registers side by side, which hides the latency of roots and divisions.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
+fn avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Lanes<8, true>>()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt")]
+fn avx512<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Lanes<8, true>>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Kernel, Lane, Level, dispatch, level, set_level};
+
+    struct Sum<'a>(&'a [f64; 8]);
+
+    impl Kernel for Sum<'_> {
+        type Output = f64;
+        #[inline(always)]
+        fn run<L: Lane>(self) -> f64 {
+            self.0
+                .iter()
+                .map(|&x| L::splat(x).mul_add(L::splat(2.0), L::splat(1.0)).get(0))
+                .sum()
+        }
+    }
+
+    #[test]
+    fn every_available_level_runs() {
+        let before = level();
+        for candidate in Level::ALL {
+            assert_eq!(set_level(candidate), candidate.is_available());
+            assert_eq!(
+                dispatch(Sum(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])),
+                80.0
+            );
+        }
+        assert!(set_level(before));
+    }
+}

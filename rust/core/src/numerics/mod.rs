@@ -1,0 +1,20 @@
+//! The numerics under the theory: what a page of mechanics takes for granted.
+//!
+//! | module | what it gives |
+//! |---|---|
+//! | [`lane`] | one formula for one number or several side by side |
+//! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
+//! | [`reduce`] | sums whose bits do not depend on how the work is cut |
+//! | [`double_double`] | error-free sums and products |
+//! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
+//! | [`eigen3`] | eigenvalues and eigenvectors of symmetric 3×3 matrices |
+//!
+//! Same bits everywhere: a row's result does not depend on its neighbours, on the width of the lanes, on the
+//! number of threads, nor on which machine with fused multiply-add computes it.
+
+pub mod dispatch;
+pub mod double_double;
+pub mod eigen3;
+pub mod lane;
+pub mod reduce;
+pub mod threads;

@@ -1,0 +1,71 @@
+//! Sums whose bits do not depend on how the work is cut.
+//!
+//! Term `i` goes to the virtual lane `i mod 8` of the block `i / 4096`; lanes and blocks are merged in a fixed tree. The
+//! result is therefore the same for any number of threads, and the rounding error grows with the logarithm of the
+//! number of terms beyond one block.
+
+/// Virtual lanes of a block.
+const LANES: usize = 8;
+/// Terms of a block.
+pub const BLOCK: usize = 4096;
+
+/// `Σ term(i)` over `0..n`, for K sums at once.
+pub fn sum_terms<const K: usize>(n: usize, term: impl Fn(usize) -> [f64; K]) -> [f64; K] {
+    tree(0, n.div_ceil(BLOCK).max(1), &|block| {
+        block_sum(block * BLOCK, n.min((block + 1) * BLOCK), &term)
+    })
+}
+
+/// The blocks `from..to` merged pairwise, split at the largest power of two, so that the tree depends on `to` alone.
+fn tree<const K: usize>(from: usize, to: usize, block: &impl Fn(usize) -> [f64; K]) -> [f64; K] {
+    let count = to - from;
+    if count == 1 {
+        return block(from);
+    }
+    let half = count.next_power_of_two() / 2;
+    add(tree(from, from + half, block), tree(from + half, to, block))
+}
+
+#[inline(always)]
+fn block_sum<const K: usize>(
+    from: usize,
+    to: usize,
+    term: &impl Fn(usize) -> [f64; K],
+) -> [f64; K] {
+    let mut lanes = [[0.0; K]; LANES];
+    let whole = from + (to - from) / LANES * LANES;
+    let mut i = from;
+    while i < whole {
+        for lane in &mut lanes {
+            *lane = add(*lane, term(i));
+            i += 1;
+        }
+    }
+    for (lane, i) in lanes.iter_mut().zip(whole..to) {
+        *lane = add(*lane, term(i));
+    }
+    let [a, b, c, d, e, f, g, h] = lanes;
+    add(add(add(a, e), add(c, g)), add(add(b, f), add(d, h)))
+}
+
+#[inline(always)]
+fn add<const K: usize>(mut a: [f64; K], b: [f64; K]) -> [f64; K] {
+    for (x, y) in a.iter_mut().zip(b) {
+        *x += y;
+    }
+    a
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_every_term_once() {
+        for n in [0, 1, 7, 8, 9, 4095, 4096, 4097, 3 * 4096, 100_000] {
+            let [count, sum] = sum_terms(n, |i| [1.0, i as f64]);
+            assert_eq!(count, n as f64);
+            assert_eq!(sum, (n as f64) * (n as f64 - 1.0).max(0.0) / 2.0);
+        }
+    }
+}

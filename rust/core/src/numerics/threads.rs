@@ -1,0 +1,273 @@
+//! Threads for large stacks: scoped, so that nothing outlives the call, and without a global pool, which
+//! would not survive `fork`.
+//!
+//! The work is cut into blocks that never depend on the number of threads, so neither do the bits of the
+//! results. The calling thread starts on the blocks by itself; only a job that is not over after a
+//! millisecond is shared with others, and from then on the calling thread serves `watch`: progress and Ctrl-C.
+
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How often the calling thread looks up from waiting.
+const WATCH_INTERVAL: Duration = Duration::from_millis(20);
+/// Work shorter than this is not worth the start of a thread.
+const ALONE: Duration = Duration::from_millis(1);
+
+/// Why a job ended early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halt<E> {
+    /// `watch` asked for it.
+    Stopped,
+    /// A block failed; of all failing blocks, the one that comes first.
+    Failed(E),
+}
+
+/// The number of threads a job may use; 0 stands for as many as the machine offers.
+static LIMIT: AtomicUsize = AtomicUsize::new(0);
+
+/// Limits every later job of this process to `count` threads; `None` lifts the limit.
+pub fn set_thread_limit(count: Option<NonZeroUsize>) {
+    LIMIT.store(count.map_or(0, NonZeroUsize::get), Ordering::Relaxed);
+}
+
+/// The number of threads a large job uses.
+#[must_use]
+pub fn thread_count() -> usize {
+    match LIMIT.load(Ordering::Relaxed) {
+        0 => thread::available_parallelism().map_or(1, NonZeroUsize::get),
+        limit => limit,
+    }
+}
+
+/// Fills `out` block by block: `work` gets the index of a block's first element and the block.
+///
+/// Blocks are `block` elements long, the last one perhaps shorter. About every 20 ms `watch` gets the
+/// fraction done; [`ControlFlow::Break`] stops the job as soon as the blocks under way are finished.
+/// A job that is over within 20 ms never calls it.
+///
+/// # Errors
+/// [`Halt::Stopped`] if `watch` said so, else [`Halt::Failed`] with the error of the first block that failed.
+/// The contents of `out` are then unspecified.
+///
+/// # Panics
+/// If `block` is zero, or if `work` panics.
+pub fn fill_blocks<T: Send, E: Send>(
+    out: &mut [T],
+    block: usize,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    work: impl Fn(usize, &mut [T]) -> Result<(), E> + Sync,
+) -> Result<(), Halt<E>> {
+    let total = out.len();
+    let threads = thread_count();
+    let mut blocks = out.chunks_mut(block).enumerate();
+    let mut done = 0;
+    let start = Instant::now();
+    let mut looked_up = start;
+    loop {
+        let now = Instant::now();
+        if threads > 1 && blocks.len() > 1 && now - start >= ALONE {
+            break;
+        }
+        if now - looked_up >= WATCH_INTERVAL {
+            looked_up = now;
+            if watch(fraction(done, total)).is_break() {
+                return Err(Halt::Stopped);
+            }
+        }
+        let Some((index, slice)) = blocks.next() else {
+            return Ok(());
+        };
+        work(index * block, slice).map_err(Halt::Failed)?;
+        done += slice.len();
+    }
+
+    let helpers = threads.min(blocks.len());
+    let queue = Queue::new(blocks, helpers);
+    let finished = AtomicUsize::new(done);
+    let flow = thread::scope(|scope| {
+        for _ in 0..helpers {
+            scope.spawn(|| {
+                let _leaving = Leaving(&queue);
+                while let Some((index, slice)) = queue.take() {
+                    match work(index * block, slice) {
+                        Ok(()) => finished.fetch_add(slice.len(), Ordering::Relaxed),
+                        Err(error) => return queue.fail(index, error),
+                    };
+                }
+            });
+        }
+        queue.serve(|| watch(fraction(finished.load(Ordering::Relaxed), total)))
+    });
+    match (flow, queue.into_failure()) {
+        (ControlFlow::Break(()), _) => Err(Halt::Stopped),
+        (_, Some(error)) => Err(Halt::Failed(error)),
+        (_, None) => Ok(()),
+    }
+}
+
+fn fraction(done: usize, total: usize) -> f64 {
+    done as f64 / total as f64
+}
+
+/// The blocks still to be done, and what the threads have to tell each other.
+struct Queue<I, E> {
+    state: Mutex<State<I, E>>,
+    someone_left: Condvar,
+}
+
+struct State<I, E> {
+    /// `None` once no further block is to be started.
+    blocks: Option<I>,
+    /// The failing block with the lowest index so far. Blocks are started in order, so when one fails all
+    /// lower ones have been started too, and each of them has its say before the job returns.
+    failure: Option<(usize, E)>,
+    running: usize,
+}
+
+impl<B, I: Iterator<Item = (usize, B)>, E> Queue<I, E> {
+    fn new(blocks: I, running: usize) -> Self {
+        Self {
+            state: Mutex::new(State {
+                blocks: Some(blocks),
+                failure: None,
+                running,
+            }),
+            someone_left: Condvar::new(),
+        }
+    }
+
+    fn take(&self) -> Option<(usize, B)> {
+        self.state().blocks.as_mut()?.next()
+    }
+
+    fn fail(&self, index: usize, error: E) {
+        let mut state = self.state();
+        state.blocks = None;
+        if state
+            .failure
+            .as_ref()
+            .is_none_or(|(lowest, _)| index < *lowest)
+        {
+            state.failure = Some((index, error));
+        }
+    }
+
+    /// Calls `watch` at every interval until all threads have left.
+    fn serve(&self, mut watch: impl FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
+        let mut flow = ControlFlow::Continue(());
+        let mut state = self.state();
+        while state.running > 0 {
+            let (woken, timeout) = self
+                .someone_left
+                .wait_timeout(state, WATCH_INTERVAL)
+                .unwrap_or_else(PoisonError::into_inner);
+            state = woken;
+            if timeout.timed_out() && state.running > 0 && flow.is_continue() {
+                drop(state);
+                flow = watch();
+                state = self.state();
+                if flow.is_break() {
+                    state.blocks = None;
+                }
+            }
+        }
+        flow
+    }
+
+    fn into_failure(self) -> Option<E> {
+        let state = self
+            .state
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner);
+        state.failure.map(|(_, error)| error)
+    }
+}
+
+impl<I, E> Queue<I, E> {
+    /// The state stays valid between any two statements, so a panic elsewhere does not spoil it.
+    fn state(&self) -> MutexGuard<'_, State<I, E>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Signs a thread off when it ends, also by a panic.
+struct Leaving<'a, I, E>(&'a Queue<I, E>);
+
+impl<I, E> Drop for Leaving<'_, I, E> {
+    fn drop(&mut self) {
+        self.0.state().running -= 1;
+        self.0.someone_left.notify_one();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        ControlFlow, Duration, Halt, Instant, NonZeroUsize, fill_blocks, set_thread_limit, thread,
+    };
+
+    fn go_on(_: f64) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    #[expect(clippy::unnecessary_wraps, reason = "the signature of work")]
+    fn slow(start: usize, slice: &mut [usize]) -> Result<(), usize> {
+        thread::sleep(Duration::from_micros(500));
+        for (i, x) in slice.iter_mut().enumerate() {
+            *x = start + i;
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn every_element_is_filled_once_by_any_number_of_threads() {
+        for count in [1, 2, 5] {
+            set_thread_limit(NonZeroUsize::new(count));
+            for length in [0, 1, 7, 64, 1001] {
+                let mut out = vec![usize::MAX; length];
+                assert_eq!(fill_blocks(&mut out, 8, &mut go_on, slow), Ok(()));
+                assert!(out.iter().enumerate().all(|(i, &x)| i == x));
+            }
+        }
+        set_thread_limit(None);
+    }
+
+    #[test]
+    fn the_first_failing_block_wins() {
+        let mut out = [0usize; 400];
+        let outcome = fill_blocks(&mut out, 4, &mut go_on, |start, slice| {
+            slow(start, slice)?;
+            // Later failures are quicker to report.
+            thread::sleep(Duration::from_micros(if start == 40 { 3000 } else { 0 }));
+            if start >= 40 { Err(start) } else { Ok(()) }
+        });
+        assert_eq!(outcome, Err(Halt::Failed(40)));
+    }
+
+    #[test]
+    fn watch_sees_progress_and_stops_the_job_soon() {
+        let mut out = vec![0usize; 1_000_000];
+        let mut seen = Vec::new();
+        let start = Instant::now();
+        let outcome = fill_blocks(
+            &mut out,
+            1,
+            &mut |done| {
+                seen.push(done);
+                if seen.len() == 3 {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            },
+            slow,
+        );
+        assert_eq!(outcome, Err(Halt::Stopped));
+        assert!(seen.is_sorted() && seen[0] > 0.0 && seen[2] < 1.0);
+        assert!(start.elapsed() < Duration::from_secs(2));
+    }
+}

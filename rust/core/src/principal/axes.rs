@@ -1,0 +1,44 @@
+//! Principal axes: I = V diag(I₁, I₂, I₃) Vᵀ with I₁ ≤ I₂ ≤ I₃.
+//!
+//! The axes are the **columns** of V, components in the body frame: `v_B` = V `v_P`. V is a rotation. Since an axis has no
+//! direction of its own, a rule picks one: in columns 0 and 1 the first component that is as large as the largest, to
+//! 1e-8, is positive, and column 2 = column 0 × column 1.
+
+use nalgebra::Matrix3;
+
+use crate::numerics::eigen3::{self, Eigen3, eigen3, eigen3_many};
+
+/// Principal moments and axes of a tensor of inertia, or of any symmetric tensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipalAxes {
+    /// The principal moments, ascending.
+    pub moments: [f64; 3],
+    /// The principal axes as columns, a rotation.
+    pub axes: Matrix3<f64>,
+}
+
+/// The principal moments and axes of a symmetric tensor, of which the lower triangle is read.
+///
+/// A tensor with an element that is not finite gives NaN throughout.
+#[must_use]
+pub fn principal_axes(inertia: &Matrix3<f64>) -> PrincipalAxes {
+    let Eigen3 { values, vectors } = eigen3(inertia);
+    PrincipalAxes {
+        moments: values,
+        axes: vectors,
+    }
+}
+
+/// The principal moments and axes of many tensors, on the calling thread; tensors and axes are row-major.
+///
+/// # Panics
+/// If the lengths differ.
+pub fn principal_axes_many(tensors: &[[f64; 9]], moments: &mut [[f64; 3]], axes: &mut [[f64; 9]]) {
+    eigen3_many(tensors, moments, axes);
+}
+
+/// The axes of a rotation, in the directions that the sign rule picks.
+#[must_use]
+pub fn with_sign_rule(axes: Matrix3<f64>) -> Matrix3<f64> {
+    eigen3::with_sign_rule(&axes)
+}

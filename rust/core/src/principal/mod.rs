@@ -1,0 +1,8 @@
+//! Principal axes and tops: the frame in which a body's inertia tensor is diagonal, and what kind of top the
+//! body is.
+
+pub mod axes;
+pub mod tops;
+
+pub use axes::{PrincipalAxes, principal_axes, principal_axes_many, with_sign_rule};
+pub use tops::{TOP_RTOL, Top, classify, gaps, ray_kappa};
