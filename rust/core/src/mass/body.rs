@@ -303,6 +303,47 @@ impl RigidBody {
         Self::from_symmetric(mass, inertia, &center_of_mass, trace(&inertia), 0.0, "")
     }
 
+    /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows.
+    #[must_use]
+    pub fn to_array(&self) -> [f64; 22] {
+        let (c, i) = (&self.center_of_mass, &self.inertia);
+        let mut numbers = [0.0; 22];
+        numbers[0] = self.mass;
+        numbers[1..4].copy_from_slice(c.as_slice());
+        numbers[4..10].copy_from_slice(&[i.m11, i.m12, i.m13, i.m22, i.m23, i.m33]);
+        numbers[10..13].copy_from_slice(&self.principal.moments);
+        numbers[13..].copy_from_slice(self.principal.axes.transpose().as_slice());
+        numbers
+    }
+
+    /// The body that [`Self::to_array`] took apart, the same to the last bit.
+    ///
+    /// # Errors
+    /// When the numbers are not those of a body: moments, axes and tensor must agree.
+    pub fn from_array(numbers: &[f64; 22]) -> Result<Self, Error> {
+        let [mass, x, y, z, xx, xy, xz, yy, yz, zz, i1, i2, i3, ..] = *numbers;
+        let moments = [i1, i2, i3];
+        let axes = Matrix3::from_row_slice(&numbers[13..]);
+        let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        let body = Self::from_principal(mass, &moments, &axes, &Vector3::new(x, y, z), 1e-12)?;
+        all_finite("inertia", &inertia)?;
+        let difference = (inertia - body.inertia).abs().max();
+        if difference > 1e-12 * trace(&inertia) {
+            let law = "that of the principal moments and axes stored beside it";
+            return Err(Error::OutOfDomain {
+                what: "inertia",
+                law,
+                value: difference,
+            });
+        }
+        let principal = PrincipalAxes { moments, axes };
+        Ok(Self {
+            inertia,
+            principal,
+            ..body
+        })
+    }
+
     /// Whether the two agree: mass to `rtol` of itself, the tensor to `rtol` of its largest element, the centre of mass
     /// to `rtol` of its distance from the origin or of the radius of gyration, whichever is larger; each `+ atol`.
     #[must_use]

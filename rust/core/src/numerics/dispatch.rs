@@ -1,17 +1,16 @@
 //! Run-time dispatch: one binary, the widest lanes the machine at hand has.
 //!
-//! A [`Kernel`] is a piece of work generic over [`Lane`]. [`dispatch`] runs it compiled for the best
-//! [`Level`] of this machine. The levels with fused multiply-add give the same bits as each other;
-//! [`Level::Baseline`], which every machine has, rounds products and sums apart and agrees to the
-//! accuracy each kernel states. This is the only file of the crate with `unsafe` in it: calling a
-//! function compiled for an instruction set asserts that the machine has it.
+//! A [`Kernel`] is a piece of work generic over [`Lane`]. [`dispatch`] runs it compiled for the best [`Level`] of this
+//! machine. The levels with fused multiply-add give the same bits as each other; [`Level::Baseline`], which every machine
+//! has, rounds products and sums apart and agrees to the accuracy each kernel states. This is the only file of the crate
+//! with `unsafe` in it: calling a function compiled for an instruction set asserts that the machine has it.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use super::lane::{Lane, Lanes};
+use super::lane::{Double, Lane};
 
-/// Work that runs on whatever lanes [`dispatch`] picks.
+/// Work that is compiled for every level, and runs at the one [`dispatch`] picks.
 pub trait Kernel {
     /// What the work returns.
     type Output;
@@ -133,22 +132,21 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         )]
         Level::Avx2 => unsafe { avx2(kernel) },
         #[cfg(target_arch = "aarch64")]
-        Level::Neon => kernel.run::<Lanes<4, true>>(),
-        _ => kernel.run::<Lanes<4, false>>(),
+        Level::Neon => kernel.run::<Double<true>>(),
+        _ => kernel.run::<Double<false>>(),
     }
 }
 
-// Eight lanes on AVX2 are two registers side by side, which hides the latency of roots and divisions.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
 fn avx2<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Lanes<8, true>>()
+    kernel.run::<Double<true>>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt")]
 fn avx512<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Lanes<8, true>>()
+    kernel.run::<Double<true>>()
 }
 
 #[cfg(test)]
@@ -163,7 +161,7 @@ mod tests {
         fn run<L: Lane>(self) -> f64 {
             self.0
                 .iter()
-                .map(|&x| L::splat(x).mul_add(L::splat(2.0), L::splat(1.0)).get(0))
+                .map(|&x| L::new(x).mul_add(L::new(2.0), L::new(1.0)).get())
                 .sum()
         }
     }

@@ -1,53 +1,35 @@
-//! Lanes: one formula, written once, for one number or for several side by side.
+//! Lanes: each hot formula written once, for one number, and run on several side by side.
 //!
-//! A hot formula is generic over [`Lane`]. Its instances are [`Lanes<1, FMA>`](Lanes), the scalar
-//! twin, and wider arrays that the compiler turns into vector instructions wherever the calling
-//! function enables them ([`dispatch`](super::dispatch)). Every operation acts on each lane by itself and
-//! rounds as IEEE 754 says, so a lane's bits depend on its own numbers only: not on its neighbours, and
-//! not on the width. Whether a product and a sum round once or twice is part of the type (`FMA`), so
-//! machines with fused multiply-add agree with each other to the last bit.
+//! A formula generic over [`Lane`] reads like scalar arithmetic. Called once it is scalar arithmetic; called in a loop
+//! over [`Planes`](super::planes::Planes) inside a [`Kernel`](super::dispatch::Kernel) it becomes vector instructions as
+//! wide as the machine has, one lane for each row. Every operation rounds as IEEE 754 says, so a row's bits depend on its
+//! own numbers only: not on its neighbours, and not on the width. Whether a product and a sum round once or twice is part
+//! of the type, so all machines with fused multiply-add agree to the last bit.
 //!
-//! Plain arrays and plain loops: no intrinsics, nothing unsafe. The loops are written out because
-//! closures and `array::from_fn` are not always inlined, and one call left in a kernel costs a third of its
-//! speed.
+//! No intrinsics, nothing unsafe. A formula that is to be vectorised has no loop with a data-dependent end, takes both
+//! sides of every `if`, and is `#[inline(always)]` down to the last helper.
 
 use std::fmt::Debug;
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number, or several numbers side by side, on which arithmetic acts lane by lane.
+/// A double with a known way of multiplying and adding: one lane of a vectorised loop.
 pub trait Lane:
     Copy
     + Debug
-    + Send
-    + Sync
+    + PartialOrd
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// How many numbers stand side by side.
-    const WIDTH: usize;
-    /// The one-number twin: the same operations with the same rounding, hence the same bits.
-    type Scalar: Lane<Scalar = Self::Scalar>;
-    /// The outcome of a comparison, lane by lane.
-    type Mask: LaneMask;
+    /// The number `x`.
+    fn new(x: f64) -> Self;
+    /// The number as a plain double.
+    fn get(self) -> f64;
 
-    /// The same number in every lane.
-    fn splat(x: f64) -> Self;
-    /// Lane i is `source[i]`.
-    fn load(source: &[f64]) -> Self;
-    /// Lane i is `source[stride * i + offset]`: one component out of consecutive records.
-    fn gather(source: &[f64], stride: usize, offset: usize) -> Self;
-    /// Writes lane i to `target[i]`.
-    fn store(self, target: &mut [f64]);
-    /// Writes lane i to `target[stride * i + offset]`.
-    fn scatter(self, target: &mut [f64], stride: usize, offset: usize);
-    /// The number in lane i.
-    fn get(self, i: usize) -> f64;
-
-    /// `self * b + c`: rounded once where the target multiplies and adds in one instruction, twice
-    /// elsewhere. Never the software routine, which is fifty times slower.
+    /// `self * b + c`: rounded once where the machine multiplies and adds in one instruction, twice elsewhere. Never the
+    /// software routine, which is fifty times slower.
     #[must_use]
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// Square root, correctly rounded.
@@ -65,238 +47,125 @@ pub trait Lane:
     /// The smaller; `other` where either is not a number.
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// The powers of two (s, 1/s) for which s·|x| lies in [1, 2), both kept within the normal numbers: a
-    /// denormal or zero x gets the largest s, an x of 2^1023 or more, or one that is not finite, the smallest.
+    /// The powers of two (s, 1/s) for which s·|x| lies in [1, 2), both kept within the normal numbers: zero or a denormal
+    /// gets the largest s, 2¹⁰²³ or more and what is not finite the smallest.
     fn power_of_two_scale(self) -> (Self, Self);
-
-    /// `self < other`.
-    fn lt(self, other: Self) -> Self::Mask;
-    /// `self <= other`.
-    fn le(self, other: Self) -> Self::Mask;
-    /// `a` where the mask holds, `b` elsewhere.
-    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 }
 
-/// Truth values side by side.
-pub trait LaneMask:
-    Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
-{
-    /// Whether any lane holds.
-    fn any(self) -> bool;
-    /// Bit i is lane i.
-    fn bits(self) -> u32;
-}
-
-/// `N` doubles side by side; `FMA` says that `mul_add` is one instruction on the target.
+/// A double; `FMA` says that `mul_add` is one instruction on the target.
 ///
-/// Build values of a fused type only inside [`dispatch`](super::dispatch::dispatch), which has checked
-/// the machine: elsewhere the answers are the same, but slow.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub struct Lanes<const N: usize, const FMA: bool>(pub [f64; N]);
+/// Only [`dispatch`](super::dispatch::dispatch) should choose the fused type, since it has looked at the machine:
+/// elsewhere the answers are the same, but slow.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[repr(transparent)]
+pub struct Double<const FMA: bool>(f64);
 
-/// `N` truth values side by side.
-#[derive(Clone, Copy, Debug)]
-pub struct Mask<const N: usize>(pub [bool; N]);
-
-/// An array of `N` elements of which element `$i` is `$value`.
-macro_rules! each {
-    ($i:ident: $zero:expr => $value:expr) => {{
-        let mut out = [$zero; N];
-        let mut $i = 0;
-        while $i < N {
-            out[$i] = $value;
-            $i += 1;
-        }
-        out
-    }};
-}
-
-macro_rules! lanewise {
+macro_rules! forward {
     ($operator:ident, $method:ident, $symbol:tt) => {
-        impl<const N: usize, const FMA: bool> $operator for Lanes<N, FMA> {
+        impl<const FMA: bool> $operator for Double<FMA> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self(each!(i: 0.0 => self.0[i] $symbol other.0[i]))
+                Self(self.0 $symbol other.0)
             }
         }
     };
 }
-lanewise!(Add, add, +);
-lanewise!(Sub, sub, -);
-lanewise!(Mul, mul, *);
-lanewise!(Div, div, /);
+forward!(Add, add, +);
+forward!(Sub, sub, -);
+forward!(Mul, mul, *);
+forward!(Div, div, /);
 
-impl<const N: usize, const FMA: bool> Neg for Lanes<N, FMA> {
+impl<const FMA: bool> Neg for Double<FMA> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(each!(i: 0.0 => -self.0[i]))
+        Self(-self.0)
     }
 }
 
-const EXPONENT_BITS: u64 = 0x7ff;
 const MANTISSA_WIDTH: u32 = 52;
-/// Exponent fields of s and 1/s add up to this.
-const RECIPROCAL_EXPONENTS: u64 = 2046;
+const EXPONENT_FIELD: u64 = 0x7ff;
+/// The exponent fields of s and 1/s add up to this.
+const RECIPROCAL_FIELDS: u64 = 2046;
 
-/// The exponent field of x, kept where it and its reciprocal are both normal.
-#[inline(always)]
-fn scale_exponent(x: f64) -> u64 {
-    ((x.to_bits() >> MANTISSA_WIDTH) & EXPONENT_BITS).clamp(1, RECIPROCAL_EXPONENTS - 1)
-}
-
-impl<const N: usize, const FMA: bool> Lane for Lanes<N, FMA> {
-    const WIDTH: usize = N;
-    type Scalar = Lanes<1, FMA>;
-    type Mask = Mask<N>;
-
+impl<const FMA: bool> Lane for Double<FMA> {
     #[inline(always)]
-    fn splat(x: f64) -> Self {
-        Self([x; N])
+    fn new(x: f64) -> Self {
+        Self(x)
     }
 
     #[inline(always)]
-    fn load(source: &[f64]) -> Self {
-        let source = &source[..N];
-        Self(each!(i: 0.0 => source[i]))
-    }
-
-    #[inline(always)]
-    fn gather(source: &[f64], stride: usize, offset: usize) -> Self {
-        let source = &source[..stride * N];
-        Self(each!(i: 0.0 => source[stride * i + offset]))
-    }
-
-    #[inline(always)]
-    fn store(self, target: &mut [f64]) {
-        let target = &mut target[..N];
-        let mut i = 0;
-        while i < N {
-            target[i] = self.0[i];
-            i += 1;
-        }
-    }
-
-    #[inline(always)]
-    fn scatter(self, target: &mut [f64], stride: usize, offset: usize) {
-        let target = &mut target[..stride * N];
-        let mut i = 0;
-        while i < N {
-            target[stride * i + offset] = self.0[i];
-            i += 1;
-        }
-    }
-
-    #[inline(always)]
-    fn get(self, i: usize) -> f64 {
-        self.0[i]
+    fn get(self) -> f64 {
+        self.0
     }
 
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         if FMA {
-            Self(each!(i: 0.0 => self.0[i].mul_add(b.0[i], c.0[i])))
+            Self(self.0.mul_add(b.0, c.0))
         } else {
-            self * b + c
+            Self(self.0 * b.0 + c.0)
         }
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(each!(i: 0.0 => self.0[i].sqrt()))
+        Self(self.0.sqrt())
     }
 
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(each!(i: 0.0 => self.0[i].abs()))
+        Self(self.0.abs())
     }
 
     #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
-        Self(each!(i: 0.0 => self.0[i].copysign(sign.0[i])))
+        Self(self.0.copysign(sign.0))
     }
 
+    // The comparisons as the processor has them: `f64::max` would treat NaN with more care, in three instructions.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(each!(i: 0.0 => if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+        if self.0 > other.0 { self } else { other }
     }
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self(each!(i: 0.0 => if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
+        if self.0 < other.0 { self } else { other }
     }
 
     #[inline(always)]
     fn power_of_two_scale(self) -> (Self, Self) {
-        let scale = each!(i: 0.0 => {
-            f64::from_bits((RECIPROCAL_EXPONENTS - scale_exponent(self.0[i])) << MANTISSA_WIDTH)
-        });
-        let inverse = each!(i: 0.0 => f64::from_bits(scale_exponent(self.0[i]) << MANTISSA_WIDTH));
-        (Self(scale), Self(inverse))
-    }
-
-    #[inline(always)]
-    fn lt(self, other: Self) -> Mask<N> {
-        Mask(each!(i: false => self.0[i] < other.0[i]))
-    }
-
-    #[inline(always)]
-    fn le(self, other: Self) -> Mask<N> {
-        Mask(each!(i: false => self.0[i] <= other.0[i]))
-    }
-
-    #[inline(always)]
-    fn select(mask: Mask<N>, a: Self, b: Self) -> Self {
-        Self(each!(i: 0.0 => if mask.0[i] { a.0[i] } else { b.0[i] }))
+        let field = (self.0.to_bits() >> MANTISSA_WIDTH) & EXPONENT_FIELD;
+        let kept = field.clamp(1, RECIPROCAL_FIELDS - 1);
+        let power = |field: u64| Self(f64::from_bits(field << MANTISSA_WIDTH));
+        (power(RECIPROCAL_FIELDS - kept), power(kept))
     }
 }
 
-impl<const N: usize> BitAnd for Mask<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        Self(each!(i: false => self.0[i] & other.0[i]))
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::{Double, Lane};
 
-impl<const N: usize> BitOr for Mask<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Self(each!(i: false => self.0[i] | other.0[i]))
-    }
-}
-
-impl<const N: usize> Not for Mask<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        Self(each!(i: false => !self.0[i]))
-    }
-}
-
-impl<const N: usize> LaneMask for Mask<N> {
-    #[inline(always)]
-    fn any(self) -> bool {
-        let mut any = false;
-        let mut i = 0;
-        while i < N {
-            any |= self.0[i];
-            i += 1;
+    #[test]
+    fn scales_are_powers_of_two_and_bring_magnitudes_to_one() {
+        for x in [1.0, -1.5, 1.999, 3e-308, -8e307, 6.6e-34, 5.97e24] {
+            let (s, inverse) = Double::<false>(x).power_of_two_scale();
+            assert_eq!(s.0 * inverse.0, 1.0);
+            assert!((1.0..2.0).contains(&(x * s.0).abs()), "{x}");
         }
-        any
+        for x in [0.0, 5e-324, 1e308, f64::INFINITY, f64::NAN] {
+            let (s, inverse) = Double::<false>(x).power_of_two_scale();
+            assert!(s.0.is_normal() && s.0 * inverse.0 == 1.0);
+        }
     }
 
-    #[inline(always)]
-    fn bits(self) -> u32 {
-        let mut bits = 0;
-        let mut i = 0;
-        while i < N {
-            bits |= u32::from(self.0[i]) << i;
-            i += 1;
-        }
-        bits
+    #[test]
+    fn products_and_sums_round_as_the_type_says() {
+        let (a, b) = (1.0 + f64::EPSILON, 1.0 - f64::EPSILON);
+        let (once, twice) = (Double::<true>(a), Double::<false>(a));
+        assert_eq!(once.mul_add(Double(b), Double(-1.0)).get(), -f64::EPSILON * f64::EPSILON);
+        assert_eq!(twice.mul_add(Double(b), Double(-1.0)).get(), 0.0);
     }
 }

@@ -1,18 +1,30 @@
-//! Eigenvalues and eigenvectors of symmetric 3×3 matrices.
+//! Eigenvalues and eigenvectors of symmetric 3×3 matrices: Jacobi's accuracy at a closed form's speed.
 //!
 //! Everywhere: only the lower triangle is read; values ascend; the eigenvectors are the **columns** of V, a
 //! rotation (det V = +1) under the sign rule: in columns 0 and 1 the first component that is as large as the
 //! largest, to 1e-8, is positive, and column 2 = column 0 × column 1. A matrix with an element that is not finite
 //! gives NaN throughout, for itself alone. Elements may be anything from denormal to 5e307.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `symmetric.rs` | the matrix and its decomposition in lanes; scaling, sign rule |
+//! | `deviator.rs` | the deviator from differences, its isolated eigenvalue without trigonometry |
+//! | `closed_form.rs` | its eigenvector, and the exact rotation that separates the other two |
+//! | `jacobi.rs` | graded matrices: every eigenvalue to its own relative accuracy |
+//! | `stack.rs` | which row goes to which method; from rows to lanes and back |
 
+mod closed_form;
+mod deviator;
 mod jacobi;
+mod stack;
 mod symmetric;
 
 use nalgebra::Matrix3;
 
 use super::dispatch::{Kernel, dispatch};
 use super::lane::Lane;
-use symmetric::{Spectrum, Symmetric};
+use stack::{One, Stack, VALUES_ONLY, WITH_VECTORS};
+use symmetric::Spectrum;
 
 /// A = V diag(values) Vᵀ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,26 +38,11 @@ pub struct Eigen3 {
 /// The decomposition of one matrix.
 #[must_use]
 pub fn eigen3(a: &Matrix3<f64>) -> Eigen3 {
-    let row_major: [[f64; 3]; 3] = a.transpose().data.0;
-    let (mut values, mut vectors) = ([[0.0; 3]], [[0.0; 9]]);
-    eigen3_many(
-        &[[
-            row_major[0][0],
-            0.0,
-            0.0,
-            row_major[1][0],
-            row_major[1][1],
-            0.0,
-            row_major[2][0],
-            row_major[2][1],
-            row_major[2][2],
-        ]],
-        &mut values,
-        &mut vectors,
-    );
+    let [[a00, a10, a20], [_, a11, a21], [_, _, a22]] = a.data.0;
+    let (values, vectors) = dispatch(One([a00, a10, a20, a10, a11, a21, a20, a21, a22]));
     Eigen3 {
-        values: values[0],
-        vectors: Matrix3::from_row_slice(&vectors[0]),
+        values,
+        vectors: vectors.into(),
     }
 }
 
@@ -54,33 +51,38 @@ pub fn eigen3(a: &Matrix3<f64>) -> Eigen3 {
 /// # Panics
 /// If the lengths differ.
 pub fn eigen3_many(matrices: &[[f64; 9]], values: &mut [[f64; 3]], vectors: &mut [[f64; 9]]) {
-    assert!(
-        matrices.len() == values.len() && matrices.len() == vectors.len(),
-        "as many values and vectors as matrices"
+    assert_eq!(
+        matrices.len(),
+        values.len(),
+        "as many triples of values as matrices"
     );
-    dispatch(Many {
+    assert_eq!(
+        matrices.len(),
+        vectors.len(),
+        "as many triples of vectors as matrices"
+    );
+    dispatch(Stack::<WITH_VECTORS> {
         matrices,
         values,
         vectors,
     });
 }
 
-struct Many<'a> {
-    matrices: &'a [[f64; 9]],
-    values: &'a mut [[f64; 3]],
-    vectors: &'a mut [[f64; 9]],
-}
-
-impl Kernel for Many<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<L: Lane>(self) {
-        for ((a, w), v) in self.matrices.iter().zip(self.values).zip(self.vectors) {
-            let (spectrum, poison): (Spectrum<L::Scalar>, _) =
-                jacobi::jacobi(&Symmetric::gather(a));
-            spectrum.with_sign_rule(poison).scatter(w, v);
-        }
-    }
+/// The eigenvalues of many row-major matrices, on the calling thread: the bits of [`eigen3_many`] in less time.
+///
+/// # Panics
+/// If the lengths differ.
+pub fn eigenvalues3_many(matrices: &[[f64; 9]], values: &mut [[f64; 3]]) {
+    assert_eq!(
+        matrices.len(),
+        values.len(),
+        "as many triples of values as matrices"
+    );
+    dispatch(Stack::<VALUES_ONLY> {
+        matrices,
+        values,
+        vectors: &mut [],
+    });
 }
 
 /// A rotation under the sign rule: the same axes, turned by half turns about one of them.
@@ -93,15 +95,11 @@ struct SignRule<'a>(&'a Matrix3<f64>);
 
 impl Kernel for SignRule<'_> {
     type Output = Matrix3<f64>;
+
     #[inline(always)]
     fn run<L: Lane>(self) -> Matrix3<f64> {
-        let zero = L::Scalar::splat(0.0);
-        let vectors = self.0.data.0.map(|column| column.map(L::Scalar::splat));
-        let signed = Spectrum {
-            values: [zero; 3],
-            vectors,
-        }
-        .with_sign_rule(zero);
-        Matrix3::from_fn(|row, column| signed.vectors[column][row].get(0))
+        let vectors = self.0.data.0.map(|column| column.map(L::new));
+        let spectrum = Spectrum { values: [L::new(0.0); 3], vectors, poison: L::new(0.0) };
+        spectrum.with_sign_rule().vectors.map(|column| column.map(L::get)).into()
     }
 }

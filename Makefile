@@ -1,0 +1,71 @@
+# Every command sets up what it needs in .venv and rebuilds only what changed.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+export CARGO_TERM_COLOR ?= auto
+
+RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
+
+.PHONY: help setup build demo test test-rust test-python lint format package bench clean
+
+help: ## list the commands
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+demo: build ## the tumbling brick and the T-handle: report, motion and picture
+	$(BIN)/polhode demo
+
+test: lint test-rust test-python ## every test, Rust and Python, with lints and type checks
+
+test-rust: ## the tests of the core
+	cargo test --locked --workspace
+
+test-python: build ## the tests of the package
+	$(BIN)/python -m pytest
+
+lint: build ## formatting, lints, types, stubs
+	cargo fmt --all --check
+	cargo clippy --locked --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --package polhode --no-deps --quiet
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest polhode._core
+
+format: setup ## put all sources in form
+	cargo fmt --all
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+package: setup ## source distribution and wheel into dist/, the wheel built from the source distribution
+	rm -rf dist
+	$(BIN)/maturin sdist --out dist
+	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist dist/*.tar.gz
+
+bench: build ## import time beside NumPy's
+	$(BIN)/python benchmarks/import_time.py
+
+setup: $(VENV)/.tools ## virtual environment with the development tools
+
+build: $(VENV)/.built ## release build of the extension, installed in place
+
+$(VENV)/.python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+		|| { echo "polhode needs Python 3.11 or newer; name one with make PYTHON=..."; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null \
+		|| { echo "Python has no venv module: install it (Debian, Ubuntu: apt install python3-venv)"; exit 1; }
+	@command -v cargo >/dev/null \
+		|| { echo "cargo not found: install Rust 1.89 or newer (rustup.rs, or your system's packages)"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
+	@touch $@
+
+$(VENV)/.tools: pyproject.toml $(VENV)/.python
+	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+$(VENV)/.built: $(VENV)/.tools $(RUST)
+	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]"
+	@touch $@
+
+clean: ## remove everything that was built
+	rm -rf $(VENV) target dist polhode-demo

@@ -1,0 +1,1 @@
+"""How each kind of file is read and written; :mod:`polhode.io` chooses among them."""

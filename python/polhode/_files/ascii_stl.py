@@ -1,0 +1,88 @@
+"""ASCII STL, read strictly: a file cut short is an error, not a smaller body."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from polhode.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["read_ascii_stl"]
+
+# facet normal n n n  outer loop  vertex x y z  vertex x y z  vertex x y z  endloop endfacet
+_KEYWORDS: Final = dict(
+    zip(
+        (0, 1, 5, 6, 7, 11, 15, 19, 20),
+        ("facet", "normal", "outer", "loop", "vertex", "vertex", "vertex", "endloop", "endfacet"),
+        strict=True,
+    )
+)
+_WORDS_PER_FACET: Final = 21
+_COORDINATES: Final = tuple(7 + 4 * corner + axis for corner in range(3) for axis in (1, 2, 3))
+_FACETS_PER_BLOCK: Final = 4096
+
+
+def read_ascii_stl(file: Path) -> NDArray[np.float64]:
+    """Read the corners of every triangle of every solid in an ASCII STL file.
+
+    Parameters
+    ----------
+    file : pathlib.Path
+        The file; normals in it are not used.
+
+    Returns
+    -------
+    numpy.ndarray, shape (m, 3, 3)
+        Triangle, corner, component.
+
+    Raises
+    ------
+    FileFormatError
+        With the number of the line by which something had gone wrong.
+    """
+    blocks: list[NDArray[np.float64]] = []
+    words: list[str] = []
+    name = None
+    number = 0
+    try:
+        with file.open(encoding="utf-8", errors="surrogateescape") as lines:  # names may be in any encoding
+            for line in lines:
+                number += 1
+                first = line.split(maxsplit=1)[:1]
+                keyword = first[0].lower() if first else ""
+                if keyword in ("solid", "endsolid"):
+                    if (keyword == "solid") == (name is not None):
+                        raise ValueError("'solid' and 'endsolid' do not alternate")
+                    name = line if keyword == "solid" else None
+                    blocks.append(_corners(words))
+                    words = []
+                    continue
+                words += line.split()
+                if len(words) == _WORDS_PER_FACET * _FACETS_PER_BLOCK:
+                    blocks.append(_corners(words))
+                    words = []
+        if name is not None or words:
+            raise ValueError("the last solid has no 'endsolid'; is the file cut short?")
+    except ValueError as error:
+        raise FileFormatError(f"{file}: not a whole ASCII STL file: up to line {number}: {error}") from None
+    corners = np.concatenate(blocks)
+    if not len(corners):
+        raise FileFormatError(f"{file}: holds no triangles")
+    return corners
+
+
+def _corners(words: list[str]) -> NDArray[np.float64]:
+    if len(words) % _WORDS_PER_FACET:
+        raise ValueError("a facet is incomplete")
+    for place, keyword in _KEYWORDS.items():
+        for word in set(words[place::_WORDS_PER_FACET]):
+            if word.lower() != keyword:
+                raise ValueError(f"expected {keyword!r}, got {word[:40]!r}")
+    columns = [np.array(words[place::_WORDS_PER_FACET], dtype=np.float64) for place in _COORDINATES]
+    return np.stack(columns, axis=-1).reshape(-1, 3, 3)

@@ -1,0 +1,62 @@
+"""Trajectories as files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from polhode.results import Trajectory
+
+__all__ = ["TRAJECTORY_SUFFIXES", "save_trajectory"]
+
+_ARRAYS = ("t", "omega", "quaternion", "position", "velocity", "about", "steps", "evaluations")
+_BODY = ("mass", "inertia", "center_of_mass")
+_COLUMNS = {"omega": "xyz", "quaternion": "xyzw", "position": "xyz", "velocity": "xyz"}
+
+TRAJECTORY_SUFFIXES = (".csv", ".npz")
+
+
+def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
+    """Write a trajectory to ``.csv`` or ``.npz``: what ``Trajectory.save`` does.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    path : str or os.PathLike
+        Its suffix chooses the format.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    if suffix == ".csv":
+        _save_csv(trajectory, file)
+    elif suffix == ".npz":
+        arrays = {name: getattr(trajectory, name) for name in _ARRAYS}
+        arrays |= {name: getattr(trajectory.body, name) for name in _BODY}
+        with file.open("wb") as stream:  # numpy would add its suffix to a name that ends in .NPZ
+            np.savez(stream, **arrays)
+    else:
+        raise ValueError(f"path: {file} does not end in {' or '.join(TRAJECTORY_SUFFIXES)}")
+
+
+def _save_csv(trajectory: Trajectory, file: Path) -> None:
+    shape = trajectory.omega.shape[:-2]
+    names = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
+    names.append("t")
+    times = (*shape, len(trajectory))
+    columns: list[NDArray[Any]] = list(np.indices(times)[:-1])
+    columns.append(np.broadcast_to(trajectory.t, times))
+    for array, components in _COLUMNS.items():
+        names += [f"{array}_{component}" for component in components]
+        columns += list(np.moveaxis(getattr(trajectory, array), -1, 0))
+    rows = np.stack([np.asarray(column, dtype=np.float64).reshape(-1) for column in columns], axis=-1)
+    # 17 significant digits give the same float64 back.
+    formats = ["%d"] * len(shape) + ["%.17g"] * (len(names) - len(shape))
+    np.savetxt(file, rows, fmt=formats, delimiter=",", header=",".join(names), comments="", encoding="utf-8")

@@ -1,0 +1,30 @@
+"""The ``polhode`` command (extra ``cli``)."""
+
+from __future__ import annotations
+
+import sys
+
+__all__ = ["main"]
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : list of str, optional
+        What follows the word ``polhode``; from the process by default.
+
+    Returns
+    -------
+    int
+        Exit code: 0 good, 1 the verdict is bad, 2 bad input.
+    """
+    try:
+        from polhode.cli.app import run
+    except ModuleNotFoundError as error:
+        if error.name not in ("cyclopts", "rich"):
+            raise
+        print('polhode: the command line needs its extra: pip install "polhode[cli]"', file=sys.stderr)
+        return 2
+    return run(sys.argv[1:] if arguments is None else arguments)

@@ -1,0 +1,9 @@
+"""``python -m polhode.cli``."""
+
+from __future__ import annotations
+
+import sys
+
+from polhode.cli import main
+
+sys.exit(main())

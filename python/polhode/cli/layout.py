@@ -1,0 +1,159 @@
+"""A report as data: one list of fields, shown as a table or as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import ArrayLike, NDArray
+    from rich.console import Console
+
+__all__ = ["Field", "Report", "number", "printable", "write"]
+
+DIGITS: Final = 7
+LABEL_WIDTH: Final = 20
+CELL_WIDTH: Final = 14
+ROUNDING: Final = 1e-15
+
+
+@dataclass(frozen=True)
+class Field:
+    """One quantity of a report.
+
+    Attributes
+    ----------
+    key : str
+        Its name in JSON; a dot makes an object: ``"in_file_unit.volume"``.
+    label : str
+        Its name in the table; "" continues the field above.
+    value : str, int, float or array_like
+        Text, a number, three numbers or a 3 x 3 matrix.
+    unit : str
+        "" for a pure number or text.
+    hint : str
+        What the table says after the unit.
+    decimals : int, optional
+        Decimals in the table; by default 7 significant digits.
+    components : bool
+        Whether the numbers are components along axes: then those below 1e-15 of the largest are rounding,
+        and the table (not the JSON) prints them as 0.
+    """
+
+    key: str
+    label: str
+    value: str | float | ArrayLike
+    unit: str = ""
+    hint: str = ""
+    decimals: int | None = None
+    components: bool = False
+
+
+@dataclass
+class Report:
+    """Titled sections of fields, and notes that belong to no single field."""
+
+    sections: list[tuple[str, list[Field]]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def section(self, title: str, *fields: Field) -> None:
+        """Add a section; one without a title continues the section above."""
+        self.sections.append((title, list(fields)))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Every field by its key, ``"units"`` of those that have one, and ``"notes"``."""
+        values: dict[str, Any] = {}
+        units: dict[str, Any] = {}
+        for _, fields in self.sections:
+            for item in fields:
+                _put(values, item.key, _plain(item.value))
+                if item.unit:
+                    _put(units, item.key, item.unit)
+        return {**values, "units": units, "notes": list(self.notes)}
+
+    def as_json(self) -> str:
+        """The same as text; infinity is the string "Infinity", not-a-number is null."""
+        return json.dumps(self.as_dict(), indent=2, allow_nan=False)
+
+    def print(self, console: Console) -> None:
+        """Print the table."""
+        for title, fields in self.sections:
+            if title:
+                write(console)
+                write(console, title, style="bold cyan")
+            for item in fields:
+                for line in _lines(item):
+                    write(console, line)
+        if self.notes:
+            write(console)
+        for note in self.notes:
+            write(console, f"  note: {note}", style="yellow")
+
+
+def printable(text: str) -> str:
+    """Text from a file as a terminal may show it: control characters escaped."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def write(console: Console, line: str = "", style: str = "") -> None:
+    """Print one line as it is: no markup, no breaking to a guessed width."""
+    console.print(Text(line, style=style), soft_wrap=True)
+
+
+def number(value: float, decimals: int | None = None) -> str:
+    """A number for people: 7 significant digits, or a fixed number of decimals."""
+    if not math.isfinite(value):
+        return "undefined" if math.isnan(value) else "infinite" if value > 0 else "-infinite"
+    value += 0.0  # no negative zero
+    return f"{value:.{DIGITS}g}" if decimals is None else f"{value:.{decimals}f}"
+
+
+def _lines(item: Field) -> Iterator[str]:
+    label = f"  {item.label}".ljust(LABEL_WIDTH)
+    if isinstance(item.value, str):
+        yield f"{label}  {printable(item.value)}  {item.hint}".rstrip()
+        return
+    unit = "".join(f"  {text}" for text in (item.unit, item.hint) if text)
+    for row in _rows(item):
+        cells = "".join(cell.rjust(CELL_WIDTH) for cell in row)
+        yield f"{label}{cells}{' ' * CELL_WIDTH * (3 - len(row))}{unit}".rstrip()
+        label, unit = " " * LABEL_WIDTH, ""
+
+
+def _rows(item: Field) -> Iterator[list[str]]:
+    array: NDArray[Any] = np.asarray(item.value)
+    matrix = array.reshape((-1, array.shape[-1]) if array.ndim else (1, 1))
+    if np.issubdtype(matrix.dtype, np.integer):
+        yield from ([str(x) for x in row] for row in matrix)
+        return
+    if item.components:
+        matrix = np.where(np.abs(matrix) < ROUNDING * np.abs(matrix).max(), 0.0, matrix)
+    yield from ([number(float(x), item.decimals) for x in row] for row in matrix)
+
+
+def _plain(value: object) -> Any:
+    if isinstance(value, str):
+        return value
+    return _finite(np.asarray(value).tolist())
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
+    return value
+
+
+def _put(target: dict[str, Any], key: str, value: object) -> None:
+    *path, last = key.split(".")
+    for name in path:
+        target = target.setdefault(name, {})
+    target[last] = value

@@ -1,0 +1,60 @@
+"""The exceptions of polhode.
+
+Every one of them is a :class:`ValueError`, so that ``except ValueError`` catches bad input whatever
+its kind. Each message names the argument, the row of a stack, the number that offends, the law it
+breaks and the way out.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from polhode.results import Trajectory
+
+__all__ = [
+    "FileFormatError",
+    "IntegrationError",
+    "InvalidInertiaError",
+    "MeshError",
+    "PolhodeError",
+    "SingularAttitudeError",
+]
+
+
+class PolhodeError(ValueError):
+    """Base class of the errors that polhode raises about physics and data."""
+
+
+class InvalidInertiaError(PolhodeError):
+    """Mass properties that no real body has."""
+
+
+class MeshError(PolhodeError):
+    """A mesh that does not bound a solid: open, inconsistently wound, inverted or degenerate."""
+
+
+class FileFormatError(PolhodeError):
+    """A file that is not what its name or header says."""
+
+
+class IntegrationError(PolhodeError):
+    """An integration that could not go on.
+
+    Attributes
+    ----------
+    time : float
+        The time that was reached.
+    state : tuple of numpy.ndarray
+        ``(quaternion, omega)`` at that time.
+    partial : Trajectory
+        What had been computed; not a number after ``time``.
+    """
+
+    time: float
+    state: tuple[object, object]
+    partial: Trajectory | None
+
+
+class SingularAttitudeError(PolhodeError):
+    """An attitude at which the Euler angles or rates asked for are not defined."""

@@ -1,0 +1,10 @@
+"""Euler angles: all twelve sequences, intrinsic (``"ZXZ"``) and extrinsic (``"zxz"``).
+
+The default ``"ZXZ"`` is the (φ, θ, ψ) of Goldstein and Landau: R_NB = Rz(φ) Rx(θ) Rz(ψ). The names
+``"goldstein"``, ``"landau"`` (both ZXZ) and ``"aerospace"`` (ZYX: yaw, pitch, roll) are understood.
+"""
+
+from polhode._core import euler_angles_from_quaternion as from_quaternion
+from polhode._core import quaternion_from_euler_angles as to_quaternion
+
+__all__ = ["from_quaternion", "to_quaternion"]

@@ -1,0 +1,268 @@
+"""Bodies from files: triangle meshes and molecules.
+
+Nothing is repaired and nothing is guessed: a file is what its name says and whole, or it is an error.
+The one exception is exact: corners at bit-equal coordinates are one vertex, because STL stores each
+triangle's corners anew.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from polhode import _core
+from polhode._files.ascii_stl import read_ascii_stl
+from polhode._files.content import content_format
+from polhode._files.mesh import Mesh, weld
+from polhode._files.scene import read_scene
+from polhode.errors import FileFormatError, PolhodeError
+from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, isotopes
+from polhode.units import metres_per
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = [
+    "MOLECULE_SUFFIX",
+    "Mesh",
+    "Molecule",
+    "body_from_file",
+    "molecule_isotopes",
+    "read_mesh",
+    "read_xyz",
+]
+
+MOLECULE_SUFFIX = ".xyz"
+_EXPECTED = {
+    ".stl": ("binary STL", "ASCII STL"),
+    ".obj": ("v/f text",),
+    ".tab": ("v/f text",),
+    ".txt": ("v/f text",),
+    ".ply": ("PLY",),
+    ".off": ("OFF",),
+    ".glb": ("GLB",),
+    MOLECULE_SUFFIX: ("XYZ",),
+}
+
+
+class Molecule(NamedTuple):
+    """Atoms as an XYZ file holds them.
+
+    Attributes
+    ----------
+    labels : tuple of str
+        Element symbols, isotopes or atomic numbers, as :func:`polhode.molecules.isotopes` reads them.
+    positions : numpy.ndarray, shape (n, 3)
+        In the unit of the file: angstrom by the format's custom.
+    comment : str
+        The second line of the file.
+    """
+
+    labels: tuple[str, ...]
+    positions: NDArray[np.float64]
+    comment: str
+
+
+def body_from_file(
+    path: str | os.PathLike[str],
+    *,
+    density: float | None = None,
+    mass: float | None = None,
+    length_unit: str | None = None,
+) -> _core.RigidBody:
+    """Read the body a file describes: what ``RigidBody.from_file`` does.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        A mesh (STL, OBJ and ``v``/``f`` plate files, PLY, OFF, GLB; see :func:`read_mesh`) or a molecule
+        (XYZ; see :func:`read_xyz`).
+    density, mass : float, optional
+        Exactly one of them for a mesh, neither for a molecule.
+    length_unit : str, optional
+        Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's
+        masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
+
+    Returns
+    -------
+    RigidBody
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, damaged or empty.
+    MeshError
+        If the mesh does not bound a solid.
+    OSError
+        If the file cannot be read.
+    """
+    scale = 1.0 if length_unit is None else metres_per(length_unit)
+    if not _is_molecule(path):
+        mesh = read_mesh(path)
+        return _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=density, mass=mass)
+    if density is not None or mass is not None:
+        given = "density" if density is not None else "mass"
+        raise PolhodeError(
+            f"{given}: {os.fspath(path)} is a molecule, whose atoms have their own masses; leave it out"
+        )
+    molecule = read_xyz(path)
+    masses = np.array([isotope.mass for isotope in molecule_isotopes(path, molecule)])
+    if length_unit is not None:
+        masses *= ATOMIC_MASS_CONSTANT
+    return _core.RigidBody.from_particles(masses, molecule.positions * scale)
+
+
+def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1) -> Mesh:
+    """Read a triangle mesh.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Binary and ASCII STL, and ``v``/``f`` text (``.obj``, ``.tab``, ``.txt``) are read without any
+        further library; PLY, OFF, GLB and what else trimesh knows by trimesh (extra ``mesh``). Nodes of a
+        scene are placed by their transforms and taken together.
+    index_base : {1, 0}
+        What ``v``/``f`` text counts its vertices from: 1 in OBJ and in most plate files, 0 in some.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    FileFormatError
+        If the file is empty, cut short, damaged or in another format than its suffix says.
+    OSError
+        If the file cannot be read.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    if suffix == MOLECULE_SUFFIX:
+        raise FileFormatError(f"{file}: an XYZ file holds atoms, not a mesh; read it with read_xyz")
+    if index_base not in (0, 1):
+        raise ValueError(f"index_base: expected 0 or 1, got {index_base!r}")
+    if index_base != 1 and "v/f text" not in _EXPECTED.get(suffix, ()):
+        raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
+    actual = _checked_format(file)
+    if actual == "ASCII STL":
+        corners = read_ascii_stl(file)
+        return weld(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3), actual)
+    if suffix == ".stl":
+        # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
+        return Mesh(*_core.read_stl(str(file)), "binary STL")
+    if suffix in (".obj", ".tab", ".txt"):
+        return Mesh(*_core.read_plates(str(file), index_base), "v/f text")
+    return read_scene(file, readable=tuple(known for known in _EXPECTED if known != MOLECULE_SUFFIX))
+
+
+def read_xyz(path: str | os.PathLike[str]) -> Molecule:
+    """Read a molecule: a count, a comment, then one ``symbol x y z`` per atom.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        One frame. Columns after the fourth (charges, velocities) are not read.
+
+    Returns
+    -------
+    Molecule
+
+    Raises
+    ------
+    FileFormatError
+        With the number of the line that is wrong.
+    OSError
+        If the file cannot be read.
+    """
+    file = Path(path)
+    _checked_format(file)
+    try:
+        lines = file.read_text(encoding="utf-8").splitlines()
+    except UnicodeDecodeError:
+        raise FileFormatError(f"{file}: not a text file, so not an XYZ file") from None
+    count_text = lines[0].strip()
+    if not count_text.isdecimal() or int(count_text) == 0:
+        raise FileFormatError(
+            f"{file}: line 1 of an XYZ file is the number of atoms, not {count_text[:40]!r}"
+        )
+    count = int(count_text)
+    comment = lines[1].strip() if len(lines) > 1 else ""
+    columns = comment.partition("Properties=")[2]
+    if columns and not columns.startswith(("species:S:1:pos:R:3", '"species:S:1:pos:R:3')):
+        raise FileFormatError(f"{file}: line 2 declares other columns than symbol x y z first; reorder them")
+    rows = lines[2 : 2 + count]
+    if len(rows) < count:
+        raise FileFormatError(
+            f"{file}: line 1 promises {count} atoms, but the file holds {len(rows)}; is it cut short?"
+        )
+    if any(line.strip() for line in lines[2 + count :]):
+        raise FileFormatError(
+            f"{file}: text after atom {count}, the last by line 1; correct the count or keep one frame a file"
+        )
+    atoms = [_atom(file, number, row) for number, row in enumerate(rows, start=3)]
+    labels, positions = zip(*atoms, strict=True)
+    return Molecule(labels, np.array(positions), comment)
+
+
+def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[Isotope]:
+    """Find the nuclides of a molecule's atoms, naming the file in what goes wrong.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Where the molecule comes from.
+    molecule : Molecule
+        What was read.
+
+    Returns
+    -------
+    list of Isotope
+        In the order of the atoms.
+    """
+    try:
+        return isotopes(molecule.labels)
+    except PolhodeError as error:
+        raise FileFormatError(f"{os.fspath(path)}: {error}") from None
+
+
+def _atom(file: Path, number: int, row: str) -> tuple[str, list[float]]:
+    words = row.split()
+    try:
+        position = [float(word) for word in words[1:4]]
+    except ValueError:
+        position = []
+    if len(position) != 3 or not np.isfinite(position).all():
+        raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
+    return words[0], position
+
+
+def _is_molecule(path: str | os.PathLike[str]) -> bool:
+    return Path(path).suffix.lower() == MOLECULE_SUFFIX
+
+
+def _checked_format(file: Path) -> str | None:
+    """Tell the format of the content where that can be; an error where it is not the suffix's."""
+    if file.is_dir():
+        raise FileFormatError(f"{file}: is a directory; name a file in it")
+    with file.open("rb") as stream:
+        head = stream.read(4096)
+        size = os.fstat(stream.fileno()).st_size
+    if not head:
+        raise FileFormatError(f"{file}: the file is empty")
+    suffix = file.suffix.lower()
+    actual, is_text = content_format(head, size)
+    expected = _EXPECTED.get(suffix)
+    if expected is None or actual in expected:
+        return actual
+    if actual is not None:
+        raise FileFormatError(f"{file}: named {suffix}, but its content is {actual}; rename it")
+    if is_text and suffix == ".stl":
+        raise FileFormatError(
+            f"{file}: named .stl, but it is text without an STL's words 'solid' and 'facet'; check the file"
+        )
+    if not is_text and expected == ("v/f text",):
+        raise FileFormatError(f"{file}: named {suffix}, but it is not text; check the file")
+    return None

@@ -1,0 +1,181 @@
+"""Molecules as rigid bodies: isotope masses and rotational constants.
+
+Masses are in unified atomic mass units (u) and lengths in angstrom, the units of the trade; each
+moment of inertia is then in u angstrom^2.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
+
+import numpy as np
+
+from polhode._extras import require
+from polhode.errors import PolhodeError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = [
+    "ATOMIC_MASS_CONSTANT",
+    "PLANCK_CONSTANT",
+    "SPEED_OF_LIGHT",
+    "Isotope",
+    "isotopes",
+    "ray_kappa",
+    "rotational_constants",
+]
+
+# CODATA 2022 (Mohr, Newell, Taylor, Tiesinga, "CODATA recommended values of the fundamental physical
+# constants: 2022"); the first two are exact by the definition of the SI.
+PLANCK_CONSTANT: Final = 6.62607015e-34
+"""h in J s, exact."""
+SPEED_OF_LIGHT: Final = 299792458.0
+"""c in m/s, exact."""
+ATOMIC_MASS_CONSTANT: Final = 1.66053906892e-27
+"""One u in kg; standard uncertainty 0.00000000052e-27."""
+
+_ANGSTROM: Final = 1e-10
+_LABEL: Final = re.compile(r"(?P<mass_number>\d+)?(?P<symbol>[A-Za-z]{1,2})|(?P<number>\d+)")
+_HYDROGEN: Final = {"D": 2, "T": 3}
+
+
+class Isotope(NamedTuple):
+    """One atom's nuclide: its name such as ``"16O"`` and its atomic mass in u."""
+
+    name: str
+    mass: float
+
+
+def isotopes(labels: Sequence[str]) -> list[Isotope]:
+    """Find the nuclide each label stands for.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        Element symbols (``"O"``) or atomic numbers (``"8"``) stand for the most abundant isotope, as
+        spectroscopists read them (never the average mass of the element); ``"18O"``, ``"D"`` and
+        ``"T"`` for themselves.
+
+    Returns
+    -------
+    list of Isotope
+        In the order of `labels`.
+
+    Raises
+    ------
+    PolhodeError
+        If a label names no element or isotope, or an element without natural isotopes.
+    ModuleNotFoundError
+        If periodictable is not installed.
+
+    Examples
+    --------
+    >>> from polhode.molecules import isotopes
+    >>> [isotope.name for isotope in isotopes(["C", "O", "18O", "D"])]
+    ['12C', '16O', '18O', '2H']
+    """
+    table = require("periodictable", extra="chem", purpose="reading isotope masses").elements
+    known: dict[str, Isotope] = {}
+    for label in labels:
+        if label not in known:
+            known[label] = _isotope(table, label)
+    return [known[label] for label in labels]
+
+
+def _isotope(table: Any, label: str) -> Isotope:
+    match = _LABEL.fullmatch(label)
+    if match is None:
+        raise PolhodeError(f"{label!r} is not an element; write a symbol (O), isotope (18O) or number (8)")
+    mass_number = int(match["mass_number"]) if match["mass_number"] else None
+    symbol = (match["symbol"] or "").capitalize()
+    if symbol in _HYDROGEN and mass_number is None:
+        symbol, mass_number = "H", _HYDROGEN[symbol]
+    try:
+        element = table[int(match["number"])] if match["number"] else table.symbol(symbol)
+    except (KeyError, ValueError):
+        element = None
+    # Entry 0 of the table is the neutron; "D" and "T" are its names of nuclides, not of elements.
+    if element is None or element.number == 0 or symbol in _HYDROGEN:
+        raise PolhodeError(f"{label!r} is not an element; check the symbol")
+    if mass_number is None:
+        # Of equal abundances (none exists in nature) the lightest, so that the choice never wavers.
+        mass_number = max(element.isotopes, key=lambda a: (element[a].abundance, -a))
+        if not element[mass_number].abundance > 0.0:
+            usual = min(element.isotopes, key=lambda a: abs(a - element.mass))
+            raise PolhodeError(
+                f"{element.symbol} has no natural abundance on record, so no most abundant isotope; "
+                f"write the mass number too, as in {usual}{element.symbol}"
+            )
+    elif mass_number not in element.isotopes:
+        raise PolhodeError(f"{label!r}: no isotope {mass_number} of {element.symbol} is on record")
+    return Isotope(f"{mass_number}{element.symbol}", float(element[mass_number].mass))
+
+
+def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MHz") -> Floats:
+    r"""Rotational constants A >= B >= C of principal moments.
+
+    .. math:: A = \frac{h}{8 \pi^2 I_1}\ \text{(frequency)},\qquad
+              \frac{A}{c} = \frac{h}{8 \pi^2 c\, I_1}\ \text{(wave number)}
+
+    Parameters
+    ----------
+    moments : array_like, shape (..., 3)
+        Principal moments in u angstrom^2, ascending.
+    unit : {"MHz", "cm^-1"}
+        Frequency or wave number.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 3)
+        Infinite where the moment is zero: the axis of a linear molecule, every axis of an atom.
+
+    Examples
+    --------
+    >>> from polhode.molecules import rotational_constants
+    >>> rotational_constants([0.0, 1.0, 1.0])  # doctest: +ELLIPSIS
+    array([   inf, 505379.0..., 505379.0...])
+    """
+    if unit == "MHz":
+        scale = 1e-6
+    elif unit == "cm^-1":
+        scale = 1e-2 / SPEED_OF_LIGHT
+    else:
+        raise ValueError(f"unit: {unit!r} is not 'MHz' or 'cm^-1'")
+    inertia = np.asarray(moments, dtype=np.float64)
+    if inertia.shape[-1:] != (3,):
+        raise ValueError(f"moments: expected shape (..., 3), got {inertia.shape}")
+    numerator = scale * PLANCK_CONSTANT / (8.0 * np.pi**2 * ATOMIC_MASS_CONSTANT * _ANGSTROM**2)
+    with np.errstate(divide="ignore"):
+        constants: Floats = np.divide(numerator, inertia)
+    return constants
+
+
+def ray_kappa(constants: ArrayLike) -> Any:
+    """Compute Ray's asymmetry parameter (2 B - A - C) / (A - C).
+
+    Parameters
+    ----------
+    constants : array_like, shape (..., 3)
+        A >= B >= C in any unit.
+
+    Returns
+    -------
+    float or numpy.ndarray, shape (...)
+        -1 for a prolate, +1 for an oblate symmetric top; not a number where A = C or A is infinite,
+        where the parameter says nothing.
+
+    Examples
+    --------
+    >>> from polhode.molecules import ray_kappa
+    >>> float(ray_kappa([3.0, 2.0, 1.0]))
+    0.0
+    """
+    a, b, c = np.moveaxis(np.asarray(constants, dtype=np.float64), -1, 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return ((b - c) - (a - b)) / (a - c)

@@ -1,0 +1,274 @@
+"""Pictures with matplotlib (extra ``plot``). Every function takes ``ax=`` and returns it.
+
+Colours are those of Okabe and Ito, which readers with any colour vision can tell apart; lines differ in
+their dashes too.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, Literal, cast
+
+import numpy as np
+
+from polhode._extras import require
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+    from numpy.typing import ArrayLike, NDArray
+
+    from polhode import RigidBody
+    from polhode.results import Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["AXIS_COLORS", "angular_velocity", "body", "principal_axes"]
+
+AXIS_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
+"""Blue, vermilion and bluish green: first, second and third axis."""
+
+_DASHES: Final = ("-", "-", "--")
+_SURFACE: Final = np.array([0.78, 0.83, 0.90])
+_OUTLINE: Final = np.array([0.17, 0.18, 0.22])
+_LIGHT: Final = np.array([0.30, -0.55, 0.78])
+_FEATURE_ANGLE: Final = np.deg2rad(30.0)
+_PIECES: Final = 24
+
+
+def _matplotlib(module: str) -> Any:
+    return require(f"matplotlib.{module}", extra="plot", purpose="drawing")
+
+
+def angular_velocity(
+    trajectory: Trajectory,
+    ax: Axes | None = None,
+    *,
+    frame: Literal["body", "principal"] = "body",
+    degrees: bool = False,
+    time_unit: str = "s",
+) -> Axes:
+    """Draw the components of the angular velocity over time.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion; of a stack, every body is drawn.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    frame : {"body", "principal"}
+        Components along the body's axes or along its principal axes (ascending moments).
+    degrees : bool
+        Degrees instead of radians.
+    time_unit : str
+        Name of the unit of time, for the labels.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    if ax is None:
+        ax = cast("Axes", _matplotlib("pyplot").subplots(layout="constrained")[1])
+    omega = trajectory.omega
+    if frame == "principal":
+        omega = np.einsum("...ij,...ti->...tj", trajectory.body.principal.axes, omega)
+        labels = [rf"$\omega_{i}$" for i in "123"]
+    elif frame == "body":
+        labels = [rf"$\omega_{i}$" for i in "xyz"]
+    else:
+        raise ValueError(f"frame: {frame!r} is not 'body' or 'principal'")
+    if degrees:
+        omega = np.rad2deg(omega)
+    curves = omega.reshape(-1, len(trajectory), 3)
+    opacity = 1.0 if len(curves) == 1 else 0.5
+    for number, curve in enumerate(curves):
+        for i in range(3):
+            ax.plot(
+                trajectory.t,
+                curve[:, i],
+                color=AXIS_COLORS[i],
+                linestyle=_DASHES[i],
+                alpha=opacity,
+                label=labels[i] if number == 0 else None,
+            )
+    ax.set_xlabel(f"time ({time_unit})")
+    ax.set_ylabel(f"angular velocity ({'deg' if degrees else 'rad'}/{time_unit})")
+    ax.margins(x=0.0)
+    ax.grid(color="0.9", linewidth=0.6)
+    ax.set_axisbelow(True)
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)
+    ax.legend(loc="upper right", ncols=3, frameon=False)
+    return ax
+
+
+def body(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    ax: Axes3D | None = None,
+    *,
+    opacity: float = 1.0,
+    length_unit: str | None = None,
+) -> Axes3D:
+    """Draw a mesh as a shaded body with its edges.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+        Corners.
+    faces : array_like, shape (m, 3)
+        Triangles, counted from 0.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+        Where to draw; a new figure by default.
+    opacity : float
+        Of the surface, from 0 to 1.
+    length_unit : str, optional
+        Name of the unit of the coordinates; without it the coordinate axes are not drawn.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="drawing")
+    if ax is None:
+        ax = _new_axes3d()
+    points = np.asarray(vertices, dtype=np.float64)
+    corners = np.asarray(faces, dtype=np.int64)
+    size = max(float(np.ptp(points, axis=0).max()), float(np.finfo(float).tiny))
+    normals = _unit_normals(points[corners])
+    pieces, owner = _cut(points[corners], size / _PIECES)
+    brightness = 0.66 + 0.42 * (normals @ (_LIGHT / np.linalg.norm(_LIGHT)))
+    colors = np.clip(brightness[:, np.newaxis] * _SURFACE, 0.0, 1.0)[owner]
+    outline = _outline(points, corners, normals, size)
+    # One collection for both, since matplotlib sorts by depth within a collection only: a piece of outline is
+    # a triangle with two equal corners. Triangles edged in their own colour show no hairlines between them.
+    surface = art3d.Poly3DCollection(
+        np.concatenate([pieces, outline]),
+        facecolors=np.concatenate([colors, np.tile(_OUTLINE, (len(outline), 1))]),
+        edgecolors=np.concatenate([colors, np.tile(_OUTLINE, (len(outline), 1))]),
+        linewidths=0.7,
+        alpha=opacity,
+    )
+    surface.set_zorder(2)
+
+    def depth(z: Floats, axis: int) -> Floats:
+        """Middles of the pieces, the outline's brought nearer by most of a piece to lie on the surface."""
+        middle: Floats = z.mean(axis=axis)
+        middle[len(pieces) :] -= 0.7 * np.ptp(z, axis=axis).max()
+        return middle
+
+    # Matplotlib takes only the names of its own functions here. Should it cease to look at this attribute,
+    # outlines would be broken lines, no more.
+    surface._zsortfunc = depth
+    ax.add_collection3d(surface)
+    _frame(ax, points, length_unit)
+    return ax
+
+
+def principal_axes(
+    rigid_body: RigidBody,
+    ax: Axes3D,
+    *,
+    length: float,
+    center: ArrayLike | None = None,
+    labels: tuple[str, str, str] = ("$e_1$", "$e_2$", "$e_3$"),
+) -> Axes3D:
+    """Draw the principal axes of one body through its centre of mass.
+
+    Parameters
+    ----------
+    rigid_body : RigidBody
+        One body.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D
+        Where to draw.
+    length : float
+        From the centre to each tip.
+    center : array_like, shape (3,), optional
+        Where to draw the centre of mass; where it is by default.
+    labels : tuple of str
+        At the tips, in the order of ascending moments.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    origin = np.asarray(rigid_body.center_of_mass if center is None else center, dtype=np.float64)
+    toward_viewer = _view_direction(ax)
+    for color, direction, label in zip(AXIS_COLORS, rigid_body.principal.axes.T, labels, strict=True):
+        for sense in (1.0, -1.0):
+            tip = origin + sense * length * direction
+            # The half that points away from the viewer passes behind the body, the other one in front.
+            order = 4 if sense * (direction @ toward_viewer) > 0.0 else 1
+            half = np.stack([origin, tip], axis=-1)
+            ax.plot(*half, color=color, linewidth=1.8 if sense > 0 else 1.0, zorder=order)
+        name = origin + 1.14 * length * direction
+        ax.text(*name, label, color=color, ha="center", va="center", fontsize=12, zorder=5)
+    ax.scatter(*origin[:, np.newaxis], color="black", s=14, zorder=5, depthshade=False)
+    return ax
+
+
+def _new_axes3d() -> Axes3D:
+    figure = _matplotlib("pyplot").figure(layout="constrained")
+    return cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
+
+
+def _view_direction(ax: Axes3D) -> Floats:
+    """Unit vector from the scene toward the viewer."""
+    elevation, azimuth = np.deg2rad([ax.elev, ax.azim])
+    level = np.cos(elevation)
+    return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
+
+
+def _unit_normals(triangles: Floats) -> Floats:
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    unit: Floats = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+    return unit
+
+
+def _cut(triangles: Floats, longest: float) -> tuple[Floats, NDArray[np.int64]]:
+    """Triangles halved until no edge is longer than `longest`, and the triangle each piece comes from.
+
+    Matplotlib sorts polygons by the depth of their middles, which puts large ones in the wrong order.
+    """
+    owner = np.arange(len(triangles))
+    while True:
+        lengths = np.linalg.norm(triangles[:, [1, 2, 0]] - triangles, axis=2)
+        long = lengths.max(axis=1) > longest
+        if not long.any():
+            return triangles, owner
+        edge = lengths[long].argmax(axis=1)
+        row = np.arange(len(edge))
+        a, b, c = (triangles[long][row, (edge + k) % 3] for k in range(3))
+        middle = (a + b) / 2
+        halves = [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
+        triangles = np.concatenate([triangles[~long], *halves])
+        owner = np.concatenate([owner[~long], owner[long], owner[long]])
+
+
+def _outline(points: Floats, faces: NDArray[np.int64], normals: Floats, size: float) -> Floats:
+    """Edges at which the surface turns sharply, as flat triangles slightly outside the surface."""
+    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    owner = np.repeat(np.arange(len(faces)), 3)
+    order = np.lexsort((edges[:, 1], edges[:, 0]))
+    edges, owner = edges[order], owner[order]
+    paired = np.flatnonzero((edges[:-1] == edges[1:]).all(axis=1))
+    first, second = normals[owner[paired]], normals[owner[paired + 1]]
+    sharp = np.einsum("ij,ij->i", first, second) < np.cos(_FEATURE_ANGLE)
+    start, end = np.moveaxis(points[edges[paired[sharp]]], 1, 0)
+    outward = (first + second)[sharp] * (0.001 * size)
+    steps = np.linspace(0.0, 1.0, _PIECES + 1)[:, np.newaxis, np.newaxis]
+    along = start + outward + steps * (end - start)
+    segments: Floats = np.stack([along[:-1], along[1:], along[:-1]], axis=2).reshape(-1, 3, 3)
+    return segments
+
+
+def _frame(ax: Axes3D, points: Floats, length_unit: str | None) -> None:
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle, half = (low + high) / 2, (high - low).max() / 2
+    for name, value in zip("xyz", middle, strict=True):
+        getattr(ax, f"set_{name}lim")(value - half, value + half)
+    ax.set_box_aspect((1.0, 1.0, 1.0))
+    if length_unit is None:
+        ax.set_axis_off()
+    else:
+        for name in "xyz":
+            getattr(ax, f"set_{name}label")(f"{name} ({length_unit})")

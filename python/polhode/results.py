@@ -1,0 +1,232 @@
+"""What polhode's computations return: values that only hold results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from polhode import _core
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+    from scipy.spatial.transform import Rotation
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["AngularMomentum", "KineticEnergy", "PrincipalAxes", "Trajectory"]
+
+
+@dataclass(frozen=True, eq=False)
+class PrincipalAxes:
+    """Principal moments and axes of one tensor or of a stack.
+
+    Attributes
+    ----------
+    moments : numpy.ndarray, shape (..., 3)
+        Ascending.
+    axes : numpy.ndarray, shape (..., 3, 3)
+        The axes are the **columns**, right-handed: ``inertia = axes @ diag(moments) @ axes.T`` and
+        ``v_body = axes @ v_principal``.
+    """
+
+    moments: Floats
+    axes: Floats
+
+    @cached_property
+    def quaternion(self) -> Floats:
+        """The rotation `axes` as unit quaternions (x, y, z, w), shape (..., 4)."""
+        return _core.quaternion_from_matrix(self.axes)
+
+    @cached_property
+    def gaps(self) -> Floats:
+        """Relative gaps (I2 - I1)/I3 and (I3 - I2)/I3, shape (..., 2); zero for a point."""
+        return _core.principal_gaps(self.moments)
+
+    @cached_property
+    def top(self) -> Any:
+        """Class of the top, decided on `gaps` at a relative tolerance of 1e-6.
+
+        ``"spherical"`` (I1 = I2 = I3), ``"oblate"`` (I1 = I2 < I3), ``"prolate"`` (I1 < I2 = I3),
+        ``"asymmetric"``, ``"linear"`` (0 = I1 < I2 = I3), ``"point"`` (all zero), ``"none"`` where the
+        moments belong to no body. One string, or an array of them for a stack. Another tolerance:
+        :meth:`classify`.
+        """
+        return self.classify()
+
+    def classify(self, rtol: float = 1e-6) -> Any:
+        """Class of the top with moments closer than ``rtol`` times the largest taken as equal."""
+        return _core.classify_tops(self.moments, rtol)
+
+
+class KineticEnergy(NamedTuple):
+    """Kinetic energy in its three parts, T = ½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω."""
+
+    translational: Floats
+    mixed: Floats
+    rotational: Floats
+
+    @property
+    def total(self) -> Floats:
+        """The sum of the three parts."""
+        return self.translational + self.mixed + self.rotational
+
+
+class AngularMomentum(NamedTuple):
+    """Angular momentum in its three parts, L = m R×v + m [R×(ω×c_P) + c_P×v] + I_P ω."""
+
+    orbital: Floats
+    mixed: Floats
+    spin: Floats
+
+    @property
+    def total(self) -> Floats:
+        """The sum of the three parts."""
+        return self.orbital + self.mixed + self.spin
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory:
+    """The motion of one body or of a stack at the times asked for.
+
+    Attributes
+    ----------
+    body : RigidBody
+        The body, or the stack of them.
+    t : numpy.ndarray, shape (T,)
+        Times, the first being the start.
+    omega : numpy.ndarray, shape (..., T, 3)
+        Angular velocity of the body relative to space, components in the body frame.
+    quaternion : numpy.ndarray, shape (..., T, 4)
+        Attitude R_NB as (x, y, z, w), continuous in time.
+    position, velocity : numpy.ndarray, shape (..., T, 3)
+        Of the point `about`, in space.
+    about : numpy.ndarray, shape (..., 3)
+        The point the motion refers to, in the body frame.
+    steps, evaluations : numpy.ndarray, shape (...)
+        Accepted steps and evaluations of the equations of motion.
+    """
+
+    body: _core.RigidBody
+    t: Floats
+    omega: Floats
+    quaternion: Floats
+    position: Floats
+    velocity: Floats
+    about: Floats
+    steps: NDArray[np.int64]
+    evaluations: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        """Number of times."""
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        shape = self.omega.shape[:-2]
+        bodies = f"{'x'.join(map(str, shape))} bodies, " if shape else ""
+        span = f" from {self.t[0]:.6g} to {self.t[-1]:.6g}" if len(self) else ""
+        return f"Trajectory({bodies}{len(self)} times{span})"
+
+    @cached_property
+    def rotation(self) -> Rotation:
+        """The attitude as :class:`scipy.spatial.transform.Rotation`, shape (..., T); needs SciPy."""
+        from polhode._extras import require
+
+        transform = require("scipy.spatial.transform", extra=None, purpose="Trajectory.rotation")
+        rotation: Rotation = transform.Rotation.from_quat(self.quaternion)
+        return rotation
+
+    def kinetic_energy(self) -> KineticEnergy:
+        """Kinetic energy at every time, in parts that refer to the point `about`.
+
+        Returns
+        -------
+        KineticEnergy
+            Each part of shape (..., T).
+        """
+        return self._bodies().kinetic_energy(
+            self.omega,
+            velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
+            about=self.about[..., np.newaxis, :],
+        )
+
+    def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
+        """Angular momentum about the origin of space at every time.
+
+        Parameters
+        ----------
+        frame : {"space", "body"}
+            Whose axes the components refer to.
+
+        Returns
+        -------
+        AngularMomentum
+            Each part of shape (..., T, 3).
+        """
+        if frame not in ("space", "body"):
+            raise ValueError(f"frame: {frame!r} is not 'space' or 'body'")
+        in_body = self._bodies().angular_momentum(
+            self.omega,
+            velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
+            position=_core.rotate(self.quaternion, self.position, inverse=True),
+            about=self.about[..., np.newaxis, :],
+        )
+        if frame == "body":
+            return in_body
+        return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
+
+    def euler_angles(self, sequence: str = "ZXZ", singular: Literal["raise", "nan"] = "raise") -> Floats:
+        """Euler angles of the attitude at every time.
+
+        Parameters
+        ----------
+        sequence : str
+            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
+        singular : {"raise", "nan"}
+            What to do at an attitude at which two of the angles are not defined.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+            In radians, each within its range (no unwrapping).
+        """
+        return _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the motion to a file, with every bit of it.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
+            (space); a stack's lines begin with the indices of the body. ``.npz``: the arrays under the names
+            of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``.
+        """
+        from polhode._files.trajectory import save_trajectory
+
+        save_trajectory(self, path)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the components of the angular velocity in the body over time; needs matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from polhode.plot import angular_velocity
+
+        return angular_velocity(self, ax)
+
+    def _bodies(self) -> _core.RigidBody:
+        """The body or stack with an axis for time, along which it broadcasts."""
+        return self.body[..., np.newaxis]

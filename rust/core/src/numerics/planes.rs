@@ -1,0 +1,98 @@
+//! Planes: a batch of rows turned on its side, so that one loop over a formula fills the lanes.
+//!
+//! Rows come and go as arrays of a few numbers each. Plane k holds number k of every row of a batch, small enough to stay
+//! in the first-level cache while [`Planes::map`] and [`Planes::update`] run over it.
+
+use super::lane::Lane;
+
+/// Rows of a batch.
+pub const ROWS: usize = 64;
+
+/// A formula from `K` numbers of a row to `M` others.
+///
+/// A trait rather than a closure: a closure's body is compiled apart, without the instructions of the level, whenever it
+/// is too long to be inlined.
+pub trait Formula<const K: usize, const M: usize> {
+    /// The formula. Mark the implementation `#[inline(always)]`.
+    fn apply<L: Lane>(numbers: [L; K]) -> [L; M];
+}
+
+/// `K` numbers for each of up to [`ROWS`] rows.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub struct Planes<const K: usize>([[f64; ROWS]; K]);
+
+impl<const K: usize> Planes<K> {
+    /// All zero.
+    pub const ZERO: Self = Self([[0.0; ROWS]; K]);
+
+    /// Sets the numbers of one row.
+    #[inline(always)]
+    pub fn set(&mut self, row: usize, numbers: [f64; K]) {
+        let mut k = 0;
+        while k < K {
+            self.0[k][row] = numbers[k];
+            k += 1;
+        }
+    }
+
+    /// The numbers of one row from plane `first` on.
+    #[inline(always)]
+    #[must_use]
+    pub fn get<const N: usize>(&self, row: usize, first: usize) -> [f64; N] {
+        let mut numbers = [0.0; N];
+        let mut k = 0;
+        while k < N {
+            numbers[k] = self.0[first + k][row];
+            k += 1;
+        }
+        numbers
+    }
+
+    #[inline(always)]
+    fn lanes<L: Lane>(&self, row: usize) -> [L; K] {
+        let mut numbers = [L::new(0.0); K];
+        let mut k = 0;
+        while k < K {
+            numbers[k] = L::new(self.0[k][row]);
+            k += 1;
+        }
+        numbers
+    }
+
+    #[inline(always)]
+    fn set_lanes<L: Lane>(&mut self, row: usize, numbers: [L; K]) {
+        let mut k = 0;
+        while k < K {
+            self.0[k][row] = numbers[k].get();
+            k += 1;
+        }
+    }
+
+    /// Writes the formula's results for the first `rows` rows to `target`.
+    #[inline(always)]
+    pub fn map<L: Lane, F: Formula<K, M>, const M: usize>(&self, rows: usize, target: &mut Planes<M>) {
+        for row in 0..rows.min(ROWS) {
+            target.set_lanes(row, F::apply(self.lanes::<L>(row)));
+        }
+    }
+
+    /// Replaces the numbers of the first `rows` rows by the formula's results.
+    #[inline(always)]
+    pub fn update<L: Lane, F: Formula<K, K>>(&mut self, rows: usize) {
+        for row in 0..rows.min(ROWS) {
+            self.set_lanes(row, F::apply(self.lanes::<L>(row)));
+        }
+    }
+
+    /// Whether plane `k` is anywhere other than zero in the first `rows` rows.
+    #[inline(always)]
+    #[must_use]
+    pub fn any(&self, k: usize, rows: usize) -> bool {
+        let mut any = false;
+        for row in 0..rows.min(ROWS) {
+            any |= self.0[k][row] != 0.0;
+        }
+        any
+    }
+}

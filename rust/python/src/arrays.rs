@@ -1,0 +1,260 @@
+//! NumPy layout: anything array-like in, C-ordered float64 arrays out.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use polhode::motion::attitude;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyModule;
+
+use crate::errors::{at_row, to_py, wrong_shape};
+use crate::stack::Stack;
+
+/// A value that stands in the last axes of an array.
+pub(crate) trait Item: Sized {
+    /// Those axes.
+    const TAIL: &'static [usize];
+    /// From its numbers in C order.
+    fn read(numbers: &[f64]) -> Self;
+    /// Its numbers in C order.
+    fn write(&self, out: &mut Vec<f64>);
+}
+
+impl Item for f64 {
+    const TAIL: &'static [usize] = &[];
+
+    fn read(numbers: &[f64]) -> Self {
+        numbers[0]
+    }
+
+    fn write(&self, out: &mut Vec<f64>) {
+        out.push(*self);
+    }
+}
+
+macro_rules! fixed_length {
+    ($($n:literal)*) => {$(
+        impl Item for [f64; $n] {
+            const TAIL: &'static [usize] = &[$n];
+
+            fn read(numbers: &[f64]) -> Self {
+                std::array::from_fn(|i| numbers[i])
+            }
+
+            fn write(&self, out: &mut Vec<f64>) {
+                out.extend(self);
+            }
+        }
+    )*};
+}
+fixed_length!(2 3 4 22);
+
+impl Item for Vector3<f64> {
+    const TAIL: &'static [usize] = &[3];
+
+    fn read(numbers: &[f64]) -> Self {
+        Self::new(numbers[0], numbers[1], numbers[2])
+    }
+
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend(self.iter());
+    }
+}
+
+impl Item for Matrix3<f64> {
+    const TAIL: &'static [usize] = &[3, 3];
+
+    fn read(numbers: &[f64]) -> Self {
+        Self::from_row_slice(numbers)
+    }
+
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend(self.transpose().iter()); // nalgebra stores columns
+    }
+}
+
+/// Items over the last axes and a stack over the leading ones.
+pub(crate) fn read<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Stack<T>> {
+    let array = floats(object, name)?;
+    let (shape, tail) = (array.shape(), T::TAIL);
+    let Some(depth) = shape
+        .len()
+        .checked_sub(tail.len())
+        .filter(|&depth| shape[depth..] == *tail)
+    else {
+        return Err(wrong_shape(name, tail, shape));
+    };
+    let numbers = array.as_slice()?;
+    let size: usize = tail.iter().product();
+    Ok(Stack {
+        shape: shape[..depth].to_vec(),
+        rows: numbers.chunks_exact(size).map(T::read).collect(),
+    })
+}
+
+/// As [`read`], with a default for an argument that was not given.
+pub(crate) fn read_or<T: Item>(
+    object: Option<&Bound<'_, PyAny>>,
+    name: &str,
+    default: T,
+) -> PyResult<Stack<T>> {
+    object.map_or_else(|| Ok(Stack::one(default)), |object| read(object, name))
+}
+
+/// The array of a stack.
+pub(crate) fn write<'py, T: Item>(
+    py: Python<'py>,
+    stack: &Stack<T>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let mut numbers = Vec::with_capacity(stack.rows.len() * T::TAIL.iter().product::<usize>());
+    stack.rows.iter().for_each(|row| row.write(&mut numbers));
+    numbers
+        .into_pyarray(py)
+        .reshape([&stack.shape[..], T::TAIL].concat())
+}
+
+/// A float for one value, an array for a stack.
+pub(crate) fn write_numbers<'py>(
+    py: Python<'py>,
+    stack: &Stack<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    if stack.is_one() {
+        return Ok(stack[0].into_pyobject(py)?.into_any());
+    }
+    Ok(write(py, stack)?.into_any())
+}
+
+/// A C-ordered float64 array with the numbers of `object`, which must be real.
+fn floats<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
+        && array.is_c_contiguous()
+    {
+        return Ok(array.readonly());
+    }
+    let array = as_array(object, name)?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if !"biuf".contains(&kind) {
+        let dtype = array.getattr("dtype")?;
+        return Err(PyTypeError::new_err(format!(
+            "{name}: expected real numbers, got dtype {dtype}"
+        )));
+    }
+    let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "float64"))?;
+    // ascontiguousarray makes one axis of none.
+    let array = array.call_method1("reshape", (as_array(object, name)?.getattr("shape")?,))?;
+    Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly())
+}
+
+/// Triples of indices, or the face that has a negative index, and that index.
+type Faces = Result<Vec<[usize; 3]>, (usize, i64)>;
+
+/// Triples of indices, shape (n, 3); a negative one comes back as the row and the number.
+pub(crate) fn read_faces(object: &Bound<'_, PyAny>) -> PyResult<Faces> {
+    let array = as_array(object, "faces")?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    let shape: Vec<usize> = array.getattr("shape")?.extract()?;
+    if shape == [0] || shape == [0, 3] {
+        return Ok(Ok(Vec::new()));
+    }
+    if !"iu".contains(&kind) {
+        let dtype = array.getattr("dtype")?;
+        return Err(PyTypeError::new_err(format!(
+            "faces: expected integers, got dtype {dtype}"
+        )));
+    }
+    if !matches!(shape[..], [_, 3]) {
+        return Err(PyValueError::new_err(format!(
+            "faces: expected shape (n, 3), got {}",
+            crate::stack::tuple(&shape)
+        )));
+    }
+    let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "int64"))?;
+    let array = array.cast_into::<PyArrayDyn<i64>>()?.readonly();
+    let mut faces = Vec::with_capacity(shape[0]);
+    for (face, corners) in array.as_slice()?.chunks_exact(3).enumerate() {
+        let mut indices = [0; 3];
+        for (index, &number) in indices.iter_mut().zip(corners) {
+            match usize::try_from(number) {
+                Ok(valid) => *index = valid,
+                Err(_) => return Ok(Err((face, number))),
+            }
+        }
+        faces.push(indices);
+    }
+    Ok(Ok(faces))
+}
+
+/// Attitudes: quaternions (..., 4) as (x, y, z, w), or whatever has `as_quat()`; nothing is the identity.
+pub(crate) fn read_attitude(
+    object: Option<&Bound<'_, PyAny>>,
+    name: &str,
+) -> PyResult<Stack<UnitQuaternion<f64>>> {
+    let Some(object) = object.filter(|object| !object.is_none()) else {
+        return Ok(Stack::one(UnitQuaternion::identity()));
+    };
+    let components: Stack<[f64; 4]> = match as_quaternion(object)? {
+        Some(quaternion) => read(&quaternion, name)?,
+        None => read(object, name)?,
+    };
+    try_rows(object.py(), &components, attitude::from_components)
+}
+
+/// Rotation matrices: (..., 3, 3), quaternions (..., 4), or whatever has `as_quat()`; nothing is the identity.
+pub(crate) fn read_rotation(
+    object: Option<&Bound<'_, PyAny>>,
+    name: &str,
+) -> PyResult<Stack<Matrix3<f64>>> {
+    let Some(object) = object.filter(|object| !object.is_none()) else {
+        return Ok(Stack::one(Matrix3::identity()));
+    };
+    if as_quaternion(object)?.is_none() {
+        let shape: Vec<usize> = as_array(object, name)?.getattr("shape")?.extract()?;
+        if !matches!(shape[..], [.., 4]) {
+            return read(object, name);
+        }
+    }
+    Ok(read_attitude(Some(object), name)?.map(|q| q.to_rotation_matrix().into_inner()))
+}
+
+/// `f` of each row, naming the row that fails.
+pub(crate) fn try_rows<T, R>(
+    py: Python<'_>,
+    stack: &Stack<T>,
+    f: impl Fn(&T) -> Result<R, polhode::Error>,
+) -> PyResult<Stack<R>> {
+    let rows = (stack.rows.iter().enumerate())
+        .map(|(row, value)| {
+            f(value).map_err(|error| at_row(&stack.shape, row, &to_py(py, &error), py))
+        })
+        .collect::<PyResult<_>>()?;
+    Ok(Stack {
+        shape: stack.shape.clone(),
+        rows,
+    })
+}
+
+/// What `as_quat()` returns, where there is such a method.
+fn as_quaternion<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    object
+        .getattr_opt("as_quat")?
+        .map(|method| method.call0())
+        .transpose()
+}
+
+fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    let py = object.py();
+    numpy(py)?
+        .call_method1("asarray", (object,))
+        .map_err(|error| {
+            PyErr::from_type(error.get_type(py), format!("{name}: {}", error.value(py)))
+        })
+}
+
+/// The module numpy.
+pub(crate) fn numpy(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
+    static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+    Ok(MODULE
+        .get_or_try_init(py, || py.import("numpy").map(Bound::unbind))?
+        .bind(py))
+}

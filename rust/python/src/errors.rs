@@ -1,0 +1,70 @@
+//! Errors of the core as exceptions of `polhode.errors`.
+
+use polhode::Error;
+use polhode::error::Kind;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyType;
+
+use crate::stack::tuple;
+
+/// The exception for an error of the core.
+pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
+    let name = match error.kind() {
+        Kind::Inertia => "InvalidInertiaError",
+        Kind::Mesh => "MeshError",
+        Kind::File => "FileFormatError",
+        Kind::SingularAttitude => "SingularAttitudeError",
+        Kind::Integration => "IntegrationError",
+        _ => "PolhodeError",
+    };
+    new(py, name, error.to_string())
+}
+
+/// An exception of `polhode.errors` by its name.
+pub(crate) fn new(py: Python<'_>, name: &str, message: String) -> PyErr {
+    static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+    let class = MODULE
+        .get_or_try_init(py, || py.import("polhode.errors").map(Bound::unbind))
+        .and_then(|module| Ok(module.bind(py).getattr(name)?.cast_into::<PyType>()?));
+    match class {
+        Ok(class) => PyErr::from_type(class, message),
+        Err(error) => error,
+    }
+}
+
+/// The same exception with the row of the stack named in front; one value has no row to name.
+pub(crate) fn at_row(shape: &[usize], row: usize, error: &PyErr, py: Python<'_>) -> PyErr {
+    if shape.is_empty() {
+        return error.clone_ref(py);
+    }
+    let mut index = vec![0; shape.len()];
+    let mut rest = row;
+    for (step, &length) in index.iter_mut().rev().zip(shape.iter().rev()) {
+        *step = rest % length;
+        rest /= length;
+    }
+    let named = match index[..] {
+        [one] => one.to_string(),
+        _ => tuple(&index),
+    };
+    PyErr::from_type(
+        error.get_type(py),
+        format!("row {named}: {}", error.value(py)),
+    )
+}
+
+/// An argument of the wrong shape.
+pub(crate) fn wrong_shape(name: &str, expected: &[usize], got: &[usize]) -> PyErr {
+    let tail: Vec<String> = expected.iter().map(usize::to_string).collect();
+    let expected = if tail.is_empty() {
+        "(...)".to_owned()
+    } else {
+        format!("(..., {})", tail.join(", "))
+    };
+    PyValueError::new_err(format!(
+        "{name}: expected shape {expected}, got {}",
+        tuple(got)
+    ))
+}

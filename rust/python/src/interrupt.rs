@@ -1,0 +1,87 @@
+//! Ctrl-C and progress for long runs.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+
+/// How often Python is asked; fast enough to feel immediate, rare enough to cost nothing.
+const INTERVAL: Duration = Duration::from_millis(50);
+
+/// A run that Python may stop: by Ctrl-C, or by an exception from its progress callback.
+pub(crate) struct Interrupt {
+    start: Instant,
+    /// When Python was last asked, in milliseconds since the start.
+    asked: AtomicU64,
+    stopped: AtomicBool,
+    error: Mutex<Option<PyErr>>,
+    progress: Option<Py<PyAny>>,
+}
+
+impl Interrupt {
+    pub(crate) fn new(progress: Option<Py<PyAny>>) -> Self {
+        Self {
+            start: Instant::now(),
+            asked: AtomicU64::new(0),
+            stopped: AtomicBool::new(false),
+            error: Mutex::new(None),
+            progress,
+        }
+    }
+
+    /// Asks Python, when it is time to, whether to go on; tells the progress callback the fraction done, when given one.
+    ///
+    /// Called from any thread, attached or not. Signals are only seen by Python's main thread.
+    pub(crate) fn poll(&self, fraction: Option<f64>) -> ControlFlow<()> {
+        let now = u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX);
+        let asked = self.asked.load(Ordering::Relaxed);
+        if u128::from(now - asked.min(now)) >= INTERVAL.as_millis()
+            && self
+                .asked
+                .compare_exchange(asked, now, Ordering::Relaxed, Ordering::Relaxed)
+                .is_ok()
+        {
+            self.ask(fraction);
+        }
+        if self.stopped.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    fn ask(&self, fraction: Option<f64>) {
+        let answer = Python::attach(|py| {
+            py.check_signals()?;
+            if let (Some(progress), Some(fraction)) = (&self.progress, fraction) {
+                progress.call1(py, (fraction,))?;
+            }
+            Ok(())
+        });
+        if let Err(error) = answer {
+            self.error
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .get_or_insert(error);
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// The end of the run: the exception that stopped it, or a last word to the progress callback.
+    pub(crate) fn finish(self, py: Python<'_>) -> PyResult<()> {
+        if let Some(error) = self
+            .error
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner)
+        {
+            return Err(error);
+        }
+        if let Some(progress) = self.progress {
+            progress.call1(py, (1.0,))?;
+        }
+        Ok(())
+    }
+}

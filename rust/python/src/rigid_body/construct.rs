@@ -1,0 +1,357 @@
+//! Ways to a body.
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::io::TriangleMesh;
+use polhode::mass::particles::particles;
+use polhode::mass::polyhedron::{MeshFault, polyhedron};
+use polhode::{Error, RigidBody};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::PyRigidBody;
+use crate::arrays::{Item, read, read_faces, read_or, read_rotation};
+use crate::errors::{to_py, wrong_shape};
+use crate::solids::amount;
+use crate::stack::{Broadcast, Stack};
+
+/// An optional argument of any array-like kind.
+type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+/// A constructor of the core: mass, tensor, centre of mass, rtol.
+type FromTensor = fn(f64, &Matrix3<f64>, &Vector3<f64>, f64) -> Result<RigidBody, Error>;
+
+#[pymethods]
+impl PyRigidBody {
+    #[new]
+    #[pyo3(
+        signature = (mass, inertia=None, center_of_mass=None, *, inertia_about_origin=None, rtol=None),
+        text_signature = "(mass, inertia=None, center_of_mass=(0.0, 0.0, 0.0), *, inertia_about_origin=None, rtol=None)"
+    )]
+    fn new(
+        py: Python<'_>,
+        mass: &Bound<'_, PyAny>,
+        inertia: Given<'_, '_>,
+        center_of_mass: Given<'_, '_>,
+        inertia_about_origin: Given<'_, '_>,
+        rtol: Option<f64>,
+    ) -> PyResult<Self> {
+        let (name, tensor, from): (_, _, FromTensor) = match (inertia, inertia_about_origin) {
+            (Some(tensor), None) => ("inertia", tensor, RigidBody::new),
+            (None, Some(tensor)) => (
+                "inertia_about_origin",
+                tensor,
+                RigidBody::from_inertia_about_origin,
+            ),
+            _ => {
+                let message = "give exactly one of inertia= (about the centre of mass) and inertia_about_origin=";
+                return Err(PyTypeError::new_err(message));
+            }
+        };
+        let mass: Stack<f64> = read(mass, "mass")?;
+        let tensor: Stack<Matrix3<f64>> = read(tensor, name)?;
+        let center = read_or(center_of_mass, "center_of_mass", Vector3::zeros())?;
+        let grid = Broadcast::of(
+            ["mass", name, "center_of_mass"],
+            [&mass.shape, &tensor.shape, &center.shape],
+        )?;
+        let rtol = rtol.unwrap_or(0.0);
+        Ok(grid
+            .try_map(py, |[m, i, c]| from(mass[m], &tensor[i], &center[c], rtol))?
+            .into())
+    }
+
+    /// Body with given principal moments about C.
+    ///
+    /// The moments are kept exactly as given, which a tensor in rotated axes cannot do.
+    ///
+    /// Parameters
+    /// ----------
+    /// mass : array_like, shape (...)
+    /// moments : array_like, shape (..., 3)
+    ///     In any order.
+    /// axes : array_like, shape (..., 3, 3), or rotation, optional
+    ///     The axes they belong to as columns, in the body frame: a right-handed rotation matrix,
+    ///     quaternions (..., 4) as (x, y, z, w), or anything with ``as_quat()``. The body axes by
+    ///     default.
+    /// center_of_mass : array_like, shape (..., 3), optional
+    /// rtol : float, optional
+    ///     Admits violations of the triangle inequality up to this fraction.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     When no distribution of mass has these moments.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> top = RigidBody.from_principal(mass=1.0, moments=(2.0, 2.0, 3.0))
+    /// >>> top.principal.top
+    /// 'oblate'
+    #[staticmethod]
+    #[pyo3(
+        signature = (mass, moments, axes=None, center_of_mass=None, *, rtol=None),
+        text_signature = "(mass, moments, axes=None, center_of_mass=(0.0, 0.0, 0.0), *, rtol=None)"
+    )]
+    fn from_principal(
+        py: Python<'_>,
+        mass: &Bound<'_, PyAny>,
+        moments: &Bound<'_, PyAny>,
+        axes: Given<'_, '_>,
+        center_of_mass: Given<'_, '_>,
+        rtol: Option<f64>,
+    ) -> PyResult<Self> {
+        let mass: Stack<f64> = read(mass, "mass")?;
+        let moments: Stack<[f64; 3]> = read(moments, "moments")?;
+        let axes = read_rotation(axes, "axes")?;
+        let center = read_or(center_of_mass, "center_of_mass", Vector3::zeros())?;
+        let names = ["mass", "moments", "axes", "center_of_mass"];
+        let grid = Broadcast::of(
+            names,
+            [&mass.shape, &moments.shape, &axes.shape, &center.shape],
+        )?;
+        let rtol = rtol.unwrap_or(0.0);
+        let body = |[m, i, v, c]: [usize; 4]| {
+            RigidBody::from_principal(mass[m], &moments[i], &axes[v], &center[c], rtol)
+        };
+        Ok(grid.try_map(py, body)?.into())
+    }
+
+    /// Body made of particles.
+    ///
+    /// ``I = Σ m (r² 1 − r rᵀ)``, summed about the centre of mass; the smallest moment of a thin body
+    /// is as accurate as the coordinates are.
+    ///
+    /// Parameters
+    /// ----------
+    /// masses : array_like, shape (..., n)
+    ///     None negative, their sum positive.
+    /// positions : array_like, shape (..., n, 3)
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     Naming the particle whose mass is negative.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> dumbbell = RigidBody.from_particles([1.0, 3.0], [(0, 0, 0), (4, 0, 0)])
+    /// >>> dumbbell.center_of_mass
+    /// array([3., 0., 0.])
+    /// >>> dumbbell.principal_moments
+    /// array([ 0., 12., 12.])
+    #[staticmethod]
+    fn from_particles(
+        py: Python<'_>,
+        masses: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let masses: Stack<f64> = read(masses, "masses")?;
+        let positions: Stack<[f64; 3]> = read(positions, "positions")?;
+        let (mass_shape, &n) = split_count(&masses.shape, "masses", &[])?;
+        let (position_shape, &m) = split_count(&positions.shape, "positions", &[3])?;
+        if n != m {
+            return Err(PyValueError::new_err(format!(
+                "masses and positions: expected shapes (..., n) and (..., n, 3), got n = {n} and n = {m}"
+            )));
+        }
+        let grid = Broadcast::of(["masses", "positions"], [mass_shape, position_shape])?;
+        Ok(grid
+            .try_map(py, |[i, j]| {
+                particles(
+                    &masses.rows[i * n..(i + 1) * n],
+                    &positions.rows[j * n..(j + 1) * n],
+                )
+            })?
+            .into())
+    }
+
+    /// Solid of uniform density bounded by a closed triangle mesh.
+    ///
+    /// The mesh is checked before any number is computed: indices in range, coordinates finite, every
+    /// edge shared by two faces that run along it in opposite directions. Corners with the same
+    /// coordinates count as one vertex. Several components and cavities (inner surfaces wound
+    /// inward) are counted as they are. Coordinates far from the origin cost no accuracy.
+    ///
+    /// Parameters
+    /// ----------
+    /// vertices : array_like, shape (n, 3)
+    /// faces : array_like of int, shape (m, 3)
+    ///     Vertices of each triangle, counted from zero, counter-clockwise seen from outside.
+    /// density, mass : float
+    ///     Exactly one of the two.
+    /// orient : bool, optional
+    ///     Accept a mesh whose normals all point inward.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     Naming the face, edge or vertex that keeps the mesh from bounding a solid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    /// >>> faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    /// >>> RigidBody.from_mesh(corners, faces, density=6.0).center_of_mass
+    /// array([0.25, 0.25, 0.25])
+    /// >>> RigidBody.from_mesh(corners, faces[:3], density=6.0)
+    /// Traceback (most recent call last):
+    ///     ...
+    /// polhode.errors.MeshError: the mesh is not closed: the edge from vertex 2 to vertex 1 of faces[0] has no face on its other side (3 such edges in all); close the mesh, or model a thin shell instead
+    #[staticmethod]
+    #[pyo3(signature = (vertices, faces, *, density=None, mass=None, orient=false))]
+    fn from_mesh(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        density: Option<f64>,
+        mass: Option<f64>,
+        orient: bool,
+    ) -> PyResult<Self> {
+        let amount = amount(mass, density)?;
+        let mesh = mesh(py, vertices, faces)?;
+        let body = py.detach(|| polyhedron(&mesh.vertices, &mesh.faces, amount, orient));
+        Ok(Stack::one(body.map_err(|error| to_py(py, &error))?).into())
+    }
+
+    /// Body from a file: a mesh (STL, OBJ, PLY, plate models, …) or a molecule (XYZ).
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    /// density, mass : float
+    ///     Exactly one of the two for a mesh; neither for a molecule, whose atoms have their masses.
+    /// length_unit : str, optional
+    ///     Unit of the coordinates, such as ``"mm"``: they are converted to metres. Without it the
+    ///     numbers stay as they are stored.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// FileFormatError
+    ///     When the file is not what it says.
+    /// MeshError
+    ///     When the mesh does not bound a solid.
+    ///
+    /// See Also
+    /// --------
+    /// polhode.io : the reader, which also returns vertices and faces.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None))]
+    fn from_file<'py>(
+        py: Python<'py>,
+        path: &Bound<'py, PyAny>,
+        density: Option<f64>,
+        mass: Option<f64>,
+        length_unit: Option<&str>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let options = PyDict::new(py);
+        options.set_item("density", density)?;
+        options.set_item("mass", mass)?;
+        options.set_item("length_unit", length_unit)?;
+        py.import("polhode.io")?
+            .call_method("body_from_file", (path,), Some(&options))
+    }
+
+    /// Stack of bodies of equal shape along a new first axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// bodies : sequence of RigidBody
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody, solids
+    /// >>> RigidBody.stack([solids.sphere(1.0, mass=m) for m in (1.0, 2.0)]).mass
+    /// array([1., 2.])
+    #[staticmethod]
+    fn stack(bodies: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
+        let Some(first) = bodies.first() else {
+            return Err(PyValueError::new_err(
+                "bodies: expected at least one body to stack, got none",
+            ));
+        };
+        let shape = &first.bodies.shape;
+        if let Some(other) = bodies.iter().find(|body| body.bodies.shape != *shape) {
+            return Err(PyValueError::new_err(format!(
+                "bodies: expected bodies of one shape, got {} and {}",
+                crate::stack::tuple(shape),
+                crate::stack::tuple(&other.bodies.shape)
+            )));
+        }
+        let shape = [&[bodies.len()], &shape[..]].concat();
+        let rows = bodies
+            .iter()
+            .flat_map(|body| body.bodies.rows.iter().copied())
+            .collect();
+        Ok(Stack { shape, rows }.into())
+    }
+}
+
+/// The last axis before the tail, and the axes before it.
+fn split_count<'a>(
+    shape: &'a [usize],
+    name: &str,
+    tail: &[usize],
+) -> PyResult<(&'a [usize], &'a usize)> {
+    shape
+        .split_last()
+        .map(|(count, leading)| (leading, count))
+        .ok_or_else(|| {
+            let expected: Vec<String> = tail.iter().map(usize::to_string).collect();
+            let expected = [&["...".to_owned(), "n".to_owned()], &expected[..]]
+                .concat()
+                .join(", ");
+            PyValueError::new_err(format!(
+                "{name}: expected shape ({expected}), got {}",
+                crate::stack::tuple(tail)
+            ))
+        })
+}
+
+/// Vertices and faces, with a negative index told as a fault of the mesh.
+pub(crate) fn mesh(
+    py: Python<'_>,
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+) -> PyResult<TriangleMesh> {
+    let vertices: Stack<[f64; 3]> = read(vertices, "vertices")?;
+    if vertices.shape.len() != 1 {
+        let shape = [&vertices.shape[..], <[f64; 3]>::TAIL].concat();
+        return Err(wrong_shape("vertices", &[3], &shape));
+    }
+    let faces = read_faces(faces)?.map_err(|(face, index)| {
+        let fault = MeshFault::IndexOutOfRange {
+            face,
+            index,
+            vertices: vertices.rows.len(),
+        };
+        to_py(py, &fault.into())
+    })?;
+    Ok(TriangleMesh {
+        vertices: vertices.rows,
+        faces,
+    })
+}

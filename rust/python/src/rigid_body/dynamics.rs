@@ -1,0 +1,257 @@
+//! Energy, momentum and Euler's equations.
+
+use nalgebra::Vector3;
+use numpy::PyArrayDyn;
+use polhode::motion::angular_momentum::{AngularMomentum, angular_momentum};
+use polhode::motion::euler_equations::EulerEquations;
+use polhode::motion::kinetic_energy::{KineticEnergy, kinetic_energy};
+use pyo3::prelude::*;
+
+use super::{PyRigidBody, points};
+use crate::arrays::{read, read_or, write, write_numbers};
+use crate::stack::{Broadcast, Stack};
+
+/// An optional argument of any array-like kind.
+type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+#[pymethods]
+impl PyRigidBody {
+    /// Kinetic energy in three parts, ``½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω`` with ``c_P = C − P``.
+    ///
+    /// Parameters
+    /// ----------
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity relative to space, components in the body frame.
+    /// velocity : array_like, shape (..., 3), optional
+    ///     Velocity of P relative to space, components in the body frame.
+    /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
+    ///     The point P of the body. The parts depend on it, their sum does not.
+    ///
+    /// Returns
+    /// -------
+    /// KineticEnergy
+    ///     ``translational``, ``mixed``, ``rotational`` and their ``total``.
+    ///
+    /// Examples
+    /// --------
+    /// A cylinder that rolls with unit speed, seen from its axis and from the line of contact:
+    ///
+    /// >>> from polhode import solids
+    /// >>> cylinder = solids.cylinder(radius=1.0, height=2.0, mass=4.0)
+    /// >>> cylinder.kinetic_energy((0, 0, 1), velocity=(1, 0, 0))
+    /// KineticEnergy(translational=2.0, mixed=0.0, rotational=1.0)
+    /// >>> cylinder.kinetic_energy((0, 0, 1), about=(0, 1, 0))
+    /// KineticEnergy(translational=0.0, mixed=0.0, rotational=3.0)
+    #[pyo3(
+        signature = (omega, velocity=None, about=None),
+        text_signature = "($self, omega, velocity=(0.0, 0.0, 0.0), about='center_of_mass')"
+    )]
+    fn kinetic_energy<'py>(
+        &self,
+        py: Python<'py>,
+        omega: &Bound<'py, PyAny>,
+        velocity: Given<'_, 'py>,
+        about: Given<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+        let velocity = read_or(velocity, "velocity", Vector3::zeros())?;
+        let about = points(&self.bodies, about, "about")?;
+        let shapes = [
+            &self.bodies.shape[..],
+            &omega.shape,
+            &velocity.shape,
+            &about.shape,
+        ];
+        let grid = Broadcast::of(["body", "omega", "velocity", "about"], shapes)?;
+        let energy = grid.try_map(py, |[b, w, v, p]| {
+            Ok(kinetic_energy(
+                &self.bodies[b],
+                &omega[w],
+                &velocity[v],
+                &about[p],
+            ))
+        })?;
+        let part = |part: fn(&KineticEnergy) -> f64| write_numbers(py, &energy.map(part));
+        let parts = (
+            part(|t| t.translational)?,
+            part(|t| t.mixed)?,
+            part(|t| t.rotational)?,
+        );
+        py.import("polhode.results")?
+            .getattr("KineticEnergy")?
+            .call1(parts)
+    }
+
+    /// Angular momentum about the origin of space in three parts, ``m R×v + m [R×(ω×c_P) + c_P×v] + I_P ω``.
+    ///
+    /// For P = C the mixed part vanishes and the sum is orbital + spin; for P fixed at the origin of
+    /// space it is the spin alone.
+    ///
+    /// Parameters
+    /// ----------
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity relative to space, components in the body frame.
+    /// velocity, position : array_like, shape (..., 3), optional
+    ///     Of the point P relative to space, components in the body frame.
+    /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
+    ///     The point P of the body; ``c_P = C − P``.
+    ///
+    /// Returns
+    /// -------
+    /// AngularMomentum
+    ///     ``orbital``, ``mixed``, ``spin`` and their ``total``, each of shape (..., 3).
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.sphere(1.0, mass=5.0).angular_momentum((0, 0, 3), velocity=(0, 1, 0), position=(2, 0, 0)).total
+    /// array([ 0.,  0., 16.])
+    #[pyo3(
+        signature = (omega, velocity=None, position=None, about=None),
+        text_signature = "($self, omega, velocity=(0.0, 0.0, 0.0), position=(0.0, 0.0, 0.0), about='center_of_mass')"
+    )]
+    fn angular_momentum<'py>(
+        &self,
+        py: Python<'py>,
+        omega: &Bound<'py, PyAny>,
+        velocity: Given<'_, 'py>,
+        position: Given<'_, 'py>,
+        about: Given<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+        let velocity = read_or(velocity, "velocity", Vector3::zeros())?;
+        let position = read_or(position, "position", Vector3::zeros())?;
+        let about = points(&self.bodies, about, "about")?;
+        let shapes = [
+            &self.bodies.shape[..],
+            &omega.shape,
+            &velocity.shape,
+            &position.shape,
+            &about.shape,
+        ];
+        let grid = Broadcast::of(["body", "omega", "velocity", "position", "about"], shapes)?;
+        let momentum = grid.try_map(py, |[b, w, v, r, p]| {
+            Ok(angular_momentum(
+                &self.bodies[b],
+                &omega[w],
+                &velocity[v],
+                &position[r],
+                &about[p],
+            ))
+        })?;
+        let part = |part: fn(&AngularMomentum) -> Vector3<f64>| write(py, &momentum.map(part));
+        let parts = (part(|l| l.orbital)?, part(|l| l.mixed)?, part(|l| l.spin)?);
+        py.import("polhode.results")?
+            .getattr("AngularMomentum")?
+            .call1(parts)
+    }
+
+    /// Euler's equations forward: the angular acceleration, from ``I_P ω̇ + ω × I_P ω = N_P``.
+    ///
+    /// Parameters
+    /// ----------
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity relative to space, components in the body frame.
+    /// torque : array_like, shape (..., 3), optional
+    ///     About P, components in the body frame.
+    /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
+    ///     P: the centre of mass of a body that moves freely, or a point fixed in space.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 3)
+    ///     ω̇, components in the body frame. Along an axis with zero moment it is zero.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     For a torque along an axis with zero moment.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> body = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> body.angular_acceleration((1.0, 2.0, 4.0))
+    /// array([-4. ,  3. , -0.8])
+    #[pyo3(
+        signature = (omega, torque=None, about=None),
+        text_signature = "($self, omega, torque=(0.0, 0.0, 0.0), about='center_of_mass')"
+    )]
+    fn angular_acceleration<'py>(
+        &self,
+        py: Python<'py>,
+        omega: &Bound<'py, PyAny>,
+        torque: Given<'_, 'py>,
+        about: Given<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+        let torque = read_or(torque, "torque", Vector3::zeros())?;
+        let about = points(&self.bodies, about, "about")?;
+        let shapes = [
+            &self.bodies.shape[..],
+            &omega.shape,
+            &torque.shape,
+            &about.shape,
+        ];
+        let grid = Broadcast::of(["body", "omega", "torque", "about"], shapes)?;
+        let acceleration = grid.try_map(py, |[b, w, n, p]| {
+            EulerEquations::about(&self.bodies[b], &about[p])
+                .angular_acceleration(&omega[w], &torque[n])
+        })?;
+        write(py, &acceleration)
+    }
+
+    /// Euler's equations inverse: the torque that gives an angular acceleration.
+    ///
+    /// Parameters
+    /// ----------
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity relative to space, components in the body frame.
+    /// angular_acceleration : array_like, shape (..., 3), optional
+    ///     ω̇, components in the body frame; zero by default: the torque that keeps ω.
+    /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
+    ///     P: the centre of mass of a body that moves freely, or a point fixed in space.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 3)
+    ///     ``N_P = I_P ω̇ + ω × I_P ω``, components in the body frame.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> body = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> body.torque((1.0, 2.0, 4.0))
+    /// array([ 4., -6.,  2.])
+    #[pyo3(
+        signature = (omega, angular_acceleration=None, about=None),
+        text_signature = "($self, omega, angular_acceleration=(0.0, 0.0, 0.0), about='center_of_mass')"
+    )]
+    fn torque<'py>(
+        &self,
+        py: Python<'py>,
+        omega: &Bound<'py, PyAny>,
+        angular_acceleration: Given<'_, 'py>,
+        about: Given<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+        let acceleration = read_or(
+            angular_acceleration,
+            "angular_acceleration",
+            Vector3::zeros(),
+        )?;
+        let about = points(&self.bodies, about, "about")?;
+        let shapes = [
+            &self.bodies.shape[..],
+            &omega.shape,
+            &acceleration.shape,
+            &about.shape,
+        ];
+        let grid = Broadcast::of(["body", "omega", "angular_acceleration", "about"], shapes)?;
+        let torque = grid.try_map(py, |[b, w, a, p]| {
+            Ok(EulerEquations::about(&self.bodies[b], &about[p])
+                .torque(&omega[w], &acceleration[a]))
+        })?;
+        write(py, &torque)
+    }
+}

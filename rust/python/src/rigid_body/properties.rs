@@ -1,0 +1,342 @@
+//! What a body is, and bodies made from bodies.
+
+use nalgebra::{Matrix3, Vector3};
+use numpy::PyArrayDyn;
+use polhode::{Error, RigidBody};
+use pyo3::basic::CompareOp;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyNotImplemented;
+
+use super::{PyRigidBody, points};
+use crate::arrays::{read, read_or, read_rotation, write, write_numbers};
+use crate::principal::to_python;
+use crate::stack::{Broadcast, Stack};
+
+type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
+
+#[pymethods]
+impl PyRigidBody {
+    /// Mass: a float, or an array of the stack's shape.
+    #[getter]
+    fn mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        write_numbers(py, &self.bodies.map(RigidBody::mass))
+    }
+
+    /// Centre of mass C from the origin of the body frame, shape (..., 3).
+    #[getter]
+    fn center_of_mass<'py>(&self, py: Python<'py>) -> Array<'py> {
+        write(py, &self.bodies.map(RigidBody::center_of_mass))
+    }
+
+    /// Inertia tensor about C in the body frame, shape (..., 3, 3); off-diagonal elements are minus the products.
+    #[getter]
+    fn inertia<'py>(&self, py: Python<'py>) -> Array<'py> {
+        write(py, &self.bodies.map(RigidBody::inertia))
+    }
+
+    /// Principal moments about C, ascending, shape (..., 3).
+    #[getter]
+    fn principal_moments<'py>(&self, py: Python<'py>) -> Array<'py> {
+        write(py, &self.bodies.map(|body| body.principal().moments))
+    }
+
+    /// Principal moments and axes about C, with the class of the top.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.cylinder(radius=1.0, height=4.0, mass=12.0).principal.top
+    /// 'prolate'
+    #[getter]
+    fn principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.bodies.map(RigidBody::principal))
+    }
+
+    /// Radii of gyration √(I/m) about the principal axes through C, ascending, shape (..., 3).
+    #[getter]
+    fn radii_of_gyration<'py>(&self, py: Python<'py>) -> Array<'py> {
+        write(py, &self.bodies.map(RigidBody::radii_of_gyration))
+    }
+
+    /// Inertia tensor about a point P: the parallel-axis theorem ``I_P = I_C + m (d² 1 − d dᵀ)``.
+    ///
+    /// Parameters
+    /// ----------
+    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+    ///     P in the body frame.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 3, 3)
+    ///
+    /// Examples
+    /// --------
+    /// A cube about its corner:
+    ///
+    /// >>> from polhode import solids
+    /// >>> solids.cube(1.0, mass=12.0).inertia_about((0.5, 0.5, 0.5))
+    /// array([[ 8., -3., -3.],
+    ///        [-3.,  8., -3.],
+    ///        [-3., -3.,  8.]])
+    fn inertia_about<'py>(&self, py: Python<'py>, point: &Bound<'py, PyAny>) -> Array<'py> {
+        let points = points(&self.bodies, Some(point), "point")?;
+        let grid = self.with("point", &points)?;
+        write(
+            py,
+            &grid.try_map(py, |[b, p]| Ok(self.bodies[b].inertia_about(&points[p])))?,
+        )
+    }
+
+    /// Moment of inertia about an axis through a point, ``n·I_P·n`` with n the unit vector along the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// axis : array_like, shape (..., 3)
+    ///     Its direction in the body frame; any length but zero.
+    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
+    ///     A point on the axis.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray, shape (...)
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.sphere(1.0, mass=5.0).moment_about((1, 1, 0))
+    /// 2.0
+    #[pyo3(signature = (axis, point=None), text_signature = "($self, axis, point='center_of_mass')")]
+    fn moment_about<'py>(
+        &self,
+        py: Python<'py>,
+        axis: &Bound<'py, PyAny>,
+        point: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let points = points(&self.bodies, point, "point")?;
+        let axes: Stack<Vector3<f64>> = read(axis, "axis")?;
+        let shapes = [&self.bodies.shape[..], &axes.shape, &points.shape];
+        let grid = Broadcast::of(["body", "axis", "point"], shapes)?;
+        let moments = grid.try_map(py, |[b, a, p]| {
+            self.bodies[b].moment_about(&axes[a], &points[p])
+        })?;
+        write_numbers(py, &moments)
+    }
+
+    /// Principal moments and axes about a point.
+    ///
+    /// Parameters
+    /// ----------
+    /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+    ///
+    /// Returns
+    /// -------
+    /// PrincipalAxes
+    ///
+    /// Examples
+    /// --------
+    /// A cube about its corner: the small moment belongs to the diagonal.
+    ///
+    /// >>> from polhode import solids
+    /// >>> solids.cube(1.0, mass=12.0).principal_about((0.5, 0.5, 0.5)).moments.round(12)
+    /// array([ 2., 11., 11.])
+    fn principal_about<'py>(
+        &self,
+        py: Python<'py>,
+        point: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let points = points(&self.bodies, Some(point), "point")?;
+        let grid = self.with("point", &points)?;
+        to_python(
+            py,
+            &grid.try_map(py, |[b, p]| Ok(self.bodies[b].principal_about(&points[p])))?,
+        )
+    }
+
+    /// The body moved: C → C + displacement.
+    ///
+    /// Parameters
+    /// ----------
+    /// displacement : array_like, shape (..., 3)
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.sphere(1.0, mass=5.0).translated((0, 0, 2)).center_of_mass
+    /// array([0., 0., 2.])
+    fn translated(&self, py: Python<'_>, displacement: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let d: Stack<Vector3<f64>> = read(displacement, "displacement")?;
+        let grid = self.with("displacement", &d)?;
+        Ok(grid
+            .try_map(py, |[b, i]| self.bodies[b].translated(&d[i]))?
+            .into())
+    }
+
+    /// The body turned about the origin: C → R C, I → R I Rᵀ. Its principal moments stay exactly as they are.
+    ///
+    /// Parameters
+    /// ----------
+    /// rotation : array_like, shape (..., 3, 3) or (..., 4), or rotation
+    ///     Rotation matrices, unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as
+    ///     SciPy's Rotation.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> quarter_turn = [(0, -1, 0), (1, 0, 0), (0, 0, 1)]
+    /// >>> solids.box((1, 2, 3), mass=12.0).rotated(quarter_turn).inertia.diagonal()
+    /// array([10., 13.,  5.])
+    fn rotated(&self, py: Python<'_>, rotation: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let rotations: Stack<Matrix3<f64>> = read_rotation(Some(rotation), "rotation")?;
+        let grid = self.with("rotation", &rotations)?;
+        Ok(grid
+            .try_map(py, |[b, r]| self.bodies[b].rotated(&rotations[r]))?
+            .into())
+    }
+
+    /// The same shape ``length`` times as large and ``mass`` times as heavy: m → k m, C → s C, I → k s² I.
+    ///
+    /// Parameters
+    /// ----------
+    /// length, mass : array_like, shape (...), optional
+    ///     Positive factors.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.sphere(1.0, mass=5.0).scaled(length=2).principal_moments
+    /// array([8., 8., 8.])
+    #[pyo3(signature = (length=None, mass=None), text_signature = "($self, length=1.0, mass=1.0)")]
+    fn scaled(
+        &self,
+        py: Python<'_>,
+        length: Option<&Bound<'_, PyAny>>,
+        mass: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let (length, mass) = (read_or(length, "length", 1.0)?, read_or(mass, "mass", 1.0)?);
+        let shapes = [&self.bodies.shape[..], &length.shape, &mass.shape];
+        let grid = Broadcast::of(["body", "length", "mass"], shapes)?;
+        Ok(grid
+            .try_map(py, |[b, s, k]| self.bodies[b].scaled(length[s], mass[k]))?
+            .into())
+    }
+
+    /// Whether bodies agree, one answer for each pair.
+    ///
+    /// Compared are the masses, the tensors (relative to the largest element) and the centres of mass
+    /// (relative to the distance from the origin or the radius of gyration, whichever is larger).
+    ///
+    /// Parameters
+    /// ----------
+    /// other : RigidBody
+    /// rtol, atol : float, optional
+    ///
+    /// Returns
+    /// -------
+    /// bool or numpy.ndarray of bool, shape (...)
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> cube = solids.cube(1.0, mass=1.0)
+    /// >>> cube.isclose(solids.cube(1.0 + 1e-12, mass=1.0)), cube == cube.scaled(length=1.1)
+    /// (True, False)
+    #[pyo3(signature = (other, rtol=1e-9, atol=0.0))]
+    fn isclose<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Self,
+        rtol: f64,
+        atol: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let grid = self.with("other", &other.bodies)?;
+        let close: Vec<bool> = grid
+            .rows()
+            .map(|[a, b]| self.bodies[a].is_close(&other.bodies[b], rtol, atol))
+            .collect();
+        if grid.shape.is_empty() {
+            return Ok(close[0].into_pyobject(py)?.to_owned().into_any());
+        }
+        let flat = numpy::PyArray1::from_vec(py, close);
+        flat.call_method1("reshape", (grid.shape,))
+    }
+
+    fn __add__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        let other = &other.get().bodies;
+        let grid = self.with("other", other)?;
+        let sum: Self = grid
+            .try_map(py, |[a, b]| self.bodies[a].combined(&other[b]))?
+            .into();
+        Ok(sum.into_pyobject(py)?.into_any())
+    }
+
+    /// `sum()` starts from zero.
+    fn __radd__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if other.extract::<i64>().is_ok_and(|zero| zero == 0) {
+            return Ok(self.clone().into_pyobject(py)?.into_any());
+        }
+        Ok(PyNotImplemented::get(py).to_owned().into_any())
+    }
+
+    fn __richcmp__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+        op: CompareOp,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        let equal = self.bodies == other.get().bodies;
+        match op {
+            CompareOp::Eq => Ok(equal.into_pyobject(py)?.to_owned().into_any()),
+            CompareOp::Ne => Ok((!equal).into_pyobject(py)?.to_owned().into_any()),
+            _ => Err(PyTypeError::new_err(
+                "bodies have no order: compare their masses or moments",
+            )),
+        }
+    }
+}
+
+impl PyRigidBody {
+    /// The bodies lined up with one other argument.
+    fn with<T>(&self, name: &str, other: &Stack<T>) -> PyResult<Broadcast<2>> {
+        Broadcast::of(["body", name], [&self.bodies.shape, &other.shape])
+    }
+
+    /// One body's numbers for each row.
+    pub(super) fn numbers(&self) -> Stack<[f64; 22]> {
+        self.bodies.map(RigidBody::to_array)
+    }
+
+    /// Bodies from their numbers.
+    pub(super) fn from_numbers(numbers: &Stack<[f64; 22]>, py: Python<'_>) -> PyResult<Self> {
+        crate::arrays::try_rows(py, numbers, |row: &[f64; 22]| -> Result<RigidBody, Error> {
+            RigidBody::from_array(row)
+        })
+        .map(Self::from)
+    }
+}

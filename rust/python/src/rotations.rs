@@ -1,0 +1,145 @@
+//! Attitudes: Euler angles, quaternions, matrices.
+
+use nalgebra::{Matrix3, Vector3};
+use numpy::PyArrayDyn;
+use polhode::Error;
+use polhode::motion::attitude::{components, from_components, from_matrix};
+use polhode::motion::euler_angles::Sequence;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::{read, read_attitude, try_rows, write};
+use crate::errors::to_py;
+use crate::stack::{Broadcast, Stack};
+
+type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
+
+fn parse(py: Python<'_>, sequence: &str) -> PyResult<Sequence> {
+    sequence.parse().map_err(|error: Error| to_py(py, &error))
+}
+
+/// Unit quaternions of attitudes given by Euler angles.
+///
+/// Parameters
+/// ----------
+/// angles : array_like, shape (..., 3)
+///     In radians, in the order in which the sequence names its axes.
+/// sequence : str, optional
+///     Three axes: intrinsic in upper case (``"ZXZ"``: R_NB = Rz(φ) Rx(θ) Rz(ψ)), extrinsic in lower
+///     case; or ``"goldstein"``, ``"landau"`` (ZXZ), ``"aerospace"`` (ZYX).
+///
+/// Returns
+/// -------
+/// numpy.ndarray, shape (..., 4)
+///     (x, y, z, w) of R_NB.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> from polhode import euler_angles
+/// >>> euler_angles.to_quaternion((np.pi / 2, 0, 0)).round(6)
+/// array([0.      , 0.      , 0.707107, 0.707107])
+#[pyfunction]
+#[pyo3(signature = (angles, sequence="ZXZ"))]
+pub(crate) fn quaternion_from_euler_angles<'py>(
+    py: Python<'py>,
+    angles: &Bound<'py, PyAny>,
+    sequence: &str,
+) -> Array<'py> {
+    let sequence = parse(py, sequence)?;
+    let angles: Stack<[f64; 3]> = read(angles, "angles")?;
+    let attitudes = try_rows(py, &angles, |angles| sequence.to_quaternion(angles))?;
+    write(py, &attitudes.map(components))
+}
+
+/// Euler angles of attitudes.
+///
+/// Parameters
+/// ----------
+/// quaternion : array_like, shape (..., 4), or rotation
+///     (x, y, z, w) of R_NB, or anything with ``as_quat()``.
+/// sequence : str, optional
+///     As in `to_quaternion`.
+/// singular : {"raise", "nan"}, optional
+///     What to do where the first and third angle are not defined (sine of the middle angle, or cosine
+///     for three different axes, below 1e-12): raise, or give NaN for these two.
+///
+/// Returns
+/// -------
+/// numpy.ndarray, shape (..., 3)
+///     In radians, first and third in [−π, π], the middle one in [0, π], or in [−π/2, π/2] for three
+///     different axes.
+///
+/// Raises
+/// ------
+/// SingularAttitudeError
+///     Naming the row and the middle angle.
+///
+/// Examples
+/// --------
+/// >>> from polhode import euler_angles
+/// >>> angles = (0.1, 1.2, -0.4)
+/// >>> euler_angles.from_quaternion(euler_angles.to_quaternion(angles)).round(12)
+/// array([ 0.1,  1.2, -0.4])
+#[pyfunction]
+#[pyo3(signature = (quaternion, sequence="ZXZ", singular="raise"))]
+pub(crate) fn euler_angles_from_quaternion<'py>(
+    py: Python<'py>,
+    quaternion: &Bound<'py, PyAny>,
+    sequence: &str,
+    singular: &str,
+) -> Array<'py> {
+    if !matches!(singular, "raise" | "nan") {
+        return Err(PyValueError::new_err(format!(
+            "singular: expected \"raise\" or \"nan\", got \"{singular}\""
+        )));
+    }
+    let sequence = parse(py, sequence)?;
+    let attitudes = read_attitude(Some(quaternion), "quaternion")?;
+    let angles = try_rows(py, &attitudes, |attitude| {
+        match sequence.from_quaternion(attitude) {
+            Err(Error::GimbalLock { middle }) if singular == "nan" => {
+                Ok([f64::NAN, middle, f64::NAN])
+            }
+            result => result,
+        }
+    })?;
+    write(py, &angles)
+}
+
+/// Unit quaternions (x, y, z, w), w ≥ 0, of rotation matrices (..., 3, 3).
+#[pyfunction]
+pub(crate) fn quaternion_from_matrix<'py>(
+    py: Python<'py>,
+    matrix: &Bound<'py, PyAny>,
+) -> Array<'py> {
+    let matrices: Stack<Matrix3<f64>> = read(matrix, "matrix")?;
+    write(py, &try_rows(py, &matrices, from_matrix)?.map(components))
+}
+
+/// Vectors (..., 3) turned by unit quaternions (..., 4): q v q*, or q* v q.
+#[pyfunction]
+#[pyo3(signature = (quaternion, vector, inverse=false))]
+pub(crate) fn rotate<'py>(
+    py: Python<'py>,
+    quaternion: &Bound<'py, PyAny>,
+    vector: &Bound<'py, PyAny>,
+    inverse: bool,
+) -> Array<'py> {
+    let quaternions: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
+    let vectors: Stack<Vector3<f64>> = read(vector, "vector")?;
+    let grid = Broadcast::of(
+        ["quaternion", "vector"],
+        [&quaternions.shape, &vectors.shape],
+    )?;
+    let turned = grid.try_map(py, |[q, v]| {
+        let attitude = from_components(&quaternions[q])?;
+        let vector = &vectors[v];
+        Ok(if inverse {
+            attitude.inverse_transform_vector(vector)
+        } else {
+            attitude * vector
+        })
+    })?;
+    write(py, &turned)
+}

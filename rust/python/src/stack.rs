@@ -1,0 +1,174 @@
+//! Shape arithmetic: stacks of values and how they broadcast, as in NumPy.
+
+use std::ops::Index;
+
+use polhode::Error;
+use polhode::numerics::threads::{Halt, fill_blocks};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::errors::{at_row, to_py};
+use crate::interrupt::Interrupt;
+
+/// Rows of a large map done at a time by one thread.
+const BLOCK: usize = 1024;
+
+/// Values in C order under a shape; one value has the empty shape.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Stack<T> {
+    pub(crate) shape: Vec<usize>,
+    pub(crate) rows: Vec<T>,
+}
+
+impl<T> Stack<T> {
+    pub(crate) fn one(value: T) -> Self {
+        Self {
+            shape: Vec::new(),
+            rows: vec![value],
+        }
+    }
+
+    pub(crate) fn is_one(&self) -> bool {
+        self.shape.is_empty()
+    }
+
+    pub(crate) fn map<R>(&self, f: impl FnMut(&T) -> R) -> Stack<R> {
+        Stack {
+            shape: self.shape.clone(),
+            rows: self.rows.iter().map(f).collect(),
+        }
+    }
+}
+
+impl<T> Index<usize> for Stack<T> {
+    type Output = T;
+
+    fn index(&self, row: usize) -> &T {
+        &self.rows[row]
+    }
+}
+
+/// How K stacks line up row by row.
+pub(crate) struct Broadcast<const K: usize> {
+    pub(crate) shape: Vec<usize>,
+    /// For each stack the distance in rows that one step along each axis makes.
+    strides: [Vec<usize>; K],
+}
+
+impl<const K: usize> Broadcast<K> {
+    /// NumPy's rule: shapes are aligned at their ends, and a length of one stretches.
+    pub(crate) fn of(names: [&str; K], shapes: [&[usize]; K]) -> PyResult<Self> {
+        let depth = shapes.iter().map(|shape| shape.len()).max().unwrap_or(0);
+        let mut shape = vec![1; depth];
+        for operand in shapes {
+            for (length, &own) in shape.iter_mut().rev().zip(operand.iter().rev()) {
+                if *length == 1 {
+                    *length = own;
+                } else if own != 1 && own != *length {
+                    return Err(mismatch(names, shapes));
+                }
+            }
+        }
+        let strides = shapes.map(|operand| {
+            let mut strides = vec![0; depth];
+            let mut stride = 1;
+            for (step, &own) in strides.iter_mut().rev().zip(operand.iter().rev()) {
+                *step = if own == 1 { 0 } else { stride };
+                stride *= own;
+            }
+            strides
+        });
+        Ok(Self { shape, strides })
+    }
+
+    /// The row of each stack that the flat index `row` of the result takes.
+    pub(crate) fn operands(&self, row: usize) -> [usize; K] {
+        let mut operands = [0; K];
+        let mut rest = row;
+        for axis in (0..self.shape.len()).rev() {
+            let length = self.shape[axis];
+            let step = rest % length;
+            rest /= length;
+            for (operand, strides) in operands.iter_mut().zip(&self.strides) {
+                *operand += step * strides[axis];
+            }
+        }
+        operands
+    }
+
+    /// How many rows the result has.
+    pub(crate) fn len(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// `f` of every row, on all cores when there are many; the error of the first failing row, which it names.
+    pub(crate) fn try_map<R: Send>(
+        &self,
+        py: Python<'_>,
+        f: impl Fn([usize; K]) -> Result<R, Error> + Sync,
+    ) -> PyResult<Stack<R>> {
+        let count = self.len();
+        let named = |(row, error): (usize, Error)| at_row(&self.shape, row, &to_py(py, &error), py);
+        let run = |from: usize, to: usize| -> Result<Vec<R>, (usize, Error)> {
+            (from..to)
+                .map(|row| f(self.operands(row)).map_err(|error| (row, error)))
+                .collect()
+        };
+        if count <= BLOCK {
+            let rows = run(0, count).map_err(named)?;
+            return Ok(Stack {
+                shape: self.shape.clone(),
+                rows,
+            });
+        }
+        let mut blocks: Vec<Vec<R>> = Vec::new();
+        blocks.resize_with(count.div_ceil(BLOCK), Vec::new);
+        let interrupt = Interrupt::new(None);
+        let outcome = py.detach(|| {
+            fill_blocks(&mut blocks, 1, &mut |_| interrupt.poll(None), |block, out| {
+                out[0] = run(block * BLOCK, count.min((block + 1) * BLOCK))?;
+                Ok(())
+            })
+        });
+        interrupt.finish(py)?;
+        if let Err(Halt::Failed(fault)) = outcome {
+            return Err(named(fault));
+        }
+        Ok(Stack {
+            shape: self.shape.clone(),
+            rows: blocks.into_iter().flatten().collect(),
+        })
+    }
+
+    /// The rows of each stack, one after the other.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = [usize; K]> + '_ {
+        (0..self.len()).map(|row| self.operands(row))
+    }
+}
+
+fn mismatch<const K: usize>(names: [&str; K], shapes: [&[usize]; K]) -> PyErr {
+    let told: Vec<String> = names
+        .iter()
+        .zip(shapes)
+        .map(|(name, shape)| format!("{name} {}", tuple(shape)))
+        .collect();
+    PyValueError::new_err(format!(
+        "stack shapes do not broadcast: {}",
+        told.join(", ")
+    ))
+}
+
+/// A shape as Python prints it.
+pub(crate) fn tuple(shape: &[usize]) -> String {
+    match shape {
+        [one] => format!("({one},)"),
+        _ => format!(
+            "({})",
+            shape
+                .iter()
+                .map(usize::to_string)
+                .collect::<Vec<_>>()
+                .join(", ")
+        ),
+    }
+}

@@ -1,0 +1,45 @@
+"""Fixtures and settings that the whole suite shares."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, settings
+
+settings.register_profile(
+    "polhode",
+    derandomize=True,  # the same examples on every machine and every day
+    database=None,
+    deadline=None,
+    max_examples=60,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.register_profile(
+    "thorough", parent=settings.get_profile("polhode"), derandomize=False, max_examples=5000
+)
+settings.load_profile(os.environ.get("POLHODE_HYPOTHESIS_PROFILE", "polhode"))
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The folder of real files and known values, beside the repository unless the environment says where.
+
+    Without it the test is skipped; where it has to be present (``POLHODE_REQUIRE_DATA=1``) that is a failure.
+    """
+    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
+    folder = Path(os.environ.get("POLHODE_SHARED_DATA") or beside)
+    if not folder.is_dir():
+        message = f"no folder of shared data at {folder}; POLHODE_SHARED_DATA names another place"
+        if os.environ.get("POLHODE_REQUIRE_DATA") == "1":
+            pytest.fail(message)
+        pytest.skip(message)
+    return folder
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """A generator with a fixed seed, fresh for each test."""
+    return np.random.default_rng(20261121)

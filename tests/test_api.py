@@ -1,0 +1,221 @@
+"""The public surface: names, docstrings and their examples, the README's code, what an import loads."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import contextlib
+import doctest
+import importlib
+import inspect
+import io
+import pickle
+import re
+import subprocess
+import sys
+import types
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import polhode
+from polhode import RigidBody, loads, solids
+
+ROOT = Path(__file__).resolve().parents[1]
+MODULES = [
+    "polhode",
+    "polhode.solids",
+    "polhode.loads",
+    "polhode.euler_angles",
+    "polhode.errors",
+    "polhode.results",
+]
+HEAVY = ("matplotlib", "trimesh", "scipy", "rich", "cyclopts", "periodictable", "pandas", "PIL")
+
+
+def public_objects() -> Iterator[tuple[str, Any]]:
+    """Every function, class, method and property that a user can reach, compiled or not, by dotted name."""
+    seen: set[int] = set()
+    for module_name in MODULES:
+        module = importlib.import_module(module_name)
+        yield module_name, module
+        for name in module.__all__:
+            value = getattr(module, name)
+            if isinstance(value, types.ModuleType | str) or id(value) in seen:
+                continue
+            seen.add(id(value))
+            yield f"{module_name}.{name}", value
+            if inspect.isclass(value):
+                yield from _members(f"{module_name}.{name}", value)
+
+
+def _members(path: str, cls: type) -> Iterator[tuple[str, Any]]:
+    for name, member in vars(cls).items():
+        if name.startswith("_"):
+            continue
+        is_data = not (callable(member) or isinstance(member, property | staticmethod | classmethod))
+        if is_data and not inspect.isdatadescriptor(member):
+            continue
+        if type(member).__name__ in {"member_descriptor", "_tuplegetter"}:
+            continue  # slots and tuple fields: described by their class
+        yield f"{path}.{name}", member
+
+
+OBJECTS = dict(public_objects())
+WITH_EXAMPLES = [name for name, value in OBJECTS.items() if ">>>" in (inspect.getdoc(value) or "")]
+
+
+class TestNames:
+    def test_the_package_exports_what_it_lists(self) -> None:
+        visible = {n for n in vars(polhode) if not n.startswith("_")} | {"__version__"}
+        helpers = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
+        internal = helpers - set(polhode.__all__)
+        assert visible - internal == set(polhode.__all__)
+        assert internal <= {"results", "io", "plot", "molecules", "units", "cli"}
+
+    @pytest.mark.parametrize("name", MODULES)
+    def test_lists_are_sorted_and_complete(self, name: str) -> None:
+        module = importlib.import_module(name)
+        assert sorted(set(module.__all__)) == sorted(module.__all__)
+        assert all(hasattr(module, export) for export in module.__all__)
+
+    def test_the_version_is_the_distributions(self) -> None:
+        from importlib.metadata import version
+
+        assert polhode.__version__ == version("polhode")
+
+    def test_the_contract_of_this_milestone(self) -> None:
+        names = """
+            from_principal from_particles from_mesh from_file stack mass center_of_mass inertia principal
+            principal_moments radii_of_gyration inertia_about moment_about principal_about translated rotated
+            scaled isclose kinetic_energy angular_momentum angular_acceleration torque simulate shape
+        """
+        missing = [name for name in names.split() if not hasattr(RigidBody, name)]
+        assert not missing
+        fields = "t omega quaternion position velocity body about steps evaluations"
+        assert set(fields.split()) <= set(polhode.Trajectory.__dataclass_fields__)
+
+    def test_classes_know_where_they_live(self) -> None:
+        """Tracebacks and pickles name public places."""
+        assert RigidBody.__module__ in {"polhode", "polhode._core"}
+        assert pickle.loads(pickle.dumps(RigidBody)) is RigidBody
+        assert loads.Load.__name__ == "Load"
+
+
+class TestDocumentation:
+    @pytest.mark.parametrize("name", OBJECTS)
+    def test_every_public_object_has_a_docstring(self, name: str) -> None:
+        doc = inspect.getdoc(OBJECTS[name])
+        assert doc
+        assert doc.strip()
+
+    @pytest.mark.parametrize("name", WITH_EXAMPLES)
+    def test_its_examples_print_what_they_show(self, name: str) -> None:
+        text = inspect.getdoc(OBJECTS[name]) or ""
+        examples = doctest.DocTestParser().get_doctest(text, {}, name, name, 0)
+        run(examples)
+
+    def test_the_main_objects_have_examples(self) -> None:
+        assert {"polhode.RigidBody", "polhode.principal_axes"} <= set(WITH_EXAMPLES)
+
+    @pytest.mark.parametrize("name", [n for n in OBJECTS if inspect.isroutine(OBJECTS[n])])
+    def test_every_function_shows_its_parameters(self, name: str) -> None:
+        value = OBJECTS[name]
+        function = value.__func__ if isinstance(value, staticmethod | classmethod) else value
+        inspect.signature(function)
+
+
+def run(examples: doctest.DocTest) -> None:
+    report = io.StringIO()
+    options = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
+    runner = doctest.DocTestRunner(optionflags=options, verbose=False)
+    runner.run(examples, out=report.write)
+    assert not runner.failures, report.getvalue()
+
+
+class TestReadme:
+    """Code blocks run from top to bottom in one session; a ``text`` block after one is what it prints."""
+
+    def test_python_blocks_print_what_is_shown(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        blocks = re.findall(r"^```(\w*)\n(.*?)^```", (ROOT / "README.md").read_text("utf-8"), re.M | re.S)
+        assert any(language == "python" for language, _ in blocks)
+        monkeypatch.chdir(tmp_path)
+        names: dict[str, Any] = {}
+        for (language, code), (next_language, shown) in zip(blocks, [*blocks[1:], ("", "")], strict=True):
+            if language in {"pycon", "python"} and ">>>" in code:
+                run(doctest.DocTestParser().get_doctest(code, names, "README", "README.md", 0))
+            elif language == "python":
+                printed = io.StringIO()
+                with contextlib.redirect_stdout(printed):
+                    exec(compile(code, "README.md", "exec"), names)
+                if next_language == "text":
+                    assert printed.getvalue().rstrip() == shown.rstrip()
+
+
+class TestImport:
+    def test_it_loads_numpy_and_nothing_else_that_is_heavy(self) -> None:
+        code = f"import sys, polhode; print(*[m for m in {HEAVY!r} if m in sys.modules])"
+        assert _python(code).strip() == ""
+
+    def test_it_takes_hardly_longer_than_numpy(self) -> None:
+        """The best of several processes, each of which times NumPy and then the rest of polhode."""
+        code = (
+            "from time import perf_counter as now\n"
+            "a = now()\nimport numpy\nb = now()\nimport polhode\nc = now()\n"
+            "print((c - a) / (b - a))"
+        )
+        assert min(float(_python(code)) for _ in range(5)) <= 1.3
+
+    def test_it_works_in_a_forked_child(self) -> None:
+        code = (
+            "import os, numpy as np, polhode\n"
+            "body = polhode.solids.cube(np.ones(10000), mass=1.0)\n"
+            "body.simulate([0.0, 1.0], (1.0, 2.0, 3.0))\n"
+            "child = os.fork()\n"
+            "if child == 0:\n"
+            "    body.simulate([0.0, 1.0], (1.0, 2.0, 3.0)); os._exit(0)\n"
+            "print(os.waitpid(child, 0)[1])"
+        )
+        assert _python(code).strip() == "0"
+
+
+def _python(code: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+class TestThreads:
+    def test_threads_get_the_bits_of_one_thread(self, rng: np.random.Generator) -> None:
+        body = solids.box((1.0, 2.0, 3.0), mass=1.0)
+        starts = rng.normal(size=(16, 3))
+        load = loads.constant_torque((0.1, 0.2, 0.3), "space")
+
+        def run_one(omega: np.ndarray) -> np.ndarray:
+            return body.simulate(np.linspace(0, 50, 51), omega, load=load).omega
+
+        want = [run_one(omega) for omega in starts]
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            got = list(pool.map(run_one, starts))
+        assert all(np.array_equal(a, b) for a, b in zip(got, want, strict=True))
+
+    def test_callbacks_from_several_threads(self, rng: np.random.Generator) -> None:
+        body = solids.box((1.0, 2.0, 3.0), mass=1.0)
+        load = loads.torque_callback(lambda _t, w, _q: -0.1 * w)
+        starts = rng.normal(size=(8, 3))
+        want = [body.simulate([0.0, 5.0], omega, load=load).omega for omega in starts]
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            got = list(pool.map(lambda omega: body.simulate([0.0, 5.0], omega, load=load).omega, starts))
+        assert all(np.array_equal(a, b) for a, b in zip(got, want, strict=True))
+
+    def test_a_large_stack_has_the_bits_of_its_rows(self, rng: np.random.Generator) -> None:
+        """Large enough to be shared among threads."""
+        stack = solids.box(rng.uniform(1, 2, size=(20_000, 3)), mass=1.0)
+        turned = stack.rotated(RigidBody.from_principal(1, [1, 1, 1]).principal.axes)
+        moments = turned.principal.moments
+        for i in (0, 1, 4095, 4096, 9999, 19_999):
+            assert np.array_equal(turned[i].principal.moments, moments[i])

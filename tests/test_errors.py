@@ -1,0 +1,231 @@
+"""What wrong arguments meet: the argument's name, the row, the number; never a panic, never a repair."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import polhode
+from polhode import RigidBody, errors, euler_angles, loads, principal_axes, solids
+
+BODY = solids.box((1.0, 2.0, 3.0), mass=1.0)
+EYE = np.eye(3)
+FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+
+ARRAYS: dict[str, tuple[str, Callable[[Any], object], Any]] = {
+    "mass": ("mass", lambda x: RigidBody(x, EYE), 1.0),
+    "inertia": ("inertia", lambda x: RigidBody(1.0, x), EYE),
+    "inertia_about_origin": ("inertia_about_origin", lambda x: RigidBody(1.0, inertia_about_origin=x), EYE),
+    "center_of_mass": ("center_of_mass", lambda x: RigidBody(1.0, EYE, x), np.zeros(3)),
+    "moments": ("moments", lambda x: RigidBody.from_principal(1.0, x), np.ones(3)),
+    "axes": ("axes", lambda x: RigidBody.from_principal(1.0, np.ones(3), x), EYE),
+    "masses": ("masses", lambda x: RigidBody.from_particles(x, np.eye(3)), np.ones(3)),
+    "positions": ("positions", lambda x: RigidBody.from_particles(np.ones(3), x), EYE),
+    "principal_axes": ("inertia", principal_axes, EYE),
+    "translated": ("displacement", BODY.translated, np.zeros(3)),
+    "rotated": ("rotation", BODY.rotated, EYE),
+    "inertia_about": ("point", BODY.inertia_about, np.zeros(3)),
+    "moment_about": ("axis", BODY.moment_about, np.ones(3)),
+    "kinetic_energy": ("omega", BODY.kinetic_energy, np.ones(3)),
+    "velocity": ("velocity", lambda x: BODY.kinetic_energy((1, 2, 3), x), np.ones(3)),
+    "angular_momentum": ("omega", BODY.angular_momentum, np.ones(3)),
+    "angular_acceleration": ("omega", BODY.angular_acceleration, np.ones(3)),
+    "torque": ("torque", lambda x: BODY.angular_acceleration((1, 2, 3), x), np.ones(3)),
+    "inverse": ("angular_acceleration", lambda x: BODY.torque((1, 2, 3), x), np.ones(3)),
+    "simulate t": ("t", lambda x: BODY.simulate(x, (1, 2, 3)), np.array([0.0, 1.0])),
+    "simulate omega": ("omega", lambda x: BODY.simulate([0, 1], x), np.ones(3)),
+    "simulate attitude": (
+        "attitude",
+        lambda x: BODY.simulate([0, 1], (1, 2, 3), x),
+        np.array([0.0, 0, 0, 1]),
+    ),
+    "simulate position": ("position", lambda x: BODY.simulate([0, 1], (1, 2, 3), position=x), np.ones(3)),
+    "simulate velocity": ("velocity", lambda x: BODY.simulate([0, 1], (1, 2, 3), velocity=x), np.ones(3)),
+    "constant_torque": ("vector", loads.constant_torque, np.ones(3)),
+    "size": ("size", lambda x: solids.box(x, mass=1.0), np.ones(3)),
+    "angles": ("angles", euler_angles.to_quaternion, np.ones(3)),
+    "quaternion": ("quaternion", euler_angles.from_quaternion, np.array([0.1, 0.7, 0.1, 0.7])),
+    "vertices": (
+        "vertices",
+        lambda x: RigidBody.from_mesh(x, FACES, density=1.0),
+        np.vstack([np.zeros(3), EYE]),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+class TestEveryArray:
+    def test_good_values_pass(self, name: str) -> None:
+        _, call, good = ARRAYS[name]
+        call(good)
+
+    def test_lists_tuples_and_small_types_pass(self, name: str) -> None:
+        _, call, good = ARRAYS[name]
+        call(np.asarray(good).tolist())
+        if np.array_equal(good, np.asarray(good).astype(np.int64)):
+            for kind in (np.int8, np.uint16, np.int64, np.float32, np.float16, bool):
+                call(np.asarray(good).astype(kind))
+
+    def test_memory_layout_does_not_matter(self, name: str) -> None:
+        _, call, good = ARRAYS[name]
+        array = np.asarray(good, dtype=float)
+        frozen = array.copy()
+        frozen.flags.writeable = False
+        strided = np.repeat(array, 2, axis=-1)[..., ::2] if array.ndim else array
+        for same in (
+            frozen,
+            strided,
+            array.astype(">f8"),
+            np.asfortranarray(array),
+            array[..., ::-1][..., ::-1],
+        ):
+            call(same)
+
+    def test_inputs_are_not_changed(self, name: str) -> None:
+        _, call, good = ARRAYS[name]
+        array = np.array(good, dtype=float)
+        before = array.copy()
+        call(array)
+        assert np.array_equal(array, before)
+
+    @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+    def test_what_is_not_finite_is_named(self, name: str, value: float) -> None:
+        argument, call, good = ARRAYS[name]
+        if name == "principal_axes":
+            pytest.skip("a tensor that is not finite has axes that are not a number")
+        array = np.array(good, dtype=float)
+        array[(-1,) * array.ndim] = value
+        with pytest.raises(ValueError, match=rf"(?i)\b{argument}\b.*(nan|inf)|(nan|inf).*\b{argument}\b"):
+            call(array)
+
+    @pytest.mark.parametrize(
+        "value",
+        [1j, "a", "1.0", b"1", None, object(), {"a": 1}, np.datetime64("2026-01-01"), [[1.0], [1.0, 2.0]]],
+    )
+    def test_what_is_no_real_number_is_named(self, name: str, value: Any) -> None:
+        argument, call, good = ARRAYS[name]
+        if value is None and argument in {
+            "axes",
+            "attitude",
+            "position",
+            "velocity",
+            "inertia",
+            "inertia_about_origin",
+        }:
+            pytest.skip("None stands for the default")
+        shaped = np.full(np.shape(good), value, dtype=object) if not isinstance(value, list) else value
+        for wrong in (value, shaped, shaped.tolist() if isinstance(shaped, np.ndarray) else value):
+            with pytest.raises((TypeError, ValueError), match=rf"\b{argument}\b"):
+                call(wrong)
+
+    def test_wrong_shapes_are_named_with_the_shape_that_came(self, name: str) -> None:
+        argument, call, good = ARRAYS[name]
+        if argument in {"mass", "masses", "t"}:
+            pytest.skip("any shape has a meaning, or the shape is tested elsewhere")
+        wrong = np.ones((*np.shape(good)[:-1], 7))
+        shape = ", ".join(map(str, wrong.shape)) + ("," if wrong.ndim == 1 else "")
+        with pytest.raises(ValueError, match=rf"\b{argument}\b.*expected shape \(.*\), got \({shape}\)"):
+            call(wrong)
+        with pytest.raises(ValueError, match=rf"\b{argument}\b.*got \(\)"):
+            call(1.0)
+
+
+class TestTimes:
+    @pytest.mark.parametrize(
+        "t",
+        [[], [[0.0, 1.0]], 1.0, [0.0, 0.0], [0.0, 2.0, 1.0], [0.0, 1.0, 1.0], [1.0, 0.0, 0.5], [0.0, np.nan]],
+    )
+    def test_times_are_one_strictly_monotone_row(self, t: Any) -> None:
+        with pytest.raises(ValueError, match=r"\bt\b"):
+            BODY.simulate(t, (1.0, 2.0, 3.0))
+
+    def test_the_time_that_breaks_the_order_is_named(self) -> None:
+        with pytest.raises(ValueError, match=r"t\[3\]|\b3\b"):
+            BODY.simulate([0.0, 1.0, 2.0, 1.5, 4.0], (1.0, 2.0, 3.0))
+
+
+class TestOptions:
+    @pytest.mark.parametrize(
+        ("options", "word"),
+        [
+            ({"rtol": 0.0}, "rtol"),
+            ({"rtol": -1e-10}, "rtol"),
+            ({"rtol": np.nan}, "rtol"),
+            ({"rtol": 2.0}, "rtol"),
+            ({"atol": -1.0}, "atol"),
+            ({"atol": np.nan}, "atol"),
+            ({"method": "rk4"}, "method"),
+            ({"method": "RK4"}, "method"),
+            ({"method": "taylor"}, "method"),
+            ({"about": "middle"}, "about"),
+            ({"attitude": (0.0, 0.0, 0.0, 0.0)}, "attitude"),
+        ],
+    )
+    def test_what_is_no_option_is_named(self, options: dict[str, Any], word: str) -> None:
+        with pytest.raises(ValueError, match=word):
+            BODY.simulate([0.0, 1.0], (1.0, 2.0, 3.0), **options)
+
+    def test_a_wrong_method_is_answered_with_those_there_are(self) -> None:
+        with pytest.raises(ValueError, match="dop853"):
+            BODY.simulate([0.0, 1.0], (1.0, 2.0, 3.0), method="rk4")  # type: ignore[arg-type]
+
+    def test_unknown_keywords_are_type_errors(self) -> None:
+        for call in (
+            lambda: BODY.simulate([0.0, 1.0], (1, 2, 3), tol=1e-3),  # type: ignore[call-arg]
+            lambda: RigidBody(m=1.0, inertia=EYE),  # type: ignore[call-arg]
+            lambda: RigidBody(),  # type: ignore[call-arg]
+            lambda: solids.box(1, 2, 3),  # type: ignore[call-arg]
+            lambda: BODY.kinetic_energy(),  # type: ignore[call-arg]
+        ):
+            with pytest.raises(TypeError):
+                call()
+
+
+class TestNonFiniteTensors:
+    def test_a_row_that_is_not_finite_is_nan_for_itself_alone(self) -> None:
+        tensors = np.array([np.diag([1.0, 2, 3]), np.full((3, 3), np.nan), np.diag([3.0, 2, 1])])
+        found = principal_axes(tensors)
+        assert np.isnan(found.moments[1]).all()
+        assert np.isnan(found.axes[1]).all()
+        assert np.array_equal(found.moments[::2], [[1.0, 2, 3]] * 2)
+
+    def test_an_asymmetric_row_is_an_error_that_names_it(self) -> None:
+        tensors = np.array([EYE, EYE, EYE])
+        tensors[2, 0, 1] = 0.5
+        with pytest.raises(ValueError, match=r"(?=.*symmetric)(?=.*\b2\b)"):
+            principal_axes(tensors)
+
+
+class TestClasses:
+    def test_every_error_is_a_polhode_error_and_a_value_error(self) -> None:
+        for name in errors.__all__:
+            kind = getattr(errors, name)
+            assert issubclass(kind, errors.PolhodeError)
+            assert issubclass(kind, ValueError)
+
+    def test_the_compiled_core_raises_these_very_classes(self) -> None:
+        with pytest.raises(polhode.errors.InvalidInertiaError) as caught:
+            RigidBody(1.0, np.diag([1.0, 1.0, 3.0]))
+        assert type(caught.value) is errors.InvalidInertiaError
+
+    def test_a_message_is_one_line(self) -> None:
+        for call in (
+            lambda: RigidBody(1.0, np.diag([1.0, 1.0, 3.0])),
+            lambda: RigidBody(-1.0, EYE),
+            lambda: RigidBody.from_mesh(EYE, [[0, 1, 2]], density=1.0),
+            lambda: BODY.simulate([0.0, 0.0], (1, 2, 3)),
+        ):
+            with pytest.raises(ValueError) as caught:
+                call()
+            assert "\n" not in str(caught.value)
+            assert len(str(caught.value)) > 20
+
+    @pytest.mark.parametrize("mass", [0.0, -1.0, -np.inf])
+    def test_a_mass_is_positive(self, mass: float) -> None:
+        with pytest.raises(ValueError, match="mass"):
+            RigidBody(mass, EYE)
+        with pytest.raises(ValueError, match=r"(?=.*mass)(?=.*\b1\b)"):
+            RigidBody([1.0, mass], EYE)

@@ -1,0 +1,221 @@
+"""Loads that are Python functions: what they see, what they may return, how they stop a run."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from polhode import RigidBody, loads
+from polhode.errors import IntegrationError
+
+BODY = RigidBody(1.0, np.array([[3.0, 0.2, -0.1], [0.2, 2.0, 0.3], [-0.1, 0.3, 4.0]]))
+RATES = (0.5, -1.0, 0.25)
+TORQUE = (0.1, -0.2, 0.3)
+
+
+def constant(value: Any) -> Callable[[float, Any, Any], Any]:
+    """A load's function that returns `value` whatever happens."""
+    return lambda _t, _omega, _quaternion: value
+
+
+class TestCallback:
+    def test_a_callback_that_returns_a_constant_is_the_constant_torque(self) -> None:
+        t = np.linspace(0, 10, 11)
+        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE))
+        for value in (TORQUE, list(TORQUE), np.array(TORQUE), np.array(TORQUE, dtype=np.float64)[::1]):
+            got = BODY.simulate(t, RATES, load=loads.torque_callback(constant(value)))
+            assert np.array_equal(got.omega, want.omega)
+            assert np.array_equal(got.quaternion, want.quaternion)
+
+    def test_it_sees_time_rates_and_attitude(self) -> None:
+        seen: list[tuple[float, Any, Any]] = []
+
+        def look(t: float, omega: Any, quaternion: Any) -> Any:
+            seen.append((t, omega.copy(), quaternion.copy()))
+            return (0.0, 0.0, 0.0)
+
+        BODY.simulate([2.0, 3.0], RATES, (0.5, 0.5, 0.5, 0.5), load=loads.torque_callback(look))
+        t, omega, quaternion = seen[0]
+        assert (type(t), omega.shape, quaternion.shape) == (float, (3,), (4,))
+        assert t == 2.0
+        assert np.array_equal(omega, RATES)
+        assert np.array_equal(quaternion, [0.5] * 4)
+        assert all(2.0 <= when <= 3.1 for when, _, _ in seen)
+
+    def test_what_it_keeps_is_not_overwritten(self) -> None:
+        kept: list[Any] = []
+
+        def keep(_t: float, omega: Any, _quaternion: Any) -> Any:
+            kept.append(omega)
+            return (0.0, 0.0, 0.0)
+
+        BODY.simulate([0.0, 5.0], RATES, load=loads.torque_callback(keep))
+        assert np.array_equal(kept[0], RATES)
+        assert not np.array_equal(kept[0], kept[-1])
+
+    def test_damping_slows_exponentially(self) -> None:
+        ball = RigidBody(1.0, 2.0 * np.eye(3))
+        t = np.linspace(0, 3, 7)
+        trajectory = ball.simulate(
+            t, RATES, load=loads.torque_callback(lambda _t, w, _q: -0.5 * w), rtol=1e-12
+        )
+        assert np.abs(trajectory.omega - np.exp(-0.25 * t)[:, None] * RATES).max() < 1e-11
+
+    def test_a_torque_of_time_alone_integrates(self) -> None:
+        ball = RigidBody(1.0, np.eye(3))
+        load = loads.torque_callback(lambda t, _w, _q: (0.0, 0.0, np.cos(t)))
+        t = np.linspace(1, 9, 9)
+        trajectory = ball.simulate(t, (0, 0, 0), load=load, rtol=1e-12)
+        assert np.abs(trajectory.omega[:, 2] - (np.sin(t) - np.sin(1))).max() < 1e-11
+
+    def test_it_adds_to_other_loads(self) -> None:
+        t = np.linspace(0, 10, 11)
+        half = tuple(x / 2 for x in TORQUE)
+        both = loads.torque_callback(lambda _t, _w, _q: half) + loads.constant_torque(half)
+        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE))
+        assert np.abs(BODY.simulate(t, RATES, load=both).omega - want.omega).max() < 1e-13
+
+    def test_in_a_stack_it_is_asked_row_by_row(self) -> None:
+        stack = RigidBody.stack([BODY, BODY.scaled(mass=2.0)])
+
+        def look(_t: float, omega: Any, quaternion: Any) -> Any:
+            assert (omega.shape, quaternion.shape) == ((3,), (4,))
+            return TORQUE
+
+        load = loads.torque_callback(look)
+        together = stack.simulate([0.0, 1.0], RATES, load=load)
+        assert np.array_equal(together.omega[0], BODY.simulate([0.0, 1.0], RATES, load=load).omega)
+
+
+class TestMistakes:
+    @pytest.mark.parametrize(
+        "kind", [RuntimeError, ZeroDivisionError, KeyboardInterrupt, StopIteration, ValueError]
+    )
+    def test_the_users_own_exception_comes_back_as_it_was(self, kind: type[BaseException]) -> None:
+        error, calls = kind("mine"), []
+
+        def fail(_t: float, _omega: Any, _quaternion: Any) -> Any:
+            calls.append(1)
+            if len(calls) > 30:
+                raise error
+            return TORQUE
+
+        with pytest.raises(kind) as caught:
+            BODY.simulate([0.0, 1e3], RATES, load=loads.torque_callback(fail))
+        assert caught.value is error
+        assert len(calls) == 31
+        assert any("fail" in str(entry.name) for entry in caught.traceback)
+
+    @pytest.mark.parametrize(
+        "value", [(1.0, 2.0), 1.0, np.zeros((3, 3)), None, "abc", ("a", "b", "c"), (1j, 0, 0)]
+    )
+    def test_what_is_no_torque_is_named(self, value: Any) -> None:
+        with pytest.raises((TypeError, ValueError), match=r"(?i)torque"):
+            BODY.simulate([0.0, 1.0], RATES, load=loads.torque_callback(lambda _t, _w, _q: value))
+
+    @pytest.mark.parametrize("value", [np.nan, np.inf])
+    def test_a_torque_that_is_no_number_names_the_time(self, value: float) -> None:
+        def late(t: float, _omega: Any, _quaternion: Any) -> Any:
+            return (0.0, value if t > 1.0 else 0.0, 0.0)
+
+        with pytest.raises(ValueError, match=r"(?i)torque|finite|nan|inf"):
+            BODY.simulate([0.0, 5.0], RATES, load=loads.torque_callback(late))
+
+    def test_a_function_is_needed(self) -> None:
+        with pytest.raises(TypeError, match=r"call|function"):
+            loads.torque_callback(3)  # type: ignore[arg-type]
+        with pytest.raises(TypeError, match=r"(?i)load"):
+            BODY.simulate([0.0, 1.0], RATES, load=lambda _t, _w, _q: TORQUE)  # type: ignore[arg-type]
+        with pytest.raises(TypeError):
+            loads.constant_torque(TORQUE) + 1  # type: ignore[operator]
+
+    def test_constant_torques_are_checked(self) -> None:
+        with pytest.raises(ValueError, match="vector"):
+            loads.constant_torque((1.0, 2.0))
+        with pytest.raises(ValueError, match="vector"):
+            loads.constant_torque((1.0, 2.0, np.nan))
+        with pytest.raises(ValueError, match="frame"):
+            loads.constant_torque(TORQUE, frame="inertial")  # type: ignore[arg-type]
+
+
+class TestBlowUp:
+    def test_a_motion_that_leaves_every_bound_is_told_with_time_state_and_what_was_done(self) -> None:
+        """ω̇ = ω² has a pole at t = 1/ω₀ = 2."""
+        ball = RigidBody(1.0, np.eye(3))
+        load = loads.torque_callback(lambda _t, w, _q: (0.0, 0.0, w[2] ** 2))
+        with pytest.raises(IntegrationError) as caught:
+            ball.simulate([0.0, 1.0, 1.5, 3.0], (0.0, 0.0, 0.5), load=load)
+        error = caught.value
+        assert error.time == pytest.approx(2.0, abs=1e-6)
+        quaternion, omega = error.state
+        assert np.asarray(quaternion).shape == (4,)
+        assert np.asarray(omega)[2] > 1e3
+        assert error.partial is not None
+        rates = error.partial.omega[:, 2]
+        assert rates[:3] == pytest.approx([0.5, 1.0, 2.0], rel=1e-8)
+        assert np.isnan(rates[3])
+        assert "2.0" in str(error) or "1.99" in str(error)
+
+
+INTERRUPT = """
+import os, signal, threading, time
+import numpy as np
+from polhode import RigidBody, loads
+body = RigidBody(1.0, np.diag([1.0, 2.0, 2.5]))
+run = {run}
+struck = []
+def strike():
+    struck.append(time.perf_counter())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer(0.5, strike).start()
+try:
+    run()
+except KeyboardInterrupt:
+    print(time.perf_counter() - struck[0])
+else:
+    print("ended by itself")
+"""
+
+LONG_RUNS = {
+    "one body": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0))",
+    "a stack": "lambda: body.simulate([0.0, 1e8], np.ones((64, 3)) + np.arange(64)[:, None])",
+    "dense output": "lambda: body.simulate(np.linspace(0.0, 1e9, 100_000), (1.0, 1e-3, 1.0))",
+    "a callback": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0),"
+    " load=loads.torque_callback(lambda t, w, q: (0.0, 0.0, 0.0)))",
+}
+
+
+@pytest.mark.parametrize("name", LONG_RUNS)
+def test_ctrl_c_ends_a_long_run_within_a_fifth_of_a_second(name: str) -> None:
+    """In a process of its own; the timer's thread also shows that the run leaves others alive."""
+    script = INTERRUPT.format(run=LONG_RUNS[name])
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < 0.2
+
+
+class TestProgress:
+    def test_the_fraction_done_rises_to_one_at_most(self) -> None:
+        seen: list[float] = []
+        BODY.simulate([0.0, 2e4], RATES, progress=seen.append)
+        assert seen
+        assert all(isinstance(x, float) for x in seen)
+        assert seen == sorted(seen)
+        assert 0 <= seen[0] <= seen[-1] <= 1
+
+    def test_its_exception_comes_back_as_it_was(self) -> None:
+        error = RuntimeError("stop here")
+
+        def stop(_fraction: float) -> None:
+            raise error
+
+        with pytest.raises(RuntimeError) as caught:
+            BODY.simulate([0.0, 1e7], RATES, progress=stop)
+        assert caught.value is error

@@ -1,0 +1,147 @@
+"""Bodies of point masses, against exact rational sums."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from oracles import ulp_errors, worst_error
+from oracles.bodies import vectors
+from oracles.exact_particles import Particles
+from polhode import RigidBody
+
+
+def assert_exact(body: RigidBody, masses: np.ndarray, positions: np.ndarray, bar: float) -> None:
+    """Mass, C and I_C within `bar` of the exact sums over these very float64 values."""
+    exact = Particles(masses, positions)
+    size = max(
+        float(abs(x - c)) for row in exact.positions for x, c in zip(row, exact.center_of_mass, strict=True)
+    )
+    assert worst_error(body.mass, exact.mass) <= bar
+    reach = max(size, float(np.spacing(np.abs(positions)).max()) / bar)
+    assert worst_error(body.center_of_mass, exact.center_of_mass, scale=reach) <= bar
+    if size:
+        assert worst_error(body.inertia, exact.inertia) <= bar
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 10, 1000, 20_000])
+def test_a_cloud_has_its_exact_inertia(count: int, rng: np.random.Generator) -> None:
+    masses, positions = rng.uniform(0.1, 1, count), rng.normal(size=(count, 3))
+    assert_exact(RigidBody.from_particles(masses, positions), masses, positions, 4e-15)
+
+
+@pytest.mark.parametrize("distance", [1e3, 1e6, 1e8, 1e12])
+def test_a_cloud_far_away_has_its_exact_inertia(distance: float, rng: np.random.Generator) -> None:
+    masses = rng.uniform(0.1, 1, 500)
+    positions = rng.normal(size=(500, 3)) + distance * np.array([1.0, -0.7, 0.3])
+    body = RigidBody.from_particles(masses, positions)
+    exact = Particles(masses, positions)
+    assert worst_error(body.inertia, exact.inertia) <= 4e-15
+    assert max(ulp_errors(body.center_of_mass, exact.center_of_mass)) <= 1.0
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1e-47, 1e-10, 1e21, 1e150])
+def test_no_scale_is_special(scale: float, rng: np.random.Generator) -> None:
+    masses, positions = rng.uniform(0.1, 1, 20), rng.normal(size=(20, 3))
+    body = RigidBody.from_particles(masses, scale * positions)
+    assert worst_error(body.inertia, Particles(masses, scale * positions).inertia) <= 4e-15
+    assert RigidBody.from_particles(1e30 * masses, positions).mass == pytest.approx(
+        1e30 * masses.sum(), rel=1e-14
+    )
+
+
+@given(
+    points=st.lists(vectors(), min_size=2, max_size=12),
+    masses=st.lists(st.floats(0.01, 100), min_size=12, max_size=12),
+    shift=vectors(1e4),
+)
+def test_the_inertia_is_exact_wherever_the_body_stands(
+    points: list[np.ndarray], masses: list[float], shift: np.ndarray
+) -> None:
+    positions, weights = np.array(points) + shift, np.array(masses[: len(points)])
+    assert_exact(RigidBody.from_particles(weights, positions), weights, positions, 8e-15)
+
+
+def test_a_single_particle_is_a_point() -> None:
+    body = RigidBody.from_particles([2.0], [[0.1, 0.2, 0.3]])
+    assert np.array_equal(body.center_of_mass, [0.1, 0.2, 0.3])
+    assert not body.inertia.any()
+    assert body.principal.top == "point"
+
+
+def test_a_dumbbell_is_linear_in_any_attitude(rng: np.random.Generator) -> None:
+    for _ in range(20):
+        body = RigidBody.from_particles([1.0, 2.0], rng.normal(size=(2, 3)))
+        assert body.principal_moments[0] <= 1e-15 * body.principal_moments[2]
+        assert body.principal.top == "linear"
+
+
+def test_a_flat_body_obeys_the_perpendicular_axis_theorem(rng: np.random.Generator) -> None:
+    positions = rng.normal(size=(30, 3)) * [1.0, 1.0, 0.0]
+    inertia = RigidBody.from_particles(np.ones(30), positions).inertia
+    assert inertia[2, 2] == pytest.approx(inertia[0, 0] + inertia[1, 1], rel=1e-15)
+
+
+def test_zero_masses_are_allowed_and_change_nothing(rng: np.random.Generator) -> None:
+    positions = rng.normal(size=(5, 3))
+    with_ghosts = RigidBody.from_particles([1.0, 2.0, 3.0, 0.0, 0.0], positions)
+    without = RigidBody.from_particles([1.0, 2.0, 3.0], positions[:3])
+    assert bool(with_ghosts.isclose(without, rtol=1e-15, atol=1e-15))
+
+
+def test_masses_broadcast_against_frames(rng: np.random.Generator) -> None:
+    frames = rng.normal(size=(4, 5, 3))
+    masses = np.array([1.0, 2.0, 3.0, 4.0, 5.0])
+    stack = RigidBody.from_particles(masses, frames)
+    assert stack.shape == (4,)
+    for row, frame in zip(stack, frames, strict=True):
+        assert row == RigidBody.from_particles(masses, frame)
+    assert RigidBody.from_particles(np.ones((4, 1, 5)), rng.normal(size=(2, 5, 3))).shape == (4, 2)
+
+
+def test_thin_bodies_keep_their_smallest_moment() -> None:
+    """Particles along a tilted line 1e-6 as thick as long: I₁ is 12 decades below I₃."""
+    axis = np.array([2.0, 3.0, 6.0]) / 7
+    across = np.array([3.0, -6.0, 2.0]) / 7
+    along = np.linspace(-1, 1, 101)
+    positions = along[:, None] * axis + 1e-3 * np.cos(40 * along)[:, None] * across
+    body = RigidBody.from_particles(np.ones(101), positions)
+    exact = Particles(np.ones(101), positions)
+    smallest = min(_exact_moments(exact))
+    assert body.principal_moments[0] == pytest.approx(smallest, rel=1e-8)
+
+
+def _exact_moments(exact: Particles) -> list[float]:
+    with mpmath.mp.workdps(60):
+        entries = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in exact.inertia]
+        values = mpmath.eigsy(mpmath.matrix(entries), eigvals_only=True)
+        return [float(v) for v in values]
+
+
+@pytest.mark.parametrize(
+    ("masses", "positions", "words"),
+    [
+        ([1.0, -1.0], np.zeros((2, 3)), r"masses\[1\].*-1"),
+        ([0.0, 0.0], np.zeros((2, 3)), r"(?i)positive"),
+        ([1.0, np.nan], np.zeros((2, 3)), r"(?i)masses.*nan"),
+        ([1.0, 1.0], [[0.0, 0, 0], [0, np.inf, 0]], r"(?i)positions.*inf"),
+        ([1.0, 1.0], np.zeros((3, 3)), r"shape"),
+        ([1.0, 1.0], np.zeros((2, 2)), r"positions.*shape \(\.\.\., n, 3\), got \(2, 2\)"),
+        ([], np.zeros((0, 3)), r"(?i)particle|positive|empty"),
+    ],
+)
+def test_errors_name_the_argument_and_the_number(
+    masses: list[float], positions: np.ndarray, words: str
+) -> None:
+    with pytest.raises(ValueError, match=words):
+        RigidBody.from_particles(masses, positions)
+
+
+def test_errors_name_the_row_of_the_stack() -> None:
+    masses = np.ones((6, 2))
+    masses[4, 1] = -2.5
+    with pytest.raises(ValueError, match=r"\b4\b.*-2\.5"):
+        RigidBody.from_particles(masses, np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]))

@@ -1,0 +1,236 @@
+"""Solids bounded by triangles, against exact rational integrals over the very vertices given."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from oracles import ulp_errors, worst_error
+from oracles.bodies import attitudes, matrix, vectors
+from oracles.exact_polyhedron import polyhedron
+from oracles.meshes import box, cube, icosphere, merge, tetrahedron
+from polhode import RigidBody
+from polhode.errors import MeshError
+
+Mesh = tuple[np.ndarray, np.ndarray]
+
+CLOSED: dict[str, Callable[[], Mesh]] = {
+    "cube": cube,
+    "tetrahedron": tetrahedron,
+    "sphere": icosphere,
+    "two parts": lambda: merge(cube(), _moved(tetrahedron(), [3.0, 1.0, -2.0])),
+    "cavity": lambda: merge(cube(3.0), _reversed(tetrahedron())),
+    "plate": lambda: box((1.0, 1.0, 1e-4)),
+    "needle": lambda: box((1e-4, 1e-4, 1.0)),
+    "foil": lambda: box((1.0, 1.0, 1e-12)),
+    "fibre": lambda: box((1e-9, 1e-9, 1.0)),
+}
+
+
+def _moved(mesh: Mesh, shift: object) -> Mesh:
+    return mesh[0] + np.asarray(shift, dtype=float), mesh[1]
+
+
+def _reversed(mesh: Mesh) -> Mesh:
+    return mesh[0], mesh[1][:, ::-1].copy()
+
+
+def assert_exact(mesh: Mesh, bar: float = 4e-15) -> None:
+    """Mass and I_C within `bar`, C within one unit in the last place, of the exact values."""
+    body, exact = RigidBody.from_mesh(*mesh, density=1.0), polyhedron(*mesh)
+    assert worst_error(body.mass, exact.volume) <= bar
+    assert worst_error(body.inertia, exact.inertia) <= bar
+    assert max(ulp_errors(body.center_of_mass, exact.centroid)) <= 1.0
+
+
+class TestAccuracy:
+    @pytest.mark.parametrize("name", CLOSED)
+    def test_at_home(self, name: str) -> None:
+        mesh = CLOSED[name]()
+        body, exact = RigidBody.from_mesh(*mesh, density=1.0), polyhedron(*mesh)
+        assert worst_error(body.mass, exact.volume) <= 4e-15
+        assert worst_error(body.inertia, exact.inertia) <= 4e-15
+        assert worst_error(body.center_of_mass, exact.centroid, scale=np.ptp(mesh[0])) <= 4e-16
+
+    @pytest.mark.parametrize("distance", [1e2, 1e4, 1e6, 1e8])
+    @pytest.mark.parametrize("name", ["cube", "tetrahedron", "sphere"])
+    def test_moved_many_sizes_away(self, name: str, distance: float) -> None:
+        for direction in ([1.0, -0.7, 0.3], [-0.1, 0.9, 1.0], [1 / 3, 1 / 7, -1.0]):
+            assert_exact(_moved(CLOSED[name](), distance * np.array(direction)))
+
+    @pytest.mark.parametrize("name", ["cube", "tetrahedron", "sphere"])
+    @pytest.mark.parametrize("size", [1e-9, 0.1, 30.0, 1e9])
+    def test_moved_many_sizes_away_at_any_size(self, name: str, size: float) -> None:
+        vertices, faces = CLOSED[name]()
+        assert_exact(_moved((vertices * size, faces), 1e8 * size * np.array([0.6, 0.5, -0.4])))
+
+    @given(attitude=attitudes(), shift=vectors(1e6), size=st.floats(0.01, 100))
+    def test_turned_moved_and_scaled(self, attitude: np.ndarray, shift: np.ndarray, size: float) -> None:
+        vertices, faces = box((1.0, 2.0, 3.0))
+        turned = size * vertices @ matrix(attitude).T + shift
+        body, exact = RigidBody.from_mesh(turned, faces, density=1.0), polyhedron(turned, faces)
+        assert worst_error(body.inertia, exact.inertia) <= 4e-15
+        size_of_it = max(float(np.abs(turned).max()) * 2**-52 / 4e-16, float(np.ptp(turned)))
+        assert worst_error(body.center_of_mass, exact.centroid, scale=size_of_it) <= 4e-16
+
+    def test_the_ball_of_5120_triangles_approaches_the_ball(self) -> None:
+        body = RigidBody.from_mesh(*icosphere(4), mass=1.0)
+        assert body.principal_moments == pytest.approx(np.full(3, 0.4), rel=5e-3)
+        assert body.principal.top == "spherical"
+
+    def test_bits_do_not_depend_on_how_indices_are_stored(self) -> None:
+        vertices, faces = _moved(icosphere(3), [3.0, 4.0, 5.0])
+        body = RigidBody.from_mesh(vertices, faces, density=2.0)
+        for kind in (np.int32, np.uint32, np.int64, np.uint64, np.uint16):
+            assert RigidBody.from_mesh(vertices, faces.astype(kind), density=2.0) == body
+        assert RigidBody.from_mesh(vertices.tolist(), faces.tolist(), density=2.0) == body
+        assert RigidBody.from_mesh(np.asfortranarray(vertices), faces[:, :], density=2.0) == body
+
+
+class TestMass:
+    def test_density_or_mass(self) -> None:
+        by_density = RigidBody.from_mesh(*cube(2.0), density=0.5)
+        by_mass = RigidBody.from_mesh(*cube(2.0), mass=4.0)
+        assert by_density.mass == 4.0
+        assert by_mass.mass == 4.0
+        assert by_density.inertia == pytest.approx(by_mass.inertia, rel=1e-15)
+
+    def test_exactly_one_of_them(self) -> None:
+        with pytest.raises((TypeError, ValueError), match=r"mass.*density|density.*mass"):
+            RigidBody.from_mesh(*cube())
+        with pytest.raises((TypeError, ValueError), match=r"mass.*density|density.*mass"):
+            RigidBody.from_mesh(*cube(), mass=1.0, density=1.0)
+
+    @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
+    @pytest.mark.parametrize("name", ["mass", "density"])
+    def test_it_is_a_positive_number(self, name: str, value: Any) -> None:
+        with pytest.raises(ValueError, match=name):
+            RigidBody.from_mesh(*cube(), **{name: value})
+
+
+class TestRefusals:
+    """A surface that bounds no solid is an error that proves it with an edge or a face."""
+
+    def test_an_open_mesh_names_a_boundary_edge(self) -> None:
+        vertices, faces = tetrahedron()
+        with pytest.raises(MeshError, match=r"(?i)open|boundary|closed") as caught:
+            RigidBody.from_mesh(vertices, faces[:-1], density=1.0)
+        boundary = ({"1", "2"}, {"2", "3"}, {"1", "3"})
+        assert any(_mentions(str(caught.value), edge) for edge in boundary), caught.value
+
+    def test_an_inconsistent_mesh_names_an_edge_of_the_turned_face(self) -> None:
+        vertices, faces = tetrahedron()
+        faces[1] = faces[1][::-1]  # the face 0, 1, 3
+        with pytest.raises(MeshError, match=r"(?i)consisten|wound|winding|direction|orient") as caught:
+            RigidBody.from_mesh(vertices, faces, density=1.0)
+        edges = ({"0", "1"}, {"1", "3"}, {"0", "3"})
+        assert any(_mentions(str(caught.value), edge) for edge in edges), caught.value
+
+    def test_an_inverted_mesh_is_named_as_such(self) -> None:
+        with pytest.raises(MeshError, match=r"(?i)inverted|inward|inside out") as caught:
+            RigidBody.from_mesh(*_reversed(cube()), density=1.0)
+        assert "orient=True" in str(caught.value)
+
+    def test_an_edge_with_three_faces_is_refused(self) -> None:
+        vertices, faces = tetrahedron()
+        fin = np.array([[0, 1, 4], [0, 4, 1]])
+        with pytest.raises(MeshError):
+            RigidBody.from_mesh(
+                np.vstack([vertices, [[1.0, 1, 1]]]), np.vstack([faces, fin[:1]]), density=1.0
+            )
+
+    def test_an_index_out_of_range_names_face_and_index(self) -> None:
+        vertices, faces = cube()
+        for bad in (8, -1, 2**40):
+            wrong = faces.copy()
+            wrong[5, 1] = bad
+            with pytest.raises(MeshError, match=rf"(?=.*\b5\b).*(?<!\d){bad}\b"):
+                RigidBody.from_mesh(vertices, wrong, density=1.0)
+
+    @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+    def test_a_vertex_that_is_no_number_is_named(self, value: float) -> None:
+        vertices, faces = cube()
+        vertices[6, 2] = value
+        with pytest.raises(ValueError, match=r"(?i)vert.*\b6\b.*(nan|inf)|(nan|inf).*vert.*\b6\b"):
+            RigidBody.from_mesh(vertices, faces, density=1.0)
+
+    def test_a_flat_closed_mesh_has_no_volume(self) -> None:
+        vertices, faces = box((1.0, 1.0, 0.0))
+        with pytest.raises(MeshError, match=r"(?i)volume"):
+            RigidBody.from_mesh(vertices, faces, density=1.0)
+
+    def test_a_mesh_with_no_faces_is_refused(self) -> None:
+        for vertices in (np.zeros((0, 3)), np.eye(3)):
+            with pytest.raises(ValueError, match=r"(?i)face|triangle|empty"):
+                RigidBody.from_mesh(vertices, np.zeros((0, 3), dtype=int), density=1.0)
+
+    def test_shapes_and_types_are_checked(self) -> None:
+        vertices, faces = cube()
+        with pytest.raises(ValueError, match=r"vertices.*shape \(n, 3\), got \(8, 2\)"):
+            RigidBody.from_mesh(vertices[:, :2], faces, density=1.0)
+        with pytest.raises(ValueError, match=r"faces.*shape \(\w, 3\), got \(12, 2\)"):
+            RigidBody.from_mesh(vertices, faces[:, :2], density=1.0)
+        with pytest.raises((TypeError, ValueError), match="faces"):
+            RigidBody.from_mesh(vertices, faces + 0.5, density=1.0)
+
+    def test_the_soup_of_an_open_mesh_is_open(self) -> None:
+        vertices, faces = cube()
+        soup = vertices[faces[:-1]].reshape(-1, 3)
+        with pytest.raises(MeshError, match=r"(?i)open|boundary|closed"):
+            RigidBody.from_mesh(soup, np.arange(33).reshape(11, 3), density=1.0)
+
+
+class TestOrient:
+    def test_an_inverted_mesh_is_turned_outward(self) -> None:
+        body = RigidBody.from_mesh(*_reversed(cube()), density=1.0, orient=True)
+        assert bool(body.isclose(RigidBody.from_mesh(*cube(), density=1.0), rtol=1e-15, atol=1e-16))
+
+    def test_a_good_mesh_keeps_its_bits(self) -> None:
+        mesh = icosphere(2)
+        assert RigidBody.from_mesh(*mesh, density=1.0, orient=True) == RigidBody.from_mesh(*mesh, density=1.0)
+
+    def test_orientation_neither_closes_a_mesh_nor_mends_its_winding(self) -> None:
+        vertices, faces = tetrahedron()
+        turned = faces.copy()
+        turned[2] = turned[2][::-1]
+        with pytest.raises(MeshError):
+            RigidBody.from_mesh(vertices, turned, density=1.0, orient=True)
+        with pytest.raises(MeshError):
+            RigidBody.from_mesh(vertices, faces[:-1], density=1.0, orient=True)
+
+
+class TestLaws:
+    def test_corners_stored_several_times_are_one_vertex(self) -> None:
+        """Triangle soup, as STL stores it: bit-equal corners are the same point (and −0 is +0)."""
+        vertices, faces = box((1.0, 2.0, 3.0))
+        vertices -= vertices[0]
+        soup = vertices[faces].reshape(-1, 3)
+        soup[::5] *= np.where(soup[::5] == 0, -1.0, 1.0)
+        body = RigidBody.from_mesh(soup, np.arange(36).reshape(12, 3), density=1.0)
+        assert body == RigidBody.from_mesh(vertices, faces, density=1.0)
+
+    def test_solids_that_touch_along_an_edge_are_closed(self) -> None:
+        pair = merge(cube(), _moved(cube(), [1.0, 1.0, 0.0]))
+        assert RigidBody.from_mesh(*pair, density=1.0).mass == 2.0
+
+    def test_a_mesh_of_two_parts_is_the_sum_of_the_parts(self) -> None:
+        one, two = cube(), _moved(tetrahedron(2.0), [3.0, 1.0, -2.0])
+        both = RigidBody.from_mesh(*merge(one, two), density=3.0)
+        apart = RigidBody.from_mesh(*one, density=3.0) + RigidBody.from_mesh(*two, density=3.0)
+        assert bool(both.isclose(apart, rtol=1e-14, atol=1e-15))
+
+    def test_asteroids_have_their_known_moments(self, shared_data: object) -> None:
+        path = f"{shared_data}/asteroids/4179_toutatis_low.obj"
+        body = RigidBody.from_file(path, density=1.0)
+        assert body.mass == pytest.approx(7.69882, rel=1e-5)
+        assert body.principal_moments / body.mass == pytest.approx([0.37174, 1.12008, 1.18582], rel=2e-5)
+
+
+def _mentions(message: str, numbers: set[str]) -> bool:
+    return numbers <= set(re.findall(r"\d+", message))
