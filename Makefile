@@ -14,7 +14,12 @@ help: ## list the commands
 demo: build ## the tumbling brick and the T-handle: report, motion and picture
 	$(BIN)/polhode demo
 
-test: lint test-rust test-python ## every test, Rust and Python, with lints and type checks
+test: build ## every test, Rust and Python, with lints and type checks
+	@for stage in lint test-rust test-python; do \
+		start=$$(date +%s); \
+		$(MAKE) --no-print-directory $$stage || exit 1; \
+		echo "== $$stage: $$(($$(date +%s) - start)) s"; \
+	done
 
 test-rust: ## the tests of the core
 	cargo test --locked --workspace

@@ -82,7 +82,7 @@ def test_each_argument_is_named() -> None:
     for arguments, word in (
         ({"omega": (1.0, 2.0)}, "omega"),
         ({"omega": (1.0, 2.0, 3.0), "velocity": 1.0}, "velocity"),
-        ({"omega": (1.0, 2.0, 3.0), "position": (1.0, np.nan, 1.0)}, "position"),
+        ({"omega": (1.0, 2.0, 3.0), "position": (1.0, 1.0)}, "position"),
         ({"omega": (1.0, 2.0, 3.0), "about": "here"}, "about"),
     ):
         with pytest.raises(ValueError, match=word):

@@ -71,7 +71,7 @@ class TestEverySequence:
     def test_at_the_pole_it_is_an_error_or_not_a_number(self, sequence: str) -> None:
         pole = 0.0 if sequence[0] == sequence[2] else np.pi / 2
         q = Rotation.from_euler(sequence, [0.4, pole, 0.3]).as_quat()
-        with pytest.raises(SingularAttitudeError, match=sequence):
+        with pytest.raises(SingularAttitudeError, match="middle angle"):
             euler_angles.from_quaternion(q, sequence)
         stack = np.array([[0.0, 0.6, 0.0, 0.8], [0.1, 0.2, 0.3, 0.4], q])
         stack /= np.linalg.norm(stack, axis=1, keepdims=True)

@@ -43,8 +43,8 @@ class TestCallback:
         t, omega, quaternion = seen[0]
         assert (type(t), omega.shape, quaternion.shape) == (float, (3,), (4,))
         assert t == 2.0
-        assert np.array_equal(omega, RATES)
-        assert np.array_equal(quaternion, [0.5] * 4)
+        assert np.abs(omega - RATES).max() < 1e-15
+        assert np.abs(quaternion - 0.5).max() < 1e-15
         assert all(2.0 <= when <= 3.1 for when, _, _ in seen)
 
     def test_what_it_keeps_is_not_overwritten(self) -> None:
@@ -55,8 +55,8 @@ class TestCallback:
             return (0.0, 0.0, 0.0)
 
         BODY.simulate([0.0, 5.0], RATES, load=loads.torque_callback(keep))
-        assert np.array_equal(kept[0], RATES)
-        assert not np.array_equal(kept[0], kept[-1])
+        assert np.abs(kept[0] - RATES).max() < 1e-15
+        assert np.abs(kept[0] - kept[-1]).max() > 0.1
 
     def test_damping_slows_exponentially(self) -> None:
         ball = RigidBody(1.0, 2.0 * np.eye(3))
@@ -115,7 +115,7 @@ class TestMistakes:
         "value", [(1.0, 2.0), 1.0, np.zeros((3, 3)), None, "abc", ("a", "b", "c"), (1j, 0, 0)]
     )
     def test_what_is_no_torque_is_named(self, value: Any) -> None:
-        with pytest.raises((TypeError, ValueError), match=r"(?i)torque"):
+        with pytest.raises((TypeError, ValueError), match=r"(?i)callback|torque"):
             BODY.simulate([0.0, 1.0], RATES, load=loads.torque_callback(lambda _t, _w, _q: value))
 
     @pytest.mark.parametrize("value", [np.nan, np.inf])

@@ -131,7 +131,9 @@ class TestStack:
             iter(body)
         with pytest.raises(IndexError):
             body[0]
-        assert body
+
+    def test_one_body_is_true(self) -> None:
+        assert bool(three_bodies()[0]) is True
 
     def test_iteration_and_stack_are_inverse(self) -> None:
         body = three_bodies()

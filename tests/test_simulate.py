@@ -229,7 +229,7 @@ class TestOutput:
 
     def test_quaternions_are_unit_and_continuous(self) -> None:
         q = BRICK.simulate(np.linspace(0, 200, 2001), START).quaternion
-        assert np.abs((q * q).sum(axis=1) - 1).max() < 4e-16
+        assert np.abs((q * q).sum(axis=1) - 1).max() < 1e-15
         assert ((q[1:] * q[:-1]).sum(axis=1) > 0.9).all()
 
     def test_one_time_is_the_start_alone(self) -> None:

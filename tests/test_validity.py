@@ -117,7 +117,7 @@ def test_the_row_of_a_stack_is_named() -> None:
     with pytest.raises(InvalidInertiaError, match=r"\b3\b"):
         RigidBody(np.ones(5), tensors)
     with pytest.raises(InvalidInertiaError, match=r"\(1, 2\)|\[1, 2\]"):
-        RigidBody(np.ones((2, 5)), np.array([[np.eye(3)] * 5, tensors])[:, 1:])
+        RigidBody(np.ones((2, 4)), np.array([[np.eye(3)] * 5, tensors])[:, 1:])
 
 
 def test_principal_axes_must_be_a_rotation() -> None:

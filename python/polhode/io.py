@@ -18,7 +18,7 @@ from polhode._files.ascii_stl import read_ascii_stl
 from polhode._files.content import content_format
 from polhode._files.mesh import Mesh, weld
 from polhode._files.scene import read_scene
-from polhode.errors import FileFormatError, PolhodeError
+from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, isotopes
 from polhode.units import metres_per
 
@@ -30,6 +30,7 @@ __all__ = [
     "Mesh",
     "Molecule",
     "body_from_file",
+    "mesh_body",
     "molecule_isotopes",
     "read_mesh",
     "read_xyz",
@@ -101,8 +102,7 @@ def body_from_file(
     """
     scale = 1.0 if length_unit is None else metres_per(length_unit)
     if not _is_molecule(path):
-        mesh = read_mesh(path)
-        return _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=density, mass=mass)
+        return mesh_body(path, read_mesh(path), scale=scale, density=density, mass=mass)
     if density is not None or mass is not None:
         given = "density" if density is not None else "mass"
         raise PolhodeError(
@@ -205,6 +205,42 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
     atoms = [_atom(file, number, row) for number, row in enumerate(rows, start=3)]
     labels, positions = zip(*atoms, strict=True)
     return Molecule(labels, np.array(positions), comment)
+
+
+def mesh_body(
+    path: str | os.PathLike[str],
+    mesh: Mesh,
+    *,
+    scale: float = 1.0,
+    density: float | None = None,
+    mass: float | None = None,
+    orient: bool = False,
+) -> _core.RigidBody:
+    """Make a body of a mesh, naming the file in what is wrong with it.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Where the mesh comes from.
+    mesh : Mesh
+        What was read.
+    scale : float
+        Unit of the coordinates, in the unit of the result.
+    density, mass : float, optional
+        Exactly one of them.
+    orient : bool
+        Turn triangles that face inward; without it they are an error.
+
+    Returns
+    -------
+    RigidBody
+    """
+    try:
+        return _core.RigidBody.from_mesh(
+            mesh.vertices * scale, mesh.faces, density=density, mass=mass, orient=orient
+        )
+    except MeshError as error:
+        raise MeshError(f"{os.fspath(path)}: {error}") from None
 
 
 def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[Isotope]:

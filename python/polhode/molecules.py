@@ -138,8 +138,8 @@ def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MH
     Examples
     --------
     >>> from polhode.molecules import rotational_constants
-    >>> rotational_constants([0.0, 1.0, 1.0])  # doctest: +ELLIPSIS
-    array([   inf, 505379.0..., 505379.0...])
+    >>> rotational_constants([0.0, 1.0, 1.0]).round(1)
+    array([    inf, 505379., 505379.])
     """
     if unit == "MHz":
         scale = 1e-6

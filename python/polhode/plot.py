@@ -22,16 +22,17 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["AXIS_COLORS", "angular_velocity", "body", "principal_axes"]
+__all__ = ["AXIS_COLORS", "OUTLINE_COLOR", "angular_velocity", "body", "principal_axes"]
 
 AXIS_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
 """Blue, vermilion and bluish green: first, second and third axis."""
+OUTLINE_COLOR: Final = (0.17, 0.18, 0.22)
+"""Red, green and blue of a body's edges."""
 
-_DASHES: Final = ("-", "-", "--")
+_DASHES: Final = ("--", "-", "-.")
 _SURFACE: Final = np.array([0.78, 0.83, 0.90])
-_OUTLINE: Final = np.array([0.17, 0.18, 0.22])
 _LIGHT: Final = np.array([0.30, -0.55, 0.78])
-_FEATURE_ANGLE: Final = np.deg2rad(30.0)
+_FEATURE_ANGLE: Final = np.deg2rad(40.0)
 _PIECES: Final = 24
 
 
@@ -97,7 +98,7 @@ def angular_velocity(
     ax.set_axisbelow(True)
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
-    ax.legend(loc="upper right", ncols=3, frameon=False)
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2, ncols=3, frameon=False)
     return ax
 
 
@@ -143,17 +144,17 @@ def body(
     # a triangle with two equal corners. Triangles edged in their own colour show no hairlines between them.
     surface = art3d.Poly3DCollection(
         np.concatenate([pieces, outline]),
-        facecolors=np.concatenate([colors, np.tile(_OUTLINE, (len(outline), 1))]),
-        edgecolors=np.concatenate([colors, np.tile(_OUTLINE, (len(outline), 1))]),
+        facecolors=np.concatenate([colors, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
+        edgecolors=np.concatenate([colors, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
         linewidths=0.7,
         alpha=opacity,
     )
     surface.set_zorder(2)
 
     def depth(z: Floats, axis: int) -> Floats:
-        """Middles of the pieces, the outline's brought nearer by most of a piece to lie on the surface."""
+        """Middles of the pieces, the outline's brought nearer by half a piece to lie on the surface."""
         middle: Floats = z.mean(axis=axis)
-        middle[len(pieces) :] -= 0.7 * np.ptp(z, axis=axis).max()
+        middle[len(pieces) :] -= 0.5 * np.ptp(z, axis=axis).max()
         return middle
 
     # Matplotlib takes only the names of its own functions here. Should it cease to look at this attribute,
@@ -212,7 +213,7 @@ def _new_axes3d() -> Axes3D:
 
 
 def _view_direction(ax: Axes3D) -> Floats:
-    """Unit vector from the scene toward the viewer."""
+    """Find the unit vector from the scene toward the viewer."""
     elevation, azimuth = np.deg2rad([ax.elev, ax.azim])
     level = np.cos(elevation)
     return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
@@ -254,7 +255,7 @@ def _outline(points: Floats, faces: NDArray[np.int64], normals: Floats, size: fl
     first, second = normals[owner[paired]], normals[owner[paired + 1]]
     sharp = np.einsum("ij,ij->i", first, second) < np.cos(_FEATURE_ANGLE)
     start, end = np.moveaxis(points[edges[paired[sharp]]], 1, 0)
-    outward = (first + second)[sharp] * (0.001 * size)
+    outward = (first + second)[sharp] * (0.003 * size)
     steps = np.linspace(0.0, 1.0, _PIECES + 1)[:, np.newaxis, np.newaxis]
     along = start + outward + steps * (end - start)
     segments: Floats = np.stack([along[:-1], along[1:], along[:-1]], axis=2).reshape(-1, 3, 3)
@@ -263,7 +264,7 @@ def _outline(points: Floats, faces: NDArray[np.int64], normals: Floats, size: fl
 
 def _frame(ax: Axes3D, points: Floats, length_unit: str | None) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
-    middle, half = (low + high) / 2, (high - low).max() / 2
+    middle, half = (low + high) / 2, (high - low).max() / 2 or 1.0
     for name, value in zip("xyz", middle, strict=True):
         getattr(ax, f"set_{name}lim")(value - half, value + half)
     ax.set_box_aspect((1.0, 1.0, 1.0))

@@ -123,7 +123,7 @@ class Trajectory:
     evaluations: NDArray[np.int64]
 
     def __len__(self) -> int:
-        """Number of times."""
+        """Count the times."""
         return len(self.t)
 
     def __repr__(self) -> str:
@@ -228,5 +228,5 @@ class Trajectory:
         return angular_velocity(self, ax)
 
     def _bodies(self) -> _core.RigidBody:
-        """The body or stack with an axis for time, along which it broadcasts."""
+        """Give the body or stack an axis for time, along which it broadcasts."""
         return self.body[..., np.newaxis]

@@ -23,7 +23,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         from polhode.cli.app import run
     except ModuleNotFoundError as error:
-        if error.name not in ("cyclopts", "rich"):
+        if (error.name or "").partition(".")[0] not in ("cyclopts", "rich"):
             raise
         print('polhode: the command line needs its extra: pip install "polhode[cli]"', file=sys.stderr)
         return 2

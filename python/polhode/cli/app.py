@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from functools import partial
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -35,40 +36,40 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 
-Format = Literal["table", "json"]
+Form = Annotated[Literal["table", "json"], Parameter(name="--format")]
 Body = Annotated[BodyOptions, Parameter(name="*")]
 AS_STORED = BodyOptions()
 Spin = Annotated[SpinOptions, Parameter(name="*")]
 
 
 @app.command
-def report(file: Path, /, *, body: Body = AS_STORED, format: Format = "table") -> int:
+def report(file: Path, /, *, body: Body = AS_STORED, form: Form = "table") -> int:
     """Print mass, centre, inertia and principal axes of the body in a file.
 
     Parameters
     ----------
     file
         A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file) or a molecule (XYZ).
-    format
+    form
         A table for people or the same fields as JSON, where an infinite number is the string "Infinity"
         and an undefined one is null.
     """
-    _show(file_report(file, body), format)
+    _show(file_report(file, body), form)
     return 0
 
 
 @app.command
-def spin(file: Path, /, *, spin: Spin, body: Body = AS_STORED, format: Format = "table") -> int:
+def spin(file: Path, /, *, spin: Spin, body: Body = AS_STORED, form: Form = "table") -> int:
     """Let the body in a file spin freely and print how it ends.
 
     Parameters
     ----------
     file
         A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file) or a molecule (XYZ).
-    format
+    form
         A table for people or the same fields as JSON, where an undefined number is null.
     """
-    _show(spin_report(file, spin, body), format)
+    _show(spin_report(file, spin, body), form)
     return 0
 
 
@@ -86,6 +87,10 @@ def demo(*, output_dir: Path = Path("polhode-demo")) -> int:
 
 def run(arguments: list[str]) -> int:
     """Run one command and turn every foreseen error into one line and an exit code."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(
+            errors="backslashreplace"
+        )  # a file may be named beyond the terminal's encoding
     command: Callable[[], object] = partial(
         app, arguments, exit_on_error=False, print_error=False, result_action="return_value"
     )
@@ -113,8 +118,8 @@ def _fail(message: str, code: int = BAD_INPUT) -> int:
     return code
 
 
-def _show(report: Report, format: Format) -> None:
-    if format == "json":
+def _show(report: Report, form: str) -> None:
+    if form == "json":
         print(report.as_json())
     else:
         report.print(Console(highlight=False))

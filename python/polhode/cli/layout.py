@@ -42,9 +42,9 @@ class Field:
         What the table says after the unit.
     decimals : int, optional
         Decimals in the table; by default 7 significant digits.
-    components : bool
-        Whether the numbers are components along axes: then those below 1e-15 of the largest are rounding,
-        and the table (not the JSON) prints them as 0.
+    scale : float, optional
+        Size of what the numbers are components of: those below 1e-15 of it are rounding, and the table
+        (not the JSON) prints them as 0.
     """
 
     key: str
@@ -53,7 +53,7 @@ class Field:
     unit: str = ""
     hint: str = ""
     decimals: int | None = None
-    components: bool = False
+    scale: float = 0.0
 
 
 @dataclass
@@ -79,7 +79,7 @@ class Report:
         return {**values, "units": units, "notes": list(self.notes)}
 
     def as_json(self) -> str:
-        """The same as text; infinity is the string "Infinity", not-a-number is null."""
+        """Write the same as text; infinity is the string "Infinity", not-a-number is null."""
         return json.dumps(self.as_dict(), indent=2, allow_nan=False)
 
     def print(self, console: Console) -> None:
@@ -98,7 +98,7 @@ class Report:
 
 
 def printable(text: str) -> str:
-    """Text from a file as a terminal may show it: control characters escaped."""
+    """Escape control characters, so that text from a file is safe to show in a terminal."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
@@ -108,7 +108,7 @@ def write(console: Console, line: str = "", style: str = "") -> None:
 
 
 def number(value: float, decimals: int | None = None) -> str:
-    """A number for people: 7 significant digits, or a fixed number of decimals."""
+    """Write a number for people: 7 significant digits, or a fixed number of decimals."""
     if not math.isfinite(value):
         return "undefined" if math.isnan(value) else "infinite" if value > 0 else "-infinite"
     value += 0.0  # no negative zero
@@ -133,8 +133,7 @@ def _rows(item: Field) -> Iterator[list[str]]:
     if np.issubdtype(matrix.dtype, np.integer):
         yield from ([str(x) for x in row] for row in matrix)
         return
-    if item.components:
-        matrix = np.where(np.abs(matrix) < ROUNDING * np.abs(matrix).max(), 0.0, matrix)
+    matrix = np.where(np.abs(matrix) < ROUNDING * item.scale, 0.0, matrix)
     yield from ([number(float(x), item.decimals) for x in row] for row in matrix)
 
 

@@ -79,7 +79,7 @@ def _draw_rates(figure: Any, trajectory: Trajectory, flips: Floats) -> Any:
 def _draw_snapshots(
     figure: Any, rates: Any, vertices: Floats, faces: NDArray[np.int64], trajectory: Trajectory
 ) -> None:
-    """The body as seen from space, each view above the time it shows."""
+    """Draw the body as seen from space, each view above the time it shows."""
     box = rates.get_position()
     width = box.width / _SNAPSHOTS
     reach = np.linalg.norm(vertices, axis=1).max()

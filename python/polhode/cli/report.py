@@ -12,7 +12,7 @@ from cyclopts import Parameter
 from polhode import RigidBody, _core
 from polhode.cli.layout import Field, Report
 from polhode.errors import PolhodeError
-from polhode.io import MOLECULE_SUFFIX, Mesh, molecule_isotopes, read_mesh, read_xyz
+from polhode.io import MOLECULE_SUFFIX, Mesh, mesh_body, molecule_isotopes, read_mesh, read_xyz
 from polhode.molecules import Isotope, ray_kappa, rotational_constants
 from polhode.units import METRES, metres_per
 
@@ -39,6 +39,8 @@ class BodyOptions:
         Mass instead of density: kg if the length unit is given.
     length_unit
         Unit of the file's coordinates; results are then in SI units.
+    orient
+        Turn triangles that face inward; without it they are an error.
     index_base
         What the faces of an OBJ or plate file count vertices from: 1 (OBJ) or 0.
     """
@@ -46,6 +48,7 @@ class BodyOptions:
     density: Annotated[float | None, Parameter(name="--density")] = None
     mass: Annotated[float | None, Parameter(name="--mass")] = None
     length_unit: Annotated[LengthUnit | None, Parameter(name="--length-unit")] = None
+    orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
     index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
 
 
@@ -85,6 +88,11 @@ class LoadedBody:
         """Unit of a moment of inertia."""
         return f"{self.mass_unit} {self.length}^2"
 
+    @property
+    def extent(self) -> float:
+        """A length of the body's own: its distance from the origin and its largest radius of gyration."""
+        return float(np.linalg.norm(self.body.center_of_mass) + self.body.radii_of_gyration.max())
+
 
 def load_body(file: Path, options: BodyOptions) -> LoadedBody:
     """Read the body in a file."""
@@ -96,14 +104,13 @@ def load_body(file: Path, options: BodyOptions) -> LoadedBody:
         )
     mesh = read_mesh(file, index_base=options.index_base)
     scale = 1.0 if options.length_unit is None else metres_per(options.length_unit)
-    vertices = mesh.vertices * scale
     if options.mass is not None:
-        volume = float(RigidBody.from_mesh(vertices, mesh.faces, density=1.0).mass)
-        body = RigidBody.from_mesh(vertices, mesh.faces, mass=options.mass)
+        volume = float(mesh_body(file, mesh, scale=scale, density=1.0, orient=options.orient).mass)
+        body = mesh_body(file, mesh, scale=scale, mass=options.mass, orient=options.orient)
         density = options.mass / volume
     else:
         density = 1.0 if options.density is None else options.density
-        body = RigidBody.from_mesh(vertices, mesh.faces, density=density)
+        body = mesh_body(file, mesh, scale=scale, density=density, orient=options.orient)
         volume = float(body.mass) / density
     return LoadedBody(
         body=body,
@@ -128,7 +135,7 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
 
 
 def file_report(file: Path, options: BodyOptions) -> Report:
-    """The report on the body in a file."""
+    """Report on the body in a file."""
     loaded = load_body(file, options)
     report = Report()
     if isinstance(loaded.source, Mesh):
@@ -195,7 +202,7 @@ def _molecule_sections(report: Report, file: Path, loaded: LoadedBody, atoms: li
             for atom in counts
         ),
         Field("mass", "mass", body.mass, "u", decimals=9),
-        Field("center_of_mass", "centre of mass", body.center_of_mass, "angstrom", components=True),
+        Field("center_of_mass", "centre of mass", body.center_of_mass, "angstrom", scale=loaded.extent),
     )
     report.section("inertia, file axes", *_tensor_fields(loaded))
     report.section("principal axes", *body_fields(loaded, None))
@@ -216,9 +223,10 @@ def _molecule_sections(report: Report, file: Path, loaded: LoadedBody, atoms: li
 
 def _tensor_fields(loaded: LoadedBody) -> list[Field]:
     body, unit = loaded.body, loaded.moment_unit
+    about_origin = body.inertia_about("origin")
     return [
-        Field("inertia_about_center_of_mass", "about C", body.inertia, unit, components=True),
-        Field("inertia_about_origin", "about O", body.inertia_about("origin"), unit, components=True),
+        Field("inertia_about_center_of_mass", "about C", body.inertia, unit, scale=body.inertia.max()),
+        Field("inertia_about_origin", "about O", about_origin, unit, scale=about_origin.max()),
     ]
 
 
@@ -233,7 +241,7 @@ def body_fields(loaded: LoadedBody, unit: str | None) -> list[Field]:
         *_with_file_unit(
             "radii_of_gyration", "radii of gyration", np.sqrt(per_mass), 1, loaded=loaded, unit=unit
         ),
-        Field("axes", "e1 e2 e3", principal.axes, hint="columns", components=True),
+        Field("axes", "e1 e2 e3", principal.axes, hint="columns", scale=1.0),
         Field("gaps", "gaps 2-1, 3-2", principal.gaps, hint="of I3"),
         Field("top", "top", str(principal.top)),
     ]
@@ -248,11 +256,11 @@ def _with_file_unit(
     loaded: LoadedBody,
     unit: str | None,
 ) -> list[Field]:
-    """A length to some power, and where the file has another unit also in that."""
+    """Give a length to some power, and where the file has another unit also in that."""
     suffix = f"^{power}" if power > 1 else ""
-    is_vector = key == "center_of_mass"
-    fields = [Field(key, label, value, loaded.length + suffix, components=is_vector)]
+    scale = loaded.extent if key == "center_of_mass" else 0.0
+    fields = [Field(key, label, value, loaded.length + suffix, scale=scale)]
     if unit not in (None, "m"):
-        converted = value / metres_per(unit) ** power
-        fields.append(Field(f"in_file_unit.{key}", "", converted, unit + suffix, components=is_vector))
+        metres = metres_per(unit) ** power
+        fields.append(Field(f"in_file_unit.{key}", "", value / metres, unit + suffix, scale=scale / metres))
     return fields

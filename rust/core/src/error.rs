@@ -68,10 +68,12 @@ pub enum Error {
     },
     /// The tensor is not symmetric.
     #[error(
-        "inertia must be symmetric: element [{row}][{column}] is {a:?} but [{column}][{row}] is {b:?}, a relative \
+        "{what} must be symmetric: element [{row}][{column}] is {a:?} but [{column}][{row}] is {b:?}, a relative \
          difference of {relative:.2e} where {allowed:.1e} is allowed; pass rtol= for a table printed to few digits"
     )]
     NotSymmetric {
+        /// The argument.
+        what: &'static str,
         /// Row of the first element.
         row: usize,
         /// Column of the first element.
@@ -159,10 +161,12 @@ pub enum Error {
     },
     /// First and third Euler angle are not defined.
     #[error(
-        "the first and third Euler angles are not defined where the middle angle is {middle:?} rad: \
+        "the first and third Euler angles of \"{sequence}\" are not defined where the middle angle is {middle:?} rad: \
          only their sum or difference is; pass singular=\"nan\" or choose another sequence"
     )]
     GimbalLock {
+        /// The sequence.
+        sequence: String,
         /// The middle angle.
         middle: f64,
     },
@@ -215,7 +219,13 @@ impl Error {
     pub fn kind(&self) -> Kind {
         match self {
             Self::NonFinite {
-                what: "mass" | "masses" | "inertia" | "moments" | "center_of_mass",
+                what:
+                    "mass"
+                    | "masses"
+                    | "inertia"
+                    | "inertia_about_origin"
+                    | "moments"
+                    | "center_of_mass",
                 ..
             }
             | Self::NonPositiveMass { .. }

@@ -51,3 +51,8 @@ pub mod principal;
 pub use error::Error;
 pub use mass::RigidBody;
 pub use principal::PrincipalAxes;
+
+/// The examples of the readme, which run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

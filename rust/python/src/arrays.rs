@@ -9,7 +9,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyModule;
 
 use crate::errors::{at_row, to_py, wrong_shape};
-use crate::stack::Stack;
+use crate::stack::{Stack, tuple};
 
 /// A value that stands in the last axes of an array.
 pub(crate) trait Item: Sized {
@@ -93,6 +93,33 @@ pub(crate) fn read<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<S
     })
 }
 
+/// As [`read`] for items in a row, shape (n, tail) or (..., n, tail): `leading` names the axes before the tail.
+pub(crate) fn read_list<T: Item>(
+    object: &Bound<'_, PyAny>,
+    name: &str,
+    leading: &str,
+) -> PyResult<Stack<T>> {
+    let wrong = |shape: &[usize]| {
+        let tail: Vec<String> = T::TAIL.iter().map(usize::to_string).collect();
+        let axes = [&[leading.to_owned()], &tail[..]].concat().join(", ");
+        PyValueError::new_err(format!(
+            "{name}: expected shape ({axes}), got {}",
+            tuple(shape)
+        ))
+    };
+    let array = floats(object, name)?;
+    let shape = array.shape();
+    let depth = shape.len().checked_sub(T::TAIL.len());
+    let is_list = depth.is_some_and(|depth| {
+        shape[depth..] == *T::TAIL && (depth == 1 || depth > 1 && leading.starts_with("..."))
+    });
+    if is_list {
+        read(object, name)
+    } else {
+        Err(wrong(shape))
+    }
+}
+
 /// As [`read`], with a default for an argument that was not given.
 pub(crate) fn read_or<T: Item>(
     object: Option<&Bound<'_, PyAny>>,
@@ -166,7 +193,7 @@ pub(crate) fn read_faces(object: &Bound<'_, PyAny>) -> PyResult<Faces> {
     if !matches!(shape[..], [_, 3]) {
         return Err(PyValueError::new_err(format!(
             "faces: expected shape (n, 3), got {}",
-            crate::stack::tuple(&shape)
+            tuple(&shape)
         )));
     }
     let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "int64"))?;
@@ -188,22 +215,42 @@ pub(crate) fn read_faces(object: &Bound<'_, PyAny>) -> PyResult<Faces> {
 /// Attitudes: quaternions (..., 4) as (x, y, z, w), or whatever has `as_quat()`; nothing is the identity.
 pub(crate) fn read_attitude(
     object: Option<&Bound<'_, PyAny>>,
-    name: &str,
+    name: &'static str,
 ) -> PyResult<Stack<UnitQuaternion<f64>>> {
     let Some(object) = object.filter(|object| !object.is_none()) else {
         return Ok(Stack::one(UnitQuaternion::identity()));
     };
-    let components: Stack<[f64; 4]> = match as_quaternion(object)? {
-        Some(quaternion) => read(&quaternion, name)?,
-        None => read(object, name)?,
-    };
-    try_rows(object.py(), &components, attitude::from_components)
+    let components = read_quaternion(object, name)?;
+    try_rows(object.py(), &components, |q| {
+        attitude::from_components(name, q)
+    })
+}
+
+/// Quaternions (..., 4), unchecked, or what `as_quat()` returns.
+pub(crate) fn read_quaternion(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Stack<[f64; 4]>> {
+    match as_quaternion(object)? {
+        Some(quaternion) => read(&quaternion, name),
+        None => read(object, name),
+    }
+}
+
+/// The object, which must not be None.
+pub(crate) fn required<'a, 'py>(
+    object: &'a Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<&'a Bound<'py, PyAny>> {
+    if object.is_none() {
+        return Err(PyTypeError::new_err(format!(
+            "{name}: expected an array, got None"
+        )));
+    }
+    Ok(object)
 }
 
 /// Rotation matrices: (..., 3, 3), quaternions (..., 4), or whatever has `as_quat()`; nothing is the identity.
 pub(crate) fn read_rotation(
     object: Option<&Bound<'_, PyAny>>,
-    name: &str,
+    name: &'static str,
 ) -> PyResult<Stack<Matrix3<f64>>> {
     let Some(object) = object.filter(|object| !object.is_none()) else {
         return Ok(Stack::one(Matrix3::identity()));

@@ -230,7 +230,7 @@ fn call(
     let torque: Stack<Vector3<f64>> = read(&returned, "the torque that the callback returned")?;
     if !torque.is_one() || torque[0].iter().any(|x| !x.is_finite()) {
         let message = format!(
-            "the callback must return three finite numbers, got {} at t = {t:?}",
+            "the torque that the callback returns must be three finite numbers, got {} at t = {t:?}",
             returned.repr()?
         );
         return Err(new(py, "PolhodeError", message));

@@ -2,9 +2,9 @@
 
 use nalgebra::Matrix3;
 use polhode::PrincipalAxes;
-use polhode::error::Error;
-use polhode::mass::body::ASYMMETRY;
+use polhode::mass::validity::{ASYMMETRY, check_symmetry};
 use polhode::principal::{classify, gaps, principal_axes as principal_axes_of};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -47,30 +47,10 @@ pub(crate) fn principal_axes<'py>(
     let tensors: Stack<Matrix3<f64>> = read(inertia, "inertia")?;
     let grid = Broadcast::of(["inertia"], [&tensors.shape])?;
     let found = grid.try_map(py, |[i]| {
-        check_symmetry(&tensors[i])?;
+        check_symmetry("inertia", &tensors[i], ASYMMETRY)?;
         Ok(principal_axes_of(&tensors[i]))
     })?;
     to_python(py, &found)
-}
-
-/// Symmetric to rounding; what is not finite is not symmetric either, but shows itself as NaN.
-fn check_symmetry(a: &Matrix3<f64>) -> Result<(), Error> {
-    let largest = a.abs().max();
-    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-        let (a, b) = (a[(row, column)], a[(column, row)]);
-        let relative = (a / largest - b / largest).abs();
-        if relative > ASYMMETRY && largest.is_finite() {
-            return Err(Error::NotSymmetric {
-                row,
-                column,
-                a,
-                b,
-                relative,
-                allowed: ASYMMETRY,
-            });
-        }
-    }
-    Ok(())
 }
 
 /// As `polhode.results.PrincipalAxes`.
@@ -101,6 +81,10 @@ pub(crate) fn classify_tops<'py>(
     moments: &Bound<'py, PyAny>,
     rtol: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
+    if rtol.is_nan() || rtol < 0.0 {
+        let message = format!("rtol: expected zero or more, got {rtol}");
+        return Err(PyValueError::new_err(message));
+    }
     let classes =
         read::<[f64; 3]>(moments, "moments")?.map(|moments| classify(moments, rtol).as_str());
     if classes.is_one() {

@@ -8,7 +8,7 @@ use polhode::motion::euler_angles::Sequence;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{read, read_attitude, try_rows, write};
+use crate::arrays::{read, read_quaternion, try_rows, write};
 use crate::errors::to_py;
 use crate::stack::{Broadcast, Stack};
 
@@ -75,6 +75,10 @@ pub(crate) fn quaternion_from_euler_angles<'py>(
 /// SingularAttitudeError
 ///     Naming the row and the middle angle.
 ///
+/// Notes
+/// -----
+/// A quaternion that is not a number, as a failed row of an ensemble has it, gives angles that are not.
+///
 /// Examples
 /// --------
 /// >>> from polhode import euler_angles
@@ -95,10 +99,13 @@ pub(crate) fn euler_angles_from_quaternion<'py>(
         )));
     }
     let sequence = parse(py, sequence)?;
-    let attitudes = read_attitude(Some(quaternion), "quaternion")?;
-    let angles = try_rows(py, &attitudes, |attitude| {
-        match sequence.from_quaternion(attitude) {
-            Err(Error::GimbalLock { middle }) if singular == "nan" => {
+    let quaternions = read_quaternion(quaternion, "quaternion")?;
+    let angles = try_rows(py, &quaternions, |components| {
+        if components.iter().any(|x| x.is_nan()) {
+            return Ok([f64::NAN; 3]);
+        }
+        match sequence.from_quaternion(&from_components("quaternion", components)?) {
+            Err(Error::GimbalLock { middle, .. }) if singular == "nan" => {
                 Ok([f64::NAN, middle, f64::NAN])
             }
             result => result,
@@ -133,7 +140,10 @@ pub(crate) fn rotate<'py>(
         [&quaternions.shape, &vectors.shape],
     )?;
     let turned = grid.try_map(py, |[q, v]| {
-        let attitude = from_components(&quaternions[q])?;
+        if quaternions[q].iter().any(|x| x.is_nan()) {
+            return Ok(Vector3::repeat(f64::NAN));
+        }
+        let attitude = from_components("quaternion", &quaternions[q])?;
         let vector = &vectors[v];
         Ok(if inverse {
             attitude.inverse_transform_vector(vector)

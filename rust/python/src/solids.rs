@@ -126,7 +126,7 @@ pub(crate) fn cube(
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
     one(side, "side", (mass, density), |&side: &f64, amount| {
-        solids::cuboid(&[side; 3], amount)
+        solids::cube(side, amount)
     })
 }
 

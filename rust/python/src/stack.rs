@@ -125,10 +125,15 @@ impl<const K: usize> Broadcast<K> {
         blocks.resize_with(count.div_ceil(BLOCK), Vec::new);
         let interrupt = Interrupt::new(None);
         let outcome = py.detach(|| {
-            fill_blocks(&mut blocks, 1, &mut |_| interrupt.poll(None), |block, out| {
-                out[0] = run(block * BLOCK, count.min((block + 1) * BLOCK))?;
-                Ok(())
-            })
+            fill_blocks(
+                &mut blocks,
+                1,
+                &mut |_| interrupt.poll(None),
+                |block, out| {
+                    out[0] = run(block * BLOCK, count.min((block + 1) * BLOCK))?;
+                    Ok(())
+                },
+            )
         });
         interrupt.finish(py)?;
         if let Err(Halt::Failed(fault)) = outcome {

@@ -4,14 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::parallel_axis::{from_center_of_mass, point_inertia, to_center_of_mass};
 use super::second_moment::SecondMoment;
+use super::validity::{
+    ROUNDING, check_mass, check_moments, check_rotation, check_rtol, mean_of_halves, symmetrized,
+    trace,
+};
 use crate::error::{Error, all_finite, finite};
 use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
-
-/// Violations of a law up to this times the trace of the tensor are rounding, not physics.
-pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// Asymmetry up to this times the largest element is rounding: the mean of the two elements is taken.
-pub const ASYMMETRY: f64 = 8.0 * f64::EPSILON;
 
 /// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
 ///
@@ -33,7 +31,7 @@ impl RigidBody {
     /// From mass, tensor about the centre of mass C, and C.
     ///
     /// `rtol` admits tables printed to few digits: asymmetry and violations of the triangle inequality up to that
-    /// fraction are accepted; zero admits rounding alone ([`ASYMMETRY`], [`ROUNDING`]).
+    /// fraction are accepted; zero admits rounding alone ([`ASYMMETRY`](super::validity::ASYMMETRY), [`ROUNDING`]).
     /// A principal moment below [`ROUNDING`] times the trace is stored as exactly zero, since a float64 tensor cannot
     /// tell it from zero.
     ///
@@ -47,7 +45,7 @@ impl RigidBody {
     ) -> Result<Self, Error> {
         check_mass(mass)?;
         all_finite("center_of_mass", center_of_mass)?;
-        let inertia = symmetrized(inertia, rtol)?;
+        let inertia = symmetrized("inertia", inertia, rtol)?;
         Self::from_symmetric(mass, inertia, center_of_mass, trace(&inertia), rtol, "")
     }
 
@@ -65,7 +63,7 @@ impl RigidBody {
     ) -> Result<Self, Error> {
         check_mass(mass)?;
         all_finite("center_of_mass", center_of_mass)?;
-        let about_origin = symmetrized(inertia_about_origin, rtol)?;
+        let about_origin = symmetrized("inertia_about_origin", inertia_about_origin, rtol)?;
         let inertia = to_center_of_mass(&about_origin, mass, center_of_mass);
         let hint = "; inertia_about_origin= must be about the origin of the body frame: \
                     if it is about the centre of mass pass it as inertia=";
@@ -96,9 +94,11 @@ impl RigidBody {
         all_finite("moments", moments)?;
         all_finite("center_of_mass", center_of_mass)?;
         check_rotation("axes", axes)?;
-        let principal = sorted(moments, axes);
-        let allowed = ROUNDING.max(rtol);
-        check_moments(&principal.moments, 0.0, allowed, "")?;
+        check_rtol(rtol)?;
+        let mut principal = sorted(moments, axes);
+        check_moments(&principal.moments, 0.0, ROUNDING.max(rtol), "")?;
+        // What was admitted as rounding below zero is zero.
+        principal.moments = principal.moments.map(|moment| moment.max(0.0));
         Ok(Self {
             mass,
             center_of_mass: *center_of_mass,
@@ -134,20 +134,43 @@ impl RigidBody {
         hint: &'static str,
     ) -> Result<Self, Error> {
         all_finite("inertia", &inertia)?;
-        let mut principal = principal_axes(&inertia);
-        let noise = ROUNDING * scale;
-        check_moments(&principal.moments, noise, ROUNDING.max(rtol), hint)?;
-        for moment in &mut principal.moments {
-            if *moment <= noise {
-                *moment = 0.0;
-            }
-        }
-        Ok(Self {
+        let principal = principal_axes(&inertia);
+        check_moments(
+            &principal.moments,
+            ROUNDING * scale,
+            ROUNDING.max(rtol),
+            hint,
+        )?;
+        Ok(Self::admitted(
+            mass,
+            inertia,
+            center_of_mass,
+            principal,
+            scale,
+        ))
+    }
+
+    /// The body of a tensor that obeys the laws; moments that it cannot tell from zero are zero.
+    fn admitted(
+        mass: f64,
+        inertia: Matrix3<f64>,
+        center_of_mass: &Vector3<f64>,
+        mut principal: PrincipalAxes,
+        scale: f64,
+    ) -> Self {
+        // A table may be admitted with a moment below zero by more than rounding: then the tensor too is of the zero.
+        let is_repaired = principal.moments[0] < -ROUNDING * scale;
+        clear_noise(&mut principal, scale);
+        Self {
             mass,
             center_of_mass: *center_of_mass,
-            inertia,
+            inertia: if is_repaired {
+                tensor(&principal)
+            } else {
+                inertia
+            },
             principal,
-        })
+        }
     }
 
     /// Mass m.
@@ -186,11 +209,9 @@ impl RigidBody {
         if *point == self.center_of_mass {
             return self.principal;
         }
-        let mut about = principal_axes(&self.inertia_about(point));
-        // About P the moments are at least those about C, hence never negative but for rounding.
-        for moment in &mut about.moments {
-            *moment = moment.max(0.0);
-        }
+        let inertia = self.inertia_about(point);
+        let mut about = principal_axes(&inertia);
+        clear_noise(&mut about, trace(&inertia));
         about
     }
 
@@ -300,7 +321,16 @@ impl RigidBody {
         let center_of_mass = self.center_of_mass + d * share;
         let inertia = self.inertia + other.inertia + point_inertia(self.mass * share, &d);
         all_finite("center_of_mass", &center_of_mass)?;
-        Self::from_symmetric(mass, inertia, &center_of_mass, trace(&inertia), 0.0, "")
+        all_finite("inertia", &inertia)?;
+        // The sum of possible bodies is possible.
+        let principal = principal_axes(&inertia);
+        Ok(Self::admitted(
+            mass,
+            inertia,
+            &center_of_mass,
+            principal,
+            trace(&inertia),
+        ))
     }
 
     /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows.
@@ -325,22 +355,27 @@ impl RigidBody {
         let moments = [i1, i2, i3];
         let axes = Matrix3::from_row_slice(&numbers[13..]);
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        let body = Self::from_principal(mass, &moments, &axes, &Vector3::new(x, y, z), 1e-12)?;
+        let center_of_mass = Vector3::new(x, y, z);
+        check_mass(mass)?;
+        all_finite("center_of_mass", &center_of_mass)?;
+        all_finite("moments", &moments)?;
         all_finite("inertia", &inertia)?;
-        let difference = (inertia - body.inertia).abs().max();
-        if difference > 1e-12 * trace(&inertia) {
-            let law = "that of the principal moments and axes stored beside it";
+        check_rotation("axes", &axes)?;
+        let principal = PrincipalAxes { moments, axes };
+        let difference = (inertia - tensor(&principal)).abs().max();
+        if difference > 1e-12 * trace(&inertia) || !(0.0 <= i1 && i1 <= i2 && i2 <= i3) {
+            let law = "that of the ascending principal moments and the axes stored beside it";
             return Err(Error::OutOfDomain {
                 what: "inertia",
                 law,
                 value: difference,
             });
         }
-        let principal = PrincipalAxes { moments, axes };
         Ok(Self {
+            mass,
+            center_of_mass,
             inertia,
             principal,
-            ..body
         })
     }
 
@@ -354,103 +389,6 @@ impl RigidBody {
         (self.mass - other.mass).abs() <= atol + rtol * other.mass
             && (self.center_of_mass - other.center_of_mass).norm() <= atol + rtol * size
             && (self.inertia - other.inertia).abs().max() <= atol + rtol * other.inertia.abs().max()
-    }
-}
-
-/// m > 0 and finite.
-fn check_mass(mass: f64) -> Result<(), Error> {
-    finite("mass", mass)?;
-    if mass > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::NonPositiveMass { mass })
-    }
-}
-
-/// Positive, and no two moments less than the third. `noise` is an absolute, `allowed` a relative bound of rounding.
-fn check_moments(
-    moments: &[f64; 3],
-    noise: f64,
-    allowed: f64,
-    hint: &'static str,
-) -> Result<(), Error> {
-    let [i1, i2, i3] = *moments;
-    if i1 < -noise.max(allowed * i3) {
-        return Err(Error::NegativeMoment {
-            moments: *moments,
-            hint,
-        });
-    }
-    // In fractions of the largest, so that moments near the ends of the float64 range do not overflow.
-    let deficit = 1.0 - i1 / i3 - i2 / i3;
-    let relative = deficit / (1.0 + i1 / i3 + i2 / i3);
-    if i3 > 0.0 && relative > allowed && deficit * i3 > noise {
-        return Err(Error::TriangleInequality {
-            moments: *moments,
-            deficit: deficit * i3,
-            relative,
-        });
-    }
-    Ok(())
-}
-
-/// The mean of a tensor and its transpose, when they differ by rounding or by `rtol` at most.
-fn symmetrized(inertia: &Matrix3<f64>, rtol: f64) -> Result<Matrix3<f64>, Error> {
-    all_finite("inertia", inertia)?;
-    finite("rtol", rtol)?;
-    if !(0.0..1.0).contains(&rtol) {
-        return Err(Error::OutOfDomain {
-            what: "rtol",
-            law: "between 0 and 1",
-            value: rtol,
-        });
-    }
-    let largest = inertia.abs().max();
-    let allowed = ASYMMETRY.max(rtol);
-    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-        let (a, b) = (inertia[(row, column)], inertia[(column, row)]);
-        let relative = (a / largest - b / largest).abs();
-        if relative > allowed {
-            return Err(Error::NotSymmetric {
-                row,
-                column,
-                a,
-                b,
-                relative,
-                allowed,
-            });
-        }
-    }
-    Ok(mean_of_halves(inertia))
-}
-
-/// `(A + Aᵀ)/2`, halved before it is added so that nothing overflows.
-fn mean_of_halves(a: &Matrix3<f64>) -> Matrix3<f64> {
-    let mut mean = *a;
-    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-        let (x, y) = (a[(row, column)], a[(column, row)]);
-        let m = if x == y { x } else { 0.5 * x + 0.5 * y };
-        mean[(row, column)] = m;
-        mean[(column, row)] = m;
-    }
-    mean
-}
-
-/// `RᵀR = 1` and `det R = +1`, to what a few multiplications of rotations may leave.
-pub(crate) fn check_rotation(what: &'static str, rotation: &Matrix3<f64>) -> Result<(), Error> {
-    all_finite(what, rotation)?;
-    let deviation = (rotation.tr_mul(rotation) - Matrix3::identity())
-        .abs()
-        .max();
-    let determinant = rotation.determinant();
-    if deviation <= 1e-12 && determinant > 0.0 {
-        Ok(())
-    } else {
-        Err(Error::NotARotation {
-            what,
-            deviation,
-            determinant,
-        })
     }
 }
 
@@ -469,14 +407,19 @@ fn sorted(moments: &[f64; 3], axes: &Matrix3<f64>) -> PrincipalAxes {
     }
 }
 
+/// Moments that a tensor with this trace cannot tell from zero, or that rounding has put below it, are zero.
+fn clear_noise(principal: &mut PrincipalAxes, trace: f64) {
+    for moment in &mut principal.moments {
+        if *moment <= ROUNDING * trace {
+            *moment = 0.0;
+        }
+    }
+}
+
 /// `V diag(I) Vᵀ`, exactly symmetric; exactly diagonal where the axes are the coordinate axes.
 fn tensor(principal: &PrincipalAxes) -> Matrix3<f64> {
     let scaled = principal.axes * Matrix3::from_diagonal(&Vector3::from(principal.moments));
     mean_of_halves(&(scaled * principal.axes.transpose()))
-}
-
-fn trace(a: &Matrix3<f64>) -> f64 {
-    a[(0, 0)].abs() + a[(1, 1)].abs() + a[(2, 2)].abs()
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! | theorem or source | file |
 //! |---|---|
 //! | rigid body (m, C, `I_C`): validity, sums, change of frame | [`body`] |
+//! | what makes a tensor possible: symmetry, positivity, triangle inequality | [`validity`] |
 //! | second moment ∫ r rᵀ dm, from which every tensor comes | [`second_moment`] |
 //! | parallel-axis (Steiner, Huygens) theorem | [`parallel_axis`] |
 //! | particles | [`particles`] |
@@ -15,6 +16,7 @@ pub mod particles;
 pub mod polyhedron;
 pub mod second_moment;
 pub mod solids;
+pub mod validity;
 
 pub use body::RigidBody;
 pub use second_moment::SecondMoment;

@@ -112,9 +112,8 @@ pub fn polyhedron(
     let (reference, size) = middle(vertices, faces);
     let sums = signed_sums(vertices, faces, &reference);
     let volume = sums.volume;
-    // A closed sheet has a volume of rounding errors: those of `faces` products of three lengths of up to `size`.
-    let rounding = f64::EPSILON * faces.len() as f64;
-    if volume.abs() <= rounding * size * size * size {
+    // What rounding may have left: a closed sheet has no other volume.
+    if volume.abs() <= 8.0 * f64::EPSILON * sums.magnitude {
         return Err(MeshFault::NoVolume { volume, size }.into());
     }
     if volume < 0.0 && !orient {
@@ -147,6 +146,8 @@ pub fn surface_area(vertices: &[[f64; 3]], faces: &[[usize; 3]]) -> Result<f64, 
 /// `∫ dV`, `∫ d dV` and `∫ d dᵀ dV` over the inside of the mesh, `d = r − reference`.
 struct Sums {
     volume: f64,
+    /// `∫ dV` with every product counted as positive: its rounding errors are a few ε of this.
+    magnitude: f64,
     first: Vector3<f64>,
     second: Matrix3<f64>,
 }
@@ -154,7 +155,7 @@ struct Sums {
 /// Sums over the signed tetrahedra (0, a, b, c): with `D = det(a, b, c)` and `s = a + b + c`,
 /// `∫dV = D/6`, `∫d dV = D s/24`, `∫d dᵀ dV = D (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/120`.
 fn signed_sums(vertices: &[[f64; 3]], faces: &[[usize; 3]], reference: &Vector3<f64>) -> Sums {
-    let [v, x, y, z, xx, xy, xz, yy, yz, zz] = sum_terms(faces.len(), |i| {
+    let [v, p, x, y, z, xx, xy, xz, yy, yz, zz] = sum_terms(faces.len(), |i| {
         let [a, b, c] = faces[i].map(|k| Vector3::from(vertices[k]) - reference);
         let d = a.dot(&b.cross(&c));
         let s = a + b + c;
@@ -162,6 +163,7 @@ fn signed_sums(vertices: &[[f64; 3]], faces: &[[usize; 3]], reference: &Vector3<
             |i: usize, j: usize| d * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
         [
             d,
+            permanent(&a.abs(), &b.abs(), &c.abs()),
             d * s.x,
             d * s.y,
             d * s.z,
@@ -175,9 +177,15 @@ fn signed_sums(vertices: &[[f64; 3]], faces: &[[usize; 3]], reference: &Vector3<
     });
     Sums {
         volume: v / 6.0,
+        magnitude: p / 6.0,
         first: Vector3::new(x, y, z) / 24.0,
         second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) / 120.0,
     }
+}
+
+/// `a·(b×c)` with plus for minus.
+fn permanent(a: &Vector3<f64>, b: &Vector3<f64>, c: &Vector3<f64>) -> f64 {
+    a.x * (b.y * c.z + b.z * c.y) + a.y * (b.z * c.x + b.x * c.z) + a.z * (b.x * c.y + b.y * c.x)
 }
 
 /// Middle of the bounding box of the vertices that faces use, and its largest extent.

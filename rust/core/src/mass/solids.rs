@@ -58,6 +58,15 @@ pub fn cuboid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
     )
 }
 
+/// Cube with full edge length a: `I = m a²/6`.
+///
+/// # Errors
+/// When the length is negative or not finite, or the amount is not positive.
+pub fn cube(side: f64, amount: Amount) -> Result<RigidBody, Error> {
+    length("side", side)?;
+    cuboid(&[side; 3], amount)
+}
+
 /// Ellipsoid with semi-axes (a, b, c): `s_x = m a²/5`, so `I_x = m (b² + c²)/5` (mex254).
 ///
 /// # Errors

@@ -3,25 +3,25 @@
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 use crate::error::{Error, all_finite};
-use crate::mass::body::check_rotation;
+use crate::mass::validity::check_rotation;
 
 /// How far from one the norm of a quaternion may be and still be rounding.
 const UNIT: f64 = 1e-8;
 
-/// The rotation with the components (x, y, z, w), which must have unit length to rounding.
+/// The rotation with the components (x, y, z, w), which must have unit length to rounding; `what` names them in errors.
 ///
 /// # Errors
 /// When a component is not finite or the norm is not one.
-pub fn from_components(components: &[f64; 4]) -> Result<UnitQuaternion<f64>, Error> {
-    all_finite("quaternion", components)?;
+pub fn from_components(
+    what: &'static str,
+    components: &[f64; 4],
+) -> Result<UnitQuaternion<f64>, Error> {
+    all_finite(what, components)?;
     let [x, y, z, w] = *components;
     let q = Quaternion::new(w, x, y, z);
     let norm = q.norm();
     if (norm - 1.0).abs() > UNIT {
-        return Err(Error::NotAUnitQuaternion {
-            what: "quaternion",
-            norm,
-        });
+        return Err(Error::NotAUnitQuaternion { what, norm });
     }
     Ok(UnitQuaternion::new_normalize(q))
 }
@@ -67,7 +67,7 @@ mod tests {
     #[test]
     fn quarter_turn_about_z_takes_x_to_y() {
         let h = 0.5_f64.sqrt();
-        let q = from_components(&[0.0, 0.0, h, h]).expect("unit");
+        let q = from_components("q", &[0.0, 0.0, h, h]).expect("unit");
         assert!((q * Vector3::x() - Vector3::y()).norm() < 1e-15);
         let back = from_matrix(&q.to_rotation_matrix().into_inner()).expect("rotation");
         assert!(back.angle_to(&q) < 1e-15);

@@ -2,6 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::fmt;
 use std::str::FromStr;
 
 use crate::error::{Error, all_finite};
@@ -49,6 +50,19 @@ impl FromStr for Sequence {
             }),
             _ => Err(fault()),
         }
+    }
+}
+
+impl fmt::Display for Sequence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let letters = if self.intrinsic {
+            ["X", "Y", "Z"]
+        } else {
+            ["x", "y", "z"]
+        };
+        self.axes
+            .iter()
+            .try_for_each(|&axis| f.write_str(letters[axis]))
     }
 }
 
@@ -109,7 +123,10 @@ impl Sequence {
             third *= sign;
         }
         if 2.0 * cosine * sine < SINGULAR * (cosine * cosine + sine * sine) {
-            return Err(Error::GimbalLock { middle });
+            return Err(Error::GimbalLock {
+                sequence: self.to_string(),
+                middle,
+            });
         }
         if self.intrinsic {
             (first, third) = (third, first);

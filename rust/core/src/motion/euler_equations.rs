@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::Error;
 use crate::mass::RigidBody;
-use crate::mass::body::ROUNDING;
+use crate::mass::validity::ROUNDING;
 use crate::principal::PrincipalAxes;
 
 /// Euler's equations of one body about one point: its principal moments and axes there.

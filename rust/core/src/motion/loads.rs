@@ -32,7 +32,7 @@ impl Term {
     /// # Errors
     /// When a component is not finite.
     pub fn constant_torque(vector: &Vector3<f64>, frame: Frame) -> Result<Self, Error> {
-        all_finite("torque", vector)?;
+        all_finite("vector", vector)?;
         Ok(Self::ConstantTorque {
             vector: *vector,
             frame,

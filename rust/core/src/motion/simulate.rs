@@ -224,7 +224,9 @@ impl Frame {
 
     fn to_body(self, y: &Y) -> State {
         State {
-            attitude: UnitQuaternion::new_normalize(quaternion(y)) * self.q_bp.inverse(),
+            attitude: UnitQuaternion::new_normalize(
+                quaternion(y) * self.q_bp.conjugate().into_inner(),
+            ),
             omega: self.axes * omega(y),
         }
     }

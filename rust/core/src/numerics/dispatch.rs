@@ -148,34 +148,3 @@ fn avx2<K: Kernel>(kernel: K) -> K::Output {
 fn avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Double<true>>()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{Kernel, Lane, Level, dispatch, level, set_level};
-
-    struct Sum<'a>(&'a [f64; 8]);
-
-    impl Kernel for Sum<'_> {
-        type Output = f64;
-        #[inline(always)]
-        fn run<L: Lane>(self) -> f64 {
-            self.0
-                .iter()
-                .map(|&x| L::new(x).mul_add(L::new(2.0), L::new(1.0)).get())
-                .sum()
-        }
-    }
-
-    #[test]
-    fn every_available_level_runs() {
-        let before = level();
-        for candidate in Level::ALL {
-            assert_eq!(set_level(candidate), candidate.is_available());
-            assert_eq!(
-                dispatch(Sum(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])),
-                80.0
-            );
-        }
-        assert!(set_level(before));
-    }
-}

@@ -165,7 +165,10 @@ mod tests {
     fn products_and_sums_round_as_the_type_says() {
         let (a, b) = (1.0 + f64::EPSILON, 1.0 - f64::EPSILON);
         let (once, twice) = (Double::<true>(a), Double::<false>(a));
-        assert_eq!(once.mul_add(Double(b), Double(-1.0)).get(), -f64::EPSILON * f64::EPSILON);
+        assert_eq!(
+            once.mul_add(Double(b), Double(-1.0)).get(),
+            -f64::EPSILON * f64::EPSILON
+        );
         assert_eq!(twice.mul_add(Double(b), Double(-1.0)).get(), 0.0);
     }
 }

@@ -3,6 +3,7 @@
 //! | module | what it gives |
 //! |---|---|
 //! | [`lane`] | one formula for one number or several side by side |
+//! | [`planes`] | one formula over a stack, a block of rows at a time |
 //! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
@@ -16,5 +17,6 @@ pub mod dispatch;
 pub mod double_double;
 pub mod eigen3;
 pub mod lane;
+pub mod planes;
 pub mod reduce;
 pub mod threads;

@@ -71,7 +71,11 @@ impl<const K: usize> Planes<K> {
 
     /// Writes the formula's results for the first `rows` rows to `target`.
     #[inline(always)]
-    pub fn map<L: Lane, F: Formula<K, M>, const M: usize>(&self, rows: usize, target: &mut Planes<M>) {
+    pub fn map<L: Lane, F: Formula<K, M>, const M: usize>(
+        &self,
+        rows: usize,
+        target: &mut Planes<M>,
+    ) {
         for row in 0..rows.min(ROWS) {
             target.set_lanes(row, F::apply(self.lanes::<L>(row)));
         }

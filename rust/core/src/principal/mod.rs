@@ -1,8 +1,13 @@
-//! Principal axes and tops: the frame in which a body's inertia tensor is diagonal, and what kind of top the
-//! body is.
+//! Principal axes and tops: the frame in which a body's inertia tensor is diagonal, and what kind of top the body is.
 
 pub mod axes;
+pub mod canonical;
+pub mod derivative;
 pub mod tops;
 
-pub use axes::{PrincipalAxes, principal_axes, principal_axes_many, with_sign_rule};
+pub use axes::{
+    PrincipalAxes, principal_axes, principal_axes_many, principal_moments_many, with_sign_rule,
+};
+pub use canonical::canonical;
+pub use derivative::{DEGENERATE_RTOL, PrincipalDerivative, derivative};
 pub use tops::{TOP_RTOL, Top, classify, gaps, ray_kappa};

@@ -109,3 +109,48 @@ pub fn ray_kappa(moments: &[f64; 3]) -> f64 {
     let &[i1, i2, i3] = moments;
     2.0 * (i1 / i2) * ((i3 - i2) / (i3 - i1)) - 1.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{TOP_RTOL, Top, classify, gaps, ray_kappa};
+
+    #[test]
+    fn classes_do_not_depend_on_the_scale() {
+        for scale in [5e-324 * 1e10, 1e-300, 1e-47, 1.0, 1e37, 1e300] {
+            let class = |moments: [f64; 3]| classify(&moments.map(|x| x * scale), TOP_RTOL);
+            assert_eq!(class([1.0, 1.0, 1.0]), Top::Spherical);
+            assert_eq!(class([1.0, 1.0, 2.0]), Top::Oblate);
+            assert_eq!(class([1.0, 2.0, 2.0]), Top::Prolate);
+            assert_eq!(class([2.0, 3.0, 4.0]), Top::Asymmetric);
+            assert_eq!(class([0.0, 1.0, 1.0]), Top::Linear);
+            assert_eq!(class([0.0, 0.0, 0.0]), Top::Point);
+        }
+    }
+
+    #[test]
+    fn what_belongs_to_no_body_has_no_class() {
+        let class = |moments| classify(&moments, 0.0);
+        assert_eq!(class([1.0, 1.0, 2.0 + 1e-12]), Top::None);
+        assert_eq!(class([1.0, 1.0, 2.0 + 4.0 * f64::EPSILON]), Top::Oblate);
+        assert_eq!(class([-1e-12, 1.0, 1.0]), Top::None);
+        assert_eq!(class([0.0, 1.0, 2.0]), Top::None);
+        assert_eq!(class([0.0, 0.0, 1.0]), Top::None);
+        assert_eq!(class([-3.0, -2.0, -1.0]), Top::None);
+        assert_eq!(class([-1.0, 0.0, 0.0]), Top::None);
+        assert_eq!(class([f64::NAN; 3]), Top::None);
+        assert_eq!(class([1.0, 1.0, f64::INFINITY]), Top::None);
+        assert_eq!(classify(&[1.0, 1.0, 2.0 + 1e-7], 1e-6), Top::Oblate);
+    }
+
+    #[test]
+    fn gaps_and_kappa() {
+        assert_eq!(gaps(&[1.0, 3.0, 4.0]), [0.5, 0.25]);
+        assert_eq!(gaps(&[0.0; 3]), [0.0, 0.0]);
+        assert_eq!(ray_kappa(&[1.0, 2.0, 2.0]), -1.0);
+        assert_eq!(ray_kappa(&[1.0, 1.0, 2.0]), 1.0);
+        assert_eq!(ray_kappa(&[0.0, 2.0, 2.0]), -1.0);
+        assert!(ray_kappa(&[1.0; 3]).is_nan());
+        // A, B, C = 1, 1/2, 1/4: (1 − 5/4)/(3/4).
+        assert!((ray_kappa(&[1.0, 2.0, 4.0]) + 1.0 / 3.0).abs() < 1e-15);
+    }
+}

@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::PyRigidBody;
-use crate::arrays::{Item, read, read_faces, read_or, read_rotation};
-use crate::errors::{to_py, wrong_shape};
+use crate::arrays::{read, read_faces, read_list, read_or, read_rotation};
+use crate::errors::to_py;
 use crate::solids::amount;
 use crate::stack::{Broadcast, Stack};
 
@@ -156,10 +156,16 @@ impl PyRigidBody {
         masses: &Bound<'_, PyAny>,
         positions: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        let masses: Stack<f64> = read(masses, "masses")?;
-        let positions: Stack<[f64; 3]> = read(positions, "positions")?;
-        let (mass_shape, &n) = split_count(&masses.shape, "masses", &[])?;
-        let (position_shape, &m) = split_count(&positions.shape, "positions", &[3])?;
+        let masses: Stack<f64> = read_list(masses, "masses", "..., n")?;
+        let positions: Stack<[f64; 3]> = read_list(positions, "positions", "..., n")?;
+        let ([mass_shape @ .., n], [position_shape @ .., m]) =
+            (&masses.shape[..], &positions.shape[..])
+        else {
+            return Err(PyValueError::new_err(
+                "masses and positions: expected lists of particles",
+            ));
+        };
+        let (n, m) = (*n, *m);
         if n != m {
             return Err(PyValueError::new_err(format!(
                 "masses and positions: expected shapes (..., n) and (..., n, 3), got n = {n} and n = {m}"
@@ -310,38 +316,13 @@ impl PyRigidBody {
     }
 }
 
-/// The last axis before the tail, and the axes before it.
-fn split_count<'a>(
-    shape: &'a [usize],
-    name: &str,
-    tail: &[usize],
-) -> PyResult<(&'a [usize], &'a usize)> {
-    shape
-        .split_last()
-        .map(|(count, leading)| (leading, count))
-        .ok_or_else(|| {
-            let expected: Vec<String> = tail.iter().map(usize::to_string).collect();
-            let expected = [&["...".to_owned(), "n".to_owned()], &expected[..]]
-                .concat()
-                .join(", ");
-            PyValueError::new_err(format!(
-                "{name}: expected shape ({expected}), got {}",
-                crate::stack::tuple(tail)
-            ))
-        })
-}
-
 /// Vertices and faces, with a negative index told as a fault of the mesh.
 pub(crate) fn mesh(
     py: Python<'_>,
     vertices: &Bound<'_, PyAny>,
     faces: &Bound<'_, PyAny>,
 ) -> PyResult<TriangleMesh> {
-    let vertices: Stack<[f64; 3]> = read(vertices, "vertices")?;
-    if vertices.shape.len() != 1 {
-        let shape = [&vertices.shape[..], <[f64; 3]>::TAIL].concat();
-        return Err(wrong_shape("vertices", &[3], &shape));
-    }
+    let vertices: Stack<[f64; 3]> = read_list(vertices, "vertices", "n")?;
     let faces = read_faces(faces)?.map_err(|(face, index)| {
         let fault = MeshFault::IndexOutOfRange {
             face,

@@ -28,6 +28,12 @@ impl PyRigidBody {
             .ok_or_else(|| PyTypeError::new_err("one body has no length: it is not a stack"))
     }
 
+    /// A body is always true: `len` is about the shape of the stack.
+    #[expect(clippy::unused_self, reason = "Python asks an instance")]
+    fn __bool__(&self) -> bool {
+        true
+    }
+
     /// NumPy's indexing over the stack: integers, slices, masks, arrays, ``...`` and ``None``.
     fn __getitem__(&self, py: Python<'_>, key: &Bound<'_, PyAny>) -> PyResult<Self> {
         let np = numpy(py)?;

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyNotImplemented;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{read, read_or, read_rotation, write, write_numbers};
+use crate::arrays::{read, read_or, read_rotation, required, write, write_numbers};
 use crate::principal::to_python;
 use crate::stack::{Broadcast, Stack};
 
@@ -104,7 +104,7 @@ impl PyRigidBody {
     /// Examples
     /// --------
     /// >>> from polhode import solids
-    /// >>> solids.sphere(1.0, mass=5.0).moment_about((1, 1, 0))
+    /// >>> solids.sphere(1.0, mass=5.0).moment_about((0, 0, 3))
     /// 2.0
     #[pyo3(signature = (axis, point=None), text_signature = "($self, axis, point='center_of_mass')")]
     fn moment_about<'py>(
@@ -195,7 +195,8 @@ impl PyRigidBody {
     /// >>> solids.box((1, 2, 3), mass=12.0).rotated(quarter_turn).inertia.diagonal()
     /// array([10., 13.,  5.])
     fn rotated(&self, py: Python<'_>, rotation: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let rotations: Stack<Matrix3<f64>> = read_rotation(Some(rotation), "rotation")?;
+        let rotations: Stack<Matrix3<f64>> =
+            read_rotation(Some(required(rotation, "rotation")?), "rotation")?;
         let grid = self.with("rotation", &rotations)?;
         Ok(grid
             .try_map(py, |[b, r]| self.bodies[b].rotated(&rotations[r]))?

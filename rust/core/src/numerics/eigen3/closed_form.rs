@@ -18,7 +18,7 @@ const NULL: f64 = 1e-290;
 pub(super) struct ClosedForm<L> {
     /// The decomposition, signs as they come.
     pub(super) spectrum: Spectrum<L>,
-    /// Whether the matrix is diagonal.
+    /// Whether the matrix is diagonal, or so nearly that the squares of the other elements underflow.
     pub(super) is_diagonal: bool,
 }
 
@@ -28,21 +28,27 @@ pub(super) fn closed_form<L: Lane>(a: &Symmetric<L>) -> ClosedForm<L> {
     let scaled = a.scaled();
     let deviator = Deviator::of(&scaled.matrix);
     let b = &deviator.matrix;
-    let v = isolated_eigenvector(b, deviator.isolated_eigenvalue());
+    let mu = deviator.isolated_eigenvalue();
+    let v = isolated_eigenvector(b, mu);
     let (u, w) = complement(v);
     let pair = Pair::of(b, u, w);
     let (lower_vector, upper_vector) = pair.vectors(u, w);
-    let lower = deviator.back(&scaled, pair.mean - pair.radius);
-    let upper = deviator.back(&scaled, pair.mean + pair.radius);
-    // The trace of B is zero.
-    let isolated = deviator.back(&scaled, -(pair.mean + pair.mean));
+    // The trace of B is zero, so the mean of the pair is −μ/2: better than the trace of the 2×2 matrix would tell.
+    let mean = mu * L::new(-0.5);
+    let isolated = deviator.back(&scaled, mu);
+    let lower = deviator.back(&scaled, mean - pair.radius);
+    let upper = deviator.back(&scaled, mean + pair.radius);
     let (values, vectors) = if deviator.determinant < L::new(0.0) {
         ([isolated, lower, upper], [v, lower_vector, upper_vector])
     } else {
         ([lower, upper, isolated], [lower_vector, upper_vector, v])
     };
     ClosedForm {
-        spectrum: Spectrum { values, vectors, poison: scaled.poison },
+        spectrum: Spectrum {
+            values,
+            vectors,
+            poison: scaled.poison,
+        },
         is_diagonal: deviator.off_diagonal == L::new(0.0),
     }
 }
@@ -58,11 +64,23 @@ fn isolated_eigenvector<L: Lane>(b: &Symmetric<L>, mu: L) -> [L; 3] {
     let k02 = b.a01.mul_add(b.a12, -(b.a02 * e1));
     let k12 = b.a01.mul_add(b.a02, -(b.a12 * e0));
     // The diagonal of v vᵀ shows which column is the longest.
-    let longer = if k00 < k11 { [k01, k11, k12] } else { [k00, k01, k02] };
-    let [x, y, z] = if k00.max(k11) < k22 { [k02, k12, k22] } else { longer };
+    let longer = if k00 < k11 {
+        [k01, k11, k12]
+    } else {
+        [k00, k01, k02]
+    };
+    let [x, y, z] = if k00.max(k11) < k22 {
+        [k02, k12, k22]
+    } else {
+        longer
+    };
     let square = x.mul_add(x, y.mul_add(y, z * z));
     let inverse = L::new(1.0) / square.max(L::new(NULL)).sqrt();
-    let along_z = if square > L::new(0.0) { z * inverse } else { L::new(1.0) };
+    let along_z = if square > L::new(0.0) {
+        z * inverse
+    } else {
+        L::new(1.0)
+    };
     [x * inverse, y * inverse, along_z]
 }
 
@@ -80,35 +98,38 @@ fn complement<L: Lane>([x, y, z]: [L; 3]) -> ([L; 3], [L; 3]) {
 
 /// The 2×2 problem in the plane of u and w.
 struct Pair<L> {
-    /// The mean of the two eigenvalues, and half their distance.
-    mean: L,
+    /// Half the distance of the two eigenvalues.
     radius: L,
+    /// Half the difference of the diagonal elements of u and of w.
+    half_difference: L,
     /// Cosine and sine of the angle from u or w, whichever has the larger diagonal element, to the upper eigenvector.
     cosine: L,
     sine: L,
-    /// Half the difference of the diagonal elements of u and of w.
-    half_difference: L,
 }
 
 impl<L: Lane> Pair<L> {
     #[inline(always)]
     fn of(b: &Symmetric<L>, u: [L; 3], w: [L; 3]) -> Self {
         let (bu, bw) = (b.times_vector(u), b.times_vector(w));
-        let (m00, m01, m11) = (dot(u, bu), dot(w, bu), dot(w, bw));
-        let half = L::new(0.5);
-        let half_difference = (m00 - m11) * half;
-        let radius = half_difference.mul_add(half_difference, m01 * m01).sqrt();
-        // (|h| + ρ, m₀₁) is along the eigenvector, and its first component does not cancel.
+        let off_diagonal = dot(w, bu);
+        let half_difference = (dot(u, bu) - dot(w, bw)) * L::new(0.5);
+        let radius = half_difference
+            .mul_add(half_difference, off_diagonal * off_diagonal)
+            .sqrt();
+        // (|h| + ρ, m) is along the upper eigenvector, and its first component does not cancel.
         let along = half_difference.abs() + radius;
-        let square = along.mul_add(along, m01 * m01);
+        let square = along.mul_add(along, off_diagonal * off_diagonal);
         let inverse = L::new(1.0) / square.max(L::new(NULL)).sqrt();
         let split = square > L::new(NULL);
         Self {
-            mean: (m00 + m11) * half,
             radius,
-            cosine: if split { along * inverse } else { L::new(1.0) },
-            sine: if split { m01 * inverse } else { L::new(0.0) },
             half_difference,
+            cosine: if split { along * inverse } else { L::new(1.0) },
+            sine: if split {
+                off_diagonal * inverse
+            } else {
+                L::new(0.0)
+            },
         }
     }
 
@@ -127,5 +148,9 @@ impl<L: Lane> Pair<L> {
 
 #[inline(always)]
 fn combine<L: Lane>(p: L, u: [L; 3], q: L, w: [L; 3]) -> [L; 3] {
-    [p.mul_add(u[0], q * w[0]), p.mul_add(u[1], q * w[1]), p.mul_add(u[2], q * w[2])]
+    [
+        p.mul_add(u[0], q * w[0]),
+        p.mul_add(u[1], q * w[1]),
+        p.mul_add(u[2], q * w[2]),
+    ]
 }

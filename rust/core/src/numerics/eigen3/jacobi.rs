@@ -21,6 +21,8 @@ const NEGLIGIBLE: f64 = 5e-32;
 pub(super) struct Iterate<L> {
     /// The diagonal.
     d: [L; 3],
+    /// What the rounding of the diagonal has left so far.
+    rest: [L; 3],
     o01: L,
     o02: L,
     o12: L,
@@ -31,8 +33,8 @@ pub(super) struct Iterate<L> {
 }
 
 /// The numbers of an iterate, of which one says whether another sweep is needed: 1 or 0.
-pub(super) const NUMBERS: usize = 18;
-pub(super) const UNFINISHED: usize = 17;
+pub(super) const NUMBERS: usize = 21;
+pub(super) const UNFINISHED: usize = 20;
 
 /// The decomposition of one matrix, signs as they come.
 #[inline(always)]
@@ -49,10 +51,15 @@ pub(super) fn jacobi<L: Lane>(a: &Symmetric<L>) -> Spectrum<L> {
 impl<L: Lane> Iterate<L> {
     #[inline(always)]
     pub(super) fn start(a: &Symmetric<L>) -> Self {
-        let Scaled { matrix, unscale, poison } = a.scaled();
+        let Scaled {
+            matrix,
+            unscale,
+            poison,
+        } = a.scaled();
         let (zero, one) = (L::new(0.0), L::new(1.0));
         Self {
             d: [matrix.a00, matrix.a11, matrix.a22],
+            rest: [zero; 3],
             o01: matrix.a01,
             o02: matrix.a02,
             o12: matrix.a12,
@@ -66,27 +73,43 @@ impl<L: Lane> Iterate<L> {
     #[inline(always)]
     pub(super) fn is_unfinished(&self) -> bool {
         let [d0, d1, d2] = self.d;
-        is_significant(self.o01, d0, d1) | is_significant(self.o02, d0, d2) | is_significant(self.o12, d1, d2)
+        is_significant(self.o01, d0, d1)
+            | is_significant(self.o02, d0, d2)
+            | is_significant(self.o12, d1, d2)
     }
 
     /// One rotation in each plane.
     #[inline(always)]
     pub(super) fn swept(mut self) -> Self {
-        let Self { d: [d0, d1, d2], o01, o02, o12, v: [v0, v1, v2], .. } = &mut self;
-        rotate((d0, d1), o01, (o02, o12), (v0, v1));
-        rotate((d0, d2), o02, (o01, o12), (v0, v2));
-        rotate((d1, d2), o12, (o01, o02), (v1, v2));
+        let Self {
+            d: [d0, d1, d2],
+            rest: [r0, r1, r2],
+            o01,
+            o02,
+            o12,
+            v: [v0, v1, v2],
+            ..
+        } = &mut self;
+        rotate((d0, d1), (r0, r1), o01, (o02, o12), (v0, v1));
+        rotate((d0, d2), (r0, r2), o02, (o01, o12), (v0, v2));
+        rotate((d1, d2), (r1, r2), o12, (o01, o02), (v1, v2));
         self
     }
 
     /// The decomposition that the iteration has come to, signs as they come.
     #[inline(always)]
     pub(super) fn spectrum(mut self) -> Spectrum<L> {
+        let ([d0, d1, d2], [r0, r1, r2]) = (self.d, self.rest);
+        self.d = [d0 + r0, d1 + r1, d2 + r2];
         self.order(0, 1);
         self.order(1, 2);
         self.order(0, 1);
         let values = self.d.map(|x| (x + self.poison) * self.unscale);
-        Spectrum { values, vectors: self.v, poison: self.poison }
+        Spectrum {
+            values,
+            vectors: self.v,
+            poison: self.poison,
+        }
     }
 
     /// Exchanges columns i and j where their values are out of order, turning one so that det V stays +1.
@@ -103,16 +126,59 @@ impl<L: Lane> Iterate<L> {
     #[inline(always)]
     pub(super) fn into_numbers(self) -> [L; NUMBERS] {
         let unfinished = L::new(if self.is_unfinished() { 1.0 } else { 0.0 });
-        let Self { d: [d0, d1, d2], o01, o02, o12, v: [a, b, c], unscale, poison } = self;
+        let Self {
+            d: [d0, d1, d2],
+            rest: [r0, r1, r2],
+            o01,
+            o02,
+            o12,
+            v: [a, b, c],
+            unscale,
+            poison,
+        } = self;
         let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = [a, b, c];
-        [d0, d1, d2, o01, o02, o12, ax, ay, az, bx, by, bz, cx, cy, cz, unscale, poison, unfinished]
+        [
+            d0, d1, d2, r0, r1, r2, o01, o02, o12, ax, ay, az, bx, by, bz, cx, cy, cz, unscale,
+            poison, unfinished,
+        ]
     }
 
     #[inline(always)]
     pub(super) fn from_numbers(numbers: [L; NUMBERS]) -> Self {
-        let [d0, d1, d2, o01, o02, o12, ax, ay, az, bx, by, bz, cx, cy, cz, unscale, poison, _] = numbers;
+        let [
+            d0,
+            d1,
+            d2,
+            r0,
+            r1,
+            r2,
+            o01,
+            o02,
+            o12,
+            ax,
+            ay,
+            az,
+            bx,
+            by,
+            bz,
+            cx,
+            cy,
+            cz,
+            unscale,
+            poison,
+            _,
+        ] = numbers;
         let v = [[ax, ay, az], [bx, by, bz], [cx, cy, cz]];
-        Self { d: [d0, d1, d2], o01, o02, o12, v, unscale, poison }
+        Self {
+            d: [d0, d1, d2],
+            rest: [r0, r1, r2],
+            o01,
+            o02,
+            o12,
+            v,
+            unscale,
+            poison,
+        }
     }
 }
 
@@ -126,6 +192,7 @@ fn is_significant<L: Lane>(o: L, dp: L, dq: L) -> bool {
 #[inline(always)]
 fn rotate<L: Lane>(
     (dp, dq): (&mut L, &mut L),
+    (rp, rq): (&mut L, &mut L),
     o: &mut L,
     (op, oq): (&mut L, &mut L),
     (vp, vq): (&mut [L; 3], &mut [L; 3]),
@@ -136,18 +203,29 @@ fn rotate<L: Lane>(
     let root = h.mul_add(h, g * g).sqrt();
     let smaller = g / (h.abs() + root).max(L::new(1e-300)).copysign(h);
     let within = smaller.min(one).max(-one);
-    let t = if is_significant(*o, *dp, *dq) { within } else { zero };
+    let t = if is_significant(*o, *dp, *dq) {
+        within
+    } else {
+        zero
+    };
     let c = one / t.mul_add(t, one).sqrt();
     let s = t * c;
-    let shift = t * *o;
-    *dp = *dp - shift;
-    *dq = *dq + shift;
+    shift(-t, *o, dp, rp);
+    shift(t, *o, dq, rq);
     *o = zero;
     turn(c, s, op, oq);
     let ([xp, yp, zp], [xq, yq, zq]) = (vp, vq);
     turn(c, s, xp, xq);
     turn(c, s, yp, yq);
     turn(c, s, zp, zq);
+}
+
+/// d ← d + t o, and to the rest r what the rounding of the sum leaves.
+#[inline(always)]
+fn shift<L: Lane>(t: L, o: L, d: &mut L, r: &mut L) {
+    let sum = t.mul_add(o, *d);
+    *r = *r + t.mul_add(o, *d - sum);
+    *d = sum;
 }
 
 /// (a, b) ← (c a − s b, s a + c b).

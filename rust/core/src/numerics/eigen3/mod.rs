@@ -99,7 +99,15 @@ impl Kernel for SignRule<'_> {
     #[inline(always)]
     fn run<L: Lane>(self) -> Matrix3<f64> {
         let vectors = self.0.data.0.map(|column| column.map(L::new));
-        let spectrum = Spectrum { values: [L::new(0.0); 3], vectors, poison: L::new(0.0) };
-        spectrum.with_sign_rule().vectors.map(|column| column.map(L::get)).into()
+        let spectrum = Spectrum {
+            values: [L::new(0.0); 3],
+            vectors,
+            poison: L::new(0.0),
+        };
+        spectrum
+            .with_sign_rule()
+            .vectors
+            .map(|column| column.map(L::get))
+            .into()
     }
 }

@@ -42,8 +42,14 @@ impl Kernel for One {
     fn run<L: Lane>(self) -> Self::Output {
         let a = Symmetric::from_lower_triangle(lower_triangle(&self.0).map(L::new));
         let found = closed_form(&a);
-        let spectrum = if found.needs_jacobi() { jacobi(&a) } else { found.spectrum };
-        let Spectrum { values, vectors, .. } = spectrum.with_sign_rule();
+        let spectrum = if found.needs_jacobi() {
+            jacobi(&a)
+        } else {
+            found.spectrum
+        };
+        let Spectrum {
+            values, vectors, ..
+        } = spectrum.with_sign_rule();
         (values.map(L::get), vectors.map(|column| column.map(L::get)))
     }
 }
@@ -68,7 +74,11 @@ impl<const N: usize> Kernel for Stack<'_, N> {
 
     #[inline(always)]
     fn run<L: Lane>(mut self) {
-        let mut work = Work { matrices: Planes::ZERO, iterates: Planes::ZERO, results: Planes::ZERO };
+        let mut work = Work {
+            matrices: Planes::ZERO,
+            iterates: Planes::ZERO,
+            results: Planes::ZERO,
+        };
         let mut queue = [0; 2 * ROWS];
         let mut queued = 0;
         let mut start = 0;
@@ -94,7 +104,8 @@ impl<const N: usize> Stack<'_, N> {
     #[inline(always)]
     fn closed_form_rows<L: Lane>(&mut self, rows: Range<usize>, work: &mut Work<N>) {
         read_rows(&self.matrices[rows.clone()], &mut work.matrices);
-        work.matrices.map::<L, ByClosedForm, N>(rows.len(), &mut work.results);
+        work.matrices
+            .map::<L, ByClosedForm, N>(rows.len(), &mut work.results);
         write_values(&work.results, &mut self.values[rows.clone()]);
         if N == WITH_VECTORS {
             write_vectors(&work.results, &mut self.vectors[rows]);
@@ -106,13 +117,15 @@ impl<const N: usize> Stack<'_, N> {
         for (i, &row) in rows.iter().enumerate() {
             work.matrices.set(i, lower_triangle(&self.matrices[row]));
         }
-        work.matrices.map::<L, Start, NUMBERS>(rows.len(), &mut work.iterates);
+        work.matrices
+            .map::<L, Start, NUMBERS>(rows.len(), &mut work.iterates);
         let mut sweep = 0;
         while sweep < SWEEPS && work.iterates.any(UNFINISHED, rows.len()) {
             work.iterates.update::<L, Sweep>(rows.len());
             sweep += 1;
         }
-        work.iterates.map::<L, Finish, N>(rows.len(), &mut work.results);
+        work.iterates
+            .map::<L, Finish, N>(rows.len(), &mut work.results);
         for (i, &row) in rows.iter().enumerate() {
             self.values[row] = work.results.get(i, 0);
             if N == WITH_VECTORS {
@@ -187,8 +200,14 @@ impl<const N: usize> Formula<NUMBERS, N> for Finish {
 #[inline(always)]
 fn results<L: Lane, const N: usize>(spectrum: Spectrum<L>, again: bool) -> [L; N] {
     let again = L::new(if again { 1.0 } else { 0.0 });
-    let Spectrum { values: [w0, w1, w2], vectors: [a, b, c], .. } = spectrum.with_sign_rule();
-    let all = [w0, w1, w2, again, a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2]];
+    let Spectrum {
+        values: [w0, w1, w2],
+        vectors: [a, b, c],
+        ..
+    } = spectrum.with_sign_rule();
+    let all = [
+        w0, w1, w2, again, a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2],
+    ];
     let mut some = [again; N];
     let mut k = 0;
     while k < N {

@@ -41,14 +41,24 @@ pub(super) fn lower_triangle(a: &[f64; 9]) -> [f64; 6] {
 impl<L: Lane> Symmetric<L> {
     #[inline(always)]
     pub(super) fn from_lower_triangle([a00, a01, a11, a02, a12, a22]: [L; 6]) -> Self {
-        Self { a00, a01, a02, a11, a12, a22 }
+        Self {
+            a00,
+            a01,
+            a02,
+            a11,
+            a12,
+            a22,
+        }
     }
 
     /// The largest magnitude among the elements.
     #[inline(always)]
     pub(super) fn max_abs(&self) -> L {
         let diagonal = self.a00.abs().max(self.a11.abs()).max(self.a22.abs());
-        diagonal.max(self.a01.abs()).max(self.a02.abs()).max(self.a12.abs())
+        diagonal
+            .max(self.a01.abs())
+            .max(self.a02.abs())
+            .max(self.a12.abs())
     }
 
     #[inline(always)]
@@ -69,7 +79,11 @@ impl<L: Lane> Symmetric<L> {
         let (scale, unscale) = self.max_abs().power_of_two_scale();
         let matrix = self.times(scale);
         let sum = matrix.a00 + matrix.a01 + matrix.a02 + matrix.a11 + matrix.a12 + matrix.a22;
-        Scaled { matrix, unscale, poison: sum.abs() * L::new(0.0) }
+        Scaled {
+            matrix,
+            unscale,
+            poison: sum.abs() * L::new(0.0),
+        }
     }
 
     #[inline(always)]
@@ -94,14 +108,22 @@ impl<L: Lane> Spectrum<L> {
     pub(super) fn with_sign_rule(self) -> Self {
         let ([v0, v1, v2], poison) = (self.vectors, self.poison);
         let (s0, s1) = (leading_sign(v0), leading_sign(v1));
-        let vectors = [times(v0, s0, poison), times(v1, s1, poison), times(v2, s0 * s1, poison)];
+        let vectors = [
+            times(v0, s0, poison),
+            times(v1, s1, poison),
+            times(v2, s0 * s1, poison),
+        ];
         Self { vectors, ..self }
     }
 }
 
 #[inline(always)]
 fn times<L: Lane>(v: [L; 3], sign: L, poison: L) -> [L; 3] {
-    [v[0].mul_add(sign, poison), v[1].mul_add(sign, poison), v[2].mul_add(sign, poison)]
+    [
+        v[0].mul_add(sign, poison),
+        v[1].mul_add(sign, poison),
+        v[2].mul_add(sign, poison),
+    ]
 }
 
 /// ±1: the sign of the first component within 1e-8 of the largest. Components that differ only by rounding count as

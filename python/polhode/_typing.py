@@ -1,0 +1,18 @@
+"""Types that signatures speak of."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["SupportsQuaternion"]
+
+
+class SupportsQuaternion(Protocol):
+    """A rotation of another library, such as SciPy's ``Rotation``."""
+
+    def as_quat(self) -> NDArray[np.float64]:
+        """Return unit quaternions (x, y, z, w), shape (..., 4)."""

@@ -1,0 +1,133 @@
+//! What makes mass properties possible, each law relative to the tensor's own size.
+
+use nalgebra::Matrix3;
+
+use crate::error::{Error, all_finite, finite};
+
+/// Violations of a law up to this times the trace of the tensor are rounding, not physics.
+pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Asymmetry up to this times the largest element is rounding: the mean of the two elements is taken.
+pub const ASYMMETRY: f64 = 8.0 * f64::EPSILON;
+
+/// m > 0 and finite.
+pub(super) fn check_mass(mass: f64) -> Result<(), Error> {
+    finite("mass", mass)?;
+    if mass > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::NonPositiveMass { mass })
+    }
+}
+
+/// 0 ≤ rtol < 1.
+pub(super) fn check_rtol(rtol: f64) -> Result<(), Error> {
+    finite("rtol", rtol)?;
+    if (0.0..1.0).contains(&rtol) {
+        return Ok(());
+    }
+    Err(Error::OutOfDomain {
+        what: "rtol",
+        law: "at least 0 and less than 1",
+        value: rtol,
+    })
+}
+
+/// Ascending moments: none negative, and no two less than the third. `noise` is an absolute, `allowed` a relative bound of
+/// rounding.
+pub(super) fn check_moments(
+    moments: &[f64; 3],
+    noise: f64,
+    allowed: f64,
+    hint: &'static str,
+) -> Result<(), Error> {
+    let [i1, i2, i3] = *moments;
+    if i1 < -noise.max(allowed * i3) {
+        return Err(Error::NegativeMoment {
+            moments: *moments,
+            hint,
+        });
+    }
+    let deficit = i3 - i2 - i1;
+    // In fractions of the largest, so that moments near the ends of the float64 range do not overflow.
+    let relative = (deficit / i3) / (1.0 + i2 / i3 + i1 / i3);
+    if i3 > 0.0 && relative > allowed && deficit > noise {
+        return Err(Error::TriangleInequality {
+            moments: *moments,
+            deficit,
+            relative,
+        });
+    }
+    Ok(())
+}
+
+/// The mean of a tensor and its transpose, when they differ by rounding or by `rtol` at most.
+pub(super) fn symmetrized(
+    what: &'static str,
+    a: &Matrix3<f64>,
+    rtol: f64,
+) -> Result<Matrix3<f64>, Error> {
+    all_finite(what, a)?;
+    check_rtol(rtol)?;
+    check_symmetry(what, a, ASYMMETRY.max(rtol))?;
+    Ok(mean_of_halves(a))
+}
+
+/// `|a_ij − a_ji| ≤ allowed · max |a|`; a tensor with an element that is not finite passes.
+///
+/// # Errors
+/// [`Error::NotSymmetric`] with the first pair that differs.
+pub fn check_symmetry(what: &'static str, a: &Matrix3<f64>, allowed: f64) -> Result<(), Error> {
+    let largest = a.abs().max();
+    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+        let (a, b) = (a[(row, column)], a[(column, row)]);
+        let relative = (a / largest - b / largest).abs();
+        if relative > allowed {
+            return Err(Error::NotSymmetric {
+                what,
+                row,
+                column,
+                a,
+                b,
+                relative,
+                allowed,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// `RᵀR = 1` and `det R = +1`, to what a few multiplications of rotations may leave.
+pub(crate) fn check_rotation(what: &'static str, rotation: &Matrix3<f64>) -> Result<(), Error> {
+    all_finite(what, rotation)?;
+    let deviation = (rotation.tr_mul(rotation) - Matrix3::identity())
+        .abs()
+        .max();
+    let determinant = rotation.determinant();
+    if deviation <= 1e-12 && determinant > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::NotARotation {
+            what,
+            deviation,
+            determinant,
+        })
+    }
+}
+
+/// `(A + Aᵀ)/2`, halved before it is added so that nothing overflows.
+pub(super) fn mean_of_halves(a: &Matrix3<f64>) -> Matrix3<f64> {
+    let mut mean = *a;
+    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+        let (x, y) = (a[(row, column)], a[(column, row)]);
+        let m = if x == y { x } else { 0.5 * x + 0.5 * y };
+        mean[(row, column)] = m;
+        mean[(column, row)] = m;
+    }
+    mean
+}
+
+/// The trace, by the sizes of its elements.
+pub(super) fn trace(a: &Matrix3<f64>) -> f64 {
+    a[(0, 0)].abs() + a[(1, 1)].abs() + a[(2, 2)].abs()
+}

@@ -1,0 +1,119 @@
+//! Canonical axes: where a body leaves its axes free, those nearest to the body frame.
+//!
+//! Every axis of a sphere is principal, and every axis across the symmetry axis of a top. An eigensolver then returns axes
+//! that hang on the last bits of the tensor. The canonical choice depends on the body alone.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::axes::{PrincipalAxes, with_sign_rule};
+
+/// Projections whose squares are this close count as equal, and the earlier body axis is taken.
+const TIE: f64 = 1e-8;
+
+/// The same moments with the free axes turned to the body frame; moments closer than `rtol` times the largest magnitude
+/// count as equal.
+///
+/// All three equal: the axes are the body's own. Two equal: of the body axes the one with the largest projection on the
+/// plane of the pair (x before y before z where they tie) gives the pair's first axis its direction. The sign rule then
+/// holds as ever. Where no two are equal, or a moment is not finite, nothing changes.
+///
+/// V diag(I) Vᵀ then equals the tensor to `rtol` rather than to rounding.
+#[must_use]
+pub fn canonical(principal: &PrincipalAxes, rtol: f64) -> PrincipalAxes {
+    let [i1, i2, i3] = principal.moments;
+    let close = rtol * i1.abs().max(i3.abs());
+    let axes = match (i2 - i1 <= close, i3 - i2 <= close) {
+        (true, true) => Matrix3::identity(),
+        (true, false) => {
+            let symmetry = principal.axes.column(2).into_owned();
+            let first = nearest_across(&symmetry);
+            with_sign_rule(Matrix3::from_columns(&[
+                first,
+                symmetry.cross(&first),
+                symmetry,
+            ]))
+        }
+        (false, true) => {
+            let symmetry = principal.axes.column(0).into_owned();
+            let first = nearest_across(&symmetry);
+            with_sign_rule(Matrix3::from_columns(&[
+                symmetry,
+                first,
+                symmetry.cross(&first),
+            ]))
+        }
+        (false, false) => principal.axes,
+    };
+    PrincipalAxes {
+        moments: principal.moments,
+        axes,
+    }
+}
+
+/// The direction, across the unit vector n, of the projection of the body axis that has the longest.
+fn nearest_across(n: &Vector3<f64>) -> Vector3<f64> {
+    // The projection of e_k has the square 1 − n_k².
+    let least = n.component_mul(n).min();
+    let k = n.iter().position(|x| x * x <= least + TIE).unwrap_or(0);
+    let mut projection = -n * n[k];
+    projection[k] += 1.0;
+    projection.normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Rotation3, Vector3};
+
+    use super::canonical;
+    use crate::principal::principal_axes;
+
+    #[test]
+    fn a_sphere_has_the_body_axes() {
+        let found = principal_axes(&(Matrix3::identity() * 0.4 + Matrix3::repeat(1e-17)));
+        assert_eq!(canonical(&found, 1e-6).axes, Matrix3::identity());
+    }
+
+    #[test]
+    fn the_pair_of_a_top_lies_along_the_body_axes_it_can_reach() {
+        for moments in [[1.0, 1.0, 1.5], [1.0, 2.0, 2.0], [0.0, 2.0, 2.0]] {
+            let found = canonical(
+                &principal_axes(&Matrix3::from_diagonal(&moments.into())),
+                1e-6,
+            );
+            assert_eq!(found.axes, Matrix3::identity(), "{moments:?}");
+        }
+        let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), 0.3).into_inner();
+        let oblate = turn * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 1.5)) * turn.transpose();
+        assert!(
+            (canonical(&principal_axes(&oblate), 1e-6).axes - turn)
+                .abs()
+                .max()
+                < 1e-15
+        );
+    }
+
+    #[test]
+    fn the_canonical_axes_diagonalise_the_tensor_and_obey_the_sign_rule() {
+        for seed in 0..200 {
+            let angle = f64::from(seed) * 0.7;
+            let turn = Rotation3::from_euler_angles(angle, 2.0 * angle, 3.0 * angle).into_inner();
+            let tensor =
+                turn * Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.0)) * turn.transpose();
+            let tensor = (tensor + tensor.transpose()) * 0.5;
+            let found = canonical(&principal_axes(&tensor), 1e-6);
+            let back =
+                found.axes * Matrix3::from_diagonal(&found.moments.into()) * found.axes.transpose();
+            assert!((back - tensor).abs().max() < 4e-15);
+            assert!((found.axes.determinant() - 1.0).abs() < 1e-15);
+            assert_eq!(super::with_sign_rule(found.axes), found.axes);
+        }
+    }
+
+    #[test]
+    fn three_different_moments_leave_nothing_free() {
+        let found = principal_axes(&Matrix3::new(3.0, 0.1, 0.2, 0.1, 4.0, 0.3, 0.2, 0.3, 5.0));
+        assert_eq!(canonical(&found, 1e-6), found);
+        let nan = principal_axes(&Matrix3::repeat(f64::NAN));
+        assert!(canonical(&nan, 1e-6).axes.iter().all(|x| x.is_nan()));
+    }
+}

@@ -1,0 +1,175 @@
+//! What must hold for every body, at every scale.
+
+// The strategies are part of the tests.
+#![allow(clippy::expect_used)]
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::RigidBody;
+use polhode::mass::particles::particles;
+use polhode::motion::angular_momentum::angular_momentum;
+use polhode::motion::euler_equations::EulerEquations;
+use polhode::motion::kinetic_energy::kinetic_energy;
+use polhode::motion::loads::Term;
+use polhode::motion::simulate::{State, Tolerance, simulate};
+use proptest::prelude::*;
+use std::ops::ControlFlow;
+
+fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
+    [-size..size, -size..size, -size..size].prop_map(Vector3::from)
+}
+
+fn rotation() -> impl Strategy<Value = Matrix3<f64>> {
+    (vector(1.0), 0.0..std::f64::consts::PI).prop_filter_map("an axis", |(axis, angle)| {
+        let axis = nalgebra::Unit::try_new(axis, 1e-3)?;
+        Some(
+            UnitQuaternion::from_axis_angle(&axis, angle)
+                .to_rotation_matrix()
+                .into_inner(),
+        )
+    })
+}
+
+/// Bodies from their second moments, which makes every one of them possible: solids, plates and needles of all scales.
+fn any_body() -> impl Strategy<Value = RigidBody> {
+    let second_moments = [-6.0..0.0_f64, -6.0..0.0_f64, -6.0..0.0_f64];
+    (second_moments, -12.0..12.0_f64, rotation(), vector(5.0)).prop_map(
+        |(s, scale, axes, center)| {
+            let [a, b, c] = s.map(|exponent| 10.0_f64.powf(exponent + scale));
+            RigidBody::from_principal(
+                10.0_f64.powf(scale),
+                &[b + c, a + c, a + b],
+                &axes,
+                &center,
+                0.0,
+            )
+            .expect("a possible body")
+        },
+    )
+}
+
+/// The size that errors of a tensor are relative to.
+fn size(inertia: &Matrix3<f64>) -> f64 {
+    inertia.trace()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+
+    #[test]
+    fn moments_obey_the_triangle_inequality_and_sum_to_the_trace(body in any_body()) {
+        let [i1, i2, i3] = body.principal().moments;
+        prop_assert!(0.0 <= i1 && i1 <= i2 && i2 <= i3);
+        prop_assert!(i3 - i2 - i1 <= 1e-15 * i3);
+        prop_assert!((i1 + i2 + i3 - body.inertia().trace()).abs() <= 1e-14 * i3);
+    }
+
+    #[test]
+    fn axes_diagonalize_the_tensor_and_are_right_handed(body in any_body()) {
+        let principal = body.principal();
+        let v = principal.axes;
+        let diagonal = v.transpose() * body.inertia() * v;
+        let expected = Matrix3::from_diagonal(&Vector3::from(principal.moments));
+        prop_assert!((diagonal - expected).abs().max() <= 1e-14 * size(&body.inertia()));
+        prop_assert!((v.determinant() - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn moving_a_body_changes_nothing_about_its_center_of_mass(body in any_body(), d in vector(1e8)) {
+        let moved = body.translated(&d).expect("finite");
+        prop_assert_eq!(moved.inertia(), body.inertia());
+        prop_assert_eq!(moved.center_of_mass(), body.center_of_mass() + d);
+    }
+
+    #[test]
+    fn turning_a_body_turns_its_tensor(body in any_body(), r in rotation()) {
+        let turned = body.rotated(&r).expect("rotation");
+        prop_assert_eq!(turned.principal().moments, body.principal().moments);
+        let expected = r * body.inertia() * r.transpose();
+        prop_assert!((turned.inertia() - expected).abs().max() <= 1e-14 * size(&expected));
+        prop_assert!((turned.center_of_mass() - r * body.center_of_mass()).norm() <= 1e-14 * 10.0);
+    }
+
+    #[test]
+    fn bodies_add_about_any_point(a in any_body(), b in any_body(), p in vector(5.0)) {
+        let sum = a.combined(&b).expect("finite");
+        let expected = a.inertia_about(&p) + b.inertia_about(&p);
+        prop_assert!((sum.inertia_about(&p) - expected).abs().max() <= 1e-13 * size(&expected));
+        let reverse = b.combined(&a).expect("finite");
+        prop_assert!((sum.inertia() - reverse.inertia()).abs().max() <= 1e-14 * size(&sum.inertia()));
+    }
+
+    #[test]
+    fn a_body_comes_back_from_its_numbers(body in any_body()) {
+        prop_assert_eq!(RigidBody::from_array(&body.to_array()), Ok(body));
+    }
+
+    #[test]
+    fn energy_and_momentum_do_not_depend_on_the_point(
+        body in any_body(), omega in vector(3.0), v in vector(3.0), r in vector(3.0), p in vector(5.0),
+    ) {
+        // The same motion told of C and of P: v_P = v + ω×(P − C), R_P = R + P − C.
+        let c = body.center_of_mass();
+        let v_p = v + omega.cross(&(p - c));
+        let (of_c, of_p) = (kinetic_energy(&body, &omega, &v, &c), kinetic_energy(&body, &omega, &v_p, &p));
+        let largest = of_p.translational + of_p.mixed.abs() + of_p.rotational;
+        prop_assert_eq!(of_c.mixed, 0.0);
+        prop_assert!((of_c.total() - of_p.total()).abs() <= 1e-13 * largest);
+        let l_c = angular_momentum(&body, &omega, &v, &r, &c);
+        let l_p = angular_momentum(&body, &omega, &v_p, &(r + p - c), &p);
+        let largest = l_p.orbital.norm() + l_p.mixed.norm() + l_p.spin.norm() + body.mass() * 300.0;
+        prop_assert!((l_c.total() - l_p.total()).norm() <= 1e-13 * largest);
+    }
+
+    #[test]
+    fn euler_equations_forward_undo_inverse(body in any_body(), omega in vector(3.0), a in vector(3.0), p in vector(5.0)) {
+        let equations = EulerEquations::about(&body, &p);
+        let torque = equations.torque(&omega, &a);
+        let [i1, _, i3] = equations.moments();
+        let back = equations.angular_acceleration(&omega, &torque).expect("solid");
+        prop_assert!((back - a).norm() <= 1e-14 * (i3 / i1) * 30.0);
+    }
+
+    #[test]
+    fn particles_do_not_mind_where_they_are(
+        offsets in proptest::collection::vec(vector(1.0), 4..40), d in prop_oneof![vector(10.0), vector(1e8)],
+    ) {
+        let masses: Vec<f64> = offsets.iter().map(|r| 0.1 + r.norm()).collect();
+        // The stored coordinates are the data, so the body at home is made of what is stored far away.
+        let far: Vec<[f64; 3]> = offsets.iter().map(|r| (r + d).into()).collect();
+        let home: Vec<[f64; 3]> = far.iter().map(|r| (Vector3::from(*r) - d).into()).collect();
+        let (far, home) = (particles(&masses, &far), particles(&masses, &home));
+        let (far, home) = (far.expect("particles"), home.expect("particles"));
+        prop_assert!((far.inertia() - home.inertia()).abs().max() <= 4e-15 * size(&home.inertia()));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn free_motion_conserves_energy_and_angular_momentum(
+        body in any_body(), direction in vector(1.0), attitude in rotation(),
+    ) {
+        let center = body.center_of_mass();
+        let equations = EulerEquations::about(&body, &center);
+        let omega = direction.try_normalize(1e-3).unwrap_or_else(Vector3::x);
+        let initial = State { attitude: UnitQuaternion::from_matrix(&attitude), omega };
+        let times: Vec<f64> = (0..20).map(|k| 0.9 * f64::from(k)).collect();
+        let mut samples = vec![State::nan(); times.len()];
+        let mut go_on = |_| ControlFlow::Continue(());
+        let no_load: &[Term] = &[];
+        let tolerance = Tolerance::new(1e-12, 0.0).expect("tolerance");
+        simulate(&equations, &initial, &times, &mut { no_load }, tolerance, &mut samples, &mut go_on)
+            .expect("smooth");
+        let zero = Vector3::zeros();
+        let energy = |state: &State| kinetic_energy(&body, &state.omega, &zero, &center).total();
+        let momentum = |state: &State| {
+            state.attitude * angular_momentum(&body, &state.omega, &zero, &zero, &center).total()
+        };
+        for state in &samples {
+            prop_assert!((energy(state) - energy(&samples[0])).abs() <= 1e-9 * body.principal().moments[2]);
+            prop_assert!((momentum(state) - momentum(&samples[0])).norm() <= 1e-9 * body.principal().moments[2]);
+            prop_assert!((state.attitude.norm() - 1.0).abs() < 1e-15);
+        }
+    }
+}

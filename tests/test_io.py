@@ -1,0 +1,366 @@
+"""Reading bodies from files: every format the same body, every damage one clear error."""
+
+from __future__ import annotations
+
+import struct
+import subprocess
+import sys
+from collections.abc import Callable
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from oracles.exact_polyhedron import polyhedron
+from oracles.meshes import cube, icosphere, tetrahedron
+from polhode import RigidBody
+from polhode.errors import FileFormatError, MeshError, PolhodeError
+from polhode.io import Mesh, read_mesh
+from polhode.units import METRES, metres_per
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Writer = Callable[[Floats, Integers], bytes]
+
+
+# writers, one for each format, by the formats' own definitions ----------------------------------------
+
+
+def binary_stl(vertices: Floats, faces: Integers, header: bytes = b"part") -> bytes:
+    triangles = [struct.pack("<12fH", 0, 0, 0, *vertices[face].ravel(), 0) for face in faces]
+    return header.ljust(80) + struct.pack("<I", len(faces)) + b"".join(triangles)
+
+
+def ascii_stl(vertices: Floats, faces: Integers, name: str = "part") -> bytes:
+    lines = [f"solid {name}"]
+    for face in faces:
+        lines += ["  facet normal 0 0 0", "    outer loop"]
+        lines += [f"      vertex {x!r} {y!r} {z!r}" for x, y, z in vertices[face].tolist()]
+        lines += ["    endloop", "  endfacet"]
+    return "\n".join([*lines, f"endsolid {name}", ""]).encode()
+
+
+def obj(vertices: Floats, faces: Integers, base: int = 1) -> bytes:
+    lines = ["# a comment", *(f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist())]
+    return "\n".join([*lines, *("f {} {} {}".format(*face) for face in faces + base), ""]).encode()
+
+
+def ascii_ply(vertices: Floats, faces: Integers) -> bytes:
+    header = f"""ply
+format ascii 1.0
+element vertex {len(vertices)}
+property double x
+property double y
+property double z
+element face {len(faces)}
+property list uchar int vertex_indices
+end_header
+"""
+    return header.encode() + rows(vertices, faces)
+
+
+def binary_ply(vertices: Floats, faces: Integers) -> bytes:
+    header = (
+        ascii_ply(vertices, faces).partition(b"end_header\n")[0].replace(b"ascii", b"binary_little_endian")
+    )
+    body = vertices.astype("<f8").tobytes() + b"".join(struct.pack("<B3i", 3, *face) for face in faces)
+    return header + b"end_header\n" + body
+
+
+def off(vertices: Floats, faces: Integers) -> bytes:
+    return f"OFF\n{len(vertices)} {len(faces)} 0\n".encode() + rows(vertices, faces)
+
+
+def rows(vertices: Floats, faces: Integers) -> bytes:
+    lines = [f"{x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    return "\n".join([*lines, *("3 {} {} {}".format(*face) for face in faces), ""]).encode()
+
+
+def glb(vertices: Floats, faces: Integers) -> bytes:
+    trimesh = pytest.importorskip("trimesh")
+    data: bytes = trimesh.Trimesh(vertices, faces, process=False).export(file_type="glb")
+    return data
+
+
+WRITERS: dict[str, tuple[str, Writer, str]] = {
+    "binary STL": (".stl", binary_stl, "binary STL"),
+    "binary STL that begins with 'solid'": (
+        ".stl",
+        lambda v, f: binary_stl(v, f, b"solid part"),
+        "binary STL",
+    ),
+    "ASCII STL": (".STL", ascii_stl, "ASCII STL"),
+    "OBJ": (".obj", obj, "v/f text"),
+    "plates": (".tab", obj, "v/f text"),
+    "ASCII PLY": (".ply", ascii_ply, "PLY"),
+    "binary PLY": (".ply", binary_ply, "PLY"),
+    "OFF": (".off", off, "OFF"),
+    "GLB": (".glb", glb, "GLB"),
+}
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[str, bytes], Path]:
+    def writer(name: str, data: bytes) -> Path:
+        path = tmp_path / name
+        path.write_bytes(data)
+        return path
+
+    return writer
+
+
+# every format gives the same body -----------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+@pytest.mark.parametrize("shape", [cube, tetrahedron])
+def test_every_format_gives_the_same_body(kind: str, shape: Any, write: Any) -> None:
+    suffix, writer, name = WRITERS[kind]
+    vertices, faces = shape(2.0)
+    vertices = vertices + np.array([3.0, -1.0, 0.5])  # exact in 32 bits too
+    path = write(f"part{suffix}", writer(vertices, faces))
+    mesh = read_mesh(path)
+    assert isinstance(mesh, Mesh)
+    assert mesh.format == name
+    assert mesh.vertices.dtype == np.float64
+    assert mesh.faces.dtype == np.int64
+    assert mesh.vertices.shape == vertices.shape  # corners welded where the format stores them apart
+    assert mesh.faces.shape == faces.shape
+    exact = polyhedron(vertices, faces)
+    body = RigidBody.from_file(path, density=1.0)
+    assert body.mass == pytest.approx(float(exact.volume), rel=4e-15)
+    np.testing.assert_allclose(body.center_of_mass, np.array(exact.centroid, dtype=float), rtol=4e-15)
+    inertia = np.array(exact.inertia, dtype=float)
+    np.testing.assert_allclose(body.inertia, inertia, rtol=0, atol=4e-15 * inertia.max())
+
+
+def test_text_formats_keep_every_bit(write: Any) -> None:
+    vertices, faces = icosphere(2, radius=1 / 3)
+    writers: dict[str, Writer] = {"a.obj": obj, "a.stl": ascii_stl, "a.ply": ascii_ply, "b.ply": binary_ply}
+    for name, writer in writers.items():
+        mesh = read_mesh(write(name, writer(vertices, faces)))
+        corners, expected = mesh.vertices[mesh.faces], vertices[faces]
+        assert corners.tobytes() == expected.tobytes(), name
+
+
+def test_ascii_stl_of_several_solids_with_odd_names(write: Any) -> None:
+    vertices, faces = cube(1.0)
+    apart = ascii_stl(vertices + 5.0, faces, "vertex 1 2 3 facet").replace(b"\n", b"\r\n").upper()
+    data = ascii_stl(vertices, faces, "solid gr\xfc\xdf") + apart.replace(b"\xc3", b"\xe9")
+    body = RigidBody.from_file(write("two.stl", data), mass=2.0)
+    np.testing.assert_allclose(body.center_of_mass, [2.5, 2.5, 2.5], rtol=1e-15)
+
+
+def test_large_ascii_stl_is_read_in_blocks(write: Any) -> None:
+    vertices, faces = icosphere(4)  # 5120 triangles, more than one block
+    mesh = read_mesh(write("ball.stl", ascii_stl(vertices, faces)))
+    assert mesh.vertices.shape == (2562, 3)
+    assert mesh.faces.shape == (5120, 3)
+
+
+def test_faces_counted_from_zero(write: Any) -> None:
+    vertices, faces = cube(2.0)
+    path = write("plates.tab", obj(vertices, faces, base=0))
+    with pytest.raises(FileFormatError, match=r"index_base=0.*--index-base 0"):
+        read_mesh(path)
+    mesh = read_mesh(path, index_base=0)
+    np.testing.assert_array_equal(mesh.faces, faces)
+
+
+def test_index_base_is_checked(write: Any) -> None:
+    path = write("part.stl", binary_stl(*cube()))
+    with pytest.raises(ValueError, match="not v/f text"):
+        read_mesh(path, index_base=0)
+    with pytest.raises(ValueError, match="expected 0 or 1, got 2"):
+        read_mesh(write("part.obj", obj(*cube())), index_base=2)
+
+
+# scenes -----------------------------------------------------
+
+
+def scene_file(tmp_path: Path, transforms: list[Floats]) -> Path:
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene()
+    part = trimesh.Trimesh(*tetrahedron(1.0), process=False)
+    for number, transform in enumerate(transforms):
+        scene.add_geometry(part, node_name=f"node {number}", geom_name="part", transform=transform)
+    path = tmp_path / "scene.glb"
+    path.write_bytes(scene.export(file_type="glb"))
+    return path
+
+
+def test_scene_places_its_nodes(tmp_path: Path) -> None:
+    shift, mirror, turn = np.eye(4), np.eye(4), np.eye(4)
+    shift[:3, 3] = [10, 0, 0]
+    mirror[:3, :3] = np.diag([-2.0, 1, 1])
+    turn[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    turn[:3, 3] = [0, -20, 0]
+    body = RigidBody.from_file(scene_file(tmp_path, [shift, mirror, turn]), density=1.0)
+    # Three corner tetrahedra: volume 1/6 each but for the stretched one, centroid at a quarter of the legs.
+    volumes = np.array([1, 2, 1]) / 6
+    centroids = np.array([[10.25, 0.25, 0.25], [-0.5, 0.25, 0.25], [-0.25, -19.75, 0.25]])
+    assert body.mass == pytest.approx(volumes.sum(), rel=1e-15)
+    np.testing.assert_allclose(body.center_of_mass, volumes @ centroids / volumes.sum(), rtol=1e-14)
+
+
+# damage -----------------------------------------------------
+
+STL = binary_stl(*cube())
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "message"),
+    [
+        ("empty.stl", b"", "empty"),
+        ("empty.obj", b"", "empty"),
+        ("empty.ply", b"", "empty"),
+        ("cut.stl", STL[:-30], "truncated"),
+        ("few.stl", b"ab\x00c", "few.stl"),
+        ("huge.stl", STL[:80] + struct.pack("<I", 4_000_000_000) + STL[84:134], "4000000000"),
+        ("text.stl", b"dear reader,\nthis is no mesh\n", "named .stl, but it is text"),
+        ("noend.stl", ascii_stl(*cube()).rpartition(b"endsolid")[0], "endsolid"),
+        ("half.stl", ascii_stl(*cube())[:700], "cut short"),
+        ("two.stl", ascii_stl(*cube()) + ascii_stl(*cube())[:-20], "cut short"),
+        ("word.stl", ascii_stl(*cube()).replace(b"vertex", b"vertx", 1), "expected 'vertex', got 'vertx'"),
+        ("value.stl", ascii_stl(*cube()).replace(b"vertex -0.5", b"vertex -0,5", 1), "-0,5"),
+        ("none.stl", b"solid facet\nendsolid facet\n", "no triangles"),
+        ("cut.ply", ascii_ply(*cube())[: -len(b"3 0 0 0\n")], "promises 12 faces"),
+        ("points.ply", ascii_ply(cube()[0], cube()[1][:0]), "points|triangles"),
+        ("index.ply", ascii_ply(*cube()).replace(b"\n3 0", b"\n3 -1"), "names a vertex"),
+        ("cut.off", off(*cube()).rpartition(b"3 ")[0], "promises 12 faces"),
+        ("cut.glb", glb(*cube())[:-7], "not a readable GLB"),
+        ("words.ply", b"dear reader\n", "not a readable PLY"),
+        ("words.off", b"dear reader\n", "not a readable OFF"),
+        ("words.obj", b"dear reader\n", "words.obj"),
+        ("bytes.obj", b"v \x00\x01\x02", "not text"),
+        ("part.foo", b"v 0 0 0\n", "named .foo are not read; use one of .stl"),
+        ("part", b"v 0 0 0\n", "without a suffix"),
+        ("ply.stl", ascii_ply(*cube()), "content is PLY"),
+        ("obj.stl", obj(*cube()), "content is v/f text"),
+        ("stl.obj", STL, "content is binary STL"),
+        ("stl.ply", ascii_stl(*cube()), "content is ASCII STL"),
+        ("off.ply", off(*cube()), "content is OFF"),
+        ("zip.glb", b"PK\x03\x04....", "content is a ZIP archive"),
+        ("water.txt", b"1\nneon\nNe 0 0 0\n", "content is XYZ"),
+    ],
+)
+def test_damaged_or_misnamed_file_is_one_clear_error(
+    name: str, data: bytes, message: str, write: Any
+) -> None:
+    path = write(name, data)
+    with pytest.raises(FileFormatError, match=message) as caught:
+        read_mesh(path)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_directory_and_a_missing_file(tmp_path: Path) -> None:
+    with pytest.raises(FileFormatError, match="is a directory"):
+        read_mesh(tmp_path)
+    with pytest.raises(FileNotFoundError, match=r"absent\.stl"):
+        read_mesh(tmp_path / "absent.stl")
+
+
+def test_header_that_promises_too_much_allocates_nothing(write: Any) -> None:
+    path = write("huge.stl", STL[:80] + struct.pack("<I", 4_000_000_000) + STL[84:134])
+    program = f"""
+import resource
+from polhode.errors import FileFormatError
+from polhode.io import read_mesh
+used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))  # a fiftieth of what the header promises
+try:
+    read_mesh({str(path)!r})
+except FileFormatError:
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - used < 20_000, "allocated"
+else:
+    raise AssertionError("read it")
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+
+
+def test_open_mesh_is_refused_and_not_closed(write: Any) -> None:
+    vertices, faces = cube()
+    with pytest.raises(MeshError, match=r"open\.obj: the mesh is not closed"):
+        RigidBody.from_file(write("open.obj", obj(vertices, faces[1:])), density=1.0)
+
+
+def test_without_trimesh_the_remedy_is_named(write: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    path = write("part.ply", ascii_ply(*cube()))
+    with pytest.raises(ModuleNotFoundError, match=r'pip install "polhode\[mesh\]"'):
+        read_mesh(path)
+    assert len(read_mesh(write("part.stl", STL)).faces) == 12  # needs no extra
+    assert len(read_mesh(write("part2.stl", ascii_stl(*cube()))).faces) == 12
+
+
+# units -----------------------------------------------------
+
+
+def test_length_unit_converts_to_metres(write: Any) -> None:
+    path = write("cube.obj", obj(*cube(2.0)))
+    for unit, metres in METRES.items():
+        body = RigidBody.from_file(path, density=3.0, length_unit=unit)
+        assert body.mass == pytest.approx(3.0 * (2.0 * metres) ** 3, rel=4e-15)
+        assert metres_per(unit) == metres
+    assert RigidBody.from_file(path, density=3.0).mass == pytest.approx(24.0, rel=1e-15)
+    with pytest.raises(PolhodeError, match=r"'inches' is not a known unit; use one of m, mm"):
+        RigidBody.from_file(path, density=3.0, length_unit="inches")
+
+
+def test_mass_and_density_exclude_each_other(write: Any) -> None:
+    path = write("cube.obj", obj(*cube(2.0)))
+    assert RigidBody.from_file(path, mass=5.0).mass == 5.0
+    wrong: list[Any] = [{}, {"mass": 1.0, "density": 1.0}]
+    for given in wrong:
+        with pytest.raises((TypeError, ValueError), match="exactly one of mass= and density="):
+            RigidBody.from_file(path, **given)
+
+
+# real files -----------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "volume", "moments"),
+    [
+        ("4179_toutatis_low.obj", "7.69882", ("0.37174", "1.12008", "1.18582")),
+        ("apophis_v233s7.obj", "0.0198258", ("0.010013", "0.0129875", "0.0137082")),
+    ],
+)
+def test_asteroids(shared_data: Path, name: str, volume: str, moments: tuple[str, ...]) -> None:
+    body = RigidBody.from_file(shared_data / "asteroids" / name, density=1.0)
+    _agrees(body.mass, volume)
+    for computed, known in zip(body.principal_moments / body.mass, moments, strict=True):
+        _agrees(computed, known)
+
+
+def test_eros_is_refused_until_its_index_base_is_given(shared_data: Path) -> None:
+    path = shared_data / "asteroids" / "eros007790.tab"
+    with pytest.raises(FileFormatError, match=r"index_base=0"):
+        RigidBody.from_file(path, density=1.0)
+    mesh = read_mesh(path, index_base=0)
+    body = RigidBody.from_mesh(mesh.vertices, mesh.faces, density=1.0)
+    _agrees(body.mass, "2525.99")
+    for computed, known in zip(
+        body.principal_moments / body.mass, ("15.1798", "73.3852", "74.6251"), strict=True
+    ):
+        _agrees(computed, known)
+    np.testing.assert_allclose(body.center_of_mass, [-0.02163, 0.002368, 0.04748], atol=5e-6)
+
+
+def test_a_step_file_is_refused(shared_data: Path) -> None:
+    with pytest.raises(FileFormatError, match=r"\.step are not read"):
+        read_mesh(shared_data / "cad" / "featuretype.STEP")
+
+
+def _agrees(computed: float, printed: str) -> None:
+    """To half a unit of the last digit printed."""
+    decimals = len(printed.partition(".")[2])
+    assert abs(Fraction(float(computed)) - Fraction(printed)) <= Fraction(1, 2 * 10**decimals), (
+        computed,
+        printed,
+    )

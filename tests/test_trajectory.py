@@ -1,0 +1,202 @@
+"""What a trajectory derives from its arrays, held against the sum over its particles."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from polhode import RigidBody, Trajectory
+from polhode.errors import SingularAttitudeError
+from scipy.spatial.transform import Rotation
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+Floats = NDArray[np.float64]
+
+
+class Swarm:
+    """Particles that move as rigid bodies, and the trajectory that describes them."""
+
+    def __init__(
+        self, rng: np.random.Generator, shape: tuple[int, ...], times: int = 5, particles: int = 6
+    ) -> None:
+        self.masses = rng.uniform(0.1, 2.0, (*shape, particles))
+        self.places = rng.normal(size=(*shape, particles, 3))
+        stack = (*shape, times)
+        quaternion = rng.normal(size=(*stack, 4))
+        self.about = rng.normal(size=(*shape, 3))
+        self.trajectory = Trajectory(
+            body=RigidBody.from_particles(self.masses, self.places),
+            t=np.linspace(0.0, 1.0, times),
+            omega=rng.normal(size=(*stack, 3)),
+            quaternion=quaternion / np.linalg.norm(quaternion, axis=-1, keepdims=True),
+            position=rng.normal(size=(*stack, 3)),
+            velocity=rng.normal(size=(*stack, 3)),
+            about=self.about,
+            steps=np.zeros(shape, dtype=np.int64),
+            evaluations=np.zeros(shape, dtype=np.int64),
+        )
+
+    def in_space(self) -> tuple[Floats, Floats, Floats]:
+        """Masses (..., 1, n), and positions and velocities (..., T, n, 3) of every particle in space."""
+        trajectory = self.trajectory
+        arm = (self.places - self.about[..., None, :])[..., None, :, :]
+        spin = np.cross(trajectory.omega[..., None, :], arm)
+        turn = Rotation.from_quat(trajectory.quaternion).as_matrix()[..., None, :, :]
+        position = trajectory.position[..., None, :] + (turn @ arm[..., None])[..., 0]
+        velocity = trajectory.velocity[..., None, :] + (turn @ spin[..., None])[..., 0]
+        return self.masses[..., None, :], position, velocity
+
+
+SHAPES: list[tuple[int, ...]] = [(), (4,), (2, 3)]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_kinetic_energy_is_the_sum_over_the_particles(
+    shape: tuple[int, ...], rng: np.random.Generator
+) -> None:
+    swarm = Swarm(rng, shape)
+    masses, _, velocity = swarm.in_space()
+    expected = 0.5 * (masses * (velocity**2).sum(axis=-1)).sum(axis=-1)
+    energy = swarm.trajectory.kinetic_energy()
+    assert energy.total.shape == (*shape, 5)
+    np.testing.assert_allclose(energy.total, expected, rtol=1e-13)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_angular_momentum_is_the_sum_over_the_particles(
+    shape: tuple[int, ...], rng: np.random.Generator
+) -> None:
+    swarm = Swarm(rng, shape)
+    masses, position, velocity = swarm.in_space()
+    expected = (masses[..., None] * np.cross(position, velocity)).sum(axis=-2)
+    momentum = swarm.trajectory.angular_momentum()
+    assert momentum.total.shape == (*shape, 5, 3)
+    np.testing.assert_allclose(momentum.total, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+    in_body = swarm.trajectory.angular_momentum(frame="body").total
+    turned = Rotation.from_quat(swarm.trajectory.quaternion).apply if not shape else None
+    if turned is not None:
+        np.testing.assert_allclose(
+            turned(in_body), momentum.total, rtol=0, atol=1e-13 * np.abs(expected).max()
+        )
+    np.testing.assert_allclose(
+        np.linalg.norm(in_body, axis=-1), np.linalg.norm(momentum.total, axis=-1), rtol=1e-13
+    )
+
+
+def test_frame_is_checked(rng: np.random.Generator) -> None:
+    with pytest.raises(ValueError, match="'inertial' is not 'space' or 'body'"):
+        Swarm(rng, ()).trajectory.angular_momentum(frame="inertial")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_rotation_is_scipy_s(shape: tuple[int, ...], rng: np.random.Generator) -> None:
+    trajectory = Swarm(rng, shape).trajectory
+    matrices = trajectory.rotation.as_matrix()
+    assert matrices.shape == (*shape, 5, 3, 3)
+    x, y, z, w = np.moveaxis(trajectory.quaternion, -1, 0)
+    np.testing.assert_allclose(matrices[..., 0, 0], w**2 + x**2 - y**2 - z**2, atol=1e-15)
+    np.testing.assert_allclose(matrices[..., 1, 0], 2 * (x * y + z * w), atol=1e-15)
+    assert trajectory.rotation is trajectory.rotation
+
+
+@pytest.mark.parametrize("sequence", ["ZXZ", "ZYX", "xyz"])
+def test_euler_angles_are_scipy_s(sequence: str, rng: np.random.Generator) -> None:
+    trajectory = Swarm(rng, ()).trajectory
+    expected = Rotation.from_quat(trajectory.quaternion).as_euler(sequence)
+    np.testing.assert_allclose(trajectory.euler_angles(sequence), expected, atol=1e-13)
+
+
+def test_singular_attitude_raises_or_is_nan() -> None:
+    trajectory = RigidBody(1.0, np.diag([1.0, 2.0, 2.5])).simulate([0.0, 1.0, 2.0], [0.0, 0.0, 1.0])
+    with pytest.raises(SingularAttitudeError):
+        trajectory.euler_angles()
+    angles = trajectory.euler_angles(singular="nan")
+    assert angles.shape == (3, 3)
+    assert np.isnan(angles).any()
+
+
+def test_length_and_repr(rng: np.random.Generator) -> None:
+    one, many = Swarm(rng, ()).trajectory, Swarm(rng, (2, 3)).trajectory
+    assert len(one) == 5
+    assert repr(one) == "Trajectory(5 times from 0 to 1)"
+    assert repr(many) == "Trajectory(2x3 bodies, 5 times from 0 to 1)"
+
+
+def test_free_motion_conserves() -> None:
+    body = RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), center_of_mass=(0.1, 0.2, 0.3))
+    trajectory = body.simulate(
+        np.linspace(0.0, 20.0, 50), [0.1, 2.0, 0.1], position=[1.0, 2.0, 3.0], velocity=[0.3, 0.0, -0.2]
+    )
+    energy, momentum = trajectory.kinetic_energy().total, trajectory.angular_momentum().total
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+    np.testing.assert_allclose(momentum, np.tile(momentum[0], (50, 1)), atol=1e-8)
+    assert energy[0] == pytest.approx(0.5 * (0.01 + 2.0 * 4.0 + 2.5 * 0.01) + 0.13, rel=1e-14)
+
+
+# files ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_npz_holds_every_bit(shape: tuple[int, ...], rng: np.random.Generator, tmp_path: Path) -> None:
+    trajectory = Swarm(rng, shape).trajectory
+    path = tmp_path / "motion.NPZ"
+    trajectory.save(path)
+    with np.load(path) as file:
+        for name in ("t", "omega", "quaternion", "position", "velocity", "about", "steps", "evaluations"):
+            np.testing.assert_array_equal(file[name], getattr(trajectory, name))
+        for name in ("mass", "inertia", "center_of_mass"):
+            np.testing.assert_array_equal(file[name], getattr(trajectory.body, name))
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_csv_holds_every_bit(shape: tuple[int, ...], rng: np.random.Generator, tmp_path: Path) -> None:
+    trajectory = Swarm(rng, shape).trajectory
+    path = tmp_path / "motion.csv"
+    trajectory.save(str(path))
+    with path.open(newline="") as file:
+        records = list(csv.DictReader(file))
+    assert len(records) == int(np.prod(shape, dtype=int)) * 5
+    indices = {0: [], 1: ["body"], 2: ["body_0", "body_1"]}[len(shape)]
+    assert list(records[0])[: len(indices) + 1] == [*indices, "t"]
+    for record in records:
+        place = tuple(int(record[name]) for name in indices)
+        row = int(np.flatnonzero(trajectory.t == float(record["t"]))[0])
+        for name, components in {
+            "omega": "xyz",
+            "quaternion": "xyzw",
+            "position": "xyz",
+            "velocity": "xyz",
+        }.items():
+            values = [float(record[f"{name}_{component}"]) for component in components]
+            assert values == getattr(trajectory, name)[(*place, row)].tolist()
+
+
+def test_save_refuses_other_suffixes(rng: np.random.Generator, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"motion\.txt does not end in \.csv or \.npz"):
+        Swarm(rng, ()).trajectory.save(tmp_path / "motion.txt")
+
+
+# optional libraries ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("module", "call", "remedy"),
+    [
+        ("scipy", lambda trajectory: trajectory.rotation, "pip install scipy"),
+        ("matplotlib", lambda trajectory: trajectory.plot(), r'pip install "polhode\[plot\]"'),
+    ],
+)
+def test_missing_library_is_named_with_its_remedy(
+    module: str, call: Any, remedy: str, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in [name for name in sys.modules if name.partition(".")[0] == module]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ModuleNotFoundError, match=remedy):
+        call(Swarm(rng, ()).trajectory)
