@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from polhode import _core
+from polhode._files import mesh as meshes
 from polhode._files.ascii_stl import read_ascii_stl
 from polhode._files.content import content_format
-from polhode._files.mesh import Mesh, weld
+from polhode._files.mesh import Mesh
 from polhode._files.scene import read_scene
 from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, isotopes
@@ -115,7 +116,7 @@ def body_from_file(
     return _core.RigidBody.from_particles(masses, molecule.positions * scale)
 
 
-def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1) -> Mesh:
+def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float = 0.0) -> Mesh:
     """Read a triangle mesh.
 
     Parameters
@@ -126,6 +127,10 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1) -> Mesh:
         scene are placed by their transforms and taken together.
     index_base : {1, 0}
         What ``v``/``f`` text counts its vertices from: 1 in OBJ and in most plate files, 0 in some.
+    weld : float
+        Corners at most this far from each other (in the unit of the file, in every coordinate) are one
+        vertex. The default joins equal corners only, as it must for STL; some exporters write the same
+        corner with other last digits in each triangle, and leave the mesh open by them.
 
     Returns
     -------
@@ -146,16 +151,8 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1) -> Mesh:
         raise ValueError(f"index_base: expected 0 or 1, got {index_base!r}")
     if index_base != 1 and "v/f text" not in _EXPECTED.get(suffix, ()):
         raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
-    actual = _checked_format(file)
-    if actual == "ASCII STL":
-        corners = read_ascii_stl(file)
-        return weld(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3), actual)
-    if suffix == ".stl":
-        # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
-        return Mesh(*_core.read_stl(str(file)), "binary STL")
-    if suffix in (".obj", ".tab", ".txt"):
-        return Mesh(*_core.read_plates(str(file), index_base), "v/f text")
-    return read_scene(file, readable=tuple(known for known in _EXPECTED if known != MOLECULE_SUFFIX))
+    mesh = _read(file, suffix, index_base)
+    return meshes.weld_within(mesh, weld) if weld != 0.0 else mesh
 
 
 def read_xyz(path: str | os.PathLike[str]) -> Molecule:
@@ -240,7 +237,7 @@ def mesh_body(
             mesh.vertices * scale, mesh.faces, density=density, mass=mass, orient=orient
         )
     except MeshError as error:
-        raise MeshError(f"{os.fspath(path)}: {error}") from None
+        raise MeshError(f"{os.fspath(path)}: {error}{_weld_hint(mesh)}") from None
 
 
 def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[Isotope]:
@@ -273,6 +270,34 @@ def _atom(file: Path, number: int, row: str) -> tuple[str, list[float]]:
     if len(position) != 3 or not np.isfinite(position).all():
         raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
     return words[0], position
+
+
+def _read(file: Path, suffix: str, index_base: int) -> Mesh:
+    actual = _checked_format(file)
+    if actual == "ASCII STL":
+        corners = read_ascii_stl(file)
+        return meshes.weld(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3), actual)
+    if suffix == ".stl":
+        # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
+        return Mesh(*_core.read_stl(str(file)), "binary STL")
+    if suffix in (".obj", ".tab", ".txt"):
+        return Mesh(*_core.read_plates(str(file), index_base), "v/f text")
+    return read_scene(file, readable=tuple(known for known in _EXPECTED if known != MOLECULE_SUFFIX))
+
+
+def _weld_hint(mesh: Mesh) -> str:
+    """What to say of a bad mesh some of whose corners differ by less than 32-bit coordinates resolve."""
+    size = float(np.abs(mesh.vertices).max(initial=0.0))
+    if not (np.isfinite(size) and size > 0.0):
+        return ""
+    resolution = float(f"{size * 2.0**-23:.0e}")
+    try:
+        near = len(mesh.vertices) - len(meshes.weld_within(mesh, resolution).vertices)
+    except ValueError:
+        return ""
+    if near == 0:
+        return ""
+    return f" ({near} corners lie within {resolution:g} of another: weld={resolution:g} or --weld joins them)"
 
 
 def _is_molecule(path: str | os.PathLike[str]) -> bool:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
-__all__ = ["Mesh", "weld"]
+__all__ = ["Mesh", "weld", "weld_within"]
 
 
 class Mesh(NamedTuple):
@@ -35,10 +35,51 @@ class Mesh(NamedTuple):
 
 def weld(vertices: Floats, faces: Integers, name: str) -> Mesh:
     """Make corners at bit-equal coordinates one vertex, in the order of their first appearance."""
-    _, first, inverse = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
-    if len(first) == len(vertices):
-        return Mesh(vertices, faces, name)
+    return _merged(Mesh(vertices, faces, name), vertices)
+
+
+def weld_within(mesh: Mesh, length: float) -> Mesh:
+    """Make corners nearer than a length to each other, in every coordinate, one vertex.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        What was read.
+    length : float
+        In the unit of the file; the first of the corners stays where it is.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    ValueError
+        If the length is not a small positive number: corners that are farther apart would be joined by a
+        chain of others between them.
+    """
+    if not (np.isfinite(length) and length > 0.0):
+        raise ValueError(f"weld: {length} is not a positive length")
+    if not np.isfinite(mesh.vertices).all():
+        return mesh  # to be refused as it is, with the number of the vertex
+    cells = np.empty(mesh.vertices.shape, dtype=np.int64)
+    for axis in range(3):
+        order = np.argsort(mesh.vertices[:, axis], kind="stable")
+        steps = np.diff(mesh.vertices[order, axis]) > length
+        cells[order, axis] = np.concatenate([[0], np.cumsum(steps)])
+    welded = _merged(mesh, cells)
+    moved = np.abs(welded.vertices[welded.faces] - mesh.vertices[mesh.faces]).max(initial=0.0)
+    if moved > 2.0 * length:
+        raise ValueError(f"weld: {length:g} would join corners up to {moved:g} apart; give a smaller length")
+    return welded
+
+
+def _merged(mesh: Mesh, keys: Floats | Integers) -> Mesh:
+    """Vertices with equal keys made the first of them."""
+    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    if len(first) == len(mesh.vertices):
+        return mesh
     order = np.argsort(first)
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
-    return Mesh(vertices[first[order]], rank[inverse.reshape(-1)][faces], name)
+    return Mesh(mesh.vertices[first[order]], rank[inverse.reshape(-1)][mesh.faces], mesh.format)
