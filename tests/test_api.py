@@ -159,15 +159,6 @@ class TestImport:
         code = f"import sys, polhode; print(*[m for m in {HEAVY!r} if m in sys.modules])"
         assert _python(code).strip() == ""
 
-    def test_it_takes_hardly_longer_than_numpy(self) -> None:
-        """The best of several processes, each of which times NumPy and then the rest of polhode."""
-        code = (
-            "from time import perf_counter as now\n"
-            "a = now()\nimport numpy\nb = now()\nimport polhode\nc = now()\n"
-            "print((c - a) / (b - a))"
-        )
-        assert min(float(_python(code)) for _ in range(5)) <= 1.3
-
     def test_it_works_in_a_forked_child(self) -> None:
         code = (
             "import os, numpy as np, polhode\n"

@@ -1,9 +1,8 @@
-"""The command line: what it prints, what it saves, how it ends."""
+"""The command line: what ``polhode report`` prints, and how every command ends."""
 
 from __future__ import annotations
 
 import json
-import math
 import os
 import re
 import struct
@@ -14,35 +13,15 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import pytest
+from command_line import one_line, run, write_obj
 from oracles.meshes import box, cube
 from polhode import RigidBody
-from polhode.cli import brick, main
+from polhode.cli import main
 from polhode.cli.report import LengthUnit
 from polhode.units import METRES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
-
-    Run = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run the command in this process: exit code, stdout, stderr."""
-
-    def runner(*arguments: object) -> tuple[int, str, str]:
-        code = main([str(argument) for argument in arguments])
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return runner
-
-
-def write_obj(path: Path, vertices: Any, faces: Any, base: int = 1) -> Path:
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
-    path.write_text("\n".join([*lines, *("f {} {} {}".format(*face) for face in faces + base), ""]))
-    return path
 
 
 @pytest.fixture
@@ -55,7 +34,7 @@ def slab(tmp_path: Path) -> Path:
 # report ----------------------------------------------------------------------------------------------
 
 
-def test_report_of_a_mesh_in_si_units(run: Run, slab: Path) -> None:
+def test_report_of_a_mesh_in_si_units(slab: Path) -> None:
     code, out, err = run("report", slab, "--length-unit", "mm", "--density", 2000, "--format", "json")
     assert (code, err) == (0, "")
     report = json.loads(out)
@@ -87,7 +66,7 @@ def test_report_of_a_mesh_in_si_units(run: Run, slab: Path) -> None:
     assert report["notes"] == []
 
 
-def test_report_is_what_from_file_gives(run: Run, slab: Path) -> None:
+def test_report_is_what_from_file_gives(slab: Path) -> None:
     for given, keywords in (
         (("--density", "7.5"), {"density": 7.5}),
         (("--mass", "7.5"), {"mass": 7.5}),
@@ -101,7 +80,7 @@ def test_report_is_what_from_file_gives(run: Run, slab: Path) -> None:
         assert report["density"] * report["volume"] == pytest.approx(body.mass, rel=1e-15)
 
 
-def test_unit_and_density_that_were_not_given_are_said(run: Run, slab: Path) -> None:
+def test_unit_and_density_that_were_not_given_are_said(slab: Path) -> None:
     code, out, _ = run("report", slab)
     assert code == 0
     assert re.search(r"length unit +unit unknown", out)
@@ -114,7 +93,7 @@ def test_unit_and_density_that_were_not_given_are_said(run: Run, slab: Path) -> 
     assert "in_file_unit" not in report
 
 
-def test_table_and_json_hold_the_same_fields(run: Run, slab: Path, shared_data: Path) -> None:
+def test_table_and_json_hold_the_same_fields(slab: Path, shared_data: Path) -> None:
     for arguments in (
         (slab, "--length-unit", "mm"),
         (shared_data / "molecules" / "co2.xyz",),
@@ -135,7 +114,7 @@ def _numbers(value: Any) -> list[Any]:
     return [value] if isinstance(value, int | float) or value == "Infinity" else []
 
 
-def test_toutatis(run: Run, shared_data: Path) -> None:
+def test_toutatis(shared_data: Path) -> None:
     path = shared_data / "asteroids" / "4179_toutatis_low.obj"
     for options in ((), ("--length-unit", "km", "--density", "2500")):
         code, out, _ = run("report", path, *options)
@@ -146,11 +125,11 @@ def test_toutatis(run: Run, shared_data: Path) -> None:
             assert any(round(number, decimals) == Fraction(known) for number in printed), known
 
 
-def test_eros_is_refused_with_the_remedy_and_right_with_it(run: Run, shared_data: Path) -> None:
+def test_eros_is_refused_with_the_remedy_and_right_with_it(shared_data: Path) -> None:
     path = shared_data / "asteroids" / "eros007790.tab"
     code, out, err = run("report", path)
     assert (code, out) == (2, "")
-    assert _one_line(err)
+    assert one_line(err)
     assert "--index-base 0" in err
     report = json.loads(run("report", path, "--index-base", 0, "--format", "json")[1])
     assert report["volume"] == pytest.approx(2525.99, abs=5e-3)
@@ -170,9 +149,7 @@ def test_eros_is_refused_with_the_remedy_and_right_with_it(run: Run, shared_data
         ("co2", ("infinite", "0.391623", "0.391623"), None),
     ],
 )
-def test_molecules(
-    name: str, constants: tuple[str, ...], kappa: float | None, run: Run, shared_data: Path
-) -> None:
+def test_molecules(name: str, constants: tuple[str, ...], kappa: float | None, shared_data: Path) -> None:
     path = shared_data / "molecules" / f"{name}.xyz"
     code, out, err = run("report", path)
     assert (code, err) == (0, "")
@@ -190,7 +167,7 @@ def test_molecules(
     assert (report["rotational_constants_MHz"][0] == "Infinity") == (name == "co2")
 
 
-def test_molecule_with_another_length_unit(run: Run, tmp_path: Path) -> None:
+def test_molecule_with_another_length_unit(tmp_path: Path) -> None:
     (tmp_path / "a.xyz").write_text("2\nhydrogen\nH 0 0 0\nH 0 0 0.74\n")
     (tmp_path / "b.xyz").write_text("2\nhydrogen\nH 0 0 0\nH 0 0 0.074\n")
     angstrom = json.loads(run("report", tmp_path / "a.xyz", "--format", "json")[1])
@@ -203,7 +180,7 @@ def test_length_units_are_those_of_the_library() -> None:
     assert get_args(LengthUnit) == tuple(METRES)
 
 
-def test_control_characters_in_a_file_do_not_reach_the_terminal(run: Run, tmp_path: Path) -> None:
+def test_control_characters_in_a_file_do_not_reach_the_terminal(tmp_path: Path) -> None:
     (tmp_path / "a.xyz").write_text("1\nneon \x1b[31m\x07\nNe 0 0 0\n")
     code, out, _ = run("report", tmp_path / "a.xyz")
     assert code == 0
@@ -233,22 +210,22 @@ BAD_STL = bytes(80) + struct.pack("<I", 4_000_000_000) + bytes(50)
 )
 @pytest.mark.parametrize("command", [("report",), ("spin", "--omega", "0", "0", "1", "--until", "1")])
 def test_bad_file_is_one_line_and_exit_2(
-    command: tuple[str, ...], name: str, data: bytes | None, message: str, run: Run, tmp_path: Path
+    command: tuple[str, ...], name: str, data: bytes | None, message: str, tmp_path: Path
 ) -> None:
     path = tmp_path / name
     if data is not None:
         path.write_bytes(data)
     code, out, err = run(*command, path)
     assert (code, out) == (2, "")
-    assert _one_line(err)
+    assert one_line(err)
     assert str(path) in err
     assert re.search(message, err)
 
 
-def test_a_directory(run: Run, tmp_path: Path) -> None:
+def test_a_directory(tmp_path: Path) -> None:
     code, out, err = run("report", tmp_path)
     assert (code, out) == (2, "")
-    assert _one_line(err)
+    assert one_line(err)
     assert "is a directory" in err
 
 
@@ -277,16 +254,14 @@ def test_a_directory(run: Run, tmp_path: Path) -> None:
         (("demo", "--output-dir", "FILE"), "is a file"),
     ],
 )
-def test_bad_option_is_one_line_and_exit_2(
-    arguments: tuple[str, ...], message: str, run: Run, slab: Path
-) -> None:
+def test_bad_option_is_one_line_and_exit_2(arguments: tuple[str, ...], message: str, slab: Path) -> None:
     code, out, err = run(*(slab if argument == "FILE" else argument for argument in arguments))
     assert (code, out) == (2, "")
-    assert _one_line(err)
+    assert one_line(err)
     assert re.search(message, err)
 
 
-def test_inverted_mesh_is_refused_or_turned(run: Run, tmp_path: Path) -> None:
+def test_inverted_mesh_is_refused_or_turned(tmp_path: Path) -> None:
     vertices, faces = cube(2.0)
     path = write_obj(tmp_path / "inverted.obj", vertices, faces[:, ::-1])
     code, _, err = run("report", path)
@@ -298,7 +273,7 @@ def test_inverted_mesh_is_refused_or_turned(run: Run, tmp_path: Path) -> None:
         assert report["mass"] == pytest.approx(4.0, rel=1e-15)
 
 
-def test_rounding_prints_as_zero_and_stays_in_json(run: Run, tmp_path: Path) -> None:
+def test_rounding_prints_as_zero_and_stays_in_json(tmp_path: Path) -> None:
     vertices, faces = box((0.1, 0.2, 0.3))
     path = write_obj(tmp_path / "box.obj", vertices * (1 + 1e-16) + np.array([1e-18, 0.0, 0.0]), faces)
     out = run("report", path)[1]
@@ -306,18 +281,31 @@ def test_rounding_prints_as_zero_and_stays_in_json(run: Run, tmp_path: Path) -> 
     assert line.split()[3:6] == ["0", "0", "0"]
 
 
-def test_mass_of_a_molecule(run: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "option", [("--mass", 1), ("--density", 1), ("--weld", 1), ("--orient",), ("--index-base", 0)]
+)
+def test_option_that_a_molecule_does_not_take(option: tuple[Any, ...], tmp_path: Path) -> None:
     (tmp_path / "a.xyz").write_text("1\nneon\nNe 0 0 0\n")
-    code, _, err = run("report", tmp_path / "a.xyz", "--mass", 1)
+    code, _, err = run("report", tmp_path / "a.xyz", *option)
     assert code == 2
-    assert "--mass" in err
+    assert one_line(err)
+    assert option[0] in err
 
 
-def _one_line(text: str) -> bool:
-    return text.startswith("polhode: ") and text.count("\n") == 1 and "Traceback" not in text
+def test_welding_is_said(shared_data: Path) -> None:
+    path = shared_data / "cad" / "featuretype.STL"
+    code, _, err = run("report", path)
+    assert code == 2
+    assert "--weld" in err
+    report = json.loads(run("report", path, "--weld", 1e-7, "--format", "json")[1])
+    assert report["volume"] == pytest.approx(11.62773343, abs=5e-9)
+    assert report["principal_moments"][2] == pytest.approx(26.2356, abs=5e-5)
+    assert any("288 corners were joined" in note for note in report["notes"])
+    out = run("spin", path, "--weld", 1e-7, "--omega", 0, 0, 1, "--until", 1)[1]
+    assert "288 corners were joined" in out
 
 
-def test_help_and_version(run: Run) -> None:
+def test_help_and_version() -> None:
     for arguments in (("--help",), (), ("report", "--help"), ("spin", "--help"), ("demo", "--help")):
         code, out, err = run(*arguments)
         assert (code, err) == (0, "")
@@ -341,7 +329,7 @@ def test_without_the_extra_one_line_says_how_to_install_it(
             assert err == 'polhode: the command line needs its extra: pip install "polhode[cli]"\n'
 
 
-def test_interruption_is_one_line(run: Run, slab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interruption_isone_line(slab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
@@ -363,70 +351,3 @@ def test_a_reader_that_leaves_is_no_error(slab: Path) -> None:
     result = subprocess.run(program, shell=True, capture_output=True, check=True, timeout=60)
     assert result.stdout == b"{"
     assert result.stderr == b""
-
-
-# spin ------------------------------------------------------------------------------------------------
-
-
-def test_spin_of_a_brick(run: Run, tmp_path: Path) -> None:
-    """NASA's brick as a mesh: the box of its moments, spun from its published rates to its exact ones."""
-    i1, i2, i3 = brick.MOMENTS
-    sides = np.sqrt(6 * np.array([i2 + i3 - i1, i1 + i3 - i2, i1 + i2 - i3]) / brick.MASS)
-    path = write_obj(tmp_path / "brick.obj", *box(tuple(sides)))
-    rates = ("--omega", "10", "20", "30", "--degrees", "--until", "30", "--rtol", "1e-13")
-    report = json.loads(run("spin", path, "--mass", brick.MASS, *rates, "--format", "json")[1])
-    np.testing.assert_allclose(report["principal_moments"], brick.MOMENTS, rtol=1e-14)
-    np.testing.assert_allclose(report["omega_start"], [10, 20, 30], rtol=1e-14)
-    np.testing.assert_allclose(report["omega_end"], brick.EXACT_RATES, rtol=0, atol=1e-11)
-    assert report["kinetic_energy_drift"] < 1e-12
-    assert report["angular_momentum_drift"] < 1e-11
-    assert all(math.isfinite(angle) for angle in report["euler_angles_end"])
-    omega = np.deg2rad([10, 20, 30])
-    assert report["kinetic_energy"] == pytest.approx(0.5 * omega @ (omega * brick.MOMENTS), rel=1e-13)
-    assert report["angular_momentum"] == pytest.approx(np.linalg.norm(omega * brick.MOMENTS), rel=1e-13)
-
-
-def test_spin_along_principal_axes(run: Run, tmp_path: Path) -> None:
-    path = write_obj(tmp_path / "box.obj", *box((3.0, 1.0, 2.0)))
-    report = json.loads(
-        run("spin", path, "--axes", "principal", "--omega", 0, 0, 2, "--until", 1, "--format", "json")[1]
-    )
-    np.testing.assert_allclose(report["omega_end"], [0, 0, 2], atol=1e-12)
-    assert report["angular_momentum"] == pytest.approx(2 * 6 * (9 + 4) / 12, rel=1e-13)
-
-
-def test_undefined_euler_angles_are_said(run: Run, tmp_path: Path) -> None:
-    path = write_obj(tmp_path / "cube.obj", *cube(2.0))
-    arguments = ("spin", path, "--omega", 0, 0, 1, "--until", 1)
-    code, out, _ = run(*arguments)
-    assert code == 0
-    assert "undefined" in out
-    assert "not defined" in out
-    report = json.loads(run(*arguments, "--format", "json")[1])
-    assert None in report["euler_angles_end"]
-
-
-def test_body_at_rest_stays(run: Run, slab: Path) -> None:
-    report = json.loads(run("spin", slab, "--omega", 0, 0, 0, "--until", 1, "--format", "json")[1])
-    assert report["omega_end"] == [0, 0, 0]
-    assert report["kinetic_energy_drift"] == 0
-
-
-def test_spin_of_a_linear_molecule(run: Run, tmp_path: Path) -> None:
-    (tmp_path / "co.xyz").write_text("2\ncarbon monoxide\nC 0 0 0\nO 0 0 1.128\n")
-    code, out, err = run("spin", tmp_path / "co.xyz", "--omega", 1, 0, 0.5, "--until", 3, "--format", "json")
-    assert (code, err) == (0, "")
-    assert json.loads(out)["omega_end"][2] == pytest.approx(0.5, rel=1e-12)
-
-
-def test_spin_saves_by_suffix(run: Run, slab: Path, tmp_path: Path) -> None:
-    names = [tmp_path / name for name in ("a.png", "a.svg", "a.pdf", "a.csv", "a.npz")]
-    saves = [argument for name in names for argument in ("--save", name)]
-    code, out, err = run("spin", slab, "--omega", 0.1, 2, 0.1, "--until", 5, "--samples", 11, *saves)
-    assert (code, err) == (0, "")
-    for name, start in zip(names, (b"\x89PNG", b"<?xml", b"%PDF", b"t,omega_x", b"PK"), strict=True):
-        assert name.read_bytes().startswith(start)
-        assert f"saved {name}" in out
-    with np.load(names[-1]) as file:
-        assert file["t"].tolist() == np.linspace(0, 5, 11).tolist()
-        assert file["omega"].shape == (11, 3)

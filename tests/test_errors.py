@@ -113,7 +113,7 @@ class TestEveryArray:
         argument, call, good = ARRAYS[name]
         array = np.array(good, dtype=float)
         array[(-1,) * array.ndim] = value
-        if name in EVALUATED:
+        if name in EVALUATED or (name == "quaternion" and np.isnan(value)):
             assert not np.isfinite(_numbers(call(array))).all()
             rows = np.array([good, array, good])
             results = _numbers(call(rows))

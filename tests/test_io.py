@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from mesh_files import WRITERS, Writer, ascii_ply, ascii_stl, binary_ply, binary_stl, glb, obj, off
 from numpy.typing import NDArray
 from oracles.exact_polyhedron import polyhedron
 from oracles.meshes import cube, icosphere, tetrahedron
@@ -23,84 +24,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Writer = Callable[[Floats, Integers], bytes]
-
-
-# writers, one for each format, by the formats' own definitions ----------------------------------------
-
-
-def binary_stl(vertices: Floats, faces: Integers, header: bytes = b"part") -> bytes:
-    triangles = [struct.pack("<12fH", 0, 0, 0, *vertices[face].ravel(), 0) for face in faces]
-    return header.ljust(80) + struct.pack("<I", len(faces)) + b"".join(triangles)
-
-
-def ascii_stl(vertices: Floats, faces: Integers, name: str = "part") -> bytes:
-    lines = [f"solid {name}"]
-    for face in faces:
-        lines += ["  facet normal 0 0 0", "    outer loop"]
-        lines += [f"      vertex {x!r} {y!r} {z!r}" for x, y, z in vertices[face].tolist()]
-        lines += ["    endloop", "  endfacet"]
-    return "\n".join([*lines, f"endsolid {name}", ""]).encode()
-
-
-def obj(vertices: Floats, faces: Integers, base: int = 1) -> bytes:
-    lines = ["# a comment", *(f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist())]
-    return "\n".join([*lines, *("f {} {} {}".format(*face) for face in faces + base), ""]).encode()
-
-
-def ascii_ply(vertices: Floats, faces: Integers) -> bytes:
-    header = f"""ply
-format ascii 1.0
-element vertex {len(vertices)}
-property double x
-property double y
-property double z
-element face {len(faces)}
-property list uchar int vertex_indices
-end_header
-"""
-    return header.encode() + rows(vertices, faces)
-
-
-def binary_ply(vertices: Floats, faces: Integers) -> bytes:
-    header = (
-        ascii_ply(vertices, faces).partition(b"end_header\n")[0].replace(b"ascii", b"binary_little_endian")
-    )
-    body = vertices.astype("<f8").tobytes() + b"".join(struct.pack("<B3i", 3, *face) for face in faces)
-    return header + b"end_header\n" + body
-
-
-def off(vertices: Floats, faces: Integers) -> bytes:
-    return f"OFF\n{len(vertices)} {len(faces)} 0\n".encode() + rows(vertices, faces)
-
-
-def rows(vertices: Floats, faces: Integers) -> bytes:
-    lines = [f"{x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
-    return "\n".join([*lines, *("3 {} {} {}".format(*face) for face in faces), ""]).encode()
-
-
-def glb(vertices: Floats, faces: Integers) -> bytes:
-    trimesh = pytest.importorskip("trimesh")
-    data: bytes = trimesh.Trimesh(vertices, faces, process=False).export(file_type="glb")
-    return data
-
-
-WRITERS: dict[str, tuple[str, Writer, str]] = {
-    "binary STL": (".stl", binary_stl, "binary STL"),
-    "binary STL that begins with 'solid'": (
-        ".stl",
-        lambda v, f: binary_stl(v, f, b"solid part"),
-        "binary STL",
-    ),
-    "ASCII STL": (".STL", ascii_stl, "ASCII STL"),
-    "OBJ": (".obj", obj, "v/f text"),
-    "plates": (".tab", obj, "v/f text"),
-    "ASCII PLY": (".ply", ascii_ply, "PLY"),
-    "binary PLY": (".ply", binary_ply, "PLY"),
-    "OFF": (".off", off, "OFF"),
-    "GLB": (".glb", glb, "GLB"),
-}
 
 
 @pytest.fixture
@@ -289,6 +212,39 @@ def test_open_mesh_is_refused_and_not_closed(write: Any) -> None:
         RigidBody.from_file(write("open.obj", obj(vertices, faces[1:])), density=1.0)
 
 
+def test_corners_that_nearly_coincide_are_welded_on_request_only(write: Any) -> None:
+    """As some exporters write them: zero in one triangle, 1e-17 in the next."""
+    vertices, faces = cube(2.0)
+    corners = vertices[faces].reshape(-1, 3) + 1.0
+    corners[corners == 0.0] = np.resize([0.0, 1e-17, -3e-17], (corners == 0.0).sum())
+    path = write("frayed.stl", binary_stl(corners, np.arange(len(corners)).reshape(-1, 3)))
+    with pytest.raises(
+        MeshError, match=r"not closed.* corners lie within 2e-07 of another: weld=2e-07 or --weld"
+    ):
+        RigidBody.from_file(path, density=1.0)
+    mesh = read_mesh(path, weld=1e-12)
+    assert mesh.vertices.shape == (8, 3)
+    body = RigidBody.from_mesh(mesh.vertices, mesh.faces, density=1.0)
+    assert body.mass == pytest.approx(8.0, rel=1e-15)
+
+
+def test_welding_keeps_a_mesh_that_needs_none(write: Any) -> None:
+    path = write("ball.obj", obj(*icosphere(3)))
+    for a, b in zip(read_mesh(path), read_mesh(path, weld=1e-9), strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+@pytest.mark.parametrize("length", [-1.0, np.nan, np.inf])
+def test_weld_is_a_positive_length(length: float, write: Any) -> None:
+    with pytest.raises(ValueError, match="not a positive length"):
+        read_mesh(write("part.stl", STL), weld=length)
+
+
+def test_weld_that_would_join_far_corners_by_a_chain_is_refused(write: Any) -> None:
+    with pytest.raises(ValueError, match="would join corners up to"):
+        read_mesh(write("ball.obj", obj(*icosphere(3))), weld=0.1)
+
+
 def test_without_trimesh_the_remedy_is_named(write: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "trimesh", None)
     path = write("part.ply", ascii_ply(*cube()))
@@ -350,6 +306,26 @@ def test_eros_is_refused_until_its_index_base_is_given(shared_data: Path) -> Non
     ):
         _agrees(computed, known)
     np.testing.assert_allclose(body.center_of_mass, [-0.02163, 0.002368, 0.04748], atol=5e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "density", "mass", "diagonal"),
+    [
+        ("angle_block.STL", 0.036127, "0.0413843", ("0.00831524", "0.0128252", "0.00900698")),
+        ("idler_riser.STL", 0.09754366, "0.1451257", ("0.1208618", "0.0911556", "0.2053902")),
+    ],
+)
+def test_cad_parts_once_their_corners_are_welded(
+    shared_data: Path, name: str, density: float, mass: str, diagonal: tuple[str, ...]
+) -> None:
+    path = shared_data / "cad" / name
+    with pytest.raises(MeshError, match="--weld"):
+        RigidBody.from_file(path, density=density)
+    mesh = read_mesh(path, weld=1e-7)
+    body = RigidBody.from_mesh(mesh.vertices, mesh.faces, density=density)
+    _agrees(body.mass, mass)
+    for computed, known in zip(np.diag(body.inertia), diagonal, strict=True):
+        _agrees(computed, known)
 
 
 def test_a_step_file_is_refused(shared_data: Path) -> None:

@@ -79,6 +79,14 @@ class TestAccuracy:
         size_of_it = max(float(np.abs(turned).max()) * 2**-52 / 4e-16, float(np.ptp(turned)))
         assert worst_error(body.center_of_mass, exact.centroid, scale=size_of_it) <= 4e-16
 
+    @pytest.mark.parametrize("size", [1e-150, 1e-80, 1e-47, 1e37, 1e80, 1e150])
+    def test_no_scale_is_special(self, size: float) -> None:
+        vertices, faces = tetrahedron()
+        body = RigidBody.from_mesh(size * vertices, faces, mass=80.0)
+        want = np.array([[6.0, 1, 1], [1, 6, 1], [1, 1, 6]])
+        assert np.abs(body.inertia / size / size - want).max() < 1e-14
+        assert np.abs(body.center_of_mass / size - 0.25).max() < 1e-15
+
     def test_the_ball_of_5120_triangles_approaches_the_ball(self) -> None:
         body = RigidBody.from_mesh(*icosphere(4), mass=1.0)
         assert body.principal_moments == pytest.approx(np.full(3, 0.4), rel=5e-3)

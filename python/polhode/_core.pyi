@@ -1,6 +1,6 @@
 """Type stubs of the compiled core; ``mypy.stubtest`` holds them against the built module."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from os import PathLike
 from typing import Any, Literal, Self, TypeAlias, final
 
@@ -36,7 +36,7 @@ __all__ = [
 
 _Floats: TypeAlias = NDArray[np.float64]
 _About: TypeAlias = Literal["center_of_mass", "origin"] | ArrayLike
-_Attitude: TypeAlias = ArrayLike | SupportsQuaternion | None
+_Attitude: TypeAlias = ArrayLike | SupportsQuaternion
 
 __version__: str
 
@@ -55,7 +55,7 @@ class RigidBody:
     def from_principal(
         mass: ArrayLike,
         moments: ArrayLike,
-        axes: _Attitude = None,
+        axes: _Attitude | None = None,
         center_of_mass: ArrayLike = (0.0, 0.0, 0.0),
         *,
         rtol: float | None = None,
@@ -80,7 +80,7 @@ class RigidBody:
         length_unit: str | None = None,
     ) -> RigidBody: ...
     @staticmethod
-    def stack(bodies: Sequence[RigidBody]) -> RigidBody: ...
+    def stack(bodies: Iterable[RigidBody]) -> RigidBody: ...
     @property
     def mass(self) -> Any: ...
     @property
@@ -123,7 +123,7 @@ class RigidBody:
         self,
         t: ArrayLike,
         omega: ArrayLike,
-        attitude: _Attitude = None,
+        attitude: _Attitude | None = None,
         *,
         load: Load | None = None,
         position: ArrayLike | None = None,
@@ -141,7 +141,7 @@ class RigidBody:
     def __bool__(self) -> Literal[True]: ...
     def __iter__(self) -> Iterator[RigidBody]: ...
     def __add__(self, other: RigidBody, /) -> RigidBody: ...
-    def __radd__(self, other: Literal[0], /) -> RigidBody: ...
+    def __radd__(self, other: int, /) -> RigidBody: ...
     def __copy__(self) -> RigidBody: ...
     def __deepcopy__(self, memo: object, /) -> RigidBody: ...
     def __hash__(self) -> int: ...

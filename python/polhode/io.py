@@ -286,7 +286,7 @@ def _read(file: Path, suffix: str, index_base: int) -> Mesh:
 
 
 def _weld_hint(mesh: Mesh) -> str:
-    """What to say of a bad mesh some of whose corners differ by less than 32-bit coordinates resolve."""
+    """Tell of a bad mesh if some of its corners differ by less than 32-bit coordinates resolve."""
     size = float(np.abs(mesh.vertices).max(initial=0.0))
     if not (np.isfinite(size) and size > 0.0):
         return ""

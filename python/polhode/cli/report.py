@@ -10,6 +10,7 @@ import numpy as np
 from cyclopts import Parameter
 
 from polhode import RigidBody, _core
+from polhode._files.mesh import weld_within
 from polhode.cli.layout import Field, Report
 from polhode.errors import PolhodeError
 from polhode.io import MOLECULE_SUFFIX, Mesh, mesh_body, molecule_isotopes, read_mesh, read_xyz
@@ -39,6 +40,8 @@ class BodyOptions:
         Mass instead of density: kg if the length unit is given.
     length_unit
         Unit of the file's coordinates; results are then in SI units.
+    weld
+        Make corners at most this far apart one, in the unit of the file; without it only equal ones are.
     orient
         Turn triangles that face inward; without it they are an error.
     index_base
@@ -48,6 +51,7 @@ class BodyOptions:
     density: Annotated[float | None, Parameter(name="--density")] = None
     mass: Annotated[float | None, Parameter(name="--mass")] = None
     length_unit: Annotated[LengthUnit | None, Parameter(name="--length-unit")] = None
+    weld: Annotated[float, Parameter(name="--weld")] = 0.0
     orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
     index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
 
@@ -72,6 +76,8 @@ class LoadedBody:
         Of a mesh; not a number for a molecule.
     assumed : bool
         Whether neither density nor mass was given, and density 1 was taken.
+    notes : tuple of str
+        What was done to the mesh on request.
     """
 
     body: RigidBody
@@ -82,6 +88,7 @@ class LoadedBody:
     density: float = float("nan")
     volume: float = float("nan")
     assumed: bool = False
+    notes: tuple[str, ...] = ()
 
     @property
     def moment_unit(self) -> str:
@@ -103,6 +110,11 @@ def load_body(file: Path, options: BodyOptions) -> LoadedBody:
             "--density and --mass: give one of the two, since the other follows from the volume"
         )
     mesh = read_mesh(file, index_base=options.index_base)
+    notes: tuple[str, ...] = ()
+    if options.weld != 0.0:
+        welded = weld_within(mesh, options.weld)
+        joined = len(mesh.vertices) - len(welded.vertices)
+        mesh, notes = welded, (f"{joined} corners were joined to others within {options.weld:g} (--weld)",)
     scale = 1.0 if options.length_unit is None else metres_per(options.length_unit)
     if options.mass is not None:
         volume = float(mesh_body(file, mesh, scale=scale, density=1.0, orient=options.orient).mass)
@@ -120,6 +132,7 @@ def load_body(file: Path, options: BodyOptions) -> LoadedBody:
         density=density,
         volume=volume,
         assumed=options.density is None and options.mass is None,
+        notes=notes,
     )
 
 
@@ -127,6 +140,13 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
     if options.density is not None or options.mass is not None:
         given = "--density" if options.density is not None else "--mass"
         raise PolhodeError(f"{given}: {file} is a molecule, whose atoms have their own masses; leave it out")
+    for given, is_given in (
+        ("--weld", options.weld != 0.0),
+        ("--orient", options.orient),
+        ("--index-base", options.index_base != 1),
+    ):
+        if is_given:
+            raise PolhodeError(f"{given}: {file} is a molecule, not a mesh; leave it out")
     molecule = read_xyz(file)
     atoms = molecule_isotopes(file, molecule)
     in_angstrom = metres_per(options.length_unit or "angstrom") / METRES["angstrom"]
@@ -177,6 +197,7 @@ def _mesh_sections(report: Report, file: Path, loaded: LoadedBody, mesh: Mesh, o
     )
     report.section("inertia, file axes", *_tensor_fields(loaded))
     report.section("principal axes", *body_fields(loaded, unit))
+    report.notes += loaded.notes
     if loaded.assumed:
         report.notes.append(
             "neither density nor mass was given: density 1 was used (state --density or --mass)"

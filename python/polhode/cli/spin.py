@@ -98,6 +98,7 @@ def spin_report(file: Path, spin: SpinOptions, options: BodyOptions) -> Report:
             hint="largest, relative; the vector in space",
         ),
     )
+    report.notes += loaded.notes
     if np.isnan(angles).any():
         report.notes.append("at the end theta is 0 or 180 deg, where phi and psi are not defined one by one")
     if options.length_unit is None and loaded.mass_unit != "u":

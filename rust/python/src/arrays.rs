@@ -1,5 +1,7 @@
 //! NumPy layout: anything array-like in, C-ordered float64 arrays out.
 
+use std::convert::Infallible;
+
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use polhode::motion::attitude;
@@ -10,6 +12,25 @@ use pyo3::types::PyModule;
 
 use crate::errors::{at_row, to_py, wrong_shape};
 use crate::stack::{Stack, tuple};
+
+/// An argument with a default that is not None: None is a mistake, and read as one.
+#[derive(Default)]
+pub(crate) struct Argument<'py>(Option<Bound<'py, PyAny>>);
+
+impl<'py> Argument<'py> {
+    /// What was passed, if anything was.
+    pub(crate) fn given(&self) -> Option<&Bound<'py, PyAny>> {
+        self.0.as_ref()
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Argument<'py> {
+    type Error = Infallible;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> Result<Self, Infallible> {
+        Ok(Self(Some(object.to_owned())))
+    }
+}
 
 /// A value that stands in the last axes of an array.
 pub(crate) trait Item: Sized {
@@ -122,11 +143,13 @@ pub(crate) fn read_list<T: Item>(
 
 /// As [`read`], with a default for an argument that was not given.
 pub(crate) fn read_or<T: Item>(
-    object: Option<&Bound<'_, PyAny>>,
+    argument: &Argument<'_>,
     name: &str,
     default: T,
 ) -> PyResult<Stack<T>> {
-    object.map_or_else(|| Ok(Stack::one(default)), |object| read(object, name))
+    argument
+        .given()
+        .map_or_else(|| Ok(Stack::one(default)), |object| read(object, name))
 }
 
 /// The array of a stack.
@@ -234,27 +257,11 @@ pub(crate) fn read_quaternion(object: &Bound<'_, PyAny>, name: &str) -> PyResult
     }
 }
 
-/// The object, which must not be None.
-pub(crate) fn required<'a, 'py>(
-    object: &'a Bound<'py, PyAny>,
-    name: &str,
-) -> PyResult<&'a Bound<'py, PyAny>> {
-    if object.is_none() {
-        return Err(PyTypeError::new_err(format!(
-            "{name}: expected an array, got None"
-        )));
-    }
-    Ok(object)
-}
-
-/// Rotation matrices: (..., 3, 3), quaternions (..., 4), or whatever has `as_quat()`; nothing is the identity.
+/// Rotation matrices: (..., 3, 3), quaternions (..., 4), or whatever has `as_quat()`.
 pub(crate) fn read_rotation(
-    object: Option<&Bound<'_, PyAny>>,
+    object: &Bound<'_, PyAny>,
     name: &'static str,
 ) -> PyResult<Stack<Matrix3<f64>>> {
-    let Some(object) = object.filter(|object| !object.is_none()) else {
-        return Ok(Stack::one(Matrix3::identity()));
-    };
     if as_quaternion(object)?.is_none() {
         let shape: Vec<usize> = as_array(object, name)?.getattr("shape")?.extract()?;
         if !matches!(shape[..], [.., 4]) {

@@ -11,7 +11,7 @@ use pyo3::types::PyNotImplemented;
 
 use crate::arrays::{read, write};
 use crate::errors::{new, to_py};
-use crate::stack::Stack;
+use crate::stack::{Stack, tuple};
 
 /// What acts on a body: a sum of terms. Made by the functions of :mod:`polhode.loads`.
 ///
@@ -109,7 +109,7 @@ pub(crate) fn constant_torque(
         let shape = [&vector.shape[..], &[3]].concat();
         return Err(PyValueError::new_err(format!(
             "vector: expected shape (3,), got {}",
-            crate::stack::tuple(&shape)
+            tuple(&shape)
         )));
     }
     let term = Term::constant_torque(&vector[0], frame).map_err(|error| to_py(py, &error))?;
@@ -228,10 +228,15 @@ fn call(
     );
     let returned = callback.bind(py).call1(arguments)?;
     let torque: Stack<Vector3<f64>> = read(&returned, "the torque that the callback returned")?;
-    if !torque.is_one() || torque[0].iter().any(|x| !x.is_finite()) {
+    if !torque.is_one() {
+        let shape = tuple(&[&torque.shape[..], &[3]].concat());
+        let message =
+            format!("the torque that the callback returned: expected shape (3,), got {shape}");
+        return Err(PyValueError::new_err(message));
+    }
+    if let Some(&value) = torque[0].iter().find(|x| !x.is_finite()) {
         let message = format!(
-            "the torque that the callback returns must be three finite numbers, got {} at t = {t:?}",
-            returned.repr()?
+            "the torque that the callback returned must be finite, got {value} at t = {t:?}"
         );
         return Err(new(py, "PolhodeError", message));
     }

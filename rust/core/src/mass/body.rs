@@ -221,18 +221,19 @@ impl RigidBody {
     /// When `axis` is zero or not finite.
     pub fn moment_about(&self, axis: &Vector3<f64>, point: &Vector3<f64>) -> Result<f64, Error> {
         all_finite("axis", axis)?;
-        let n = axis
-            .try_normalize(0.0)
-            .ok_or(Error::NoDirection { what: "axis" })?;
-        let (n_p, lever) = (
+        let longest = axis.amax();
+        if longest == 0.0 {
+            return Err(Error::NoDirection { what: "axis" });
+        }
+        // Divided by n·n at the end, rather than normalized first, which would round the direction.
+        let n = axis / longest;
+        let (w, lever) = (
             self.principal.axes.tr_mul(&n),
             n.cross(&(point - self.center_of_mass)),
         );
         let [i1, i2, i3] = self.principal.moments;
-        Ok(i1 * n_p.x * n_p.x
-            + i2 * n_p.y * n_p.y
-            + i3 * n_p.z * n_p.z
-            + self.mass * lever.dot(&lever))
+        let central = i1 * w.x * w.x + i2 * w.y * w.y + i3 * w.z * w.z;
+        Ok((central + self.mass * lever.dot(&lever)) / n.dot(&n))
     }
 
     /// Radii of gyration `√(I_k / m)` about the principal axes through C, ascending.

@@ -107,6 +107,7 @@ pub fn check_times(times: &[f64]) -> Result<(), Error> {
         return Err(Error::Empty { what: "t" });
     };
     all_finite("t", times)?;
+    finite("the span of t", last - first)?;
     for (k, pair) in times.windows(2).enumerate() {
         let forward = if last > first {
             pair[1] > pair[0]

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::PyRigidBody;
-use crate::arrays::{read, read_faces, read_list, read_or, read_rotation};
+use crate::arrays::{Argument, read, read_faces, read_list, read_or, read_rotation};
 use crate::errors::to_py;
 use crate::solids::amount;
 use crate::stack::{Broadcast, Stack};
@@ -25,14 +25,14 @@ type FromTensor = fn(f64, &Matrix3<f64>, &Vector3<f64>, f64) -> Result<RigidBody
 impl PyRigidBody {
     #[new]
     #[pyo3(
-        signature = (mass, inertia=None, center_of_mass=None, *, inertia_about_origin=None, rtol=None),
+        signature = (mass, inertia=None, center_of_mass=Argument::default(), *, inertia_about_origin=None, rtol=None),
         text_signature = "(mass, inertia=None, center_of_mass=(0.0, 0.0, 0.0), *, inertia_about_origin=None, rtol=None)"
     )]
     fn new(
         py: Python<'_>,
         mass: &Bound<'_, PyAny>,
         inertia: Given<'_, '_>,
-        center_of_mass: Given<'_, '_>,
+        center_of_mass: Argument<'_>,
         inertia_about_origin: Given<'_, '_>,
         rtol: Option<f64>,
     ) -> PyResult<Self> {
@@ -50,7 +50,7 @@ impl PyRigidBody {
         };
         let mass: Stack<f64> = read(mass, "mass")?;
         let tensor: Stack<Matrix3<f64>> = read(tensor, name)?;
-        let center = read_or(center_of_mass, "center_of_mass", Vector3::zeros())?;
+        let center = read_or(&center_of_mass, "center_of_mass", Vector3::zeros())?;
         let grid = Broadcast::of(
             ["mass", name, "center_of_mass"],
             [&mass.shape, &tensor.shape, &center.shape],
@@ -95,7 +95,7 @@ impl PyRigidBody {
     /// 'oblate'
     #[staticmethod]
     #[pyo3(
-        signature = (mass, moments, axes=None, center_of_mass=None, *, rtol=None),
+        signature = (mass, moments, axes=None, center_of_mass=Argument::default(), *, rtol=None),
         text_signature = "(mass, moments, axes=None, center_of_mass=(0.0, 0.0, 0.0), *, rtol=None)"
     )]
     fn from_principal(
@@ -103,13 +103,16 @@ impl PyRigidBody {
         mass: &Bound<'_, PyAny>,
         moments: &Bound<'_, PyAny>,
         axes: Given<'_, '_>,
-        center_of_mass: Given<'_, '_>,
+        center_of_mass: Argument<'_>,
         rtol: Option<f64>,
     ) -> PyResult<Self> {
         let mass: Stack<f64> = read(mass, "mass")?;
         let moments: Stack<[f64; 3]> = read(moments, "moments")?;
-        let axes = read_rotation(axes, "axes")?;
-        let center = read_or(center_of_mass, "center_of_mass", Vector3::zeros())?;
+        let axes = match axes {
+            Some(axes) => read_rotation(axes, "axes")?,
+            None => Stack::one(Matrix3::identity()),
+        };
+        let center = read_or(&center_of_mass, "center_of_mass", Vector3::zeros())?;
         let names = ["mass", "moments", "axes", "center_of_mass"];
         let grid = Broadcast::of(
             names,
@@ -281,7 +284,7 @@ impl PyRigidBody {
     ///
     /// Parameters
     /// ----------
-    /// bodies : sequence of RigidBody
+    /// bodies : iterable of RigidBody
     ///
     /// Returns
     /// -------
@@ -293,24 +296,28 @@ impl PyRigidBody {
     /// >>> RigidBody.stack([solids.sphere(1.0, mass=m) for m in (1.0, 2.0)]).mass
     /// array([1., 2.])
     #[staticmethod]
-    fn stack(bodies: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
+    fn stack(bodies: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let bodies = bodies
+            .try_iter()?
+            .map(|body| Ok(body?.cast_into::<Self>()?))
+            .collect::<PyResult<Vec<_>>>()?;
         let Some(first) = bodies.first() else {
             return Err(PyValueError::new_err(
                 "bodies: expected at least one body to stack, got none",
             ));
         };
-        let shape = &first.bodies.shape;
-        if let Some(other) = bodies.iter().find(|body| body.bodies.shape != *shape) {
+        let shape = &first.get().bodies.shape;
+        if let Some(other) = bodies.iter().find(|body| body.get().bodies.shape != *shape) {
             return Err(PyValueError::new_err(format!(
                 "bodies: expected bodies of one shape, got {} and {}",
                 crate::stack::tuple(shape),
-                crate::stack::tuple(&other.bodies.shape)
+                crate::stack::tuple(&other.get().bodies.shape)
             )));
         }
         let shape = [&[bodies.len()], &shape[..]].concat();
         let rows = bodies
             .iter()
-            .flat_map(|body| body.bodies.rows.iter().copied())
+            .flat_map(|body| body.get().bodies.rows.iter().copied())
             .collect();
         Ok(Stack { shape, rows }.into())
     }

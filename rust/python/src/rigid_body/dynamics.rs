@@ -8,11 +8,8 @@ use polhode::motion::kinetic_energy::{KineticEnergy, kinetic_energy};
 use pyo3::prelude::*;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{read, read_or, write, write_numbers};
+use crate::arrays::{Argument, read, read_or, write, write_numbers};
 use crate::stack::{Broadcast, Stack};
-
-/// An optional argument of any array-like kind.
-type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 #[pymethods]
 impl PyRigidBody {
@@ -43,19 +40,19 @@ impl PyRigidBody {
     /// >>> cylinder.kinetic_energy((0, 0, 1), about=(0, 1, 0))
     /// KineticEnergy(translational=0.0, mixed=0.0, rotational=3.0)
     #[pyo3(
-        signature = (omega, velocity=None, about=None),
+        signature = (omega, velocity=Argument::default(), about=Argument::default()),
         text_signature = "($self, omega, velocity=(0.0, 0.0, 0.0), about='center_of_mass')"
     )]
     fn kinetic_energy<'py>(
         &self,
         py: Python<'py>,
         omega: &Bound<'py, PyAny>,
-        velocity: Given<'_, 'py>,
-        about: Given<'_, 'py>,
+        velocity: Argument<'py>,
+        about: Argument<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
-        let velocity = read_or(velocity, "velocity", Vector3::zeros())?;
-        let about = points(&self.bodies, about, "about")?;
+        let velocity = read_or(&velocity, "velocity", Vector3::zeros())?;
+        let about = points(&self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &omega.shape,
@@ -107,21 +104,21 @@ impl PyRigidBody {
     /// >>> solids.sphere(1.0, mass=5.0).angular_momentum((0, 0, 3), velocity=(0, 1, 0), position=(2, 0, 0)).total
     /// array([ 0.,  0., 16.])
     #[pyo3(
-        signature = (omega, velocity=None, position=None, about=None),
+        signature = (omega, velocity=Argument::default(), position=Argument::default(), about=Argument::default()),
         text_signature = "($self, omega, velocity=(0.0, 0.0, 0.0), position=(0.0, 0.0, 0.0), about='center_of_mass')"
     )]
     fn angular_momentum<'py>(
         &self,
         py: Python<'py>,
         omega: &Bound<'py, PyAny>,
-        velocity: Given<'_, 'py>,
-        position: Given<'_, 'py>,
-        about: Given<'_, 'py>,
+        velocity: Argument<'py>,
+        position: Argument<'py>,
+        about: Argument<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
-        let velocity = read_or(velocity, "velocity", Vector3::zeros())?;
-        let position = read_or(position, "position", Vector3::zeros())?;
-        let about = points(&self.bodies, about, "about")?;
+        let velocity = read_or(&velocity, "velocity", Vector3::zeros())?;
+        let position = read_or(&position, "position", Vector3::zeros())?;
+        let about = points(&self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &omega.shape,
@@ -174,19 +171,19 @@ impl PyRigidBody {
     /// >>> body.angular_acceleration((1.0, 2.0, 4.0))
     /// array([-4. ,  3. , -0.8])
     #[pyo3(
-        signature = (omega, torque=None, about=None),
+        signature = (omega, torque=Argument::default(), about=Argument::default()),
         text_signature = "($self, omega, torque=(0.0, 0.0, 0.0), about='center_of_mass')"
     )]
     fn angular_acceleration<'py>(
         &self,
         py: Python<'py>,
         omega: &Bound<'py, PyAny>,
-        torque: Given<'_, 'py>,
-        about: Given<'_, 'py>,
+        torque: Argument<'py>,
+        about: Argument<'py>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
-        let torque = read_or(torque, "torque", Vector3::zeros())?;
-        let about = points(&self.bodies, about, "about")?;
+        let torque = read_or(&torque, "torque", Vector3::zeros())?;
+        let about = points(&self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &omega.shape,
@@ -224,23 +221,23 @@ impl PyRigidBody {
     /// >>> body.torque((1.0, 2.0, 4.0))
     /// array([ 4., -6.,  2.])
     #[pyo3(
-        signature = (omega, angular_acceleration=None, about=None),
+        signature = (omega, angular_acceleration=Argument::default(), about=Argument::default()),
         text_signature = "($self, omega, angular_acceleration=(0.0, 0.0, 0.0), about='center_of_mass')"
     )]
     fn torque<'py>(
         &self,
         py: Python<'py>,
         omega: &Bound<'py, PyAny>,
-        angular_acceleration: Given<'_, 'py>,
-        about: Given<'_, 'py>,
+        angular_acceleration: Argument<'py>,
+        about: Argument<'py>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let acceleration = read_or(
-            angular_acceleration,
+            &angular_acceleration,
             "angular_acceleration",
             Vector3::zeros(),
         )?;
-        let about = points(&self.bodies, about, "about")?;
+        let about = points(&self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &omega.shape,

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyNotImplemented;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{read, read_or, read_rotation, required, write, write_numbers};
+use crate::arrays::{Argument, read, read_or, read_rotation, write, write_numbers};
 use crate::principal::to_python;
 use crate::stack::{Broadcast, Stack};
 
@@ -106,14 +106,14 @@ impl PyRigidBody {
     /// >>> from polhode import solids
     /// >>> solids.sphere(1.0, mass=5.0).moment_about((0, 0, 3))
     /// 2.0
-    #[pyo3(signature = (axis, point=None), text_signature = "($self, axis, point='center_of_mass')")]
+    #[pyo3(signature = (axis, point=Argument::default()), text_signature = "($self, axis, point='center_of_mass')")]
     fn moment_about<'py>(
         &self,
         py: Python<'py>,
         axis: &Bound<'py, PyAny>,
-        point: Option<&Bound<'py, PyAny>>,
+        point: Argument<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = points(&self.bodies, point, "point")?;
+        let points = points(&self.bodies, point.given(), "point")?;
         let axes: Stack<Vector3<f64>> = read(axis, "axis")?;
         let shapes = [&self.bodies.shape[..], &axes.shape, &points.shape];
         let grid = Broadcast::of(["body", "axis", "point"], shapes)?;
@@ -195,8 +195,7 @@ impl PyRigidBody {
     /// >>> solids.box((1, 2, 3), mass=12.0).rotated(quarter_turn).inertia.diagonal()
     /// array([10., 13.,  5.])
     fn rotated(&self, py: Python<'_>, rotation: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let rotations: Stack<Matrix3<f64>> =
-            read_rotation(Some(required(rotation, "rotation")?), "rotation")?;
+        let rotations: Stack<Matrix3<f64>> = read_rotation(rotation, "rotation")?;
         let grid = self.with("rotation", &rotations)?;
         Ok(grid
             .try_map(py, |[b, r]| self.bodies[b].rotated(&rotations[r]))?
@@ -219,14 +218,12 @@ impl PyRigidBody {
     /// >>> from polhode import solids
     /// >>> solids.sphere(1.0, mass=5.0).scaled(length=2).principal_moments
     /// array([8., 8., 8.])
-    #[pyo3(signature = (length=None, mass=None), text_signature = "($self, length=1.0, mass=1.0)")]
-    fn scaled(
-        &self,
-        py: Python<'_>,
-        length: Option<&Bound<'_, PyAny>>,
-        mass: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let (length, mass) = (read_or(length, "length", 1.0)?, read_or(mass, "mass", 1.0)?);
+    #[pyo3(signature = (length=Argument::default(), mass=Argument::default()), text_signature = "($self, length=1.0, mass=1.0)")]
+    fn scaled(&self, py: Python<'_>, length: Argument<'_>, mass: Argument<'_>) -> PyResult<Self> {
+        let (length, mass) = (
+            read_or(&length, "length", 1.0)?,
+            read_or(&mass, "mass", 1.0)?,
+        );
         let shapes = [&self.bodies.shape[..], &length.shape, &mass.shape];
         let grid = Broadcast::of(["body", "length", "mass"], shapes)?;
         Ok(grid

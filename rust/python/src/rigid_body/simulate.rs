@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{read, read_attitude, read_or, write};
+use crate::arrays::{read, read_attitude, write};
 use crate::errors::{at_row, to_py};
 use crate::interrupt::Interrupt;
 use crate::loads::{Fault, PyLoad};
@@ -127,8 +127,8 @@ impl PyRigidBody {
             bodies,
             omega: read(omega, "omega")?,
             attitude: read_attitude(attitude, "attitude")?,
-            position: read_or(position, "position", Vector3::zeros())?,
-            velocity: read_or(velocity, "velocity", Vector3::zeros())?,
+            position: at_start(position, "position")?,
+            velocity: at_start(velocity, "velocity")?,
             about: points(bodies, Some(&about_word), "about")?,
         };
         let run = Run {
@@ -167,6 +167,14 @@ fn check_choices(about: &str, method: &str, velocity: Given<'_, '_>) -> PyResult
         ));
     }
     Ok(())
+}
+
+/// A vector that is zero unless given.
+fn at_start(vector: Given<'_, '_>, name: &str) -> PyResult<Stack<Vector3<f64>>> {
+    vector.map_or_else(
+        || Ok(Stack::one(Vector3::zeros())),
+        |vector| read(vector, name),
+    )
 }
 
 fn read_times(py: Python<'_>, t: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {

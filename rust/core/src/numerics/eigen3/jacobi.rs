@@ -57,8 +57,15 @@ impl<L: Lane> Iterate<L> {
             poison,
         } = a.scaled();
         let (zero, one) = (L::new(0.0), L::new(1.0));
+        // A diagonal matrix needs no products, hence no scaling, in which an element 300 decades below would be lost.
+        let off_diagonal = a.a01.abs().max(a.a02.abs()).max(a.a12.abs());
+        let (d, unscale) = if off_diagonal == zero {
+            ([a.a00, a.a11, a.a22], one)
+        } else {
+            ([matrix.a00, matrix.a11, matrix.a22], unscale)
+        };
         Self {
-            d: [matrix.a00, matrix.a11, matrix.a22],
+            d,
             rest: [zero; 3],
             o01: matrix.a01,
             o02: matrix.a02,
