@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given, settings
-
 from oracles.bodies import Body, attitudes, bodies, matrix, vectors
 from oracles.free_motion import as_floats, taylor_motion
 from polhode import RigidBody, Trajectory, loads, solids
