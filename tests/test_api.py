@@ -69,8 +69,8 @@ WITH_EXAMPLES = [name for name, value in OBJECTS.items() if ">>>" in (inspect.ge
 class TestNames:
     def test_the_package_exports_what_it_lists(self) -> None:
         visible = {n for n in vars(polhode) if not n.startswith("_")} | {"__version__"}
-        helpers = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
-        internal = helpers - set(polhode.__all__)
+        modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
+        internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
         assert internal <= {"results", "io", "plot", "molecules", "units", "cli"}
 

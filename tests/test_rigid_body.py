@@ -51,8 +51,9 @@ class TestConstruction:
     def test_principal_moments_given_are_the_moments_kept(self, body: Body) -> None:
         made = RigidBody.from_principal(*body)
         assert np.array_equal(made.principal_moments, body.moments)
+        # The axes are rounded: their columns are a right-handed orthonormal set to a few ε.
         error = np.abs(made.inertia - body.inertia).max()
-        assert error <= 8 * np.finfo(float).eps * body.moments[2]
+        assert error <= 16 * np.finfo(float).eps * body.moments[2]
 
     def test_principal_axes_default_to_the_body_axes(self) -> None:
         made = RigidBody.from_principal(2.0, [1.0, 2.0, 2.5])

@@ -239,10 +239,9 @@ fn any_number_of_threads_gives_the_same_bits() {
         set_thread_limit(std::num::NonZeroUsize::new(count));
         let mut moments = vec![[0.0; 3]; rows.len()];
         let mut axes = vec![[0.0; 9]; rows.len()];
-        let flow = principal_axes_many(&rows, &mut moments, &mut axes, &mut |_| {
-            ControlFlow::Continue(())
-        });
-        assert_eq!(flow, ControlFlow::Continue(()));
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let outcome = principal_axes_many(&rows, 0.0, &mut moments, &mut axes, go_on);
+        assert_eq!(outcome, Ok(()));
         assert!(
             moments == expected.0 && axes == expected.1,
             "{count} threads"

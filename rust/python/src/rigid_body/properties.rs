@@ -271,6 +271,12 @@ impl PyRigidBody {
         flat.call_method1("reshape", (grid.shape,))
     }
 
+    /// A body is no array: NumPy leaves ``array == body`` and ``array + body`` to the body.
+    #[classattr]
+    fn __array_ufunc__() -> Option<bool> {
+        None
+    }
+
     fn __add__<'py>(
         &self,
         py: Python<'py>,
