@@ -14,47 +14,46 @@ BODY = solids.box((1.0, 2.0, 3.0), mass=1.0)
 EYE = np.eye(3)
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
 
+UNIT = np.array([0.1, 0.7, 0.1, 0.7])
+VECTOR = np.array([1.0, 2.0, 3.0])
+TENSOR = np.array([[8.0, 1.0, 0.0], [1.0, 9.0, 2.0], [0.0, 2.0, 10.0]])
+TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 2.0], [0.0, 3.0, 1.0], [1.0, 1.0, 5.0]])
 ARRAYS: dict[str, tuple[str, Callable[[Any], object], Any]] = {
     "mass": ("mass", lambda x: RigidBody(x, EYE), 1.0),
-    "inertia": ("inertia", lambda x: RigidBody(1.0, x), EYE),
-    "inertia_about_origin": ("inertia_about_origin", lambda x: RigidBody(1.0, inertia_about_origin=x), EYE),
-    "center_of_mass": ("center_of_mass", lambda x: RigidBody(1.0, EYE, x), np.zeros(3)),
-    "moments": ("moments", lambda x: RigidBody.from_principal(1.0, x), np.ones(3)),
-    "axes": ("axes", lambda x: RigidBody.from_principal(1.0, np.ones(3), x), EYE),
-    "masses": ("masses", lambda x: RigidBody.from_particles(x, np.eye(3)), np.ones(3)),
-    "positions": ("positions", lambda x: RigidBody.from_particles(np.ones(3), x), EYE),
-    "principal_axes": ("inertia", principal_axes, EYE),
-    "translated": ("displacement", BODY.translated, np.zeros(3)),
-    "rotated": ("rotation", BODY.rotated, EYE),
-    "inertia_about": ("point", BODY.inertia_about, np.zeros(3)),
-    "moment_about": ("axis", BODY.moment_about, np.ones(3)),
-    "kinetic_energy": ("omega", BODY.kinetic_energy, np.ones(3)),
-    "velocity": ("velocity", lambda x: BODY.kinetic_energy((1, 2, 3), x), np.ones(3)),
-    "angular_momentum": ("omega", BODY.angular_momentum, np.ones(3)),
-    "angular_acceleration": ("omega", BODY.angular_acceleration, np.ones(3)),
-    "torque": ("torque", lambda x: BODY.angular_acceleration((1, 2, 3), x), np.ones(3)),
-    "inverse": ("angular_acceleration", lambda x: BODY.torque((1, 2, 3), x), np.ones(3)),
+    "inertia": ("inertia", lambda x: RigidBody(1.0, x), TENSOR),
+    "inertia_about_origin": (
+        "inertia_about_origin",
+        lambda x: RigidBody(1.0, inertia_about_origin=x),
+        TENSOR,
+    ),
+    "center_of_mass": ("center_of_mass", lambda x: RigidBody(1.0, EYE, x), VECTOR),
+    "moments": ("moments", lambda x: RigidBody.from_principal(1.0, x), np.array([3.0, 4.0, 2.0])),
+    "axes": ("axes", lambda x: RigidBody.from_principal(1.0, (2, 3, 4), x), TURN),
+    "masses": ("masses", lambda x: RigidBody.from_particles(x, POINTS[:3]), VECTOR),
+    "positions": ("positions", lambda x: RigidBody.from_particles((1, 2, 3, 4), x), POINTS),
+    "principal_axes": ("inertia", principal_axes, TENSOR),
+    "translated": ("displacement", BODY.translated, VECTOR),
+    "rotated": ("rotation", BODY.rotated, TURN),
+    "inertia_about": ("point", BODY.inertia_about, VECTOR),
+    "moment_about": ("axis", BODY.moment_about, VECTOR),
+    "kinetic_energy": ("omega", BODY.kinetic_energy, VECTOR),
+    "velocity": ("velocity", lambda x: BODY.kinetic_energy((1, 2, 3), x), VECTOR),
+    "angular_momentum": ("omega", BODY.angular_momentum, VECTOR),
+    "angular_acceleration": ("omega", BODY.angular_acceleration, VECTOR),
+    "torque": ("torque", lambda x: BODY.angular_acceleration((1, 2, 3), x), VECTOR),
+    "inverse": ("angular_acceleration", lambda x: BODY.torque((1, 2, 3), x), VECTOR),
     "simulate t": ("t", lambda x: BODY.simulate(x, (1, 2, 3)), np.array([0.0, 1.0])),
-    "simulate omega": ("omega", lambda x: BODY.simulate([0, 1], x), np.ones(3)),
-    "simulate attitude": (
-        "attitude",
-        lambda x: BODY.simulate([0, 1], (1, 2, 3), x),
-        np.array([0.0, 0, 0, 1]),
-    ),
-    "simulate position": ("position", lambda x: BODY.simulate([0, 1], (1, 2, 3), position=x), np.ones(3)),
-    "simulate velocity": ("velocity", lambda x: BODY.simulate([0, 1], (1, 2, 3), velocity=x), np.ones(3)),
-    "constant_torque": ("vector", loads.constant_torque, np.ones(3)),
-    "size": ("size", lambda x: solids.box(x, mass=1.0), np.ones(3)),
-    "angles": ("angles", euler_angles.to_quaternion, np.ones(3)),
-    "quaternion": ("quaternion", euler_angles.from_quaternion, np.array([0.1, 0.7, 0.1, 0.7])),
-    "vertices": (
-        "vertices",
-        lambda x: RigidBody.from_mesh(x, FACES, density=1.0),
-        np.vstack([np.zeros(3), EYE]),
-    ),
+    "simulate omega": ("omega", lambda x: BODY.simulate([0, 1], x), VECTOR),
+    "simulate attitude": ("attitude", lambda x: BODY.simulate([0, 1], (1, 2, 3), x), UNIT),
+    "simulate position": ("position", lambda x: BODY.simulate([0, 1], (1, 2, 3), position=x), VECTOR),
+    "simulate velocity": ("velocity", lambda x: BODY.simulate([0, 1], (1, 2, 3), velocity=x), VECTOR),
+    "constant_torque": ("vector", loads.constant_torque, VECTOR),
+    "size": ("size", lambda x: solids.box(x, mass=1.0), VECTOR),
+    "angles": ("angles", euler_angles.to_quaternion, VECTOR),
+    "quaternion": ("quaternion", euler_angles.from_quaternion, UNIT),
+    "vertices": ("vertices", lambda x: RigidBody.from_mesh(x, FACES, mass=1.0, orient=True), POINTS),
 }
-
-
 OPTIONAL = {
     "inertia",
     "inertia_about_origin",
