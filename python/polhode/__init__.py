@@ -1,13 +1,14 @@
 """One body in: an inertia you can trust, and exactly how it will spin."""
 
 from polhode import errors, euler_angles, loads, solids
-from polhode._core import RigidBody, __version__, principal_axes
-from polhode.results import AngularMomentum, KineticEnergy, PrincipalAxes, Trajectory
+from polhode._core import RigidBody, __version__, principal_axes, principal_moments
+from polhode.results import AngularMomentum, KineticEnergy, PrincipalAxes, PrincipalDerivative, Trajectory
 
 __all__ = [
     "AngularMomentum",
     "KineticEnergy",
     "PrincipalAxes",
+    "PrincipalDerivative",
     "RigidBody",
     "Trajectory",
     "__version__",
@@ -15,5 +16,6 @@ __all__ = [
     "euler_angles",
     "loads",
     "principal_axes",
+    "principal_moments",
     "solids",
 ]

@@ -33,7 +33,10 @@ mod _core {
     #[pymodule_export]
     use crate::loads::{PyLoad, constant_torque, torque_callback};
     #[pymodule_export]
-    use crate::principal::{classify_tops, principal_axes, principal_gaps};
+    use crate::principal::{
+        canonical_axes, classify_tops, principal_axes, principal_derivative, principal_gaps,
+        principal_moments, ray_kappa,
+    };
     #[pymodule_export]
     use crate::rigid_body::PyRigidBody;
     #[pymodule_export]
@@ -45,6 +48,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::interrupt::limit_threads()?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }
