@@ -88,9 +88,9 @@ class PrincipalAxes:
         --------
         >>> from polhode import principal_axes
         >>> principal_axes([(2.0, 0, 0), (0, 1.0, 0), (0, 0, 2.0)]).canonical().axes
-        array([[0., 0., 1.],
-               [1., 0., 0.],
-               [0., 1., 0.]])
+        array([[ 0.,  1.,  0.],
+               [ 1.,  0.,  0.],
+               [ 0.,  0., -1.]])
         """
         return PrincipalAxes(self.moments, _core.canonical_axes(self.moments, self.axes, rtol))
 
@@ -116,8 +116,8 @@ class PrincipalAxes:
         >>> change.moments
         array([0.5, 0. , 0. ])
         >>> change.axes
-        array([[ 0., -1.,  0.],
-               [ 1.,  0.,  0.],
+        array([[ 0.,  1.,  0.],
+               [-1.,  0.,  0.],
                [ 0.,  0.,  0.]])
         """
         found = _core.principal_derivative(self.moments, self.axes, tangent, rtol)
