@@ -48,6 +48,7 @@ package: setup ## source distribution and wheel into dist/, the wheel built from
 
 bench: build ## times beside the peers, as ratios; NAMES= picks files of rows
 	$(BIN)/python benchmarks/run.py $(NAMES)
+	cargo bench --locked --package polhode
 
 setup: $(VENV)/.tools ## virtual environment with the development tools
 

@@ -1,37 +1,12 @@
-//! Ctrl-C, progress and the number of threads of long runs.
+//! Ctrl-C and progress for long runs.
 
-use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use polhode::numerics::threads::set_thread_limit;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-
-/// The environment variable that limits the number of threads.
-const THREADS: &str = "POLHODE_NUM_THREADS";
-
-/// Limits the threads of long runs as the environment says.
-pub(crate) fn limit_threads() -> PyResult<()> {
-    let Some(text) = std::env::var_os(THREADS) else {
-        return Ok(());
-    };
-    let Some(count) = text
-        .to_str()
-        .and_then(|text| text.trim().parse::<NonZeroUsize>().ok())
-    else {
-        let message = format!(
-            "{THREADS}: expected a positive number of threads, got {}",
-            text.display()
-        );
-        return Err(PyValueError::new_err(message));
-    };
-    set_thread_limit(Some(count));
-    Ok(())
-}
 
 /// How often Python is asked; fast enough to feel immediate, rare enough to cost nothing.
 const INTERVAL: Duration = Duration::from_millis(50);

@@ -6,12 +6,14 @@
 //! | `stack` | shape arithmetic |
 //! | `errors` | which exception an error of the core becomes |
 //! | `interrupt` | Ctrl-C and progress |
+//! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
 
 // What Python sees is documented in Python's terms; the names are public to it alone.
 #![allow(missing_docs, clippy::doc_markdown, clippy::needless_pass_by_value)]
 
 mod arrays;
+mod environment;
 mod errors;
 mod files;
 mod interrupt;
@@ -48,7 +50,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        crate::interrupt::limit_threads()?;
+        crate::environment::obey()?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

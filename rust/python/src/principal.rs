@@ -8,7 +8,8 @@ use polhode::numerics::threads::Halt;
 use polhode::principal as core;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyString, PyType};
 
 use crate::arrays::{Item, floats, numpy, read, write, write_numbers};
 use crate::errors::{at_row, to_py, wrong_shape};
@@ -69,9 +70,8 @@ pub(crate) fn principal_axes<'py>(
         let found = one(py, &tensors[0], canonical)?;
         return to_python(py, &Stack::one(found));
     }
-    // NumPy's own allocation comes in huge pages where it is large.
-    let moments = PyArrayDyn::zeros(py, [&leading[..], &[3]].concat(), false);
-    let axes = PyArrayDyn::zeros(py, [&leading[..], &[3, 3]].concat(), false);
+    let moments = empty(py, &leading, &[3])?;
+    let axes = empty(py, &leading, &[3, 3])?;
     {
         let (mut moments, mut axes) = (moments.readwrite(), axes.readwrite());
         let (moments, _) = moments.as_slice_mut()?.as_chunks_mut::<3>();
@@ -83,9 +83,7 @@ pub(crate) fn principal_axes<'py>(
             py.detach(|| core::canonical_many(moments, axes, core::TOP_RTOL));
         }
     }
-    py.import("polhode.results")?
-        .getattr("PrincipalAxes")?
-        .call1((moments, axes))
+    results(py)?.call1((moments, axes))
 }
 
 /// Principal moments of symmetric tensors, without the axes and in less time.
@@ -115,8 +113,7 @@ pub(crate) fn principal_moments<'py>(py: Python<'py>, inertia: &Bound<'py, PyAny
     let array = floats(inertia, "inertia")?;
     let leading = leading_shape(array.shape())?.to_vec();
     let (tensors, _) = array.as_slice()?.as_chunks::<9>();
-    // NumPy's own allocation comes in huge pages where it is large.
-    let moments = PyArrayDyn::zeros(py, [&leading[..], &[3]].concat(), false);
+    let moments = empty(py, &leading, &[3])?;
     {
         let mut moments = moments.readwrite();
         let (moments, _) = moments.as_slice_mut()?.as_chunks_mut::<3>();
@@ -125,6 +122,18 @@ pub(crate) fn principal_moments<'py>(py: Python<'py>, inertia: &Bound<'py, PyAny
         })?;
     }
     Ok(moments)
+}
+
+/// The class `polhode.results.PrincipalAxes`.
+fn results(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    CLASS.import(py, "polhode.results", "PrincipalAxes")
+}
+
+/// An array to be filled. NumPy's own allocation comes in large pages, which is faster by a multiple for large stacks.
+fn empty<'py>(py: Python<'py>, leading: &[usize], tail: &[usize]) -> Array<'py> {
+    let array = numpy(py)?.call_method1("empty", ([leading, tail].concat(),))?;
+    Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
 
 /// The axes of a stack of tensors.
@@ -174,9 +183,7 @@ pub(crate) fn to_python<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let moments = write(py, &found.map(|principal| principal.moments))?;
     let axes = write(py, &found.map(|principal| principal.axes))?;
-    py.import("polhode.results")?
-        .getattr("PrincipalAxes")?
-        .call1((moments, axes))
+    results(py)?.call1((moments, axes))
 }
 
 /// Axes (..., 3, 3) turned as `principal_axes` does with `canonical`, moments closer than rtol counting as equal.
