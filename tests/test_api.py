@@ -15,10 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polhode
 import pytest
 from markdown_code import blocks, run_examples, run_page
-
-import polhode
 from polhode import RigidBody, loads, solids
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -68,8 +67,8 @@ WITH_EXAMPLES = [name for name, value in OBJECTS.items() if ">>>" in (inspect.ge
 class TestNames:
     def test_the_package_exports_what_it_lists(self) -> None:
         visible = {n for n in vars(polhode) if not n.startswith("_")} | {"__version__"}
-        helpers = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
-        internal = helpers - set(polhode.__all__)
+        modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
+        internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
         assert internal <= {"results", "io", "plot", "molecules", "units", "cli"}
 

@@ -11,10 +11,9 @@ from xml.etree import ElementTree
 
 import matplotlib as mpl
 import numpy as np
+import polhode
 import pytest
 from markdown_code import blocks, run_page
-
-import polhode
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"

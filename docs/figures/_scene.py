@@ -14,7 +14,6 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Polygon
-
 from polhode.plot import AXIS_COLORS
 
 if TYPE_CHECKING:
