@@ -53,6 +53,7 @@ class Scene:
         for ax in self.panels:
             ax.set_aspect("equal")
             ax.set_axis_off()
+            ax.margins(0.08)
         self.ax = self.panels[0]
         if flat:
             self.right, self.up = X, Y
