@@ -9,8 +9,10 @@
 //! | particles | [`particles`] |
 //! | homogeneous solids | [`solids`] |
 //! | closed triangle mesh | [`polyhedron`] |
+//! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 
 pub mod body;
+pub mod equimomental;
 pub mod parallel_axis;
 pub mod particles;
 pub mod polyhedron;
