@@ -67,12 +67,12 @@ impl PivotedTop {
     /// Least spin that precesses steadily at the inclination θ: `2 √(I_t m g l cos θ)/I_s`; zero for cos θ ≤ 0.
     ///
     /// For θ = 0 it is the sleeping limit: upright, the top is stable where `I_s² ω_s² ≥ 4 I_t m g l`. `inclination`: θ, of
-    /// the axis (from O to C) from the upward vertical. `gravity`: g ≥ 0. Infinite for a top without axial moment.
+    /// the axis (from O to C) from the upward vertical. `gravity`: only its size g matters. Infinite for a top without axial moment.
     /// Source: part II; Landau and Lifshitz, Mechanics, §35, problem 2; Goldstein, Classical Mechanics, §5.7.
     #[doc(alias = "sleeping top")]
     #[must_use]
-    pub fn least_spin(&self, inclination: f64, gravity: f64) -> f64 {
-        let raised = self.mass_moment * gravity * inclination.cos();
+    pub fn least_spin(&self, inclination: f64, gravity: &Vector3<f64>) -> f64 {
+        let raised = self.mass_moment * gravity.norm() * inclination.cos();
         if raised <= 0.0 {
             return 0.0;
         }
@@ -82,7 +82,7 @@ impl PivotedTop {
     /// Rates of the two steady precessions, slow and fast: the roots of `I_t φ̇² cos θ − I_s ω_s φ̇ + m g l = 0`.
     ///
     /// `spin`: `ω_s`, the component of ω along the axis (from O to C), which gravity leaves constant. `inclination`: θ, of
-    /// the axis from the upward vertical. `gravity`: g ≥ 0. The result: φ̇ about the upward vertical, the smaller in
+    /// the axis from the upward vertical. `gravity`: only its size g matters. The result: φ̇ about the upward vertical, the smaller in
     /// magnitude first: near `m g l/(I_s ω_s)` and `I_s ω_s/(I_t cos θ)` for a fast top. Below the horizontal, where
     /// cos θ < 0, the two have opposite signs; without spin they are those of a conical pendulum.
     /// Source: part II; Goldstein, Classical Mechanics, §5.7.
@@ -93,9 +93,9 @@ impl PivotedTop {
         &self,
         spin: f64,
         inclination: f64,
-        gravity: f64,
+        gravity: &Vector3<f64>,
     ) -> Result<[f64; 2], Error> {
-        let (momentum, weight) = (self.axial * spin, self.mass_moment * gravity);
+        let (momentum, weight) = (self.axial * spin, self.mass_moment * gravity.norm());
         let upright = self.transverse * inclination.cos();
         let discriminant = momentum * momentum - 4.0 * upright * weight;
         if discriminant < 0.0 {
@@ -138,9 +138,11 @@ mod tests {
     #[test]
     fn steady_precessions_solve_their_equation() {
         let top = PivotedTop::of(&cone(), 1e-6).expect("top");
-        let g = 9.81;
-        for (spin, inclination) in [(80.0, 0.3), (-80.0, 1.2), (0.0, 2.5), (300.0, 2.0)] {
-            let [slow, fast] = top.steady_precession(spin, inclination, g).expect("fast");
+        let (g, gravity) = (9.81, Vector3::new(0.0, 0.0, -9.81));
+        for (spin, inclination) in [(120.0, 0.3), (-120.0, 1.2), (0.0, 2.5), (300.0, 2.0)] {
+            let [slow, fast] = top
+                .steady_precession(spin, inclination, &gravity)
+                .expect("fast");
             assert!(slow.abs() <= fast.abs());
             for rate in [slow, fast] {
                 let terms = [
@@ -154,12 +156,18 @@ mod tests {
                 assert!(terms.iter().sum::<f64>().abs() < 1e-15 * 4.0 * largest);
             }
         }
-        let least = top.least_spin(0.3, g);
-        assert!(top.steady_precession(least * 1.000_001, 0.3, g).is_ok());
-        let slower = top.steady_precession(least * 0.999_999, 0.3, g);
+        let least = top.least_spin(0.3, &gravity);
+        assert!(
+            top.steady_precession(least * 1.000_001, 0.3, &gravity)
+                .is_ok()
+        );
+        let slower = top.steady_precession(least * 0.999_999, 0.3, &gravity);
         assert!(matches!(slower, Err(Error::SpinTooSlow { .. })));
-        assert_eq!(top.least_spin(2.0, g), 0.0);
-        assert_eq!(top.steady_precession(0.0, 0.3, 0.0), Ok([0.0, 0.0]));
+        assert_eq!(top.least_spin(2.0, &gravity), 0.0);
+        assert_eq!(
+            top.steady_precession(0.0, 0.3, &Vector3::zeros()),
+            Ok([0.0, 0.0])
+        );
     }
 
     #[test]
@@ -187,6 +195,6 @@ mod tests {
             (pendulum.axial, pendulum.transverse, pendulum.mass_moment),
             (0.0, 25.0, 5.0)
         );
-        assert!(pendulum.least_spin(0.1, 1.0).is_infinite());
+        assert!(pendulum.least_spin(0.1, &Vector3::x()).is_infinite());
     }
 }

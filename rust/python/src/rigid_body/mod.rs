@@ -3,6 +3,7 @@
 mod construct;
 mod container;
 mod dynamics;
+mod motion;
 mod properties;
 mod simulate;
 
@@ -77,7 +78,7 @@ impl From<Stack<RigidBody>> for PyRigidBody {
 }
 
 /// The points that an argument `about` (or `point`) stands for.
-fn points(
+pub(crate) fn points(
     bodies: &Stack<RigidBody>,
     about: Option<&Bound<'_, PyAny>>,
     name: &str,

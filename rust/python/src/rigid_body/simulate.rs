@@ -108,7 +108,7 @@ impl PyRigidBody {
         let times = read_times(py, t)?;
         let tolerance =
             Tolerance::new(rtol, atol.unwrap_or(0.0)).map_err(|error| to_py(py, &error))?;
-        let load = match load {
+        let terms = match load {
             None => PyLoad::default(),
             Some(load) => load
                 .cast::<PyLoad>()
@@ -139,9 +139,9 @@ impl PyRigidBody {
         };
         run.check(py)?;
         let interrupt = Interrupt::new(progress);
-        let (motions, failure) = run.all(py, &load, &interrupt)?;
+        let (motions, failure) = run.all(py, &terms, &interrupt)?;
         interrupt.finish(py)?;
-        let trajectory = run.trajectory(py, slf, &motions)?;
+        let trajectory = run.trajectory(py, slf, load, &motions)?;
         match failure {
             None => Ok(trajectory),
             Some((row, failure)) => Err(run.integration_error(py, row, failure, trajectory)),
@@ -347,6 +347,7 @@ impl Run<'_> {
         &self,
         py: Python<'py>,
         body: &Bound<'py, PyRigidBody>,
+        load: Given<'_, 'py>,
         motions: &[Motion],
     ) -> PyResult<Bound<'py, PyAny>> {
         let shape = [&self.grid.shape[..], &[self.times.len()]].concat();
@@ -406,6 +407,7 @@ impl Run<'_> {
             vectors(&|_, _, [_, _, _, _, v, _]| self.start.velocity[v])?,
         )?;
         fields.set_item("about", write(py, &self.start.about)?)?;
+        fields.set_item("load", load)?;
         fields.set_item("steps", effort(|effort| effort.steps)?)?;
         fields.set_item("evaluations", effort(|effort| effort.evaluations)?)?;
         py.import("polhode.results")?
