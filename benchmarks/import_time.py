@@ -27,7 +27,8 @@ def main() -> None:
         print(f"{statement:15} {middle * 1e3:6.1f} ms  ({low * 1e3:.1f} to {high * 1e3:.1f})")
     ratios = sorted((polhode - bare) / (numpy - bare) for bare, numpy, polhode in rounds)
     print(
-        f"import polhode / import numpy, the interpreter's own start taken off: {statistics.median(ratios):.2f}"
+        "import polhode / import numpy, the interpreter's own start taken off: "
+        f"{statistics.median(ratios):.2f}"
         f"  ({ratios[0]:.2f} to {ratios[-1]:.2f})"
     )
 

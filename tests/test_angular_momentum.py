@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given
-
 from oracles.bodies import Body, bodies, vectors
 from oracles.exact_particles import Particles
 from polhode import AngularMomentum, RigidBody, solids
@@ -59,7 +58,9 @@ def test_the_total_does_not_depend_on_the_point(
     there = made.angular_momentum(
         omega, velocity * length + np.cross(omega, arm), position * length + arm, about=point
     )
-    size = sum(float(np.linalg.norm(x)) for x in (*there, *home))
+    # Position and velocity of P are themselves rounded, each at its own size.
+    orbit = body.mass * length**2 * np.linalg.norm(position) * np.linalg.norm(velocity)
+    size = orbit + sum(float(np.linalg.norm(x)) for x in (*there, *home))
     assert np.abs(there.total - home.total).max() <= 2e-14 * size
 
 

@@ -18,9 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
-
 import polhode
+import pytest
 from polhode import RigidBody, loads, solids
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -74,8 +73,8 @@ WITH_EXAMPLES = [name for name, value in OBJECTS.items() if ">>>" in (inspect.ge
 class TestNames:
     def test_the_package_exports_what_it_lists(self) -> None:
         visible = {n for n in vars(polhode) if not n.startswith("_")} | {"__version__"}
-        helpers = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
-        internal = helpers - set(polhode.__all__)
+        modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
+        internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
         assert internal <= {"results", "io", "plot", "molecules", "units", "cli"}
 
@@ -144,7 +143,9 @@ class TestReadme:
     """Code blocks run from top to bottom in one session; a ``text`` block after one is what it prints."""
 
     def test_python_blocks_print_what_is_shown(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        blocks = re.findall(r"^```(\w*)\n(.*?)^```", (ROOT / "README.md").read_text("utf-8"), re.M | re.S)
+        blocks = re.findall(
+            r"^```(\w*)\n(.*?)^```", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE | re.DOTALL
+        )
         assert any(language == "python" for language, _ in blocks)
         monkeypatch.chdir(tmp_path)
         names: dict[str, Any] = {}

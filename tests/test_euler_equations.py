@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given
-
 from oracles import Exact, dot, rational, worst_error
 from oracles.bodies import Body, bodies, vectors
 from oracles.exact_particles import cross

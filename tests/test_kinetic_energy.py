@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given
-
 from oracles import rational
 from oracles.bodies import Body, bodies, vectors
 from oracles.exact_particles import Particles

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
 from polhode import RigidBody, loads
 from polhode.errors import IntegrationError
 
@@ -91,6 +90,25 @@ class TestCallback:
         together = stack.simulate([0.0, 1.0], RATES, load=load)
         assert np.array_equal(together.omega[0], BODY.simulate([0.0, 1.0], RATES, load=load).omega)
 
+    def test_what_it_does_to_its_arguments_stays_with_it(self) -> None:
+        def scribble(_t: float, omega: Any, quaternion: Any) -> Any:
+            omega[:] = 99.0
+            quaternion[:] = 0.0
+            return (0.0, 0.0, 0.0)
+
+        free = BODY.simulate([0.0, 5.0], RATES)
+        scribbled = BODY.simulate([0.0, 5.0], RATES, load=loads.torque_callback(scribble))
+        assert np.array_equal(scribbled.omega, free.omega)
+
+    def test_it_may_simulate_itself(self) -> None:
+        def nested(_t: float, omega: Any, _quaternion: Any) -> Any:
+            return 0 * BODY.simulate([0.0, 0.1], omega).omega[-1]
+
+        free = BODY.simulate([0.0, 1.0], RATES)
+        assert np.array_equal(
+            BODY.simulate([0.0, 1.0], RATES, load=loads.torque_callback(nested)).omega, free.omega
+        )
+
 
 class TestMistakes:
     @pytest.mark.parametrize(
@@ -160,6 +178,17 @@ class TestBlowUp:
         assert rates[:3] == pytest.approx([0.5, 1.0, 2.0], rel=1e-8)
         assert np.isnan(rates[3])
         assert "2.0" in str(error) or "1.99" in str(error)
+
+    def test_in_a_stack_the_row_is_named_and_the_others_are_kept(self) -> None:
+        stack = RigidBody.stack([RigidBody(1.0, np.eye(3))] * 3)
+        load = loads.torque_callback(lambda _t, w, _q: (0.0, 0.0, w[2] ** 2))
+        with pytest.raises(IntegrationError, match=r"\b1\b") as caught:
+            stack.simulate([0.0, 1.0, 3.0], [[0, 0, 0.1], [0, 0, 0.5], [0, 0, 0.6]], load=load)
+        assert caught.value.partial is not None
+        rates = caught.value.partial.omega[..., 2]
+        assert rates[0] == pytest.approx([0.1, 1 / 9, 1 / 7], rel=1e-8)
+        assert rates[1, :2] == pytest.approx([0.5, 1.0], rel=1e-8)
+        assert np.isnan(rates[1:, 2]).all()
 
 
 INTERRUPT = """

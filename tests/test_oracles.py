@@ -7,12 +7,11 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-from scipy.spatial.transform import Rotation
-
 from oracles import exact_polyhedron, meshes, rational, worst_error
 from oracles.exact_particles import Particles
 from oracles.free_motion import as_floats, jacobi_rates, taylor_motion
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 BRICK = np.array([0.001894220, 0.006211019, 0.007194665])
 

@@ -7,7 +7,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from hypothesis import given
-
 from oracles import dot, rational, worst_error
 from oracles.bodies import Body, bodies, vectors
 from polhode import RigidBody, solids

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from oracles import ulp_errors, worst_error
-from oracles.bodies import vectors
+from oracles.bodies import attitudes, matrix, vectors
 from oracles.exact_particles import Particles
 from polhode import RigidBody
 
@@ -63,6 +62,45 @@ def test_the_inertia_is_exact_wherever_the_body_stands(
 ) -> None:
     positions, weights = np.array(points) + shift, np.array(masses[: len(points)])
     assert_exact(RigidBody.from_particles(weights, positions), weights, positions, 8e-15)
+
+
+clouds = st.lists(vectors(), min_size=3, max_size=12)
+
+
+class TestLaws:
+    @given(points=clouds, attitude=attitudes(), shift=vectors(10.0))
+    def test_moments_depend_neither_on_place_nor_on_attitude(
+        self, points: list[np.ndarray], attitude: np.ndarray, shift: np.ndarray
+    ) -> None:
+        positions = np.array(points)
+        masses = np.arange(1.0, 1 + len(points))
+        here = RigidBody.from_particles(masses, positions)
+        there = RigidBody.from_particles(masses, positions @ matrix(attitude).T + shift)
+        # A coordinate rounded by ε·reach changes I = Σ m r² by 2 m r ε·reach.
+        rounding = np.finfo(float).eps * (np.abs(positions).max() + np.abs(shift).max())
+        bar = 16 * masses.sum() * rounding * (np.ptp(positions, axis=0).max() + rounding)
+        assert np.abs(there.principal_moments - here.principal_moments).max() <= bar
+        assert np.abs(np.trace(there.inertia) - np.trace(here.inertia)) <= 2 * bar
+
+    @given(points=clouds)
+    def test_triangle_inequalities_and_trace(self, points: list[np.ndarray]) -> None:
+        body = RigidBody.from_particles(np.ones(len(points)), np.array(points))
+        small, middle, large = body.principal_moments
+        assert 0 <= small <= middle <= large
+        assert small + middle >= large * (1 - 4e-16)
+        assert np.trace(body.inertia) == pytest.approx(small + middle + large, rel=2e-15, abs=0)
+
+    @given(points=clouds, cut=st.integers(1, 2))
+    def test_the_parts_of_a_cloud_add_up_to_the_cloud(self, points: list[np.ndarray], cut: int) -> None:
+        positions = np.array(points)
+        masses = np.arange(1.0, 1 + len(points))
+        parts = [RigidBody.from_particles(masses[s], positions[s]) for s in (slice(cut), slice(cut, None))]
+        whole, total = RigidBody.from_particles(masses, positions), parts[0] + parts[1]
+        rounding = np.finfo(float).eps * np.abs(positions).max()
+        size = np.ptp(positions, axis=0).max() + rounding
+        assert total.mass == whole.mass
+        assert np.abs(total.center_of_mass - whole.center_of_mass).max() <= 8 * rounding
+        assert np.abs(total.inertia - whole.inertia).max() <= 16 * masses.sum() * rounding * size
 
 
 def test_a_single_particle_is_a_point() -> None:

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from oracles import ulp_errors, worst_error
 from oracles.bodies import attitudes, matrix, vectors
 from oracles.exact_polyhedron import polyhedron

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from oracles import rational, worst_error
 from oracles.bodies import Body, bodies, matrix
 from oracles.exact_particles import inertia_about
@@ -52,8 +51,9 @@ class TestConstruction:
     def test_principal_moments_given_are_the_moments_kept(self, body: Body) -> None:
         made = RigidBody.from_principal(*body)
         assert np.array_equal(made.principal_moments, body.moments)
+        # The axes are rounded: their columns are a right-handed orthonormal set to a few ε.
         error = np.abs(made.inertia - body.inertia).max()
-        assert error <= 8 * np.finfo(float).eps * body.moments[2]
+        assert error <= 16 * np.finfo(float).eps * body.moments[2]
 
     def test_principal_axes_default_to_the_body_axes(self) -> None:
         made = RigidBody.from_principal(2.0, [1.0, 2.0, 2.5])
@@ -147,7 +147,7 @@ class TestStack:
     def test_stack_takes_any_iterable_of_equal_shapes_and_nothing_else(self) -> None:
         body = three_bodies()
         assert RigidBody.stack(tuple(body)) == body
-        with pytest.raises(ValueError):
+        with pytest.raises(ValueError, match=r"(?i)empty|at least one|no bod"):
             RigidBody.stack([])
         with pytest.raises(ValueError, match="shape"):
             RigidBody.stack([body, body[0]])
@@ -195,7 +195,7 @@ class TestAddition:
         with pytest.raises(TypeError):
             body + 1  # type: ignore[operator]
         with pytest.raises(TypeError):
-            1 + body  # type: ignore[operator]
+            1 + body
         with pytest.raises(TypeError):
             body + np.ones(3)  # type: ignore[operator]
 
@@ -217,6 +217,8 @@ class TestEquality:
         assert body != RigidBody([1.0], DIAGONAL)
         assert body != "a body"  # type: ignore[comparison-overlap]
         assert body != None  # noqa: E711
+        assert (body == np.ones(3)) is False
+        assert (np.ones(3) == body) is False
 
     def test_signed_zeros_are_equal_and_hash_alike(self) -> None:
         plus, minus = RigidBody(1.0, DIAGONAL), RigidBody(1.0, DIAGONAL, center_of_mass=(-0.0, -0.0, -0.0))

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given, settings
-
 from oracles.bodies import Body, attitudes, bodies, matrix, vectors
 from oracles.free_motion import as_floats, taylor_motion
 from polhode import RigidBody, Trajectory, loads, solids
@@ -136,10 +135,13 @@ class TestClosedForms:
         assert np.array_equal(trajectory.position, np.array([1.0, 2, 3]) + t[:, None] * [0.5, 0.0, -1.0])
         assert np.array_equal(trajectory.velocity, [[0.5, 0.0, -1.0]] * 3)
 
-    def test_a_fixed_origin_rules_by_its_own_tensor(self) -> None:
+    @pytest.mark.parametrize("torque", [(0.0, 0.0, 0.0), (0.2, -0.1, 0.4)])
+    def test_a_fixed_origin_rules_by_its_own_tensor(self, torque: tuple[float, float, float]) -> None:
         body = RigidBody(2.0, np.diag([1.0, 1.5, 2.0]), center_of_mass=(0.3, -0.2, 0.5))
-        trajectory = body.simulate(TIMES, RATES, ATTITUDE, about="origin", rtol=1e-13)
-        states = taylor_motion(body.inertia_about("origin"), RATES, TIMES, attitude=ATTITUDE, digits=30)
+        load = loads.constant_torque(torque, "space") if any(torque) else None
+        trajectory = body.simulate(TIMES, RATES, ATTITUDE, load=load, about="origin", rtol=1e-13)
+        tensor = body.inertia_about("origin")
+        states = taylor_motion(tensor, RATES, TIMES, attitude=ATTITUDE, space_torque=torque, digits=25)
         assert_motion(trajectory, as_floats(states), 1e-11)
         assert not trajectory.position.any()
         assert not trajectory.velocity.any()

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from oracles.exact_polyhedron import polyhedron
 from oracles.meshes import box as box_mesh
 from polhode import RigidBody, solids

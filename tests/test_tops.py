@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from oracles.bodies import attitudes, matrix, principal_moments
 from polhode import RigidBody, principal_axes, solids
 

@@ -58,6 +58,7 @@ __version__: str
 
 @final
 class RigidBody:
+    __array_ufunc__: None
     def __new__(
         cls,
         mass: ArrayLike,

@@ -14,12 +14,16 @@ use polhode::principal::{principal_axes, principal_axes_many};
 
 type Row = [f64; 9];
 
-/// The level is one for the whole process, so tests that set it take turns.
+/// The level is one for the whole process, so the tests of this file take turns.
 static LEVEL: Mutex<()> = Mutex::new(());
+
+fn take_turn() -> MutexGuard<'static, ()> {
+    LEVEL.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Runs `check` at every level of this machine.
 fn at_every_level(mut check: impl FnMut(Level)) {
-    let _turn: MutexGuard<'_, ()> = LEVEL.lock().unwrap_or_else(PoisonError::into_inner);
+    let _turn = take_turn();
     let before = level();
     for candidate in Level::ALL {
         assert_eq!(set_level(candidate), candidate.is_available());
@@ -228,16 +232,16 @@ fn a_row_has_the_same_bits_alone_in_any_stack_and_at_every_fused_level() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
+    let _turn = take_turn();
     let rows: Vec<Row> = matrices().into_iter().cycle().take(200_000).collect();
     let expected = decompose(&rows);
     for count in [1, 2, 3] {
         set_thread_limit(std::num::NonZeroUsize::new(count));
         let mut moments = vec![[0.0; 3]; rows.len()];
         let mut axes = vec![[0.0; 9]; rows.len()];
-        let flow = principal_axes_many(&rows, &mut moments, &mut axes, &mut |_| {
-            ControlFlow::Continue(())
-        });
-        assert_eq!(flow, ControlFlow::Continue(()));
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let outcome = principal_axes_many(&rows, 0.0, &mut moments, &mut axes, go_on);
+        assert_eq!(outcome, Ok(()));
         assert!(
             moments == expected.0 && axes == expected.1,
             "{count} threads"
@@ -248,6 +252,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn diagonal_matrices_are_exact() {
+    let _turn = take_turn();
     for (diagonal, sorted) in [
         ([3.0, 2.0, 1.0], [1.0, 2.0, 3.0]),
         ([2.0, 3.0, 1e-300], [1e-300, 2.0, 3.0]),
@@ -272,6 +277,7 @@ fn diagonal_matrices_are_exact() {
 
 #[test]
 fn only_the_lower_triangle_is_read() {
+    let _turn = take_turn();
     let a = Matrix3::new(3.0, 0.1, 0.2, 0.1, 4.0, 0.3, 0.2, 0.3, 5.0);
     let mut garbage = a;
     garbage[(0, 1)] = f64::NAN;

@@ -69,7 +69,7 @@ macro_rules! fixed_length {
         }
     )*};
 }
-fixed_length!(2 3 4 22);
+fixed_length!(2 3 4 25);
 
 impl Item for Vector3<f64> {
     const TAIL: &'static [usize] = &[3];

@@ -70,8 +70,8 @@ impl Interrupt {
         }
     }
 
-    /// The end of the run: the exception that stopped it, or a last word to the progress callback.
-    pub(crate) fn finish(self, py: Python<'_>) -> PyResult<()> {
+    /// The end of the run: the exception that stopped it, or a last word to the progress callback when it is complete.
+    pub(crate) fn finish(self, py: Python<'_>, complete: bool) -> PyResult<()> {
         if let Some(error) = self
             .error
             .into_inner()
@@ -79,7 +79,9 @@ impl Interrupt {
         {
             return Err(error);
         }
-        if let Some(progress) = self.progress {
+        if let Some(progress) = self.progress
+            && complete
+        {
             progress.call1(py, (1.0,))?;
         }
         Ok(())

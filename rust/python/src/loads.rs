@@ -119,7 +119,7 @@ impl PyLoad {
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Vec<Bound<'py, PyTuple>>,))> {
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = py.get_type::<Self>().getattr("_from_parts")?;
         let mut parts = Vec::new();
         for term in &self.terms {
@@ -136,7 +136,7 @@ impl PyLoad {
         for callback in &self.callbacks {
             parts.push(("torque_callback", (callback,)).into_pyobject(py)?);
         }
-        Ok((restore, (parts,)))
+        Ok((restore, PyTuple::new(py, [parts])?))
     }
 
     /// The load that `__reduce__` took apart.

@@ -135,7 +135,7 @@ impl<const K: usize> Broadcast<K> {
                 },
             )
         });
-        interrupt.finish(py)?;
+        interrupt.finish(py, outcome.is_ok())?;
         if let Err(Halt::Failed(fault)) = outcome {
             return Err(named(fault));
         }

@@ -2,13 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::parallel_axis::{from_center_of_mass, point_inertia, to_center_of_mass};
+use super::error_bound::ErrorBound;
+use super::parallel_axis::{from_center_of_mass, to_center_of_mass};
 use super::second_moment::SecondMoment;
 use super::validity::{
     ROUNDING, check_mass, check_moments, check_rotation, check_rtol, mean_of_halves, symmetrized,
     trace,
 };
-use crate::error::{Error, all_finite, finite};
+use crate::error::{Error, all_finite};
 use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
 
 /// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
@@ -18,13 +19,24 @@ use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
 /// are *minus* the products of inertia.
 ///
 /// What defined the body is kept exactly, its moments and axes or its tensor; the other form is derived from it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 #[doc(alias = "mass properties")]
 pub struct RigidBody {
-    mass: f64,
-    center_of_mass: Vector3<f64>,
-    inertia: Matrix3<f64>,
-    principal: PrincipalAxes,
+    pub(super) mass: f64,
+    pub(super) center_of_mass: Vector3<f64>,
+    pub(super) inertia: Matrix3<f64>,
+    pub(super) principal: PrincipalAxes,
+    pub(super) error_bound: ErrorBound,
+}
+
+/// The same mass, centre, tensor, moments and axes; how well they are known does not matter.
+impl PartialEq for RigidBody {
+    fn eq(&self, other: &Self) -> bool {
+        self.mass == other.mass
+            && self.center_of_mass == other.center_of_mass
+            && self.inertia == other.inertia
+            && self.principal == other.principal
+    }
 }
 
 impl RigidBody {
@@ -46,7 +58,8 @@ impl RigidBody {
         check_mass(mass)?;
         all_finite("center_of_mass", center_of_mass)?;
         let inertia = symmetrized("inertia", inertia, rtol)?;
-        Self::from_symmetric(mass, inertia, center_of_mass, trace(&inertia), rtol, "")
+        let body = Self::from_symmetric(mass, inertia, center_of_mass, trace(&inertia), rtol, "")?;
+        Ok(body.with_bound(ErrorBound::default()))
     }
 
     /// From mass, tensor about the origin O of the body frame, and the centre of mass C.
@@ -67,14 +80,16 @@ impl RigidBody {
         let inertia = to_center_of_mass(&about_origin, mass, center_of_mass);
         let hint = "; inertia_about_origin= must be about the origin of the body frame: \
                     if it is about the centre of mass pass it as inertia=";
-        Self::from_symmetric(
+        let body = Self::from_symmetric(
             mass,
             inertia,
             center_of_mass,
             trace(&about_origin),
             rtol,
             hint,
-        )
+        )?;
+        let rounding = ErrorBound::default().rounded(&Vector3::zeros(), trace(&about_origin));
+        Ok(body.with_bound(rounding))
     }
 
     /// From mass, principal moments about C (in any order), the axes they belong to (columns) and C.
@@ -99,11 +114,13 @@ impl RigidBody {
         check_moments(&principal.moments, 0.0, ROUNDING.max(rtol), "")?;
         // What was admitted as rounding below zero is zero.
         principal.moments = principal.moments.map(|moment| moment.max(0.0));
+        let inertia = tensor(&principal);
         Ok(Self {
             mass,
             center_of_mass: *center_of_mass,
-            inertia: tensor(&principal),
+            inertia,
             principal,
+            error_bound: ErrorBound::default().rounded(&Vector3::zeros(), trace(&inertia)),
         })
     }
 
@@ -121,6 +138,7 @@ impl RigidBody {
             center_of_mass: matter.center_of_mass,
             inertia,
             principal: matter.principal_axes(),
+            error_bound: matter.error_bound,
         })
     }
 
@@ -151,7 +169,7 @@ impl RigidBody {
     }
 
     /// The body of a tensor that obeys the laws; moments that it cannot tell from zero are zero.
-    fn admitted(
+    pub(super) fn admitted(
         mass: f64,
         inertia: Matrix3<f64>,
         center_of_mass: &Vector3<f64>,
@@ -170,6 +188,15 @@ impl RigidBody {
                 inertia
             },
             principal,
+            error_bound: ErrorBound::default(),
+        }
+    }
+
+    /// The same body, its numbers known as well as this.
+    pub(super) fn with_bound(self, error_bound: ErrorBound) -> Self {
+        Self {
+            error_bound,
+            ..self
         }
     }
 
@@ -195,6 +222,12 @@ impl RigidBody {
     #[must_use]
     pub fn principal(&self) -> PrincipalAxes {
         self.principal
+    }
+
+    /// What rounding can have done to mass, centre of mass and tensor, against exact arithmetic on what was given.
+    #[must_use]
+    pub fn error_bound(&self) -> ErrorBound {
+        self.error_bound
     }
 
     /// Inertia tensor `I_P` about the point P (from the origin of the body frame).
@@ -244,106 +277,18 @@ impl RigidBody {
             .map(|moment| (moment / self.mass).sqrt())
     }
 
-    /// The body moved by `d`.
-    ///
-    /// # Errors
-    /// When the new centre of mass is not finite.
-    pub fn translated(&self, d: &Vector3<f64>) -> Result<Self, Error> {
-        all_finite("displacement", d)?;
-        let center_of_mass = self.center_of_mass + d;
-        all_finite("center_of_mass", &center_of_mass)?;
-        Ok(Self {
-            center_of_mass,
-            ..*self
-        })
-    }
-
-    /// The body turned about the origin by the rotation matrix R: `C → R C`, `I → R I Rᵀ`; its moments stay as they are.
-    ///
-    /// # Errors
-    /// When R is not a rotation.
-    pub fn rotated(&self, rotation: &Matrix3<f64>) -> Result<Self, Error> {
-        check_rotation("rotation", rotation)?;
-        let turned = rotation * self.inertia * rotation.transpose();
-        Ok(Self {
-            mass: self.mass,
-            center_of_mass: rotation * self.center_of_mass,
-            inertia: mean_of_halves(&turned),
-            principal: PrincipalAxes {
-                moments: self.principal.moments,
-                axes: with_sign_rule(rotation * self.principal.axes),
-            },
-        })
-    }
-
-    /// The same shape `length` times as large and `mass` times as heavy: `m → k m`, `C → s C`, `I → k s² I`.
-    ///
-    /// # Errors
-    /// When a factor is not positive and finite, or the result overflows.
-    pub fn scaled(&self, length: f64, mass: f64) -> Result<Self, Error> {
-        for (what, value) in [("length", length), ("mass", mass)] {
-            finite(what, value)?;
-            if value <= 0.0 {
-                return Err(Error::OutOfDomain {
-                    what,
-                    law: "positive",
-                    value,
-                });
-            }
-        }
-        let scale = |x: f64| x * mass * length * length;
-        let scaled = Self {
-            mass: self.mass * mass,
-            center_of_mass: self.center_of_mass * length,
-            inertia: self.inertia.map(scale),
-            principal: PrincipalAxes {
-                moments: self.principal.moments.map(scale),
-                ..self.principal
-            },
-        };
-        check_mass(scaled.mass)?;
-        all_finite("inertia", &scaled.inertia)?;
-        all_finite("center_of_mass", &scaled.center_of_mass)?;
-        Ok(scaled)
-    }
-
-    /// Both bodies as one rigid body.
-    ///
-    /// Composed from centre to centre, `I = I_1 + I_2 + μ (d² 1 − d dᵀ)` with the reduced mass `μ = m₁m₂/(m₁+m₂)` and
-    /// `d = C₂ − C₁`, so that bodies far from the origin lose nothing.
-    ///
-    /// # Errors
-    /// When the sum overflows.
-    pub fn combined(&self, other: &Self) -> Result<Self, Error> {
-        let mass = self.mass + other.mass;
-        check_mass(mass)?;
-        let d = other.center_of_mass - self.center_of_mass;
-        let share = other.mass / mass;
-        let center_of_mass = self.center_of_mass + d * share;
-        let inertia = self.inertia + other.inertia + point_inertia(self.mass * share, &d);
-        all_finite("center_of_mass", &center_of_mass)?;
-        all_finite("inertia", &inertia)?;
-        // The sum of possible bodies is possible.
-        let principal = principal_axes(&inertia);
-        Ok(Self::admitted(
-            mass,
-            inertia,
-            &center_of_mass,
-            principal,
-            trace(&inertia),
-        ))
-    }
-
-    /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows.
+    /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows, bounds.
     #[must_use]
-    pub fn to_array(&self) -> [f64; 22] {
+    pub fn to_array(&self) -> [f64; 25] {
         let (c, i) = (&self.center_of_mass, &self.inertia);
-        let mut numbers = [0.0; 22];
+        let mut numbers = [0.0; 25];
         numbers[0] = self.mass;
         numbers[1..4].copy_from_slice(c.as_slice());
         numbers[4..10].copy_from_slice(&[i.m11, i.m12, i.m13, i.m22, i.m23, i.m33]);
         numbers[10..13].copy_from_slice(&self.principal.moments);
-        numbers[13..].copy_from_slice(self.principal.axes.transpose().as_slice());
+        numbers[13..22].copy_from_slice(self.principal.axes.transpose().as_slice());
+        let bound = &self.error_bound;
+        numbers[22..].copy_from_slice(&[bound.mass, bound.center_of_mass, bound.inertia]);
         numbers
     }
 
@@ -351,10 +296,15 @@ impl RigidBody {
     ///
     /// # Errors
     /// When the numbers are not those of a body: moments, axes and tensor must agree.
-    pub fn from_array(numbers: &[f64; 22]) -> Result<Self, Error> {
+    pub fn from_array(numbers: &[f64; 25]) -> Result<Self, Error> {
         let [mass, x, y, z, xx, xy, xz, yy, yz, zz, i1, i2, i3, ..] = *numbers;
         let moments = [i1, i2, i3];
-        let axes = Matrix3::from_row_slice(&numbers[13..]);
+        let axes = Matrix3::from_row_slice(&numbers[13..22]);
+        let error_bound = ErrorBound {
+            mass: numbers[22],
+            center_of_mass: numbers[23],
+            inertia: numbers[24],
+        };
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         let center_of_mass = Vector3::new(x, y, z);
         check_mass(mass)?;
@@ -377,6 +327,7 @@ impl RigidBody {
             center_of_mass,
             inertia,
             principal,
+            error_bound,
         })
     }
 
@@ -452,34 +403,5 @@ mod tests {
         let body = RigidBody::new(1.0, &diagonal(-1e-16, 1.0, 1.0), &Vector3::zeros(), 0.0)
             .expect("rounding");
         assert_eq!(body.principal().moments[0], 0.0);
-    }
-
-    #[test]
-    fn two_particles_are_a_dumbbell_wherever_they_are() {
-        let point = |m, x| {
-            RigidBody::new(m, &Matrix3::zeros(), &Vector3::new(x, 0.0, 0.0), 0.0).expect("point")
-        };
-        let dumbbell = point(1.0, 1e8)
-            .combined(&point(3.0, 1e8 + 4.0))
-            .expect("sum");
-        assert_eq!(dumbbell.principal().moments, [0.0, 12.0, 12.0]);
-        assert_eq!(dumbbell.center_of_mass().x, 1e8 + 3.0);
-    }
-
-    #[test]
-    fn moments_survive_rotations_exactly() {
-        let axes = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
-        let body = RigidBody::from_principal(
-            2.0,
-            &[3.0, 2.0, 4.0],
-            &Matrix3::identity(),
-            &Vector3::x(),
-            0.0,
-        )
-        .expect("body");
-        let turned = body.rotated(&axes).expect("turned");
-        assert_eq!(turned.principal().moments, [2.0, 3.0, 4.0]);
-        assert_eq!(turned.inertia(), diagonal(2.0, 3.0, 4.0));
-        assert_eq!(turned.center_of_mass(), Vector3::y());
     }
 }

@@ -2,8 +2,10 @@
 //!
 //! | theorem or source | file |
 //! |---|---|
-//! | rigid body (m, C, `I_C`): validity, sums, change of frame | [`body`] |
+//! | rigid body (m, C, `I_C`): tensors about any point | [`body`] |
+//! | bodies from bodies: sums, change of frame, scaling | [`composition`] |
 //! | what makes a tensor possible: symmetry, positivity, triangle inequality | [`validity`] |
+//! | what rounding can have done | [`error_bound`] |
 //! | second moment ∫ r rᵀ dm, from which every tensor comes | [`second_moment`] |
 //! | parallel-axis (Steiner, Huygens) theorem | [`parallel_axis`] |
 //! | particles | [`particles`] |
@@ -12,7 +14,9 @@
 //! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 
 pub mod body;
+pub mod composition;
 pub mod equimomental;
+pub mod error_bound;
 pub mod parallel_axis;
 pub mod particles;
 pub mod polyhedron;
@@ -21,5 +25,6 @@ pub mod solids;
 pub mod validity;
 
 pub use body::RigidBody;
+pub use error_bound::ErrorBound;
 pub use second_moment::SecondMoment;
 pub use solids::Amount;

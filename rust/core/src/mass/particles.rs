@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
+use super::error_bound::ErrorBound;
 use super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
 use crate::numerics::double_double::{two_product, two_sum};
@@ -34,9 +35,7 @@ pub fn particles(masses: &[f64], positions: &[[f64; 3]]) -> Result<RigidBody, Er
         let (m, d) = (masses[i], Vector3::from(positions[i]) - reference);
         [m, m * d.x, m * d.y, m * d.z]
     });
-    let rough =
-        SecondMoment::about_reference(&reference, mass, &Vector3::new(x, y, z), &Matrix3::zeros());
-    let center = rough.center_of_mass;
+    let center = reference + Vector3::new(x, y, z) / mass;
     let first = central(masses, positions, &center, None);
     let body = RigidBody::from_second_moment(&first)?;
     let [i1, i2, i3] = body.principal().moments;
@@ -81,7 +80,8 @@ fn central(
     });
     let first = Vector3::new(x, y, z);
     let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let about = SecondMoment::about_reference(&Vector3::zeros(), mass, &first, &second);
+    let bound = ErrorBound::of_sums(masses.len(), mass, center, second.trace());
+    let about = SecondMoment::about_reference(&Vector3::zeros(), mass, &first, &second, bound);
     match axes {
         None => SecondMoment {
             center_of_mass: center + about.center_of_mass,

@@ -8,10 +8,11 @@ use nalgebra::{Matrix3, Vector3};
 use thiserror::Error as ThisError;
 
 use super::body::RigidBody;
+use super::error_bound::{ErrorBound, UNIT};
 use super::second_moment::SecondMoment;
 use super::solids::Amount;
 use crate::error::Error;
-use crate::numerics::reduce::sum_terms;
+use crate::numerics::reduce::{depth, sum_terms};
 
 /// Why a mesh does not bound a solid.
 #[derive(Clone, Debug, PartialEq, ThisError)]
@@ -73,6 +74,12 @@ pub enum MeshFault {
         /// How many edges are run along in one direction only.
         count: usize,
     },
+    /// The extent is beyond the largest float.
+    #[error("the mesh is too large: its extent is {size:?}; choose a larger unit of length")]
+    TooLarge {
+        /// The largest extent.
+        size: f64,
+    },
     /// The normals point inward.
     #[error(
         "the mesh is inverted: its signed volume is {volume:?}, so the normals point inward; \
@@ -110,24 +117,54 @@ pub fn polyhedron(
 ) -> Result<RigidBody, Error> {
     check_mesh(vertices, faces)?;
     let (reference, size) = middle(vertices, faces);
-    let sums = signed_sums(vertices, faces, &reference);
-    let volume = sums.volume;
+    if !size.is_finite() {
+        return Err(MeshFault::TooLarge { size }.into());
+    }
+    // In units of the size, a power of two so that nothing is rounded: lengths of 1e±150 have fifth powers too.
+    let unit = power_of_two(size);
+    let sums = signed_sums(vertices, faces, &reference, unit);
+    let volume = sums.volume * unit * unit * unit;
     // What rounding may have left: a closed sheet has no other volume.
-    if volume.abs() <= 8.0 * f64::EPSILON * sums.magnitude {
+    if sums.volume.abs() <= 8.0 * f64::EPSILON * sums.magnitude {
         return Err(MeshFault::NoVolume { volume, size }.into());
     }
-    if volume < 0.0 && !orient {
+    if sums.volume < 0.0 && !orient {
         return Err(MeshFault::Inverted { volume }.into());
     }
-    let sign = volume.signum();
-    let mass = amount.mass(sign * volume)?;
-    let density = mass / volume;
-    RigidBody::from_second_moment(&SecondMoment::about_reference(
+    let mass = amount.mass(volume.abs())?;
+    let density = mass / sums.volume;
+    let mut matter = SecondMoment::about_reference(
         &reference,
         mass,
-        &(sums.first * density),
-        &(sums.second * density),
-    ))
+        &(sums.first * density * unit),
+        &(sums.second * density * unit * unit),
+        ErrorBound::default(),
+    );
+    matter.error_bound = bound(&sums, faces.len(), amount, &matter, unit);
+    RigidBody::from_second_moment(&matter)
+}
+
+/// What rounding can have done: each sum is off by a few units of rounding of the same sum with every product counted as
+/// positive, in which coordinates are at most one.
+fn bound(
+    sums: &Sums,
+    faces: usize,
+    amount: Amount,
+    matter: &SecondMoment,
+    unit: f64,
+) -> ErrorBound {
+    let relative = 2.0 * UNIT * (depth(faces) + 24.0);
+    // Of the volume: det(a, b, c)/6. First moments have the factor (a + b + c)/4 ≤ ¾, second ones 12/20 at most.
+    let volume = relative * sums.magnitude / sums.volume.abs();
+    let mass = match amount {
+        Amount::Mass(_) => 0.0,
+        Amount::Density(_) => matter.mass * (volume + 8.0 * UNIT),
+    };
+    ErrorBound {
+        mass,
+        center_of_mass: 2.0 * volume * unit + 2.0 * UNIT * matter.center_of_mass.amax(),
+        inertia: 4.0 * volume * matter.mass * unit * unit,
+    }
 }
 
 /// Area of a triangle mesh, open or closed.
@@ -143,7 +180,7 @@ pub fn surface_area(vertices: &[[f64; 3]], faces: &[[usize; 3]]) -> Result<f64, 
     Ok(area)
 }
 
-/// `∫ dV`, `∫ d dV` and `∫ d dᵀ dV` over the inside of the mesh, `d = r − reference`.
+/// `∫ dV`, `∫ d dV` and `∫ d dᵀ dV` over the inside of the mesh, `d = (r − reference)/unit`.
 struct Sums {
     volume: f64,
     /// `∫ dV` with every product counted as positive: its rounding errors are a few ε of this.
@@ -154,9 +191,14 @@ struct Sums {
 
 /// Sums over the signed tetrahedra (0, a, b, c): with `D = det(a, b, c)` and `s = a + b + c`,
 /// `∫dV = D/6`, `∫d dV = D s/24`, `∫d dᵀ dV = D (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/120`.
-fn signed_sums(vertices: &[[f64; 3]], faces: &[[usize; 3]], reference: &Vector3<f64>) -> Sums {
+fn signed_sums(
+    vertices: &[[f64; 3]],
+    faces: &[[usize; 3]],
+    reference: &Vector3<f64>,
+    unit: f64,
+) -> Sums {
     let [v, p, x, y, z, xx, xy, xz, yy, yz, zz] = sum_terms(faces.len(), |i| {
-        let [a, b, c] = faces[i].map(|k| Vector3::from(vertices[k]) - reference);
+        let [a, b, c] = faces[i].map(|k| (Vector3::from(vertices[k]) - reference) / unit);
         let d = a.dot(&b.cross(&c));
         let s = a + b + c;
         let product =
@@ -186,6 +228,12 @@ fn signed_sums(vertices: &[[f64; 3]], faces: &[[usize; 3]], reference: &Vector3<
 /// `a·(b×c)` with plus for minus.
 fn permanent(a: &Vector3<f64>, b: &Vector3<f64>, c: &Vector3<f64>) -> f64 {
     a.x * (b.y * c.z + b.z * c.y) + a.y * (b.z * c.x + b.x * c.z) + a.z * (b.x * c.y + b.y * c.x)
+}
+
+/// The largest power of two that is not larger than a positive number; 1 where that is not a normal number.
+fn power_of_two(size: f64) -> f64 {
+    let power = f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000);
+    if power.is_normal() { power } else { 1.0 }
 }
 
 /// Middle of the bounding box of the vertices that faces use, and its largest extent.

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::error_bound::ErrorBound;
 use crate::numerics::eigen3::eigen3;
 use crate::principal::{PrincipalAxes, with_sign_rule};
 
@@ -19,6 +20,8 @@ pub struct SecondMoment {
     pub central: Matrix3<f64>,
     /// V: a rotation whose columns are the axes that `central` is expressed in.
     pub axes: Matrix3<f64>,
+    /// What rounding can have done to mass, centre of mass and inertia tensor.
+    pub error_bound: ErrorBound,
 }
 
 impl SecondMoment {
@@ -31,6 +34,7 @@ impl SecondMoment {
         mass: f64,
         first: &Vector3<f64>,
         second: &Matrix3<f64>,
+        error_bound: ErrorBound,
     ) -> Self {
         let d = first / mass;
         Self {
@@ -38,6 +42,7 @@ impl SecondMoment {
             center_of_mass: reference + d,
             central: second - first * d.transpose(),
             axes: Matrix3::identity(),
+            error_bound,
         }
     }
 

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
 use super::body::RigidBody;
+use super::error_bound::ErrorBound;
 use super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
 
@@ -151,6 +152,7 @@ fn solid(volume: f64, amount: Amount, per_mass: [f64; 3]) -> Result<RigidBody, E
         center_of_mass: Vector3::zeros(),
         central: Matrix3::from_diagonal(&Vector3::from(per_mass.map(|s| mass * s))),
         axes: Matrix3::identity(),
+        error_bound: ErrorBound::of_closed_form(mass, 2.0 * mass * per_mass.iter().sum::<f64>()),
     })
 }
 

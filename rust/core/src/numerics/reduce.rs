@@ -16,6 +16,13 @@ pub fn sum_terms<const K: usize>(n: usize, term: impl Fn(usize) -> [f64; K]) -> 
     })
 }
 
+/// The number of additions that a term passes on its way to the sum of `n`, at most.
+#[must_use]
+pub fn depth(n: usize) -> f64 {
+    let within = n.min(BLOCK).div_ceil(LANES) + 3;
+    (within as f64) + (n.div_ceil(BLOCK).max(1) as f64).log2().ceil()
+}
+
 /// The blocks `from..to` merged pairwise, split at the largest power of two, so that the tree depends on `to` alone.
 fn tree<const K: usize>(from: usize, to: usize, block: &impl Fn(usize) -> [f64; K]) -> [f64; K] {
     let count = to - from;

@@ -50,6 +50,23 @@ pub fn canonical(principal: &PrincipalAxes, rtol: f64) -> PrincipalAxes {
     }
 }
 
+/// As [`canonical`] for a stack in place, axes row-major.
+///
+/// # Panics
+/// If the lengths differ.
+pub fn canonical_many(moments: &[[f64; 3]], axes: &mut [[f64; 9]], rtol: f64) {
+    assert_eq!(
+        moments.len(),
+        axes.len(),
+        "as many triples of axes as of moments"
+    );
+    for (&moments, row) in moments.iter().zip(axes) {
+        let axes = Matrix3::from_row_slice(row);
+        let found = canonical(&PrincipalAxes { moments, axes }, rtol);
+        row.copy_from_slice(found.axes.transpose().as_slice());
+    }
+}
+
 /// The direction, across the unit vector n, of the projection of the body axis that has the longest.
 fn nearest_across(n: &Vector3<f64>) -> Vector3<f64> {
     // The projection of e_k has the square 1 − n_k².
@@ -64,7 +81,7 @@ fn nearest_across(n: &Vector3<f64>) -> Vector3<f64> {
 mod tests {
     use nalgebra::{Matrix3, Rotation3, Vector3};
 
-    use super::canonical;
+    use super::{canonical, canonical_many};
     use crate::principal::principal_axes;
 
     #[test]
@@ -106,6 +123,29 @@ mod tests {
             assert!((back - tensor).abs().max() < 4e-15);
             assert!((found.axes.determinant() - 1.0).abs() < 1e-15);
             assert_eq!(super::with_sign_rule(found.axes), found.axes);
+        }
+    }
+
+    #[test]
+    fn a_stack_has_the_rows_of_its_own() {
+        let tensors = [
+            Matrix3::new(2.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 2.0),
+            Matrix3::identity(),
+            Matrix3::repeat(1.0),
+        ];
+        let found = tensors.map(|tensor| principal_axes(&tensor));
+        let mut rows = found.map(|row| {
+            row.axes
+                .transpose()
+                .data
+                .0
+                .as_flattened()
+                .try_into()
+                .unwrap()
+        });
+        canonical_many(&found.map(|row| row.moments), &mut rows, 1e-6);
+        for (row, alone) in rows.iter().zip(&found) {
+            assert_eq!(Matrix3::from_row_slice(row), canonical(alone, 1e-6).axes);
         }
     }
 

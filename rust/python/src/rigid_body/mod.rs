@@ -3,6 +3,7 @@
 mod construct;
 mod container;
 mod dynamics;
+mod ensemble;
 mod motion;
 mod properties;
 mod simulate;

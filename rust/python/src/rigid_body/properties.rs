@@ -271,6 +271,12 @@ impl PyRigidBody {
         flat.call_method1("reshape", (grid.shape,))
     }
 
+    /// A body is no array: NumPy leaves ``array == body`` and ``array + body`` to the body.
+    #[classattr]
+    fn __array_ufunc__() -> Option<bool> {
+        None
+    }
+
     fn __add__<'py>(
         &self,
         py: Python<'py>,
@@ -326,13 +332,13 @@ impl PyRigidBody {
     }
 
     /// One body's numbers for each row.
-    pub(super) fn numbers(&self) -> Stack<[f64; 22]> {
+    pub(super) fn numbers(&self) -> Stack<[f64; 25]> {
         self.bodies.map(RigidBody::to_array)
     }
 
     /// Bodies from their numbers.
-    pub(super) fn from_numbers(numbers: &Stack<[f64; 22]>, py: Python<'_>) -> PyResult<Self> {
-        crate::arrays::try_rows(py, numbers, |row: &[f64; 22]| -> Result<RigidBody, Error> {
+    pub(super) fn from_numbers(numbers: &Stack<[f64; 25]>, py: Python<'_>) -> PyResult<Self> {
+        crate::arrays::try_rows(py, numbers, |row: &[f64; 25]| -> Result<RigidBody, Error> {
             RigidBody::from_array(row)
         })
         .map(Self::from)

@@ -14,42 +14,28 @@ use crate::numerics::lane::Lane;
 /// Squares below this are those of vectors that are zero but for underflow.
 const NULL: f64 = 1e-290;
 
-/// What the closed form finds.
-pub(super) struct ClosedForm<L> {
-    /// The decomposition, signs as they come.
-    pub(super) spectrum: Spectrum<L>,
-    /// Whether the matrix is diagonal, or so nearly that the squares of the other elements underflow.
-    pub(super) is_diagonal: bool,
-}
-
-/// The decomposition of a symmetric matrix.
+/// The decomposition of a symmetric matrix from its deviator, signs as they come.
 #[inline(always)]
-pub(super) fn closed_form<L: Lane>(a: &Symmetric<L>) -> ClosedForm<L> {
-    let scaled = a.scaled();
-    let deviator = Deviator::of(&scaled.matrix);
-    let b = &deviator.matrix;
-    let mu = deviator.isolated_eigenvalue();
+pub(super) fn closed_form<L: Lane>(deviator: &Deviator<L>) -> Spectrum<L> {
+    let (b, mu) = (&deviator.matrix, deviator.isolated);
     let v = isolated_eigenvector(b, mu);
     let (u, w) = complement(v);
     let pair = Pair::of(b, u, w);
     let (lower_vector, upper_vector) = pair.vectors(u, w);
     // The trace of B is zero, so the mean of the pair is −μ/2: better than the trace of the 2×2 matrix would tell.
     let mean = mu * L::new(-0.5);
-    let isolated = deviator.back(&scaled, mu);
-    let lower = deviator.back(&scaled, mean - pair.radius);
-    let upper = deviator.back(&scaled, mean + pair.radius);
-    let (values, vectors) = if deviator.determinant < L::new(0.0) {
+    let isolated = deviator.back(mu);
+    let lower = deviator.back(mean - pair.radius);
+    let upper = deviator.back(mean + pair.radius);
+    let (values, vectors) = if mu < L::new(0.0) {
         ([isolated, lower, upper], [v, lower_vector, upper_vector])
     } else {
         ([lower, upper, isolated], [lower_vector, upper_vector, v])
     };
-    ClosedForm {
-        spectrum: Spectrum {
-            values,
-            vectors,
-            poison: scaled.poison,
-        },
-        is_diagonal: deviator.off_diagonal == L::new(0.0),
+    Spectrum {
+        values,
+        vectors,
+        poison: deviator.poison,
     }
 }
 

@@ -5,8 +5,9 @@
 
 use std::ops::Range;
 
-use super::closed_form::{ClosedForm, closed_form};
-use super::jacobi::{Iterate, NUMBERS, SWEEPS, UNFINISHED, jacobi};
+use super::closed_form::closed_form;
+use super::deviator::{self, Deviator};
+use super::jacobi::{self, Iterate, SWEEPS, UNFINISHED, jacobi};
 use super::symmetric::{Spectrum, Symmetric, lower_triangle};
 use crate::numerics::dispatch::Kernel;
 use crate::numerics::lane::Lane;
@@ -21,15 +22,12 @@ pub(super) const VALUES_ONLY: usize = 4;
 /// The same and the elements of V, row by row.
 pub(super) const WITH_VECTORS: usize = 13;
 
-impl<L: Lane> ClosedForm<L> {
-    /// Also true where the eigenvalues are not numbers.
-    #[inline(always)]
-    fn needs_jacobi(&self) -> bool {
-        let [first, middle, last] = self.spectrum.values.map(L::abs);
-        let largest = first.max(last);
-        let is_level = first.min(middle).min(last) > largest * L::new(GRADED);
-        self.is_diagonal || !is_level
-    }
+/// Whether the closed form's spectrum is to be found again; also where it is not a number.
+#[inline(always)]
+fn needs_jacobi<L: Lane>(deviator: &Deviator<L>, spectrum: &Spectrum<L>) -> bool {
+    let [first, middle, last] = spectrum.values.map(L::abs);
+    let is_level = first.min(middle).min(last) > first.max(last) * L::new(GRADED);
+    deviator.is_diagonal() || !is_level
 }
 
 /// The decomposition of one matrix.
@@ -41,11 +39,12 @@ impl Kernel for One {
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
         let a = Symmetric::from_lower_triangle(lower_triangle(&self.0).map(L::new));
-        let found = closed_form(&a);
-        let spectrum = if found.needs_jacobi() {
+        let deviator = Deviator::of(&a);
+        let found = closed_form(&deviator);
+        let spectrum = if needs_jacobi(&deviator, &found) {
             jacobi(&a)
         } else {
-            found.spectrum
+            found
         };
         let Spectrum {
             values, vectors, ..
@@ -65,7 +64,8 @@ pub(super) struct Stack<'a, const N: usize> {
 /// The planes of one batch.
 struct Work<const N: usize> {
     matrices: Planes<6>,
-    iterates: Planes<NUMBERS>,
+    deviators: Planes<{ deviator::NUMBERS }>,
+    iterates: Planes<{ jacobi::NUMBERS }>,
     results: Planes<N>,
 }
 
@@ -76,6 +76,7 @@ impl<const N: usize> Kernel for Stack<'_, N> {
     fn run<L: Lane>(mut self) {
         let mut work = Work {
             matrices: Planes::ZERO,
+            deviators: Planes::ZERO,
             iterates: Planes::ZERO,
             results: Planes::ZERO,
         };
@@ -104,8 +105,11 @@ impl<const N: usize> Stack<'_, N> {
     #[inline(always)]
     fn closed_form_rows<L: Lane>(&mut self, rows: Range<usize>, work: &mut Work<N>) {
         read_rows(&self.matrices[rows.clone()], &mut work.matrices);
+        // In two loops: a processor looks only so far ahead, and overlaps the rows of a short loop better.
         work.matrices
-            .map::<L, ByClosedForm, N>(rows.len(), &mut work.results);
+            .map::<L, Deviate, { deviator::NUMBERS }>(rows.len(), &mut work.deviators);
+        work.deviators
+            .map::<L, Solve, N>(rows.len(), &mut work.results);
         write_values(&work.results, &mut self.values[rows.clone()]);
         if N == WITH_VECTORS {
             write_vectors(&work.results, &mut self.vectors[rows]);
@@ -118,7 +122,7 @@ impl<const N: usize> Stack<'_, N> {
             work.matrices.set(i, lower_triangle(&self.matrices[row]));
         }
         work.matrices
-            .map::<L, Start, NUMBERS>(rows.len(), &mut work.iterates);
+            .map::<L, Start, { jacobi::NUMBERS }>(rows.len(), &mut work.iterates);
         let mut sweep = 0;
         while sweep < SWEEPS && work.iterates.any(UNFINISHED, rows.len()) {
             work.iterates.update::<L, Sweep>(rows.len());
@@ -159,39 +163,49 @@ fn write_vectors<const N: usize>(results: &Planes<N>, vectors: &mut [[f64; 9]]) 
     }
 }
 
-struct ByClosedForm;
+struct Deviate;
 
-impl<const N: usize> Formula<6, N> for ByClosedForm {
+impl Formula<6, { deviator::NUMBERS }> for Deviate {
     #[inline(always)]
-    fn apply<L: Lane>(lower_triangle: [L; 6]) -> [L; N] {
-        let found = closed_form(&Symmetric::from_lower_triangle(lower_triangle));
-        results(found.spectrum, found.needs_jacobi())
+    fn apply<L: Lane>(lower_triangle: [L; 6]) -> [L; deviator::NUMBERS] {
+        Deviator::of(&Symmetric::from_lower_triangle(lower_triangle)).into_numbers()
+    }
+}
+
+struct Solve;
+
+impl<const N: usize> Formula<{ deviator::NUMBERS }, N> for Solve {
+    #[inline(always)]
+    fn apply<L: Lane>(numbers: [L; deviator::NUMBERS]) -> [L; N] {
+        let deviator = Deviator::from_numbers(numbers);
+        let spectrum = closed_form(&deviator);
+        results(spectrum, needs_jacobi(&deviator, &spectrum))
     }
 }
 
 struct Start;
 
-impl Formula<6, NUMBERS> for Start {
+impl Formula<6, { jacobi::NUMBERS }> for Start {
     #[inline(always)]
-    fn apply<L: Lane>(lower_triangle: [L; 6]) -> [L; NUMBERS] {
+    fn apply<L: Lane>(lower_triangle: [L; 6]) -> [L; jacobi::NUMBERS] {
         Iterate::start(&Symmetric::from_lower_triangle(lower_triangle)).into_numbers()
     }
 }
 
 struct Sweep;
 
-impl Formula<NUMBERS, NUMBERS> for Sweep {
+impl Formula<{ jacobi::NUMBERS }, { jacobi::NUMBERS }> for Sweep {
     #[inline(always)]
-    fn apply<L: Lane>(numbers: [L; NUMBERS]) -> [L; NUMBERS] {
+    fn apply<L: Lane>(numbers: [L; jacobi::NUMBERS]) -> [L; jacobi::NUMBERS] {
         Iterate::from_numbers(numbers).swept().into_numbers()
     }
 }
 
 struct Finish;
 
-impl<const N: usize> Formula<NUMBERS, N> for Finish {
+impl<const N: usize> Formula<{ jacobi::NUMBERS }, N> for Finish {
     #[inline(always)]
-    fn apply<L: Lane>(numbers: [L; NUMBERS]) -> [L; N] {
+    fn apply<L: Lane>(numbers: [L; jacobi::NUMBERS]) -> [L; N] {
         results(Iterate::from_numbers(numbers).spectrum(), false)
     }
 }

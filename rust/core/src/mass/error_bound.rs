@@ -1,0 +1,58 @@
+//! What rounding can have done to a body's numbers.
+
+use nalgebra::Vector3;
+
+use crate::numerics::reduce::depth;
+
+/// The unit of rounding, 2⁻⁵³.
+pub(crate) const UNIT: f64 = 0.5 * f64::EPSILON;
+
+/// Bounds on the errors of a body's numbers against exact arithmetic on the very floats that were given.
+///
+/// A number that was given, not computed, has the bound zero. The bounds are rigorous to first order in the unit of
+/// rounding and doubled, so that higher orders are covered; they are worst cases, mostly far above the actual errors.
+/// They say nothing of the errors that the given numbers themselves may have.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ErrorBound {
+    /// Of the mass.
+    pub mass: f64,
+    /// Of each component of the centre of mass.
+    pub center_of_mass: f64,
+    /// Of each element of the tensor about the centre of mass.
+    pub inertia: f64,
+}
+
+impl ErrorBound {
+    /// Of sums over `terms` particles: the mass, the first moments and the second moments about a point within the body,
+    /// whose trace is `spread`.
+    #[must_use]
+    pub fn of_sums(terms: usize, mass: f64, center_of_mass: &Vector3<f64>, spread: f64) -> Self {
+        // Each term is rounded a few times by itself, and once in each addition on its way to the total.
+        let relative = 2.0 * UNIT * (depth(terms) + 20.0);
+        Self {
+            mass: relative * mass,
+            // Σ m |d| is at most √(Σ m · Σ m d²).
+            center_of_mass: relative * (spread / mass).sqrt() + 2.0 * UNIT * center_of_mass.amax(),
+            inertia: 2.0 * relative * spread,
+        }
+    }
+
+    /// Of a closed form of a few operations.
+    #[must_use]
+    pub fn of_closed_form(mass: f64, trace: f64) -> Self {
+        Self {
+            mass: 16.0 * UNIT * mass,
+            center_of_mass: 0.0,
+            inertia: 16.0 * UNIT * trace,
+        }
+    }
+
+    /// The same, and a few more roundings of a tensor with this trace and of this centre of mass.
+    pub(crate) fn rounded(self, center_of_mass: &Vector3<f64>, trace: f64) -> Self {
+        Self {
+            center_of_mass: self.center_of_mass + 8.0 * UNIT * center_of_mass.amax(),
+            inertia: self.inertia + 32.0 * UNIT * trace,
+            ..self
+        }
+    }
+}
