@@ -26,8 +26,12 @@ MODULES = [
     "polhode.solids",
     "polhode.loads",
     "polhode.euler_angles",
+    "polhode.equimomental",
     "polhode.errors",
+    "polhode.kinematics",
+    "polhode.parallel_axis",
     "polhode.results",
+    "polhode.tops",
 ]
 HEAVY = ("matplotlib", "trimesh", "scipy", "rich", "cyclopts", "periodictable", "pandas", "PIL")
 
@@ -88,6 +92,7 @@ class TestNames:
             from_principal from_particles from_mesh from_file stack mass center_of_mass inertia principal
             principal_moments radii_of_gyration inertia_about moment_about principal_about translated rotated
             scaled isclose kinetic_energy angular_momentum angular_acceleration torque simulate shape
+            point_velocity point_acceleration pivot_reaction stability equimomental_particles
         """
         missing = [name for name in names.split() if not hasattr(RigidBody, name)]
         assert not missing
