@@ -55,7 +55,7 @@ class TestCode:
         assert text.startswith(f"(mex{number})=\n# ")
         assert "**Problem.**" in text
         assert text.index("## By hand") < text.index("## With polhode")
-        assert "$$" in text
+        assert "$" in text[text.index("## By hand") : text.index("## With polhode")]
         assert {"python", "text"} <= {kind for kind, _ in blocks(page)}
         assert f"(mex{number}.md)" in (page.parent / "index.md").read_text("utf-8")
 
