@@ -71,8 +71,11 @@ class TestTheory:
         assert f"rust/core/src/{stem}" in self.text[start : end if end >= 0 else None]
         assert f"(#{stem})" in (DOCS / "theory" / "index.md").read_text("utf-8")
 
-    def test_every_section_is_a_theorem(self) -> None:
-        assert sorted(re.findall(r"^\((.*)\)=$", self.text, re.MULTILINE)) == theorems()
+    def test_every_section_is_about_a_file_that_exists(self) -> None:
+        sections = re.findall(r"^\((.*)\)=$", self.text, re.MULTILINE)
+        assert len(sections) == len(set(sections))
+        gone = [s for s in sections if not (CORE / f"{s}.rs").exists() and not (CORE / s / "mod.rs").exists()]
+        assert gone == []
 
     def test_every_label_of_the_course_has_its_place(self) -> None:
         assert {label for label in LABELS if label not in self.text} == set()
