@@ -68,7 +68,7 @@ proptest! {
     #[test]
     fn mln27_both_steps_for_the_free_top(
         (axial, across) in symmetric(), start in [-3.0..3.0_f64, 0.2..1.4, -3.0..3.0], momentum in 0.5..4.0_f64,
-        t in 0.0..20.0_f64,
+        turned in 0.1..40.0_f64,
     ) {
         // With L along Z: ω(t) in the body by the first step; θ = const, φ̇ = L/I_t, ψ̇ = −Ω by the second.
         let [phi, theta, psi] = start;
@@ -81,6 +81,7 @@ proptest! {
             Vector3::new(transverse * psi.sin(), transverse * psi.cos(), spin)
         };
         let zxz: Sequence = "ZXZ".parse().expect("valid");
+        let t = turned / omega(0.0).norm();
         let rates = zxz.rates(&at(t), &omega(t), Frame::Body).expect("regular");
         let size = omega(t).norm() / theta.sin();
         close_vectors(&Vector3::from(rates), &Vector3::new(precession, 0.0, -circling), size);
@@ -91,13 +92,13 @@ proptest! {
         let initial = State { attitude, omega: omega(0.0) };
         let mut samples = [State::nan(); 2];
         let (no_load, tolerance): (&[Term], _) = (&[], Tolerance::new(1e-12, 0.0).expect("tolerance"));
-        let times = [0.0, t + 0.1];
+        let times = [0.0, t];
         simulate(
             &equations, &initial, &times, &mut { no_load }, tolerance, &mut samples,
             &mut |_| ControlFlow::Continue(()),
         ).expect("smooth");
-        let end = at(times[1]);
-        prop_assert!((samples[1].omega - omega(times[1])).norm() < 1e-9);
+        let end = at(t);
+        prop_assert!((samples[1].omega - omega(t)).norm() < 1e-9 * omega(t).norm());
         let expected: UnitQuaternion<f64> = zxz.to_quaternion(&end).expect("finite");
         prop_assert!(samples[1].attitude.angle_to(&expected) < 1e-9);
         let found = zxz.from_quaternion(&samples[1].attitude).expect("regular");
