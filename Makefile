@@ -53,8 +53,9 @@ package: setup ## source distribution and wheel into dist/, the wheel built from
 	$(BIN)/maturin sdist --out dist
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist dist/*.tar.gz
 
-bench: build ## import time beside NumPy's
-	$(BIN)/python benchmarks/import_time.py
+bench: build ## times beside the peers, as ratios; NAMES= picks files of rows
+	$(BIN)/python benchmarks/run.py $(NAMES)
+	cargo bench --locked --package polhode
 
 setup: $(VENV)/.tools ## virtual environment with the development tools
 

@@ -6,6 +6,7 @@ import concurrent.futures
 import doctest
 import importlib
 import inspect
+import os
 import pickle
 import subprocess
 import sys
@@ -155,9 +156,14 @@ class TestImport:
         assert _python(code).strip() == "0"
 
 
-def _python(code: str) -> str:
+def _python(code: str, **environment: str) -> str:
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        env={**os.environ, **environment},
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -193,3 +199,32 @@ class TestThreads:
         moments = turned.principal.moments
         for i in (0, 1, 4095, 4096, 9999, 19_999):
             assert np.array_equal(turned[i].principal.moments, moments[i])
+
+
+class TestEnvironment:
+    CODE = (
+        "import numpy as np, polhode\n"
+        "a = np.random.default_rng(5).normal(size=(3000, 3, 3))\n"
+        "found = polhode.principal_axes(a + a.swapaxes(1, 2))\n"
+        "print(hash(found.moments.tobytes() + found.axes.tobytes()))"
+    )
+
+    def test_bits_depend_neither_on_threads_nor_on_the_width_of_the_lanes(self) -> None:
+        settings = [{"POLHODE_NUM_THREADS": "1"}, {"POLHODE_NUM_THREADS": "3"}]
+        settings += [{"POLHODE_LEVEL": level} for level in ("avx2", "avx512") if _has(level)]
+        outputs = {_python(self.CODE, PYTHONHASHSEED="0", **setting) for setting in settings}
+        assert len(outputs) == 1
+
+    @pytest.mark.parametrize(
+        ("variable", "value"),
+        [("POLHODE_NUM_THREADS", "0"), ("POLHODE_NUM_THREADS", "many"), ("POLHODE_LEVEL", "abacus")],
+    )
+    def test_nonsense_is_named(self, variable: str, value: str) -> None:
+        code = "try:\n    import polhode\nexcept ValueError as error:\n    print(error)"
+        assert variable in _python(code, **{variable: value})
+
+
+def _has(level: str) -> bool:
+    return "no" not in _python(
+        "try:\n    import polhode\nexcept ValueError:\n    print('no')", POLHODE_LEVEL=level
+    )

@@ -10,13 +10,14 @@ from polhode import (
     solids,
     tops,
 )
-from polhode._core import RigidBody, __version__, principal_axes
+from polhode._core import RigidBody, __version__, principal_axes, principal_moments
 from polhode.results import (
     AngularMomentum,
     FreePrecession,
     KineticEnergy,
     Particles,
     PrincipalAxes,
+    PrincipalDerivative,
     Trajectory,
 )
 
@@ -26,6 +27,7 @@ __all__ = [
     "KineticEnergy",
     "Particles",
     "PrincipalAxes",
+    "PrincipalDerivative",
     "RigidBody",
     "Trajectory",
     "__version__",
@@ -36,6 +38,7 @@ __all__ = [
     "loads",
     "parallel_axis",
     "principal_axes",
+    "principal_moments",
     "solids",
     "tops",
 ]

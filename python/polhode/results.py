@@ -25,6 +25,7 @@ __all__ = [
     "KineticEnergy",
     "Particles",
     "PrincipalAxes",
+    "PrincipalDerivative",
     "Trajectory",
 ]
 
@@ -69,6 +70,86 @@ class PrincipalAxes:
     def classify(self, rtol: float = 1e-6) -> Any:
         """Class of the top with moments closer than ``rtol`` times the largest taken as equal."""
         return _core.classify_tops(self.moments, rtol)
+
+    @cached_property
+    def kappa(self) -> Any:
+        """Ray's asymmetry parameter κ = (2B − A − C)/(A − C) of the rotational constants A ≥ B ≥ C.
+
+        −1 for a prolate top, +1 for an oblate one, NaN for a spherical one. A float, or an array for a stack.
+        """
+        return _core.ray_kappa(self.moments)
+
+    def canonical(self, rtol: float = 1e-6) -> PrincipalAxes:
+        """Turn the axes that are free because moments are equal to the body axes of largest projection.
+
+        Parameters
+        ----------
+        rtol : float, optional
+            Moments closer than this times the largest count as equal.
+
+        Returns
+        -------
+        PrincipalAxes
+            With the same moments; a spherical top gets the body axes themselves.
+
+        Examples
+        --------
+        >>> from polhode import principal_axes
+        >>> principal_axes([(2.0, 0, 0), (0, 1.0, 0), (0, 0, 2.0)]).canonical().axes
+        array([[ 0.,  1.,  0.],
+               [ 1.,  0.,  0.],
+               [ 0.,  0., -1.]])
+        """
+        return PrincipalAxes(self.moments, _core.canonical_axes(self.moments, self.axes, rtol))
+
+    def derivative(self, tangent: ArrayLike, rtol: float = 1e-12) -> PrincipalDerivative:
+        """Change of moments and axes for a change of the tensor.
+
+        Parameters
+        ----------
+        tangent : array_like, shape (..., 3, 3)
+            dI, symmetric.
+        rtol : float, optional
+            Moments closer than this times the largest count as equal.
+
+        Returns
+        -------
+        PrincipalDerivative
+
+        Examples
+        --------
+        >>> from polhode import principal_axes
+        >>> found = principal_axes([(1.0, 0, 0), (0, 2.0, 0), (0, 0, 4.0)])
+        >>> change = found.derivative([(0.5, 1, 0), (1, 0, 0), (0, 0, 0)])
+        >>> change.moments
+        array([0.5, 0. , 0. ])
+        >>> change.axes
+        array([[ 0.,  1.,  0.],
+               [-1.,  0.,  0.],
+               [ 0.,  0.,  0.]])
+        """
+        found = _core.principal_derivative(self.moments, self.axes, tangent, rtol)
+        return PrincipalDerivative(*found)
+
+
+class PrincipalDerivative(NamedTuple):
+    """Derivatives of principal moments and axes in the direction of a tangent dI.
+
+    Attributes
+    ----------
+    moments : numpy.ndarray, shape (..., 3)
+        dI_k = (Vᵀ dI V)_kk.
+    axes : numpy.ndarray, shape (..., 3, 3)
+        dV = V Ω, Ω_ij = (Vᵀ dI V)_ij / (I_j − I_i): the axes turn.
+    degenerate : numpy.ndarray of bool, shape (..., 3)
+        Which of the pairs (1, 2), (1, 3), (2, 3) have equal moments. Within such a pair neither the axes nor
+        the single moments have a derivative: `axes` leaves out the rotation in the plane of the pair, and
+        of the two `moments` only the sum has a meaning that does not depend on the choice of axes.
+    """
+
+    moments: Floats
+    axes: Floats
+    degenerate: NDArray[np.bool_]
 
 
 class KineticEnergy(NamedTuple):

@@ -176,7 +176,10 @@ pub(crate) fn write_numbers<'py>(
 }
 
 /// A C-ordered float64 array with the numbers of `object`, which must be real.
-fn floats<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+pub(crate) fn floats<'py>(
+    object: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
         && array.is_c_contiguous()
     {

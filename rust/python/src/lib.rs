@@ -6,12 +6,14 @@
 //! | `stack` | shape arithmetic |
 //! | `errors` | which exception an error of the core becomes |
 //! | `interrupt` | Ctrl-C and progress |
+//! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
 
 // What Python sees is documented in Python's terms; the names are public to it alone.
 #![allow(missing_docs, clippy::doc_markdown, clippy::needless_pass_by_value)]
 
 mod arrays;
+mod environment;
 mod equimomental;
 mod errors;
 mod euler_rates;
@@ -46,7 +48,10 @@ mod _core {
     #[pymodule_export]
     use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};
     #[pymodule_export]
-    use crate::principal::{classify_tops, principal_axes, principal_gaps};
+    use crate::principal::{
+        canonical_axes, classify_tops, principal_axes, principal_derivative, principal_gaps,
+        principal_moments, ray_kappa,
+    };
     #[pymodule_export]
     use crate::rigid_body::PyRigidBody;
     #[pymodule_export]
@@ -60,6 +65,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::environment::obey()?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }
