@@ -14,15 +14,20 @@
 
 mod arrays;
 mod environment;
+mod equimomental;
 mod errors;
+mod euler_rates;
 mod files;
 mod interrupt;
+mod kinematics;
 mod loads;
+mod parallel_axis;
 mod principal;
 mod rigid_body;
 mod rotations;
 mod solids;
 mod stack;
+mod tops;
 
 use pyo3::prelude::*;
 
@@ -31,9 +36,17 @@ mod _core {
     use pyo3::prelude::*;
 
     #[pymodule_export]
+    use crate::equimomental::stick;
+    #[pymodule_export]
+    use crate::euler_rates::{angular_velocity_from_euler_rates, euler_rates};
+    #[pymodule_export]
     use crate::files::{read_plates, read_stl, surface_area};
     #[pymodule_export]
+    use crate::kinematics::transport;
+    #[pymodule_export]
     use crate::loads::{PyLoad, constant_torque, torque_callback};
+    #[pymodule_export]
+    use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};
     #[pymodule_export]
     use crate::principal::{
         canonical_axes, classify_tops, principal_axes, principal_derivative, principal_gaps,
@@ -47,6 +60,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::solids::{cone, cube, cuboid, cylinder, ellipsoid, sphere};
+    #[pymodule_export]
+    use crate::tops::{free_precession, least_spin, steady_precession};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -4,6 +4,7 @@ mod construct;
 mod container;
 mod dynamics;
 mod ensemble;
+mod motion;
 mod properties;
 mod simulate;
 
@@ -78,7 +79,7 @@ impl From<Stack<RigidBody>> for PyRigidBody {
 }
 
 /// The points that an argument `about` (or `point`) stands for.
-fn points(
+pub(crate) fn points(
     bodies: &Stack<RigidBody>,
     about: Option<&Bound<'_, PyAny>>,
     name: &str,
