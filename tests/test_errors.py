@@ -8,9 +8,20 @@ from typing import Any
 import numpy as np
 import polhode
 import pytest
-from polhode import RigidBody, errors, euler_angles, loads, principal_axes, solids
+from polhode import (
+    RigidBody,
+    errors,
+    euler_angles,
+    kinematics,
+    loads,
+    parallel_axis,
+    principal_axes,
+    solids,
+    tops,
+)
 
 BODY = solids.box((1.0, 2.0, 3.0), mass=1.0)
+PENCIL = RigidBody.from_principal(1.0, (2.0, 2.0, 1.0), center_of_mass=(0.0, 0.0, 1.0))
 EYE = np.eye(3)
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
 
@@ -43,6 +54,16 @@ ARRAYS: dict[str, tuple[str, Callable[[Any], object], Any]] = {
     "angular_acceleration": ("omega", BODY.angular_acceleration, VECTOR),
     "torque": ("torque", lambda x: BODY.angular_acceleration((1, 2, 3), x), VECTOR),
     "inverse": ("angular_acceleration", lambda x: BODY.torque((1, 2, 3), x), VECTOR),
+    "from C": ("inertia", lambda x: parallel_axis.from_center_of_mass(x, 1.0, VECTOR), TENSOR),
+    "to C": ("displacement", lambda x: parallel_axis.to_center_of_mass(TENSOR, 1.0, x), VECTOR),
+    "transport": ("frame_omega", lambda x: kinematics.transport(VECTOR, (1, 2, 4), x), VECTOR),
+    "point_velocity": ("r", lambda x: BODY.point_velocity(x, (1, 2, 3)), VECTOR),
+    "point_acceleration": ("omega", lambda x: BODY.point_acceleration((1, 2, 3), x), VECTOR),
+    "pivot_reaction": ("gravity", lambda x: BODY.pivot_reaction((1, 2, 3), gravity=x), VECTOR),
+    "angular_velocity": ("angles", lambda x: euler_angles.angular_velocity(x, (1, 2, 3)), VECTOR),
+    "euler rates": ("omega", lambda x: euler_angles.rates((1, 2, 3), x), VECTOR),
+    "least_spin": ("gravity", lambda x: tops.least_spin(PENCIL, x), VECTOR),
+    "steady_precession": ("gravity", lambda x: tops.steady_precession(PENCIL, 99.0, 2.0, x), VECTOR),
     "simulate t": ("t", lambda x: BODY.simulate(x, (1, 2, 3)), np.array([0.0, 1.0])),
     "simulate omega": ("omega", lambda x: BODY.simulate([0, 1], x), VECTOR),
     "simulate attitude": ("attitude", lambda x: BODY.simulate([0, 1], (1, 2, 3), x), UNIT),
@@ -71,6 +92,16 @@ EVALUATED = {
     "angular_acceleration",
     "torque",
     "inverse",
+    "from C",
+    "to C",
+    "transport",
+    "point_velocity",
+    "point_acceleration",
+    "pivot_reaction",
+    "angular_velocity",
+    "euler rates",
+    "least_spin",
+    "steady_precession",
 }
 
 

@@ -56,6 +56,25 @@ def test_a_fixed_point_needs_only_the_tensor_about_it() -> None:
     assert parts.rotational == pytest.approx(0.5 * 6.0 * 4.0, rel=1e-15)
 
 
+def test_mex173_a_rolling_cylinder_from_three_points(rng: np.random.Generator) -> None:
+    """P on the axis, at the top of the rim, on the line of contact, in units of m v²."""
+    mass, radius, v = rng.uniform(0.3, 5.0, (3, 50))
+    zero = np.zeros(50)
+    cylinder = solids.cylinder(radius, 1.0, mass=mass)
+    omega, of_axis = np.column_stack([zero, zero, -v / radius]), np.column_stack([v, zero, zero])
+    for height, speed, expected in (
+        (0.0, 1, (0.5, 0, 0.25)),
+        (1.0, 2, (2, -2, 0.75)),
+        (-1.0, 0, (0, 0, 0.75)),
+    ):
+        point = np.column_stack([zero, height * radius, zero])
+        velocity = cylinder.point_velocity(point, omega, of_axis)
+        assert np.abs(velocity - speed * of_axis).max() < 1e-15 * v.max()
+        parts = cylinder.kinetic_energy(omega, velocity, about=point)
+        for part, want in zip(parts, expected, strict=True):
+            assert np.abs(part / (mass * v**2) - want).max() < 1e-14
+
+
 @given(body=bodies(decades=3), omega=vectors(), velocity=vectors(), offset=vectors())
 def test_the_total_does_not_depend_on_the_point(
     body: Body, omega: np.ndarray, velocity: np.ndarray, offset: np.ndarray

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 from hypothesis import given
 from oracles import dot, rational, worst_error
 from oracles.bodies import Body, bodies, vectors
-from polhode import RigidBody, solids
+from polhode import RigidBody, parallel_axis, solids
+from polhode.errors import InvalidInertiaError, PolhodeError
 
 
 def steiner(body: RigidBody, point: np.ndarray) -> list[list[Fraction]]:
@@ -94,6 +96,36 @@ class TestShapes:
         about = body.principal_about((1.0, 0.0, 0.0))
         assert about.moments == pytest.approx([13.0, 17.0, 22.0], rel=1e-15)
         assert body.principal_about("center_of_mass").moments.tolist() == [5.0, 10.0, 13.0]
+
+
+class TestBareTensors:
+    @given(body=bodies(), unit=vectors())
+    def test_from_the_center_of_mass_and_back(self, body: Body, unit: np.ndarray) -> None:
+        d = unit * body.gyration
+        made = RigidBody.from_principal(body.mass, body.moments, body.axes)
+        about = parallel_axis.from_center_of_mass(made.inertia, body.mass, d)
+        assert worst_error(about, steiner(made, d)) <= 4 * 2**-52
+        assert np.array_equal(about, made.inertia_about(d))
+        back = parallel_axis.to_center_of_mass(about, body.mass, -d)
+        assert worst_error(back, rational(made.inertia), scale=float(np.trace(about))) <= 4 * 2**-52
+
+    def test_stacks_broadcast_and_a_nan_stays_in_its_row(self) -> None:
+        tensors = np.tile(np.diag([1.0, 2.0, 2.5]), (4, 1, 1, 1))
+        tensors[2, 0, 1, 1] = np.nan
+        got = parallel_axis.from_center_of_mass(tensors, np.ones(5), (0.0, 0.0, 1.0))
+        assert got.shape == (4, 5, 3, 3)
+        assert np.isnan(got[2, :, 1, 1]).all()
+        assert np.array_equal(got[0, 0], np.diag([2.0, 3.0, 2.5]))
+        assert np.isnan(parallel_axis.to_center_of_mass(np.eye(3), np.nan, (1.0, 0.0, 0.0))).any()
+
+    @pytest.mark.parametrize("way", [parallel_axis.from_center_of_mass, parallel_axis.to_center_of_mass])
+    def test_what_is_no_tensor_and_no_mass_is_named(self, way: Callable[..., object]) -> None:
+        with pytest.raises(InvalidInertiaError, match=r"row 1: inertia must be symmetric"):
+            way([np.eye(3), np.tri(3)], 1.0, (0, 0, 1))
+        with pytest.raises(PolhodeError, match=r"mass must be zero or more.*cavity.*-2\.0"):
+            way(np.eye(3), -2.0, (0, 0, 1))
+        with pytest.raises(ValueError, match=r"displacement: expected shape \(\.\.\., 3\), got \(2,\)"):
+            way(np.eye(3), 1.0, (0, 1))
 
 
 def test_far_away_and_back_keeps_the_tensor() -> None:

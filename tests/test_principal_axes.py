@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
-from oracles import eigen_cases
+from oracles import eigen_cases, rational
 from polhode import principal_axes, principal_moments
 from polhode.errors import InvalidInertiaError
 from scipy.spatial.transform import Rotation
@@ -144,6 +146,24 @@ def test_an_asymmetric_tensor_is_an_error_that_names_its_row(rng: np.random.Gene
     stack[31] = rng.normal(size=(3, 3))
     with pytest.raises(InvalidInertiaError, match="31"):
         principal_axes(stack)
+
+
+def characteristic(tensor: np.ndarray, root: Fraction) -> Fraction:
+    """det(I − λ 1), exactly."""
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = rational(tensor)
+    p, q, r = xx - root, yy - root, zz - root
+    determinant: Fraction = p * (q * r - yz * yz) - xy * (xy * r - yz * xz) + xz * (xy * yz - q * xz)
+    return determinant
+
+
+def test_moments_are_the_roots_of_the_characteristic_polynomial(rng: np.random.Generator) -> None:
+    """mln80: det(I − λ 1), in exact arithmetic, changes its sign at each of them."""
+    for body in range(40):
+        x = rng.normal(size=(4, 3)) * [1.0, 10.0 ** -(body % 4), 1.0]
+        a = eigen_cases.symmetric((np.trace(x.T @ x) * np.eye(3) - x.T @ x)[None])[0]
+        moments = rational(principal_axes(a).moments)
+        bar = Fraction(EIGENVALUE) * moments[2]
+        assert all(characteristic(a, root - bar) * characteristic(a, root + bar) < 0 for root in moments)
 
 
 @pytest.mark.parametrize("shape", [(), (0,), (1,), (7,), (2, 5), (3, 0, 2)])

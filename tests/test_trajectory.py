@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from polhode import RigidBody, Trajectory
+from polhode import RigidBody, Trajectory, euler_angles
 from polhode.errors import SingularAttitudeError
 from scipy.spatial.transform import Rotation
 
@@ -119,6 +119,33 @@ def test_singular_attitude_raises_or_is_nan() -> None:
     angles = trajectory.euler_angles(singular="nan")
     assert angles.shape == (3, 3)
     assert np.isnan(angles).any()
+    with pytest.raises(SingularAttitudeError):
+        trajectory.euler_rates()
+    assert np.isnan(trajectory.euler_rates(singular="nan")).any()
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_points_go_where_the_particles_go(shape: tuple[int, ...], rng: np.random.Generator) -> None:
+    swarm = Swarm(rng, shape)
+    masses, position, _ = swarm.in_space()
+    trajectory = swarm.trajectory
+    for k in range(3):
+        got = trajectory.point(swarm.places[..., k, :])
+        np.testing.assert_allclose(got, position[..., k, :], rtol=0, atol=1e-14)
+    center = (masses[..., None] * position).sum(axis=-2) / masses.sum(axis=-1)[..., None]
+    np.testing.assert_allclose(trajectory.point("center_of_mass"), center, rtol=0, atol=1e-14)
+    assert trajectory.point("origin").shape == (*shape, 5, 3)
+    with pytest.raises(ValueError, match="r: 'here' is not"):
+        trajectory.point("here")
+    with pytest.raises(ValueError, match=r"r: expected shape \(\.\.\., 3\), got \(2,\)"):
+        trajectory.point((1.0, 2.0))
+
+
+def test_euler_rates_are_those_of_the_angles(rng: np.random.Generator) -> None:
+    trajectory = Swarm(rng, (4,)).trajectory
+    rates = trajectory.euler_rates("ZYX")
+    again = euler_angles.angular_velocity(trajectory.euler_angles("ZYX"), rates, "ZYX")
+    np.testing.assert_allclose(again, trajectory.omega, rtol=0, atol=1e-13)
 
 
 def test_length_and_repr(rng: np.random.Generator) -> None:

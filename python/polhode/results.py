@@ -352,7 +352,9 @@ class Trajectory:
         words = {"center_of_mass": self.body.center_of_mass, "origin": np.zeros(3)}
         if isinstance(r, str) and r not in words:
             raise ValueError(f"r: {r!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
-        place = words[r] if isinstance(r, str) else np.asarray(r)
+        place = words[r] if isinstance(r, str) else np.asarray(r, dtype=float)
+        if place.shape[-1:] != (3,):
+            raise ValueError(f"r: expected shape (..., 3), got {place.shape}")
         arm = place - self.about
         return self.position + _core.rotate(self.quaternion, arm[..., np.newaxis, :])
 
