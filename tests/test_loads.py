@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import subprocess
 import sys
 from collections.abc import Callable
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 from polhode import RigidBody, loads
 from polhode.errors import IntegrationError
+from scipy.spatial.transform import Rotation
 
 BODY = RigidBody(1.0, np.array([[3.0, 0.2, -0.1], [0.2, 2.0, 0.3], [-0.1, 0.3, 4.0]]))
 RATES = (0.5, -1.0, 0.25)
@@ -248,3 +251,48 @@ class TestProgress:
         with pytest.raises(RuntimeError) as caught:
             BODY.simulate([0.0, 1e7], RATES, progress=stop)
         assert caught.value is error
+
+
+class TestTorque:
+    """What a load exerts at a time and a state, asked for outside a run."""
+
+    def test_terms_in_body_and_in_space(self, rng: np.random.Generator) -> None:
+        load = loads.constant_torque(TORQUE) + loads.constant_torque((1.0, 2.0, 3.0), "space")
+        q = rng.normal(size=(7, 4))
+        turn = Rotation.from_quat(q)
+        got = load.torque(0.0, RATES, turn)
+        assert np.abs(got - TORQUE - turn.inv().apply((1.0, 2.0, 3.0))).max() < 1e-14
+
+    def test_functions_see_each_row(self) -> None:
+        load = loads.torque_callback(lambda t, omega, q: t * omega + q[:3])
+        t, omega = np.array([1.0, 2.0]), np.ones((3, 1, 3))
+        got = load.torque(t, omega, (0.6, 0.0, 0.0, 0.8))
+        assert got.shape == (3, 2, 3)
+        assert np.array_equal(got[1], [[1.6, 1.0, 1.0], [2.6, 2.0, 2.0]])
+
+    def test_errors(self) -> None:
+        def fail(_t: float, _omega: Any, _q: Any) -> Any:
+            raise KeyError("its own")
+
+        with pytest.raises(KeyError, match="its own"):
+            loads.torque_callback(fail).torque(0.0, RATES, (0, 0, 0, 1))
+        load = loads.constant_torque(TORQUE)
+        with pytest.raises(ValueError, match=r"row 1: quaternion must be a unit quaternion"):
+            load.torque(0.0, RATES, [(0, 0, 0, 1), (0, 0, 0, 2)])
+        got = load.torque([0.0, 1.0], RATES, [(0, 0, 0, 1), (np.nan,) * 4])
+        assert np.array_equal(got[0], TORQUE)
+        assert np.isnan(got[1]).all()
+        with pytest.raises(ValueError, match="omega: expected shape"):
+            load.torque(0.0, 1.0, (0, 0, 0, 1))
+
+    def test_pickle_and_copy(self) -> None:
+        load = loads.constant_torque(TORQUE, "space") + loads.torque_callback(module_level)
+        state = (0.5, RATES, (0.0, 0.6, 0.0, 0.8))
+        for again in (pickle.loads(pickle.dumps(load)), copy.copy(load), copy.deepcopy(load)):
+            assert repr(again) == repr(load)
+            assert np.array_equal(again.torque(*state), load.torque(*state))
+
+
+def module_level(t: float, omega: Any, _quaternion: Any) -> Any:
+    """A function that pickle finds by its name."""
+    return t * omega
