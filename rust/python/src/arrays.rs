@@ -120,25 +120,32 @@ pub(crate) fn read_list<T: Item>(
     name: &str,
     leading: &str,
 ) -> PyResult<Stack<T>> {
-    let wrong = |shape: &[usize]| {
-        let tail: Vec<String> = T::TAIL.iter().map(usize::to_string).collect();
-        let axes = [&[leading.to_owned()], &tail[..]].concat().join(", ");
-        PyValueError::new_err(format!(
-            "{name}: expected shape ({axes}), got {}",
-            tuple(shape)
-        ))
-    };
+    list_floats(object, name, leading, T::TAIL)?;
+    read(object, name)
+}
+
+/// The numbers of items in a row, shape (n, tail) or (..., n, tail), not copied where they are C-ordered float64.
+pub(crate) fn list_floats<'py>(
+    object: &Bound<'py, PyAny>,
+    name: &str,
+    leading: &str,
+    tail: &[usize],
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let array = floats(object, name)?;
     let shape = array.shape();
-    let depth = shape.len().checked_sub(T::TAIL.len());
+    let depth = shape.len().checked_sub(tail.len());
     let is_list = depth.is_some_and(|depth| {
-        shape[depth..] == *T::TAIL && (depth == 1 || depth > 1 && leading.starts_with("..."))
+        shape[depth..] == *tail && (depth == 1 || depth > 1 && leading.starts_with("..."))
     });
     if is_list {
-        read(object, name)
-    } else {
-        Err(wrong(shape))
+        return Ok(array);
     }
+    let tail: Vec<String> = tail.iter().map(usize::to_string).collect();
+    let axes = [&[leading.to_owned()], &tail[..]].concat().join(", ");
+    Err(PyValueError::new_err(format!(
+        "{name}: expected shape ({axes}), got {}",
+        tuple(shape)
+    )))
 }
 
 /// As [`read`], with a default for an argument that was not given.
@@ -176,7 +183,10 @@ pub(crate) fn write_numbers<'py>(
 }
 
 /// A C-ordered float64 array with the numbers of `object`, which must be real.
-fn floats<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+pub(crate) fn floats<'py>(
+    object: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
         && array.is_c_contiguous()
     {
@@ -296,7 +306,7 @@ fn as_quaternion<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, 
         .transpose()
 }
 
-fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = object.py();
     numpy(py)?
         .call_method1("asarray", (object,))

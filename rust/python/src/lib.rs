@@ -11,11 +11,13 @@
 // What Python sees is documented in Python's terms; the names are public to it alone.
 #![allow(missing_docs, clippy::doc_markdown, clippy::needless_pass_by_value)]
 
+mod accumulator;
 mod arrays;
 mod errors;
 mod files;
 mod interrupt;
 mod loads;
+mod particles;
 mod principal;
 mod rigid_body;
 mod rotations;
@@ -28,6 +30,8 @@ use pyo3::prelude::*;
 mod _core {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::accumulator::PyMassAccumulator;
     #[pymodule_export]
     use crate::files::{read_plates, read_stl, surface_area};
     #[pymodule_export]

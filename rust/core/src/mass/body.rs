@@ -10,6 +10,7 @@ use super::validity::{
     trace,
 };
 use crate::error::{Error, all_finite};
+use crate::numerics::eigen3::{Eigen3, eigen3};
 use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
 
 /// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
@@ -129,6 +130,11 @@ impl RigidBody {
     /// # Errors
     /// When the mass is not positive or a number is not finite.
     pub fn from_second_moment(matter: &SecondMoment) -> Result<Self, Error> {
+        Self::with_spectrum(matter, &eigen3(&matter.central))
+    }
+
+    /// As [`Self::from_second_moment`], with the spectral decomposition of its `central` already at hand.
+    pub(super) fn with_spectrum(matter: &SecondMoment, spectrum: &Eigen3) -> Result<Self, Error> {
         check_mass(matter.mass)?;
         all_finite("center_of_mass", &matter.center_of_mass)?;
         let inertia = matter.inertia();
@@ -137,7 +143,7 @@ impl RigidBody {
             mass: matter.mass,
             center_of_mass: matter.center_of_mass,
             inertia,
-            principal: matter.principal_axes(),
+            principal: matter.principal_axes(spectrum),
             error_bound: matter.error_bound,
         })
     }
