@@ -100,7 +100,7 @@ pub(crate) fn read_labels<'py>(
         )));
     }
     let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "int64"))?;
-    Ok(array.extract()?)
+    array.extract()
 }
 
 /// Work that Ctrl-C may end, without the interpreter lock.

@@ -45,56 +45,58 @@ pub fn particle_stack<'a>(
     row: impl Fn(usize) -> Particles<'a> + Sync,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<RigidBody>, (usize, Error)> {
-    let is_large = |&index: &usize| row(index).masses.len() > LARGE;
-    let (large, small): (Vec<_>, Vec<_>) = (0..count).partition(is_large);
-    let mut batches: Vec<Vec<RigidBody>> = Vec::new();
-    batches.resize_with(small.len().div_ceil(BATCH), Vec::new);
-    let outcome = fill_blocks(&mut batches, 1, watch, |index, out| {
-        let start = index * BATCH;
-        let rows = &small[start..small.len().min(start + BATCH)];
-        let particles: Vec<_> = rows.iter().map(|&index| row(index)).collect();
-        out[0] = batch(&particles).map_err(|(k, error)| (rows[k], error))?;
-        Ok(())
+    let is_large = |index: usize| row(index).masses.len() > LARGE;
+    let mut bodies = vec![RigidBody::UNIT_POINT; count];
+    let outcome = fill_blocks(&mut bodies, BATCH, watch, |start, bodies| {
+        let small: Vec<usize> = (0..bodies.len()).filter(|k| !is_large(start + k)).collect();
+        batch(&small, &|k| row(start + k), bodies).map_err(|(k, error)| (start + k, error))
     });
-    match outcome {
-        Ok(()) => {}
-        Err(Halt::Stopped) => return Err((0, Error::Stopped)),
-        Err(Halt::Failed(fault)) => return Err(fault),
-    }
-    let mut small_bodies = batches.into_iter().flatten();
-    if large.is_empty() {
-        return Ok(small_bodies.collect());
-    }
-    let mut bodies = Vec::with_capacity(count);
-    for index in large {
-        bodies.extend(small_bodies.by_ref().take(index - bodies.len()));
+    outcome.map_err(|halt| match halt {
+        Halt::Stopped => (0, Error::Stopped),
+        Halt::Failed(fault) => fault,
+    })?;
+    for index in (0..count).filter(|&index| is_large(index)) {
         let Particles { masses, positions } = row(index);
-        bodies.push(particles_watched(masses, positions, watch).map_err(|error| (index, error))?);
+        bodies[index] =
+            particles_watched(masses, positions, watch).map_err(|error| (index, error))?;
     }
-    bodies.extend(small_bodies);
     Ok(bodies)
 }
 
-/// Few bodies on the calling thread, their tensors decomposed together.
-fn batch(rows: &[Particles<'_>]) -> Result<Vec<RigidBody>, (usize, Error)> {
+/// Some of at most [`BATCH`] bodies on the calling thread, their tensors decomposed together.
+fn batch<'a>(
+    which: &[usize],
+    row: &impl Fn(usize) -> Particles<'a>,
+    bodies: &mut [RigidBody],
+) -> Result<(), (usize, Error)> {
     let watch = &mut |_: f64| ControlFlow::Continue(());
-    let mut moments = Vec::with_capacity(rows.len());
-    for (k, &row) in rows.iter().enumerate() {
-        moments.push(about_center(row, watch).map_err(|error| (k, error))?);
+    let mut moments = Vec::with_capacity(which.len());
+    for &k in which {
+        moments.push(about_center(row(k), watch).map_err(|error| (k, error))?);
     }
-    let mut bodies = Vec::with_capacity(rows.len());
-    for (k, (matter, spectrum)) in moments.iter().zip(spectra(&moments)).enumerate() {
-        bodies.push(RigidBody::with_spectrum(matter, &spectrum).map_err(|error| (k, error))?);
-    }
-    let thin: Vec<usize> = (0..rows.len()).filter(|&k| is_thin(&bodies[k])).collect();
+    decompose(which, &moments, bodies)?;
+    let thin: Vec<usize> = which
+        .iter()
+        .copied()
+        .filter(|&k| is_thin(&bodies[k]))
+        .collect();
     moments.clear();
     for &k in &thin {
-        moments.push(in_own_axes(rows[k], &bodies[k], watch).map_err(|error| (k, error))?);
+        moments.push(in_own_axes(row(k), &bodies[k], watch).map_err(|error| (k, error))?);
     }
-    for (&k, (matter, spectrum)) in thin.iter().zip(moments.iter().zip(spectra(&moments))) {
+    decompose(&thin, &moments, bodies)
+}
+
+/// The bodies with these second moments, each in its place.
+fn decompose(
+    which: &[usize],
+    moments: &[SecondMoment],
+    bodies: &mut [RigidBody],
+) -> Result<(), (usize, Error)> {
+    for ((&k, matter), spectrum) in which.iter().zip(moments).zip(spectra(moments)) {
         bodies[k] = RigidBody::with_spectrum(matter, &spectrum).map_err(|error| (k, error))?;
     }
-    Ok(bodies)
+    Ok(())
 }
 
 /// The principal values and axes of at most [`BATCH`] second moments.
