@@ -6,7 +6,7 @@ export CARGO_TERM_COLOR ?= auto
 
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
 
-.PHONY: help setup build demo test test-rust test-python lint format package bench clean
+.PHONY: help setup build demo test test-rust test-python lint format docs figures package bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -41,13 +41,21 @@ format: setup ## put all sources in form
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
+docs: build $(VENV)/.docs ## the pages as a site in docs/_build/html; a warning is an error
+	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet docs docs/_build/html
+	@echo "open docs/_build/html/index.html"
+
+figures: build ## draw the figures of the pages anew
+	for script in docs/figures/[!_]*.py; do $(BIN)/python $$script || exit 1; done
+
 package: setup ## source distribution and wheel into dist/, the wheel built from the source distribution
 	rm -rf dist
 	$(BIN)/maturin sdist --out dist
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist dist/*.tar.gz
 
-bench: build ## import time beside NumPy's
-	$(BIN)/python benchmarks/import_time.py
+bench: build ## times beside the peers, as ratios; NAMES= picks files of rows
+	$(BIN)/python benchmarks/run.py $(NAMES)
+	cargo bench --locked --package polhode
 
 setup: $(VENV)/.tools ## virtual environment with the development tools
 
@@ -68,9 +76,13 @@ $(VENV)/.tools: pyproject.toml $(VENV)/.python
 	$(BIN)/python -m pip install --quiet --group dev
 	@touch $@
 
+$(VENV)/.docs: pyproject.toml $(VENV)/.tools
+	$(BIN)/python -m pip install --quiet --group docs
+	@touch $@
+
 $(VENV)/.built: $(VENV)/.tools $(RUST)
 	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]"
 	@touch $@
 
 clean: ## remove everything that was built
-	rm -rf $(VENV) target dist polhode-demo
+	rm -rf $(VENV) target dist docs/_build polhode-demo

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import concurrent.futures
-import contextlib
 import doctest
 import importlib
 import inspect
-import io
+import os
 import pickle
-import re
 import subprocess
 import sys
 import types
@@ -20,6 +18,7 @@ from typing import Any
 import numpy as np
 import polhode
 import pytest
+from markdown_code import blocks, run_examples, run_page
 from polhode import RigidBody, loads, solids
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -28,8 +27,12 @@ MODULES = [
     "polhode.solids",
     "polhode.loads",
     "polhode.euler_angles",
+    "polhode.equimomental",
     "polhode.errors",
+    "polhode.kinematics",
+    "polhode.parallel_axis",
     "polhode.results",
+    "polhode.tops",
 ]
 HEAVY = ("matplotlib", "trimesh", "scipy", "rich", "cyclopts", "periodictable", "pandas", "PIL")
 
@@ -90,6 +93,7 @@ class TestNames:
             from_principal from_particles from_mesh from_file stack mass center_of_mass inertia principal
             principal_moments radii_of_gyration inertia_about moment_about principal_about translated rotated
             scaled isclose kinetic_energy angular_momentum angular_acceleration torque simulate shape
+            point_velocity point_acceleration pivot_reaction stability equimomental_particles
         """
         missing = [name for name in names.split() if not hasattr(RigidBody, name)]
         assert not missing
@@ -114,7 +118,7 @@ class TestDocumentation:
     def test_its_examples_print_what_they_show(self, name: str) -> None:
         text = inspect.getdoc(OBJECTS[name]) or ""
         examples = doctest.DocTestParser().get_doctest(text, {}, name, name, 0)
-        run(examples)
+        run_examples(examples)
 
     def test_the_main_objects_have_examples(self) -> None:
         assert {"polhode.RigidBody", "polhode.principal_axes"} <= set(WITH_EXAMPLES)
@@ -126,33 +130,12 @@ class TestDocumentation:
         inspect.signature(function)
 
 
-def run(examples: doctest.DocTest) -> None:
-    report = io.StringIO()
-    options = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
-    runner = doctest.DocTestRunner(optionflags=options, verbose=False)
-    runner.run(examples, out=report.write)
-    assert not runner.failures, report.getvalue()
-
-
 class TestReadme:
-    """Code blocks run from top to bottom in one session; a ``text`` block after one is what it prints."""
-
     def test_python_blocks_print_what_is_shown(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        blocks = re.findall(
-            r"^```(\w*)\n(.*?)^```", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE | re.DOTALL
-        )
-        assert any(language == "python" for language, _ in blocks)
+        readme = ROOT / "README.md"
+        assert any(language == "python" for language, _ in blocks(readme))
         monkeypatch.chdir(tmp_path)
-        names: dict[str, Any] = {}
-        for (language, code), (next_language, shown) in zip(blocks, [*blocks[1:], ("", "")], strict=True):
-            if language in {"pycon", "python"} and ">>>" in code:
-                run(doctest.DocTestParser().get_doctest(code, names, "README", "README.md", 0))
-            elif language == "python":
-                printed = io.StringIO()
-                with contextlib.redirect_stdout(printed):
-                    exec(compile(code, "README.md", "exec"), names)
-                if next_language == "text":
-                    assert printed.getvalue().rstrip() == shown.rstrip()
+        run_page(readme)
 
 
 class TestImport:
@@ -173,9 +156,14 @@ class TestImport:
         assert _python(code).strip() == "0"
 
 
-def _python(code: str) -> str:
+def _python(code: str, **environment: str) -> str:
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        env={**os.environ, **environment},
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -211,3 +199,32 @@ class TestThreads:
         moments = turned.principal.moments
         for i in (0, 1, 4095, 4096, 9999, 19_999):
             assert np.array_equal(turned[i].principal.moments, moments[i])
+
+
+class TestEnvironment:
+    CODE = (
+        "import numpy as np, polhode\n"
+        "a = np.random.default_rng(5).normal(size=(3000, 3, 3))\n"
+        "found = polhode.principal_axes(a + a.swapaxes(1, 2))\n"
+        "print(hash(found.moments.tobytes() + found.axes.tobytes()))"
+    )
+
+    def test_bits_depend_neither_on_threads_nor_on_the_width_of_the_lanes(self) -> None:
+        settings = [{"POLHODE_NUM_THREADS": "1"}, {"POLHODE_NUM_THREADS": "3"}]
+        settings += [{"POLHODE_LEVEL": level} for level in ("avx2", "avx512") if _has(level)]
+        outputs = {_python(self.CODE, PYTHONHASHSEED="0", **setting) for setting in settings}
+        assert len(outputs) == 1
+
+    @pytest.mark.parametrize(
+        ("variable", "value"),
+        [("POLHODE_NUM_THREADS", "0"), ("POLHODE_NUM_THREADS", "many"), ("POLHODE_LEVEL", "abacus")],
+    )
+    def test_nonsense_is_named(self, variable: str, value: str) -> None:
+        code = "try:\n    import polhode\nexcept ValueError as error:\n    print(error)"
+        assert variable in _python(code, **{variable: value})
+
+
+def _has(level: str) -> bool:
+    return "no" not in _python(
+        "try:\n    import polhode\nexcept ValueError:\n    print('no')", POLHODE_LEVEL=level
+    )

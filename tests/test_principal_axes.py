@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from oracles import eigen_cases
-from polhode import principal_axes
+from polhode import principal_axes, principal_moments
 from polhode.errors import InvalidInertiaError
 from scipy.spatial.transform import Rotation
 
@@ -90,6 +90,13 @@ def test_a_row_has_the_same_bits_in_any_company(million: np.ndarray) -> None:
         alone = principal_axes(rows[i])
         np.testing.assert_array_equal(alone.moments, whole.moments[i])
         np.testing.assert_array_equal(alone.axes, whole.axes[i])
+
+
+def test_the_moments_alone_have_the_same_bits(million: np.ndarray) -> None:
+    rows = np.concatenate([million, *(eigen_cases.matrices(name) for name in eigen_cases.CLASSES)])
+    np.testing.assert_array_equal(principal_moments(rows), principal_axes(rows).moments)
+    np.testing.assert_array_equal(principal_moments(rows[3]), principal_axes(rows[3]).moments)
+    assert principal_moments(np.zeros((2, 0, 3, 3))).shape == (2, 0, 3)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])

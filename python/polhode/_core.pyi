@@ -8,14 +8,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polhode._typing import SupportsQuaternion
-from polhode.results import AngularMomentum, KineticEnergy, PrincipalAxes, Trajectory
+from polhode.results import (
+    AngularMomentum,
+    FreePrecession,
+    KineticEnergy,
+    Particles,
+    PrincipalAxes,
+    Trajectory,
+)
 
 __all__ = [
     "Load",
     "MassAccumulator",
     "RigidBody",
     "__version__",
+    "angular_velocity_from_euler_rates",
     "box",
+    "canonical_axes",
     "classify_tops",
     "cone",
     "constant_torque",
@@ -23,16 +32,27 @@ __all__ = [
     "cylinder",
     "ellipsoid",
     "euler_angles_from_quaternion",
+    "euler_rates",
+    "free_precession",
+    "inertia_from_center_of_mass",
+    "inertia_to_center_of_mass",
+    "least_spin",
     "principal_axes",
+    "principal_derivative",
     "principal_gaps",
+    "principal_moments",
     "quaternion_from_euler_angles",
     "quaternion_from_matrix",
+    "ray_kappa",
     "read_plates",
     "read_stl",
     "rotate",
     "sphere",
+    "steady_precession",
+    "stick",
     "surface_area",
     "torque_callback",
+    "transport",
 ]
 
 _Floats: TypeAlias = NDArray[np.float64]
@@ -129,6 +149,32 @@ class RigidBody:
         angular_acceleration: ArrayLike = (0.0, 0.0, 0.0),
         about: _About = "center_of_mass",
     ) -> _Floats: ...
+    def point_velocity(
+        self,
+        r: _About,
+        omega: ArrayLike,
+        velocity: ArrayLike = (0.0, 0.0, 0.0),
+        about: _About = "center_of_mass",
+    ) -> _Floats: ...
+    def point_acceleration(
+        self,
+        r: _About,
+        omega: ArrayLike,
+        angular_acceleration: ArrayLike = (0.0, 0.0, 0.0),
+        acceleration: ArrayLike = (0.0, 0.0, 0.0),
+        about: _About = "center_of_mass",
+    ) -> _Floats: ...
+    def pivot_reaction(
+        self,
+        omega: ArrayLike,
+        angular_acceleration: ArrayLike = (0.0, 0.0, 0.0),
+        attitude: _Attitude | None = None,
+        gravity: ArrayLike = (0.0, 0.0, 0.0),
+        force: ArrayLike = (0.0, 0.0, 0.0),
+        about: _About = "origin",
+    ) -> _Floats: ...
+    def stability(self, rate: ArrayLike, about: _About = "center_of_mass") -> _Floats: ...
+    def equimomental_particles(self) -> Particles: ...
     def simulate(
         self,
         t: ArrayLike,
@@ -167,10 +213,17 @@ class MassAccumulator:
 
 @final
 class Load:
+    def torque(self, t: ArrayLike, omega: ArrayLike, quaternion: _Attitude) -> _Floats: ...
     def __add__(self, other: Load, /) -> Load: ...
     def __radd__(self, other: Load, /) -> Load: ...
 
-def principal_axes(inertia: ArrayLike) -> PrincipalAxes: ...
+def principal_axes(inertia: ArrayLike, canonical: bool = False) -> PrincipalAxes: ...
+def principal_moments(inertia: ArrayLike) -> _Floats: ...
+def canonical_axes(moments: ArrayLike, axes: ArrayLike, rtol: float) -> _Floats: ...
+def principal_derivative(
+    moments: ArrayLike, axes: ArrayLike, tangent: ArrayLike, rtol: float
+) -> tuple[_Floats, _Floats, NDArray[np.bool_]]: ...
+def ray_kappa(moments: ArrayLike) -> Any: ...
 def constant_torque(vector: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
 def torque_callback(function: Callable[[float, _Floats, _Floats], ArrayLike]) -> Load: ...
 def box(size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None) -> RigidBody: ...
@@ -194,6 +247,37 @@ def euler_angles_from_quaternion(
     quaternion: ArrayLike | SupportsQuaternion,
     sequence: str = "ZXZ",
     singular: Literal["raise", "nan"] = "raise",
+) -> _Floats: ...
+def angular_velocity_from_euler_rates(
+    angles: ArrayLike,
+    rates: ArrayLike,
+    sequence: str = "ZXZ",
+    frame: Literal["body", "space"] = "body",
+) -> _Floats: ...
+def euler_rates(
+    angles: ArrayLike,
+    omega: ArrayLike,
+    sequence: str = "ZXZ",
+    frame: Literal["body", "space"] = "body",
+    singular: Literal["raise", "nan"] = "raise",
+) -> _Floats: ...
+def transport(rate_in_frame: ArrayLike, vector: ArrayLike, frame_omega: ArrayLike) -> _Floats: ...
+def inertia_from_center_of_mass(inertia: ArrayLike, mass: ArrayLike, displacement: ArrayLike) -> _Floats: ...
+def inertia_to_center_of_mass(inertia: ArrayLike, mass: ArrayLike, displacement: ArrayLike) -> _Floats: ...
+def stick(mass: ArrayLike, inertia: ArrayLike, a: ArrayLike, b: ArrayLike) -> Particles: ...
+def free_precession(
+    body: RigidBody, omega: ArrayLike, about: _About = "center_of_mass", *, rtol: float = 1e-6
+) -> FreePrecession: ...
+def least_spin(
+    body: RigidBody, gravity: ArrayLike, inclination: ArrayLike = 0.0, *, rtol: float = 1e-6
+) -> Any: ...
+def steady_precession(
+    body: RigidBody,
+    spin: ArrayLike,
+    inclination: ArrayLike,
+    gravity: ArrayLike,
+    *,
+    rtol: float = 1e-6,
 ) -> _Floats: ...
 def quaternion_from_matrix(matrix: ArrayLike) -> _Floats: ...
 def rotate(quaternion: ArrayLike, vector: ArrayLike, inverse: bool = False) -> _Floats: ...

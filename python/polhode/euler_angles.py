@@ -4,7 +4,9 @@ The default ``"ZXZ"`` is the (φ, θ, ψ) of Goldstein and Landau: R_NB = Rz(φ)
 ``"goldstein"``, ``"landau"`` (both ZXZ) and ``"aerospace"`` (ZYX: yaw, pitch, roll) are understood.
 """
 
+from polhode._core import angular_velocity_from_euler_rates as angular_velocity
 from polhode._core import euler_angles_from_quaternion as from_quaternion
+from polhode._core import euler_rates as rates
 from polhode._core import quaternion_from_euler_angles as to_quaternion
 
-__all__ = ["from_quaternion", "to_quaternion"]
+__all__ = ["angular_velocity", "from_quaternion", "rates", "to_quaternion"]

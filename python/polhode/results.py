@@ -14,12 +14,20 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
     from scipy.spatial.transform import Rotation
 
     Floats = NDArray[np.float64]
 
-__all__ = ["AngularMomentum", "KineticEnergy", "PrincipalAxes", "Trajectory"]
+__all__ = [
+    "AngularMomentum",
+    "FreePrecession",
+    "KineticEnergy",
+    "Particles",
+    "PrincipalAxes",
+    "PrincipalDerivative",
+    "Trajectory",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +71,86 @@ class PrincipalAxes:
         """Class of the top with moments closer than ``rtol`` times the largest taken as equal."""
         return _core.classify_tops(self.moments, rtol)
 
+    @cached_property
+    def kappa(self) -> Any:
+        """Ray's asymmetry parameter κ = (2B − A − C)/(A − C) of the rotational constants A ≥ B ≥ C.
+
+        −1 for a prolate top, +1 for an oblate one, NaN for a spherical one. A float, or an array for a stack.
+        """
+        return _core.ray_kappa(self.moments)
+
+    def canonical(self, rtol: float = 1e-6) -> PrincipalAxes:
+        """Turn the axes that are free because moments are equal to the body axes of largest projection.
+
+        Parameters
+        ----------
+        rtol : float, optional
+            Moments closer than this times the largest count as equal.
+
+        Returns
+        -------
+        PrincipalAxes
+            With the same moments; a spherical top gets the body axes themselves.
+
+        Examples
+        --------
+        >>> from polhode import principal_axes
+        >>> principal_axes([(2.0, 0, 0), (0, 1.0, 0), (0, 0, 2.0)]).canonical().axes
+        array([[ 0.,  1.,  0.],
+               [ 1.,  0.,  0.],
+               [ 0.,  0., -1.]])
+        """
+        return PrincipalAxes(self.moments, _core.canonical_axes(self.moments, self.axes, rtol))
+
+    def derivative(self, tangent: ArrayLike, rtol: float = 1e-12) -> PrincipalDerivative:
+        """Change of moments and axes for a change of the tensor.
+
+        Parameters
+        ----------
+        tangent : array_like, shape (..., 3, 3)
+            dI, symmetric.
+        rtol : float, optional
+            Moments closer than this times the largest count as equal.
+
+        Returns
+        -------
+        PrincipalDerivative
+
+        Examples
+        --------
+        >>> from polhode import principal_axes
+        >>> found = principal_axes([(1.0, 0, 0), (0, 2.0, 0), (0, 0, 4.0)])
+        >>> change = found.derivative([(0.5, 1, 0), (1, 0, 0), (0, 0, 0)])
+        >>> change.moments
+        array([0.5, 0. , 0. ])
+        >>> change.axes
+        array([[ 0.,  1.,  0.],
+               [-1.,  0.,  0.],
+               [ 0.,  0.,  0.]])
+        """
+        found = _core.principal_derivative(self.moments, self.axes, tangent, rtol)
+        return PrincipalDerivative(*found)
+
+
+class PrincipalDerivative(NamedTuple):
+    """Derivatives of principal moments and axes in the direction of a tangent dI.
+
+    Attributes
+    ----------
+    moments : numpy.ndarray, shape (..., 3)
+        dI_k = (Vᵀ dI V)_kk.
+    axes : numpy.ndarray, shape (..., 3, 3)
+        dV = V Ω, Ω_ij = (Vᵀ dI V)_ij / (I_j − I_i): the axes turn.
+    degenerate : numpy.ndarray of bool, shape (..., 3)
+        Which of the pairs (1, 2), (1, 3), (2, 3) have equal moments. Within such a pair neither the axes nor
+        the single moments have a derivative: `axes` leaves out the rotation in the plane of the pair, and
+        of the two `moments` only the sum has a meaning that does not depend on the choice of axes.
+    """
+
+    moments: Floats
+    axes: Floats
+    degenerate: NDArray[np.bool_]
+
 
 class KineticEnergy(NamedTuple):
     """Kinetic energy in its three parts, T = ½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω."""
@@ -90,6 +178,38 @@ class AngularMomentum(NamedTuple):
         return self.orbital + self.mixed + self.spin
 
 
+class Particles(NamedTuple):
+    """Point masses: ``masses`` (..., n) and ``positions`` (..., n, 3) in the body frame."""
+
+    masses: Floats
+    positions: Floats
+
+
+class FreePrecession(NamedTuple):
+    """How a torque-free symmetric top precesses: n its symmetry axis, ω and L in one plane about L.
+
+    Attributes
+    ----------
+    axis : numpy.ndarray, shape (..., 3)
+        n in the body frame, toward the side of ω.
+    body_rate : float or numpy.ndarray, shape (...)
+        ``(I_s − I_t) ω_s/I_t``: ω and L circle about n, seen from the body. Negative for a prolate top.
+    space_rate : float or numpy.ndarray, shape (...)
+        ``L/I_t``: n and ω circle about L, seen from space.
+    body_cone, space_cone : float or numpy.ndarray, shape (...)
+        Half the opening of the body cone (between n and ω) and of the space cone (between L and ω).
+    nutation : float or numpy.ndarray, shape (...)
+        Between n and L.
+    """
+
+    axis: Floats
+    body_rate: Any
+    space_rate: Any
+    body_cone: Any
+    space_cone: Any
+    nutation: Any
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
     """The motion of one body or of a stack at the times asked for.
@@ -110,6 +230,8 @@ class Trajectory:
         The point the motion refers to, in the body frame.
     steps, evaluations : numpy.ndarray, shape (...)
         Accepted steps and evaluations of the equations of motion.
+    load : Load or None
+        What acted on the body.
     """
 
     body: _core.RigidBody
@@ -121,6 +243,7 @@ class Trajectory:
     about: Floats
     steps: NDArray[np.int64]
     evaluations: NDArray[np.int64]
+    load: _core.Load | None = None
 
     def __len__(self) -> int:
         """Count the times."""
@@ -196,6 +319,92 @@ class Trajectory:
             In radians, each within its range (no unwrapping).
         """
         return _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
+
+    def euler_rates(self, sequence: str = "ZXZ", singular: Literal["raise", "nan"] = "raise") -> Floats:
+        """Rates of the Euler angles at every time.
+
+        Parameters
+        ----------
+        sequence : str
+            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
+        singular : {"raise", "nan"}
+            What to do at an attitude at which the angles or their rates are not defined.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        angles = self.euler_angles(sequence, singular)
+        return _core.euler_rates(angles, self.omega, sequence, "body", singular)
+
+    def point(self, r: Literal["center_of_mass", "origin"] | ArrayLike) -> Floats:
+        """Position in space of a point of the body at every time.
+
+        Parameters
+        ----------
+        r : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+            The point in the body frame.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        words = {"center_of_mass": self.body.center_of_mass, "origin": np.zeros(3)}
+        if isinstance(r, str) and r not in words:
+            raise ValueError(f"r: {r!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
+        place = words[r] if isinstance(r, str) else np.asarray(r)
+        arm = place - self.about
+        return self.position + _core.rotate(self.quaternion, arm[..., np.newaxis, :])
+
+    def torque(self) -> Floats:
+        """Torque of the load about the point `about` at every time, components in the body frame.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        if self.load is None:
+            return np.zeros_like(self.omega)
+        return self.load.torque(self.t, self.omega, self.quaternion)
+
+    def angular_acceleration(self) -> Floats:
+        """Angular acceleration at every time by Euler's equations, components in the body frame.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        return self._bodies().angular_acceleration(
+            self.omega, self.torque(), about=self.about[..., np.newaxis, :]
+        )
+
+    def pivot_reaction(
+        self, gravity: ArrayLike = (0.0, 0.0, 0.0), force: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> Floats:
+        """Force with which the pivot holds a body simulated with ``about="origin"``, at every time.
+
+        Parameters
+        ----------
+        gravity : array_like, shape (..., 3)
+            g in space. The load of the simulation must have contained its torque about the pivot.
+        force : array_like, shape (..., 3)
+            The sum of all other forces in space.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+            Force on the body, components in space: m a_C − m g − force.
+
+        Raises
+        ------
+        ValueError
+            For a motion whose point `about` is not the origin of the body frame, or moves.
+        """
+        if np.any(self.about != 0.0) or np.any(self.velocity != 0.0):
+            raise ValueError('pivot_reaction: no pivot holds this body; simulate it with about="origin"')
+        return self._bodies().pivot_reaction(
+            self.omega, self.angular_acceleration(), self.quaternion, gravity=gravity, force=force
+        )
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the motion to a file, with every bit of it.

@@ -224,6 +224,69 @@ pub enum Error {
         /// The middle angle.
         middle: f64,
     },
+    /// The rates of the first and third Euler angle are not defined.
+    #[error(
+        "the rates of the first and third Euler angle of \"{sequence}\" are not defined where the middle angle is \
+         {middle:?} rad: their axes coincide; pass singular=\"nan\" or choose another sequence"
+    )]
+    SingularEulerRates {
+        /// The sequence.
+        sequence: String,
+        /// The middle angle.
+        middle: f64,
+    },
+    /// Two particles at these places would need a negative third one.
+    #[error(
+        "the particle at the centre of mass would have the mass mass - inertia/(a b) = {mass:?}, which must not be \
+         negative: choose a b of at least inertia/mass = {least:?}"
+    )]
+    NegativeCentralMass {
+        /// What would be left at the centre.
+        mass: f64,
+        /// The least product of the distances.
+        least: f64,
+    },
+    /// No two principal moments are equal.
+    #[error(
+        "the body is no symmetric top: of its principal moments {:?}, {:?}, {:?} the closest two differ by {gap:.2e} of \
+         the largest where {allowed:.1e} is allowed; pass rtol= to take them as equal, or integrate with simulate()",
+        moments[0], moments[1], moments[2]
+    )]
+    NotASymmetricTop {
+        /// The three, ascending.
+        moments: [f64; 3],
+        /// The smaller relative gap.
+        gap: f64,
+        /// What is allowed.
+        allowed: f64,
+    },
+    /// The centre of mass is not on the symmetry axis through the pivot.
+    #[error(
+        "the pivot, the origin of the body frame, must lie on the symmetry axis: the axis passes it at {distance:?}, \
+         {relative:.2e} of the radius of gyration about it where {allowed:.1e} is allowed; move the body with \
+         translated(), or integrate with simulate()"
+    )]
+    PivotOffAxis {
+        /// Of the pivot from the axis.
+        distance: f64,
+        /// That over the radius of gyration about the pivot.
+        relative: f64,
+        /// What is allowed.
+        allowed: f64,
+    },
+    /// A top that spins too slowly to precess steadily.
+    #[error(
+        "no steady precession at the inclination {inclination:?} rad: the spin {spin:?} is slower than the least, \
+         2 sqrt(I_t m g l cos(inclination))/I_s = {least:?}"
+    )]
+    SpinTooSlow {
+        /// Component of ω along the symmetry axis.
+        spin: f64,
+        /// The least that precesses steadily.
+        least: f64,
+        /// Of the symmetry axis from the upward vertical.
+        inclination: f64,
+    },
     /// The mesh cannot be used; the message says which part of it and why.
     #[error(transparent)]
     Mesh(#[from] crate::mass::polyhedron::MeshFault),
@@ -304,7 +367,7 @@ impl Error {
             | Self::TorqueAlongMasslessAxis { .. } => Kind::Inertia,
             Self::Mesh(_) => Kind::Mesh,
             Self::File(_) => Kind::File,
-            Self::GimbalLock { .. } => Kind::SingularAttitude,
+            Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. } | Self::NotFiniteMotion { .. } => Kind::Integration,
             _ => Kind::Argument,
         }

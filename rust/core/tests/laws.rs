@@ -3,8 +3,11 @@
 // The strategies are part of the tests.
 #![allow(clippy::expect_used)]
 
+mod strategies;
+
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
+use polhode::mass::equimomental::equimomental_particles;
 use polhode::mass::particles::particles;
 use polhode::motion::angular_momentum::angular_momentum;
 use polhode::motion::euler_equations::EulerEquations;
@@ -13,39 +16,7 @@ use polhode::motion::loads::Term;
 use polhode::motion::simulate::{State, Tolerance, simulate};
 use proptest::prelude::*;
 use std::ops::ControlFlow;
-
-fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
-    [-size..size, -size..size, -size..size].prop_map(Vector3::from)
-}
-
-fn rotation() -> impl Strategy<Value = Matrix3<f64>> {
-    (vector(1.0), 0.0..std::f64::consts::PI).prop_filter_map("an axis", |(axis, angle)| {
-        let axis = nalgebra::Unit::try_new(axis, 1e-3)?;
-        Some(
-            UnitQuaternion::from_axis_angle(&axis, angle)
-                .to_rotation_matrix()
-                .into_inner(),
-        )
-    })
-}
-
-/// Bodies from their second moments, which makes every one of them possible: solids, plates and needles of all scales.
-fn any_body() -> impl Strategy<Value = RigidBody> {
-    let second_moments = [-6.0..0.0_f64, -6.0..0.0_f64, -6.0..0.0_f64];
-    (second_moments, -12.0..12.0_f64, rotation(), vector(5.0)).prop_map(
-        |(s, scale, axes, center)| {
-            let [a, b, c] = s.map(|exponent| 10.0_f64.powf(exponent + scale));
-            RigidBody::from_principal(
-                10.0_f64.powf(scale),
-                &[b + c, a + c, a + b],
-                &axes,
-                &center,
-                0.0,
-            )
-            .expect("a possible body")
-        },
-    )
-}
+use strategies::{any_body, rotation, vector};
 
 /// The size that errors of a tensor are relative to.
 fn size(inertia: &Matrix3<f64>) -> f64 {
@@ -71,6 +42,50 @@ proptest! {
         let expected = Matrix3::from_diagonal(&Vector3::from(principal.moments));
         prop_assert!((diagonal - expected).abs().max() <= 1e-14 * size(&body.inertia()));
         prop_assert!((v.determinant() - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn moments_are_the_roots_of_the_characteristic_polynomial(body in any_body()) {
+        // λ³ − tr λ² + ½(tr² − tr I²) λ − det, coefficient by coefficient.
+        let ([a, b, c], tensor) = (body.principal().moments, body.inertia());
+        let trace = tensor.trace();
+        let second = 0.5 * (trace * trace - (tensor * tensor).trace());
+        prop_assert!((a + b + c - trace).abs() <= 1e-14 * trace);
+        prop_assert!((a * b + b * c + c * a - second).abs() <= 1e-14 * trace * trace);
+        prop_assert!((a * b * c - tensor.determinant()).abs() <= 1e-14 * trace * trace * trace);
+    }
+
+    #[test]
+    fn perpendicular_axes_of_a_lamina(
+        points in proptest::collection::vec(vector(1.0), 3..12), r in rotation(), d in vector(3.0),
+    ) {
+        // The moment about the normal through a point of the plane is the sum of those about two axes in it.
+        let masses: Vec<f64> = points.iter().map(|p| 0.1 + p.z.abs()).collect();
+        let flat: Vec<[f64; 3]> = points.iter().map(|p| [p.x, p.y, 0.0]).collect();
+        let lamina = particles(&masses, &flat).and_then(|lamina| lamina.rotated(&r)).expect("lamina");
+        let point = r * Vector3::new(d.x, d.y, 0.0);
+        let about = |axis: Vector3<f64>| lamina.moment_about(&(r * axis), &point).expect("an axis");
+        let normal = about(Vector3::z());
+        let turned = Vector3::new(d.z.cos(), d.z.sin(), 0.0);
+        let sum = about(turned) + about(Vector3::z().cross(&turned));
+        prop_assert!((normal - sum).abs() <= 1e-14 * normal);
+        let [i1, i2, i3] = lamina.principal().moments;
+        prop_assert!((i1 + i2 - i3).abs() <= 1e-15 * 4.0 * i3);
+        prop_assert!(equimomental_particles(&lamina).expect("possible").masses.len() <= 3);
+    }
+
+    #[test]
+    fn equimomental_particles_are_the_body(body in any_body()) {
+        let found = equimomental_particles(&body).expect("possible");
+        prop_assert_eq!(found.masses.len(), 4);
+        let again = particles(&found.masses, &found.positions).expect("particles");
+        let gyration = (size(&body.inertia()) / body.mass()).sqrt();
+        let reach = gyration + body.center_of_mass().norm();
+        prop_assert!((again.mass() - body.mass()).abs() <= 1e-15 * body.mass());
+        prop_assert!((again.center_of_mass() - body.center_of_mass()).norm() <= 4e-16 * reach * 2.0);
+        // The coordinates are rounded to their distance from the origin.
+        let rounding = 1e-15 * 4.0 * body.mass() * gyration * reach;
+        prop_assert!((again.inertia() - body.inertia()).abs().max() <= rounding);
     }
 
     #[test]

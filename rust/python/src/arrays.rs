@@ -164,11 +164,33 @@ pub(crate) fn write<'py, T: Item>(
     py: Python<'py>,
     stack: &Stack<T>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let mut numbers = Vec::with_capacity(stack.rows.len() * T::TAIL.iter().product::<usize>());
+    let mut numbers = Vec::with_capacity(stack.rows.len() * size::<T>());
     stack.rows.iter().for_each(|row| row.write(&mut numbers));
-    numbers
-        .into_pyarray(py)
-        .reshape([&stack.shape[..], T::TAIL].concat())
+    shaped::<T>(py, numbers, &stack.shape)
+}
+
+/// The array of one item for each row of a stack.
+pub(crate) fn write_of<'py, R, T: Item>(
+    py: Python<'py>,
+    stack: &Stack<R>,
+    item: impl Fn(&R) -> T,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let mut numbers = Vec::with_capacity(stack.rows.len() * size::<T>());
+    (stack.rows.iter()).for_each(|row| item(row).write(&mut numbers));
+    shaped::<T>(py, numbers, &stack.shape)
+}
+
+/// How many numbers an item has.
+fn size<T: Item>() -> usize {
+    T::TAIL.iter().product()
+}
+
+fn shaped<'py, T: Item>(
+    py: Python<'py>,
+    numbers: Vec<f64>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    numbers.into_pyarray(py).reshape([shape, T::TAIL].concat())
 }
 
 /// A float for one value, an array for a stack.

@@ -6,6 +6,7 @@
 //! | `stack` | shape arithmetic |
 //! | `errors` | which exception an error of the core becomes |
 //! | `interrupt` | Ctrl-C and progress |
+//! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
 
 // What Python sees is documented in Python's terms; the names are public to it alone.
@@ -13,16 +14,22 @@
 
 mod accumulator;
 mod arrays;
+mod environment;
+mod equimomental;
 mod errors;
+mod euler_rates;
 mod files;
 mod interrupt;
+mod kinematics;
 mod loads;
+mod parallel_axis;
 mod particles;
 mod principal;
 mod rigid_body;
 mod rotations;
 mod solids;
 mod stack;
+mod tops;
 
 use pyo3::prelude::*;
 
@@ -33,11 +40,22 @@ mod _core {
     #[pymodule_export]
     use crate::accumulator::PyMassAccumulator;
     #[pymodule_export]
+    use crate::equimomental::stick;
+    #[pymodule_export]
+    use crate::euler_rates::{angular_velocity_from_euler_rates, euler_rates};
+    #[pymodule_export]
     use crate::files::{read_plates, read_stl, surface_area};
+    #[pymodule_export]
+    use crate::kinematics::transport;
     #[pymodule_export]
     use crate::loads::{PyLoad, constant_torque, torque_callback};
     #[pymodule_export]
-    use crate::principal::{classify_tops, principal_axes, principal_gaps};
+    use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};
+    #[pymodule_export]
+    use crate::principal::{
+        canonical_axes, classify_tops, principal_axes, principal_derivative, principal_gaps,
+        principal_moments, ray_kappa,
+    };
     #[pymodule_export]
     use crate::rigid_body::PyRigidBody;
     #[pymodule_export]
@@ -46,9 +64,12 @@ mod _core {
     };
     #[pymodule_export]
     use crate::solids::{cone, cube, cuboid, cylinder, ellipsoid, sphere};
+    #[pymodule_export]
+    use crate::tops::{free_precession, least_spin, steady_precession};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::environment::obey()?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -1,17 +1,19 @@
 //! The class `Load`: analytic terms, and Python functions.
 
 use nalgebra::{UnitQuaternion, Vector3};
+use numpy::PyArrayDyn;
 use polhode::Error;
 use polhode::error::Kind;
-use polhode::motion::attitude::components;
+use polhode::motion::attitude::{components, from_components};
 use polhode::motion::loads::{Frame, Term, Torque};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyNotImplemented;
+use pyo3::types::{PyNotImplemented, PyTuple};
 
-use crate::arrays::{read, write};
-use crate::errors::{new, to_py};
-use crate::stack::{Stack, tuple};
+use crate::arrays::{read, read_quaternion, write};
+use crate::errors::{at_row, new, to_py};
+use crate::kinematics::parse_frame;
+use crate::stack::{Broadcast, Stack, tuple};
 
 /// What acts on a body: a sum of terms. Made by the functions of :mod:`polhode.loads`.
 ///
@@ -47,6 +49,58 @@ impl PyLoad {
 
 #[pymethods]
 impl PyLoad {
+    /// Torque of the load about the reference point of the motion, at a time and a state.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, shape (...)
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity relative to space, components in the body frame.
+    /// quaternion : array_like, shape (..., 4), or rotation
+    ///     Attitude R_NB as (x, y, z, w), or anything with ``as_quat()``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 3)
+    ///     Components in the body frame; not a number where the quaternion is none.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import loads
+    /// >>> upside_down = (1, 0, 0, 0)
+    /// >>> loads.constant_torque((0, 2, 1), frame="space").torque(0.0, (0, 0, 0), upside_down)
+    /// array([ 0., -2., -1.])
+    fn torque<'py>(
+        &self,
+        py: Python<'py>,
+        t: &Bound<'py, PyAny>,
+        omega: &Bound<'py, PyAny>,
+        quaternion: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let t: Stack<f64> = read(t, "t")?;
+        let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+        let quaternion = read_quaternion(quaternion, "quaternion")?;
+        let shapes = [&t.shape[..], &omega.shape, &quaternion.shape];
+        let grid = Broadcast::of(["t", "omega", "quaternion"], shapes)?;
+        let mut torque = self.calling(py);
+        let rows = (grid.rows().enumerate())
+            .map(|(row, [k, w, q])| {
+                if quaternion[q].iter().any(|x| x.is_nan()) {
+                    return Ok(Vector3::repeat(f64::NAN));
+                }
+                from_components("quaternion", &quaternion[q])
+                    .map_err(Fault::Core)
+                    .and_then(|attitude| torque.torque(t[k], &omega[w], &attitude))
+                    .map_err(|fault| match fault {
+                        Fault::Core(error) => at_row(&grid.shape, row, &to_py(py, &error), py),
+                        Fault::Python(error) => error,
+                    })
+            })
+            .collect::<PyResult<_>>()?;
+        let shape = grid.shape;
+        write(py, &Stack { shape, rows })
+    }
+
     fn __add__<'py>(
         &self,
         py: Python<'py>,
@@ -59,6 +113,44 @@ impl PyLoad {
         sum.terms.extend(other.terms);
         sum.callbacks.extend(other.callbacks);
         Ok(sum.into_pyobject(py)?.into_any())
+    }
+
+    /// The terms as the functions that make them, with their arguments; for pickle.
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restore = py.get_type::<Self>().getattr("_from_parts")?;
+        let mut parts = Vec::new();
+        for term in &self.terms {
+            let Term::ConstantTorque { vector, frame } = term else {
+                return Err(PyTypeError::new_err("this load cannot be pickled"));
+            };
+            let frame = match frame {
+                Frame::Body => "body",
+                Frame::Space => "space",
+            };
+            let arguments = (write(py, &Stack::one(*vector))?, frame);
+            parts.push(("constant_torque", arguments).into_pyobject(py)?);
+        }
+        for callback in &self.callbacks {
+            parts.push(("torque_callback", (callback,)).into_pyobject(py)?);
+        }
+        Ok((restore, PyTuple::new(py, [parts])?))
+    }
+
+    /// The load that `__reduce__` took apart.
+    #[staticmethod]
+    fn _from_parts(py: Python<'_>, parts: Vec<(String, Bound<'_, PyTuple>)>) -> PyResult<Self> {
+        let module = py.import("polhode.loads")?;
+        let mut sum = Self::default();
+        for (name, arguments) in parts {
+            let made = module.getattr(name)?.call1(arguments)?;
+            let part = made.cast::<Self>()?.get().copied(py);
+            sum.terms.extend(part.terms);
+            sum.callbacks.extend(part.callbacks);
+        }
+        Ok(sum)
     }
 
     fn __repr__(&self) -> String {
@@ -95,15 +187,7 @@ pub(crate) fn constant_torque(
     vector: &Bound<'_, PyAny>,
     frame: &str,
 ) -> PyResult<PyLoad> {
-    let frame = match frame {
-        "body" => Frame::Body,
-        "space" => Frame::Space,
-        other => {
-            return Err(PyValueError::new_err(format!(
-                "frame: expected \"body\" or \"space\", got \"{other}\""
-            )));
-        }
-    };
+    let frame = parse_frame(frame)?;
     let vector: Stack<Vector3<f64>> = read(vector, "vector")?;
     if !vector.is_one() {
         let shape = [&vector.shape[..], &[3]].concat();

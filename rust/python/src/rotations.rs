@@ -14,8 +14,19 @@ use crate::stack::{Broadcast, Stack};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
-fn parse(py: Python<'_>, sequence: &str) -> PyResult<Sequence> {
+pub(crate) fn parse_sequence(py: Python<'_>, sequence: &str) -> PyResult<Sequence> {
     sequence.parse().map_err(|error: Error| to_py(py, &error))
+}
+
+/// What the argument `singular` asks for.
+pub(crate) fn raises_where_singular(word: &str) -> PyResult<bool> {
+    match word {
+        "raise" => Ok(true),
+        "nan" => Ok(false),
+        other => Err(PyValueError::new_err(format!(
+            "singular: expected \"raise\" or \"nan\", got \"{other}\""
+        ))),
+    }
 }
 
 /// Unit quaternions of attitudes given by Euler angles.
@@ -46,7 +57,7 @@ pub(crate) fn quaternion_from_euler_angles<'py>(
     angles: &Bound<'py, PyAny>,
     sequence: &str,
 ) -> Array<'py> {
-    let sequence = parse(py, sequence)?;
+    let sequence = parse_sequence(py, sequence)?;
     let angles: Stack<[f64; 3]> = read(angles, "angles")?;
     let attitudes = try_rows(py, &angles, |angles| sequence.to_quaternion(angles))?;
     write(py, &attitudes.map(components))
@@ -93,21 +104,15 @@ pub(crate) fn euler_angles_from_quaternion<'py>(
     sequence: &str,
     singular: &str,
 ) -> Array<'py> {
-    if !matches!(singular, "raise" | "nan") {
-        return Err(PyValueError::new_err(format!(
-            "singular: expected \"raise\" or \"nan\", got \"{singular}\""
-        )));
-    }
-    let sequence = parse(py, sequence)?;
+    let raises = raises_where_singular(singular)?;
+    let sequence = parse_sequence(py, sequence)?;
     let quaternions = read_quaternion(quaternion, "quaternion")?;
     let angles = try_rows(py, &quaternions, |components| {
         if components.iter().any(|x| x.is_nan()) {
             return Ok([f64::NAN; 3]);
         }
         match sequence.from_quaternion(&from_components("quaternion", components)?) {
-            Err(Error::GimbalLock { middle, .. }) if singular == "nan" => {
-                Ok([f64::NAN, middle, f64::NAN])
-            }
+            Err(Error::GimbalLock { middle, .. }) if !raises => Ok([f64::NAN, middle, f64::NAN]),
             result => result,
         }
     })?;

@@ -13,10 +13,12 @@
 //! | voxels | [`voxels`] |
 //! | homogeneous solids | [`solids`] |
 //! | closed triangle mesh | [`polyhedron`] |
+//! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 
 pub mod accumulator;
 pub mod body;
 pub mod composition;
+pub mod equimomental;
 pub mod error_bound;
 pub mod parallel_axis;
 pub mod particles;

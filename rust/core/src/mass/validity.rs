@@ -20,8 +20,23 @@ pub(super) fn check_mass(mass: f64) -> Result<(), Error> {
     }
 }
 
+/// m ≥ 0, of matter that may be missing; NaN passes.
+///
+/// # Errors
+/// [`Error::OutOfDomain`].
+pub fn check_not_negative_mass(mass: f64) -> Result<(), Error> {
+    if mass < 0.0 {
+        return Err(Error::OutOfDomain {
+            what: "mass",
+            law: "zero or more (the tensor of a cavity is subtracted)",
+            value: mass,
+        });
+    }
+    Ok(())
+}
+
 /// 0 ≤ rtol < 1.
-pub(super) fn check_rtol(rtol: f64) -> Result<(), Error> {
+pub(crate) fn check_rtol(rtol: f64) -> Result<(), Error> {
     finite("rtol", rtol)?;
     if (0.0..1.0).contains(&rtol) {
         return Ok(());

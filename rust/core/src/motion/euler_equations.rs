@@ -84,10 +84,10 @@ impl EulerEquations {
         let along = |moment: f64, torque: f64, gyroscopic: f64| {
             if moment > 0.0 {
                 Ok((torque + gyroscopic) / moment)
-            } else if torque.abs() <= noise {
-                Ok(0.0)
-            } else {
+            } else if torque.abs() > noise {
                 Err(Error::TorqueAlongMasslessAxis { torque })
+            } else {
+                Ok(0.0 * noise) // zero, or NaN with the torque's
             }
         };
         Ok(Vector3::new(

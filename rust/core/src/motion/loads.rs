@@ -2,16 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+pub use super::kinematics::Frame;
 use crate::error::{Error, all_finite};
-
-/// The frame in which the components of a vector stay constant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Frame {
-    /// Components in B: the vector turns with the body.
-    Body,
-    /// Components in N: the vector keeps its direction in space.
-    Space,
-}
 
 /// One analytic term of a load.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +13,7 @@ pub enum Term {
     ConstantTorque {
         /// Its components.
         vector: Vector3<f64>,
-        /// In which frame they are constant.
+        /// In which frame they are constant: a torque constant in B turns with the body.
         frame: Frame,
     },
 }

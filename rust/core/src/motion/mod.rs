@@ -2,11 +2,16 @@
 //!
 //! | theorem | file |
 //! |---|---|
+//! | velocity and acceleration of any point, rates in moving frames (mln24, mln27) | [`kinematics`] |
 //! | attitude `R_NB` as a quaternion, its rate ½ q∘ω | [`attitude`] |
-//! | Euler angles, all twelve sequences (msl25) | [`euler_angles`] |
+//! | Euler angles, all twelve sequences, and their rates (msl25, msl26) | [`euler_angles`] |
 //! | kinetic energy in three parts (mln25) | [`kinetic_energy`] |
 //! | angular momentum in three parts | [`angular_momentum`] |
 //! | Euler's equations, forward and inverse (mln27) | [`euler_equations`] |
+//! | the force in a pivot (mln24) | [`mod@pivot_reaction`] |
+//! | steady spins and whether they are stable | [`stability`] |
+//! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
+//! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | what acts on the body | [`loads`] |
 //! | motion under a load at the times asked for | [`mod@simulate`] |
 //! | the steppers | [`integrate`] |
@@ -15,7 +20,12 @@ pub mod angular_momentum;
 pub mod attitude;
 pub mod euler_angles;
 pub mod euler_equations;
+pub mod free_precession;
+pub mod heavy_top;
 pub mod integrate;
+pub mod kinematics;
 pub mod kinetic_energy;
 pub mod loads;
+pub mod pivot_reaction;
 pub mod simulate;
+pub mod stability;

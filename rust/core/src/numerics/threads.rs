@@ -62,15 +62,19 @@ pub fn fill_blocks<T: Send, E: Send>(
     work: impl Fn(usize, &mut [T]) -> Result<(), E> + Sync,
 ) -> Result<(), Halt<E>> {
     let total = out.len();
-    let threads = thread_count();
     let mut blocks = out.chunks_mut(block).enumerate();
     let mut done = 0;
     let start = Instant::now();
     let mut looked_up = start;
+    let mut may_share = true;
     loop {
         let now = Instant::now();
-        if threads > 1 && blocks.len() > 1 && now - start >= ALONE {
-            break;
+        if may_share && blocks.len() > 1 && now - start >= ALONE {
+            // Asked only now, since to ask takes longer than a small job.
+            if thread_count() > 1 {
+                break;
+            }
+            may_share = false;
         }
         if now - looked_up >= WATCH_INTERVAL {
             looked_up = now;
@@ -85,7 +89,7 @@ pub fn fill_blocks<T: Send, E: Send>(
         done += slice.len();
     }
 
-    let helpers = threads.min(blocks.len());
+    let helpers = thread_count().min(blocks.len());
     let queue = Queue::new(blocks, helpers);
     let finished = AtomicUsize::new(done);
     let flow = thread::scope(|scope| {

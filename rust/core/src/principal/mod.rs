@@ -3,6 +3,7 @@
 pub mod axes;
 pub mod canonical;
 pub mod derivative;
+pub mod symmetric_top;
 pub mod tops;
 
 pub use axes::{
@@ -10,4 +11,5 @@ pub use axes::{
 };
 pub use canonical::{canonical, canonical_many};
 pub use derivative::{DEGENERATE_RTOL, PrincipalDerivative, derivative};
+pub use symmetric_top::SymmetricTop;
 pub use tops::{TOP_RTOL, Top, classify, gaps, ray_kappa};

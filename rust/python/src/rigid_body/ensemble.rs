@@ -178,6 +178,7 @@ impl Run<'_> {
         &self,
         py: Python<'py>,
         body: &Bound<'py, PyRigidBody>,
+        load: Option<&Bound<'py, PyAny>>,
         motions: &[Motion],
     ) -> PyResult<Bound<'py, PyAny>> {
         let shape = [&self.grid.shape[..], &[self.times.len()]].concat();
@@ -237,6 +238,7 @@ impl Run<'_> {
             vectors(&|_, _, [_, _, _, _, v, _]| self.start.velocity[v])?,
         )?;
         fields.set_item("about", write(py, &self.start.about)?)?;
+        fields.set_item("load", load)?;
         fields.set_item("steps", effort(|effort| effort.steps)?)?;
         fields.set_item("evaluations", effort(|effort| effort.evaluations)?)?;
         py.import("polhode.results")?

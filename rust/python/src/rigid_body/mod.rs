@@ -5,6 +5,7 @@ mod container;
 mod dynamics;
 mod ensemble;
 mod matter;
+mod motion;
 mod properties;
 mod simulate;
 
@@ -79,7 +80,7 @@ impl From<Stack<RigidBody>> for PyRigidBody {
 }
 
 /// The points that an argument `about` (or `point`) stands for.
-fn points(
+pub(crate) fn points(
     bodies: &Stack<RigidBody>,
     about: Option<&Bound<'_, PyAny>>,
     name: &str,

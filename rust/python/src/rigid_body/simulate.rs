@@ -100,7 +100,7 @@ impl PyRigidBody {
         let times = read_times(py, t)?;
         let tolerance =
             Tolerance::new(rtol, atol.unwrap_or(0.0)).map_err(|error| to_py(py, &error))?;
-        let load = match load {
+        let terms = match load {
             None => PyLoad::default(),
             Some(load) => load
                 .cast::<PyLoad>()
@@ -131,9 +131,9 @@ impl PyRigidBody {
         };
         run.check(py)?;
         let interrupt = Interrupt::new(progress);
-        let (motions, failure) = run.all(py, &load, &interrupt)?;
+        let (motions, failure) = run.all(py, &terms, &interrupt)?;
         interrupt.finish(py, failure.is_none())?;
-        let trajectory = run.trajectory(py, slf, &motions)?;
+        let trajectory = run.trajectory(py, slf, load, &motions)?;
         match failure {
             None => Ok(trajectory),
             Some((row, failure)) => Err(run.integration_error(py, row, failure, trajectory)),

@@ -1,4 +1,6 @@
-//! Euler angles: all twelve sequences, intrinsic and extrinsic (msl25, msl26).
+//! Euler angles: all twelve sequences, intrinsic and extrinsic (msl25), and their rates (msl26).
+
+mod rates;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -1,0 +1,138 @@
+"""Side-by-side timing: answers compared first, then interleaved rounds in one process, and ratios.
+
+A row names what is timed, ours and a peer's, on the same input, with the same threads and the same output.
+The shared cores of test machines drift, so only the ratio within a round means anything; its median and
+spread over the rounds are what is reported.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import statistics
+import time
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+__all__ = ["Result", "Row", "measure", "report"]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One comparison.
+
+    Attributes
+    ----------
+    name : str
+        What is done.
+    peer : str
+        Who else does it.
+    ours, theirs : callable
+        Do it once and return the answer.
+    compare : callable
+        Given both answers, raises AssertionError where they differ.
+    items : int
+        How many things one call does, for the time per item.
+    at_least, at_most : float, optional
+        Bars for the peer's time over ours, or for ours over the peer's.
+    """
+
+    name: str
+    peer: str
+    ours: Callable[[], Any]
+    theirs: Callable[[], Any]
+    compare: Callable[[Any, Any], None]
+    items: int = 1
+    at_least: float | None = None
+    at_most: float | None = None
+
+
+@dataclass(frozen=True)
+class Result:
+    """Seconds per item and the ratio of the times, median, least and most over the rounds."""
+
+    name: str
+    peer: str
+    rounds: int
+    ours: tuple[float, float, float]
+    theirs: tuple[float, float, float]
+    speedup: tuple[float, float, float]
+    bar: str
+    met: bool | None
+
+
+def measure(row: Row, rounds: int = 9, least_seconds: float = 0.02) -> Result:
+    """Compare the answers of a row, then time both sides in turn, each round long enough for the clock."""
+    row.compare(row.ours(), row.theirs())
+    repeats = [_repeats(call, least_seconds) for call in (row.ours, row.theirs)]
+    times = [
+        [
+            _seconds(call, count) / row.items
+            for call, count in zip((row.ours, row.theirs), repeats, strict=True)
+        ]
+        for _ in range(rounds)
+    ]
+    speedup = _spread([theirs / ours for ours, theirs in times])
+    bar, met = "", None
+    if row.at_least is not None:
+        bar, met = f">= {row.at_least:g}", speedup[0] >= row.at_least
+    elif row.at_most is not None:
+        bar, met = f">= {1 / row.at_most:.3g}", speedup[0] >= 1 / row.at_most
+    ours, theirs = zip(*times, strict=True)
+    return Result(row.name, row.peer, rounds, _spread(ours), _spread(theirs), speedup, bar, met)
+
+
+def report(results: Iterable[Result], path: Path | None = None) -> None:
+    """Print a table of ratios, and write everything as JSON if a path is given."""
+    results = list(results)
+    print(f"{'what':46} {'peer':26} {'ours':>10} {'peer':>10} {'times faster':>26}  bar")
+    for result in results:
+        ratio = "{:.3g} ({:.3g} to {:.3g})".format(*result.speedup)
+        verdict = {True: "met", False: "NOT MET", None: ""}[result.met]
+        print(
+            f"{result.name:46} {result.peer:26} {_human(result.ours[0]):>10} {_human(result.theirs[0]):>10}"
+            f" {ratio:>26}  {result.bar} {verdict}"
+        )
+    if path is not None:
+        machine = {"cpu": _cpu(), "cores": os.cpu_count(), "python": platform.python_version()}
+        document = {"machine": machine, "results": [asdict(result) for result in results]}
+        path.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+
+
+def _repeats(call: Callable[[], Any], least_seconds: float) -> int:
+    """How many calls last long enough for the clock."""
+    once = _seconds(call, 1)
+    return max(1, round(least_seconds / max(once, 1e-9)))
+
+
+def _seconds(call: Callable[[], Any], count: int) -> float:
+    start = time.perf_counter()
+    for _ in range(count):
+        call()
+    return (time.perf_counter() - start) / count
+
+
+def _spread(values: Iterable[float]) -> tuple[float, float, float]:
+    """Median, least and most."""
+    values = sorted(values)
+    return statistics.median(values), values[0], values[-1]
+
+
+def _human(seconds: float) -> str:
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
+
+
+def _cpu() -> str:
+    try:
+        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as lines:  # noqa: PTH123
+            return next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor()

@@ -1,0 +1,32 @@
+"""The site of the pages in this folder: Markdown by MyST, the interface from the docstrings by numpydoc."""
+
+import polhode
+
+project = "polhode"
+author = "The polhode developers"
+copyright = author
+release = version = polhode.__version__
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "numpydoc"]
+exclude_patterns = ["_build"]
+source_suffix = {".md": "markdown"}
+
+myst_enable_extensions = ["amsmath", "dollarmath"]
+myst_heading_anchors = 3
+
+autodoc_member_order = "groupwise"
+autodoc_typehints = "none"  # the docstrings say shapes, which types cannot
+autosummary_generate = False
+numpydoc_show_class_members = False
+
+html_theme = "pydata_sphinx_theme"
+html_title = "polhode"
+html_show_sourcelink = False
+html_theme_options = {
+    "logo": {"text": "polhode"},
+    "secondary_sidebar_items": ["page-toc"],
+    "show_prev_next": True,
+    "pygments_light_style": "a11y-high-contrast-light",
+    "pygments_dark_style": "a11y-high-contrast-dark",
+}
+html_static_path: list[str] = []

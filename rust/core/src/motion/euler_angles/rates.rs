@@ -1,0 +1,225 @@
+//! Rates of Euler angles and the angular velocity, both ways (msl26).
+//!
+//! Each rate turns about its own axis: for `R_NB = R_1(α) R_2(β) R_3(γ)` about `e_1`, which the first turn leaves, about
+//! the line of nodes `e_2`, and about `e_3`, which is fixed in the body. In the frame between the second and the third
+//! turn, with k the axis across the first two and `e_k = s e_1×e_2`:
+//!
+//! | ω along | ZXZ and its like (third axis = first) | XYZ and its like (third axis = k) |
+//! |---|---|---|
+//! | the first axis | `α̇ cos β + γ̇` | `α̇ cos β` |
+//! | the second axis | `β̇` | `β̇` |
+//! | k | `s α̇ sin β` | `s α̇ sin β + γ̇` |
+//!
+//! The third turn takes these to components in B. Everything else is this one case told backwards: turned back, R is
+//! `R_3(−γ) R_2(−β) R_1(−α)` and ω in B becomes −ω in N, while extrinsic angles are intrinsic ones of the reversed
+//! sequence in reverse.
+
+use nalgebra::Vector3;
+
+use super::{SINGULAR, Sequence};
+use crate::error::Error;
+use crate::motion::kinematics::Frame;
+
+/// The one case: an intrinsic sequence, ω in B.
+struct Turns {
+    axes: [usize; 3],
+    angles: [f64; 3],
+    /// Whether first and third have changed places.
+    reversed: bool,
+}
+
+impl Sequence {
+    /// Angular velocity ω of B relative to N, from angles and their rates; components in `frame`.
+    ///
+    /// For ZXZ in B: `(φ̇ sin θ sin ψ + θ̇ cos ψ, φ̇ sin θ cos ψ − θ̇ sin ψ, φ̇ cos θ + ψ̇)`; in N:
+    /// `(θ̇ cos φ + ψ̇ sin θ sin φ, θ̇ sin φ − ψ̇ sin θ cos φ, φ̇ + ψ̇ cos θ)`. Defined at every angle.
+    /// Source: msl26; Goldstein, Classical Mechanics, §4.9; Landau and Lifshitz, Mechanics, §35.
+    #[must_use]
+    pub fn angular_velocity(
+        self,
+        angles: &[f64; 3],
+        rates: &[f64; 3],
+        frame: Frame,
+    ) -> Vector3<f64> {
+        let turns = self.turns(angles, frame);
+        let [first, middle, third] = turns.in_order(*rates);
+        let ([a, b, c], (sine, cosine)) = (turns.axes, turns.angles[1].sin_cos());
+        let (k, sign) = across(a, b);
+        let mut between = Vector3::zeros();
+        between[a] = first * cosine;
+        between[b] = middle;
+        between[k] = sign * first * sine;
+        between[c] += third;
+        turned(&between, c, -turns.angles[2])
+    }
+
+    /// Rates of the angles, from angles and angular velocity ω of B relative to N with components in `frame`.
+    ///
+    /// For ZXZ from ω in B: `φ̇ = (ω_x sin ψ + ω_y cos ψ)/sin θ`, `θ̇ = ω_x cos ψ − ω_y sin ψ`, `ψ̇ = ω_z − φ̇ cos θ`.
+    /// Source: msl26; mln27, second step.
+    ///
+    /// # Errors
+    /// [`Error::SingularEulerRates`] where the sine of the middle angle (for sequences of three different axes its cosine)
+    /// is below [`SINGULAR`].
+    pub fn rates(
+        self,
+        angles: &[f64; 3],
+        omega: &Vector3<f64>,
+        frame: Frame,
+    ) -> Result<[f64; 3], Error> {
+        let (turns, [first, middle, third], divisor) = self.unwound(angles, omega, frame);
+        if divisor.abs() < SINGULAR {
+            return Err(Error::SingularEulerRates {
+                sequence: self.to_string(),
+                middle: angles[1],
+            });
+        }
+        Ok(turns.in_order([first, middle, third]))
+    }
+
+    /// Rate of the middle angle, which is defined where those of the others are not.
+    #[must_use]
+    pub fn middle_rate(self, angles: &[f64; 3], omega: &Vector3<f64>, frame: Frame) -> f64 {
+        let (_, [_, middle, _], _) = self.unwound(angles, omega, frame);
+        middle
+    }
+
+    /// The turns, their three rates, and what the first and the third have been divided by.
+    fn unwound(
+        self,
+        angles: &[f64; 3],
+        omega: &Vector3<f64>,
+        frame: Frame,
+    ) -> (Turns, [f64; 3], f64) {
+        let turns = self.turns(angles, frame);
+        let ([a, b, c], (sine, cosine)) = (turns.axes, turns.angles[1].sin_cos());
+        let (k, sign) = across(a, b);
+        let between = turned(omega, c, turns.angles[2]);
+        let (first, third, divisor) = if self.is_proper() {
+            let first = sign * between[k] / sine;
+            (first, between[a] - first * cosine, sine)
+        } else {
+            let first = between[a] / cosine;
+            (first, between[k] - sign * first * sine, cosine)
+        };
+        (turns, [first, between[b], third], divisor)
+    }
+
+    fn turns(self, angles: &[f64; 3], frame: Frame) -> Turns {
+        let (mut axes, mut angles) = (self.axes, *angles);
+        let is_space = frame == Frame::Space;
+        let reversed = self.intrinsic == is_space;
+        if reversed {
+            axes.reverse();
+            angles.reverse();
+        }
+        if is_space {
+            angles = angles.map(|angle| -angle);
+        }
+        Turns {
+            axes,
+            angles,
+            reversed,
+        }
+    }
+}
+
+impl Turns {
+    /// The three in the caller's order from ours, and the other way round.
+    fn in_order(&self, [first, middle, third]: [f64; 3]) -> [f64; 3] {
+        if self.reversed {
+            [third, middle, first]
+        } else {
+            [first, middle, third]
+        }
+    }
+}
+
+/// The axis k across a and b, and the sign of `e_k` in `e_a×e_b`.
+fn across(a: usize, b: usize) -> (usize, f64) {
+    (3 - a - b, if (a + 1) % 3 == b { 1.0 } else { -1.0 })
+}
+
+/// The vector turned about an axis.
+fn turned(vector: &Vector3<f64>, axis: usize, angle: f64) -> Vector3<f64> {
+    let (sine, cosine) = angle.sin_cos();
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut result = *vector;
+    result[i] = cosine * vector[i] - sine * vector[j];
+    result[j] = sine * vector[i] + cosine * vector[j];
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ANGLES: [f64; 3] = [0.7, 1.1, -2.3];
+    const RATES: [f64; 3] = [0.4, -1.3, 2.9];
+
+    #[test]
+    fn zxz_as_textbooks_print_it() {
+        let sequence: Sequence = "ZXZ".parse().expect("valid");
+        let [(sin_phi, cos_phi), (sin, cos), (sin_psi, cos_psi)] = ANGLES.map(f64::sin_cos);
+        let [phi, theta, psi] = RATES;
+        let in_body = Vector3::new(
+            phi * sin * sin_psi + theta * cos_psi,
+            phi * sin * cos_psi - theta * sin_psi,
+            phi * cos + psi,
+        );
+        let in_space = Vector3::new(
+            theta * cos_phi + psi * sin * sin_phi,
+            theta * sin_phi - psi * sin * cos_phi,
+            phi + psi * cos,
+        );
+        for (frame, expected) in [(Frame::Body, in_body), (Frame::Space, in_space)] {
+            let omega = sequence.angular_velocity(&ANGLES, &RATES, frame);
+            assert!((omega - expected).norm() < 1e-15 * 4.0, "{frame:?}");
+        }
+    }
+
+    #[test]
+    fn every_sequence_agrees_with_its_rotation_and_there_and_back() {
+        for text in [
+            "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX",
+        ] {
+            for text in [text.to_owned(), text.to_lowercase()] {
+                let sequence: Sequence = text.parse().expect("valid");
+                let at = |t: f64| {
+                    let angles = std::array::from_fn(|k| ANGLES[k] + t * RATES[k]);
+                    sequence.to_quaternion(&angles).expect("finite")
+                };
+                // The turn in a short time around now, by symmetric differences of third order.
+                let turn = |h: f64| (at(h) * at(-h).inverse()).scaled_axis() / (2.0 * h);
+                let measured = (turn(1e-3) * 4.0 - turn(2e-3)) / 3.0;
+                let in_space = sequence.angular_velocity(&ANGLES, &RATES, Frame::Space);
+                assert!((in_space - measured).norm() < 1e-10, "{text}");
+                let in_body = sequence.angular_velocity(&ANGLES, &RATES, Frame::Body);
+                assert!((at(0.0) * in_body - in_space).norm() < 1e-14, "{text}");
+                for (frame, omega) in [(Frame::Body, in_body), (Frame::Space, in_space)] {
+                    let back = sequence.rates(&ANGLES, &omega, frame).expect("regular");
+                    assert!(
+                        (0..3).all(|k| (back[k] - RATES[k]).abs() < 1e-14),
+                        "{text}: {back:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn poles_are_told_and_the_middle_rate_remains() {
+        let (proper, mixed): (Sequence, Sequence) =
+            ("ZXZ".parse().expect("valid"), "zyx".parse().expect("valid"));
+        for (sequence, pole) in [(proper, 0.0), (mixed, std::f64::consts::FRAC_PI_2)] {
+            let angles = [0.3, pole, 0.2];
+            let omega = sequence.angular_velocity(&angles, &RATES, Frame::Body);
+            let fault = sequence.rates(&angles, &omega, Frame::Body);
+            assert!(matches!(fault, Err(Error::SingularEulerRates { .. })));
+            let middle = sequence.middle_rate(&angles, &omega, Frame::Body);
+            assert!((middle - RATES[1]).abs() < 1e-15 * 4.0);
+        }
+        let nan = proper.rates(&[0.1, f64::NAN, 0.2], &Vector3::x(), Frame::Body);
+        assert!(nan.expect("not singular").iter().any(|x| x.is_nan()));
+    }
+}

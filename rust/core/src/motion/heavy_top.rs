@@ -1,0 +1,200 @@
+//! The heavy symmetric top about a fixed point: steady precession and the sleeping limit (part II).
+
+use nalgebra::Vector3;
+
+use crate::error::Error;
+use crate::mass::RigidBody;
+use crate::principal::SymmetricTop;
+
+/// A symmetric top whose symmetry axis passes through the pivot O, the origin of the body frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PivotedTop {
+    /// Unit vector along the symmetry axis, in B; from O toward C.
+    pub axis: Vector3<f64>,
+    /// `I_s`, the moment about the symmetry axis.
+    pub axial: f64,
+    /// `I_t`, the moment about an axis across it through O.
+    pub transverse: f64,
+    /// `m l`, with l the distance from O to C.
+    pub mass_moment: f64,
+}
+
+impl PivotedTop {
+    /// The top that `body` is about the origin of its frame.
+    ///
+    /// Moments closer than `rtol` times the largest are taken as equal, and O as lying on the axis when it is nearer to it
+    /// than `rtol` radii of gyration. The axis of a spherical body is the line from O to C.
+    ///
+    /// # Errors
+    /// [`Error::NotASymmetricTop`], [`Error::PivotOffAxis`]; [`Error::OutOfDomain`] for a point at the pivot.
+    pub fn of(body: &RigidBody, rtol: f64) -> Result<Self, Error> {
+        let principal = body.principal();
+        let (m, c) = (body.mass(), body.center_of_mass());
+        let top = SymmetricTop::of(&principal, rtol)?;
+        let [i1, _, i3] = principal.moments;
+        let is_spherical = i3 - i1 <= rtol * i3;
+        let axis = match c.try_normalize(0.0) {
+            Some(to_center) if is_spherical => to_center,
+            _ if c.dot(&top.axis) < 0.0 => -top.axis,
+            _ => top.axis,
+        };
+        let arm = c.dot(&axis);
+        let transverse = top.transverse + m * arm * arm;
+        if transverse == 0.0 {
+            return Err(Error::OutOfDomain {
+                what: "the moment across the axis through the pivot",
+                law: "positive for a top",
+                value: transverse,
+            });
+        }
+        let distance = c.cross(&axis).norm();
+        let relative = distance / (transverse / m).sqrt();
+        if relative > rtol {
+            return Err(Error::PivotOffAxis {
+                distance,
+                relative,
+                allowed: rtol,
+            });
+        }
+        Ok(Self {
+            axis,
+            axial: top.axial,
+            transverse,
+            mass_moment: m * arm,
+        })
+    }
+
+    /// Least spin that precesses steadily at the inclination θ: `2 √(I_t m g l cos θ)/I_s`; zero for cos θ ≤ 0.
+    ///
+    /// For θ = 0 it is the sleeping limit: upright, the top is stable where `I_s² ω_s² ≥ 4 I_t m g l`. `inclination`: θ, of
+    /// the axis (from O to C) from the upward vertical. `gravity`: only its size g matters. Infinite for a top without axial moment.
+    /// Source: part II; Landau and Lifshitz, Mechanics, §35, problem 2; Goldstein, Classical Mechanics, §5.7.
+    #[doc(alias = "sleeping top")]
+    #[must_use]
+    pub fn least_spin(&self, inclination: f64, gravity: &Vector3<f64>) -> f64 {
+        let raised = self.mass_moment * gravity.norm() * inclination.cos();
+        if raised <= 0.0 {
+            return 0.0;
+        }
+        2.0 * (self.transverse * raised).sqrt() / self.axial
+    }
+
+    /// Rates of the two steady precessions, slow and fast: the roots of `I_t φ̇² cos θ − I_s ω_s φ̇ + m g l = 0`.
+    ///
+    /// `spin`: `ω_s`, the component of ω along the axis (from O to C), which gravity leaves constant. `inclination`: θ, of
+    /// the axis from the upward vertical. `gravity`: only its size g matters. The result: φ̇ about the upward vertical, the smaller in
+    /// magnitude first: near `m g l/(I_s ω_s)` and `I_s ω_s/(I_t cos θ)` for a fast top. Below the horizontal, where
+    /// cos θ < 0, the two have opposite signs; without spin they are those of a conical pendulum.
+    /// Source: part II; Goldstein, Classical Mechanics, §5.7.
+    ///
+    /// # Errors
+    /// [`Error::SpinTooSlow`].
+    pub fn steady_precession(
+        &self,
+        spin: f64,
+        inclination: f64,
+        gravity: &Vector3<f64>,
+    ) -> Result<[f64; 2], Error> {
+        let (momentum, weight) = (self.axial * spin, self.mass_moment * gravity.norm());
+        let upright = self.transverse * inclination.cos();
+        let discriminant = momentum * momentum - 4.0 * upright * weight;
+        if discriminant < 0.0 {
+            return Err(Error::SpinTooSlow {
+                spin,
+                least: self.least_spin(inclination, gravity),
+                inclination,
+            });
+        }
+        // The root that adds, and the other one by their product, so that nothing cancels.
+        let sum = 0.5 * (momentum + discriminant.sqrt().copysign(momentum));
+        if sum == 0.0 {
+            return Ok([0.0, 0.0]); // neither spin nor weight
+        }
+        Ok([weight / sum, sum / upright])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mass::{Amount, solids};
+
+    fn cone() -> RigidBody {
+        // On its apex.
+        solids::cone(0.4, 1.0, Amount::Mass(2.0))
+            .and_then(|cone| cone.translated(&Vector3::new(0.0, 0.0, -0.75)))
+            .expect("cone")
+    }
+
+    #[test]
+    fn cone_on_its_apex() {
+        let top = PivotedTop::of(&cone(), 1e-6).expect("top");
+        assert_eq!(top.axis, -Vector3::z());
+        assert!((top.axial - 0.3 * 2.0 * 0.16).abs() < 1e-15);
+        assert!((top.transverse - 0.6 * 2.0 * (1.0 + 0.04)).abs() < 1e-15);
+        assert_eq!(top.mass_moment, 1.5);
+    }
+
+    #[test]
+    fn steady_precessions_solve_their_equation() {
+        let top = PivotedTop::of(&cone(), 1e-6).expect("top");
+        let (g, gravity) = (9.81, Vector3::new(0.0, 0.0, -9.81));
+        for (spin, inclination) in [(120.0, 0.3), (-120.0, 1.2), (0.0, 2.5), (300.0, 2.0)] {
+            let [slow, fast] = top
+                .steady_precession(spin, inclination, &gravity)
+                .expect("fast");
+            assert!(slow.abs() <= fast.abs());
+            for rate in [slow, fast] {
+                let terms = [
+                    top.transverse * rate * rate * inclination.cos(),
+                    -top.axial * spin * rate,
+                    top.mass_moment * g,
+                ];
+                let largest = terms
+                    .iter()
+                    .fold(0.0_f64, |most, term| most.max(term.abs()));
+                assert!(terms.iter().sum::<f64>().abs() < 1e-15 * 4.0 * largest);
+            }
+        }
+        let least = top.least_spin(0.3, &gravity);
+        assert!(
+            top.steady_precession(least * 1.000_001, 0.3, &gravity)
+                .is_ok()
+        );
+        let slower = top.steady_precession(least * 0.999_999, 0.3, &gravity);
+        assert!(matches!(slower, Err(Error::SpinTooSlow { .. })));
+        assert_eq!(top.least_spin(2.0, &gravity), 0.0);
+        assert_eq!(
+            top.steady_precession(0.0, 0.3, &Vector3::zeros()),
+            Ok([0.0, 0.0])
+        );
+    }
+
+    #[test]
+    fn what_is_no_top_is_refused() {
+        let off_axis = cone()
+            .translated(&Vector3::new(0.01, 0.0, 0.0))
+            .expect("moved");
+        assert!(matches!(
+            PivotedTop::of(&off_axis, 1e-6),
+            Err(Error::PivotOffAxis { .. })
+        ));
+        let brick = solids::cuboid(&[1.0, 2.0, 3.0], Amount::Mass(1.0)).expect("brick");
+        assert!(matches!(
+            PivotedTop::of(&brick, 1e-6),
+            Err(Error::NotASymmetricTop { .. })
+        ));
+        let point = solids::cube(0.0, Amount::Mass(1.0)).expect("point");
+        assert!(matches!(
+            PivotedTop::of(&point, 1e-6),
+            Err(Error::OutOfDomain { .. })
+        ));
+        let pendulum = point.translated(&Vector3::new(0.0, 3.0, 4.0)).expect("bob");
+        let pendulum = PivotedTop::of(&pendulum, 1e-6).expect("spherical pendulum");
+        assert_eq!(
+            (pendulum.axial, pendulum.transverse, pendulum.mass_moment),
+            (0.0, 25.0, 5.0)
+        );
+        assert!(pendulum.least_spin(0.1, &Vector3::x()).is_infinite());
+    }
+}

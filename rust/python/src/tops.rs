@@ -1,0 +1,203 @@
+//! Symmetric tops: free precession, and what a heavy one may do steadily.
+
+use nalgebra::Vector3;
+use numpy::PyArrayDyn;
+use polhode::Error;
+use polhode::motion::free_precession::{FreePrecession, free_precession as free_precession_of};
+use polhode::motion::heavy_top::PivotedTop;
+use polhode::principal::{SymmetricTop, TOP_RTOL};
+use pyo3::prelude::*;
+
+use crate::arrays::{Argument, read, read_or, write, write_numbers};
+use crate::rigid_body::{PyRigidBody, points};
+use crate::stack::{Broadcast, Stack};
+
+/// Torque-free precession of a symmetric top: body cone, space cone and the two rates.
+///
+/// The symmetry axis n, the angular velocity ω and the angular momentum L lie in one plane, which turns
+/// about L. In the body ω circles about n on the body cone with the rate ``(I_s − I_t) ω_s/I_t``; in space n
+/// and ω circle about L with the rate ``L/I_t``, ω on the space cone. The body cone rolls on the space cone.
+///
+/// Parameters
+/// ----------
+/// body : RigidBody
+///     Two principal moments equal to `rtol`, of which the mean is taken.
+/// omega : array_like, shape (..., 3)
+///     Angular velocity relative to space, components in the body frame.
+/// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
+///     The centre of mass of a body that moves freely, or a point fixed in space, without torque.
+/// rtol : float, optional
+///     Moments closer than this times the largest count as equal.
+///
+/// Returns
+/// -------
+/// FreePrecession
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     For a body that is no symmetric top, with the gap between its moments.
+///
+/// Examples
+/// --------
+/// A plate that wobbles goes up and down twice while it spins once:
+///
+/// >>> from polhode import solids, tops
+/// >>> plate = solids.cylinder(radius=0.1, height=0.0, mass=0.2)
+/// >>> wobble = tops.free_precession(plate, omega=(0.01, 0, 3))
+/// >>> round(wobble.space_rate, 3), round(wobble.body_rate, 3)
+/// (6.0, 3.0)
+#[pyfunction]
+#[pyo3(
+    signature = (body, omega, about=Argument::default(), *, rtol=TOP_RTOL),
+    text_signature = "(body, omega, about='center_of_mass', *, rtol=1e-06)"
+)]
+pub(crate) fn free_precession<'py>(
+    py: Python<'py>,
+    body: &Bound<'py, PyRigidBody>,
+    omega: &Bound<'py, PyAny>,
+    about: Argument<'py>,
+    rtol: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let bodies = &body.get().bodies;
+    let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+    let about = points(bodies, about.given(), "about")?;
+    let shapes = [&bodies.shape[..], &omega.shape, &about.shape];
+    let grid = Broadcast::of(["body", "omega", "about"], shapes)?;
+    let found = grid.try_map(py, |[b, w, p]| {
+        let top = SymmetricTop::of(&bodies[b].principal_about(&about[p]), rtol)?;
+        free_precession_of(&top, &omega[w])
+    })?;
+    let number = |part: fn(&FreePrecession) -> f64| write_numbers(py, &found.map(part));
+    let parts = (
+        write(py, &found.map(|motion| motion.axis))?,
+        number(|motion| motion.body_rate)?,
+        number(|motion| motion.space_rate)?,
+        number(|motion| motion.body_cone)?,
+        number(|motion| motion.space_cone)?,
+        number(|motion| motion.nutation)?,
+    );
+    py.import("polhode.results")?
+        .getattr("FreePrecession")?
+        .call1(parts)
+}
+
+/// Least spin with which a heavy symmetric top precesses steadily: ``2 √(I_t m g l cos θ)/I_s``.
+///
+/// Upright (inclination zero, the default) it is the sleeping limit: the top stands stably where
+/// ``I_s² ω_s² ≥ 4 I_t m g l``. Below the horizontal every spin will do, and the least is zero.
+///
+/// Parameters
+/// ----------
+/// body : RigidBody
+///     A symmetric top whose axis passes through the origin of the body frame, the pivot.
+/// gravity : array_like, shape (..., 3)
+///     Only its size matters.
+/// inclination : array_like, shape (...), optional
+///     θ, of the axis, from the pivot to the centre of mass, from the upward vertical.
+/// rtol : float, optional
+///     Moments closer than this times the largest count as equal, and the pivot as lying on the axis when it
+///     is nearer to it than this times the radius of gyration.
+///
+/// Returns
+/// -------
+/// float or numpy.ndarray, shape (...)
+///     ω_s, the component of ω along the axis; infinite for a body without moment about it.
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     For a body that is no symmetric top, or a pivot that is not on its axis.
+///
+/// Examples
+/// --------
+/// A cone of radius 2 cm and height 5 cm on its apex:
+///
+/// >>> from polhode import solids, tops
+/// >>> cone = solids.cone(radius=0.02, height=0.05, mass=0.1).rotated((1, 0, 0, 0)).translated((0, 0, 0.0375))
+/// >>> round(tops.least_spin(cone, gravity=(0, 0, -9.81)), 3)
+/// 399.265
+#[pyfunction]
+#[pyo3(
+    signature = (body, gravity, inclination=Argument::default(), *, rtol=TOP_RTOL),
+    text_signature = "(body, gravity, inclination=0.0, *, rtol=1e-06)"
+)]
+pub(crate) fn least_spin<'py>(
+    py: Python<'py>,
+    body: &Bound<'py, PyRigidBody>,
+    gravity: &Bound<'py, PyAny>,
+    inclination: Argument<'py>,
+    rtol: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let bodies = &body.get().bodies;
+    let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
+    let inclination = read_or(&inclination, "inclination", 0.0)?;
+    let shapes = [&bodies.shape[..], &gravity.shape, &inclination.shape];
+    let grid = Broadcast::of(["body", "gravity", "inclination"], shapes)?;
+    let spins = grid.try_map(py, |[b, g, i]| {
+        let top = PivotedTop::of(&bodies[b], rtol)?;
+        Ok::<_, Error>(top.least_spin(inclination[i], &gravity[g]))
+    })?;
+    write_numbers(py, &spins)
+}
+
+/// Rates of the two steady precessions of a heavy symmetric top, the roots of ``I_t φ̇² cos θ − I_s ω_s φ̇ + m g l = 0``.
+///
+/// Parameters
+/// ----------
+/// body : RigidBody
+///     A symmetric top whose axis passes through the origin of the body frame, the pivot.
+/// spin : array_like, shape (...)
+///     ω_s, the component of ω along the axis, from the pivot to the centre of mass.
+/// inclination : array_like, shape (...)
+///     θ, of the axis from the upward vertical.
+/// gravity : array_like, shape (..., 3)
+///     Only its size matters.
+/// rtol : float, optional
+///     As in `least_spin`.
+///
+/// Returns
+/// -------
+/// numpy.ndarray, shape (..., 2)
+///     φ̇ about the upward vertical, slow and fast.
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     For a spin below `least_spin`, a body that is no symmetric top, a pivot that is not on its axis.
+///
+/// Examples
+/// --------
+/// >>> from polhode import RigidBody, tops
+/// >>> top = RigidBody.from_principal(0.5, moments=(2e-4, 2e-4, 3e-4), center_of_mass=(0, 0, 0.04))
+/// >>> tops.steady_precession(top, spin=200.0, inclination=0.5, gravity=(0, 0, -9.81)).round(3)
+/// array([ 3.443, 64.926])
+#[pyfunction]
+#[pyo3(
+    signature = (body, spin, inclination, gravity, *, rtol=TOP_RTOL),
+    text_signature = "(body, spin, inclination, gravity, *, rtol=1e-06)"
+)]
+pub(crate) fn steady_precession<'py>(
+    py: Python<'py>,
+    body: &Bound<'py, PyRigidBody>,
+    spin: &Bound<'py, PyAny>,
+    inclination: &Bound<'py, PyAny>,
+    gravity: &Bound<'py, PyAny>,
+    rtol: f64,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let bodies = &body.get().bodies;
+    let spin: Stack<f64> = read(spin, "spin")?;
+    let inclination: Stack<f64> = read(inclination, "inclination")?;
+    let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
+    let shapes = [
+        &bodies.shape[..],
+        &spin.shape,
+        &inclination.shape,
+        &gravity.shape,
+    ];
+    let grid = Broadcast::of(["body", "spin", "inclination", "gravity"], shapes)?;
+    let rates = grid.try_map(py, |[b, s, i, g]| {
+        PivotedTop::of(&bodies[b], rtol)?.steady_precession(spin[s], inclination[i], &gravity[g])
+    })?;
+    write(py, &rates)
+}
