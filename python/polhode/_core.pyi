@@ -85,9 +85,7 @@ class RigidBody:
     @staticmethod
     def from_particles(masses: ArrayLike, positions: ArrayLike) -> RigidBody: ...
     @staticmethod
-    def from_labelled_particles(
-        masses: ArrayLike, positions: ArrayLike, labels: ArrayLike
-    ) -> RigidBody: ...
+    def from_labelled_particles(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> RigidBody: ...
     @staticmethod
     def from_voxels(
         density: ArrayLike, spacing: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)
