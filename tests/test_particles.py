@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import mpmath
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles import ulp_errors, worst_error
 from oracles.bodies import attitudes, matrix, vectors
-from oracles.exact_particles import Particles
+from oracles.exact_particles import Particles, moments
 from polhode import RigidBody
 
 
@@ -140,23 +143,121 @@ def test_masses_broadcast_against_frames(rng: np.random.Generator) -> None:
     assert RigidBody.from_particles(np.ones((4, 1, 5)), rng.normal(size=(2, 5, 3))).shape == (4, 2)
 
 
-def test_thin_bodies_keep_their_smallest_moment() -> None:
-    """Particles along a tilted line 1e-6 as thick as long: I₁ is 12 decades below I₃."""
-    axis = np.array([2.0, 3.0, 6.0]) / 7
-    across = np.array([3.0, -6.0, 2.0]) / 7
-    along = np.linspace(-1, 1, 101)
-    positions = along[:, None] * axis + 1e-3 * np.cos(40 * along)[:, None] * across
-    body = RigidBody.from_particles(np.ones(101), positions)
-    exact = Particles(np.ones(101), positions)
-    smallest = min(_exact_moments(exact))
-    assert body.principal_moments[0] == pytest.approx(smallest, rel=1e-8)
+@pytest.mark.parametrize("distance", [0.0, 1e3])
+@pytest.mark.parametrize("thickness", 10.0 ** -np.arange(2, 13))
+def test_thin_bodies_keep_their_smallest_moment(
+    thickness: float, distance: float, rng: np.random.Generator
+) -> None:
+    """Tilted rods: I₁ is up to 24 decades below I₃, which no tensor of float64 numbers could hold."""
+    masses = rng.uniform(0.1, 1, 300)
+    positions = rng.uniform(-0.5, 0.5, (300, 3)) * [thickness, thickness, 1.0]
+    turn = rng.normal(size=4)
+    positions = positions @ matrix(turn / np.linalg.norm(turn)).T + distance * np.array([0.6, -0.5, 0.7])
+    body = RigidBody.from_particles(masses, positions)
+    exact = moments(Particles(masses, positions).inertia)
+    assert body.principal_moments == pytest.approx(exact, rel=3e-15, abs=0)
 
 
-def _exact_moments(exact: Particles) -> list[float]:
-    with mpmath.mp.workdps(60):
-        entries = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in exact.inertia]
-        values = mpmath.eigsy(mpmath.matrix(entries), eigvals_only=True)
-        return [float(v) for v in values]
+class TestSampling:
+    """The sums are about a point that a few of the particles are asked for: it may be a bad one."""
+
+    def test_a_few_heavy_particles_that_the_sample_misses(self, rng: np.random.Generator) -> None:
+        masses, positions = np.full(10_000, 1e-9), rng.normal(size=(10_000, 3))
+        masses[[1234, 7777]], positions[[1234, 7777]] = 1e3, [(1e7, 0.5, 0), (1e7, 0, 0.25)]
+        assert_exact(RigidBody.from_particles(masses, positions), masses, positions, 4e-15)
+
+    def test_light_particles_far_away_that_it_meets(self, rng: np.random.Generator) -> None:
+        masses, positions = rng.uniform(0.1, 1, 10_000), rng.normal(size=(10_000, 3))
+        stride = -(-10_000 // 64)
+        masses[::stride], positions[::stride] = 1e-25, 1e9
+        assert_exact(RigidBody.from_particles(masses, positions), masses, positions, 4e-15)
+
+
+def stack_of(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Bodies of twenty particles, every third one thin."""
+    masses, positions = rng.uniform(0.1, 1, (200, 20)), rng.normal(size=(200, 20, 3))
+    positions[::3, :, 1:] *= 1e-7
+    return masses, positions @ matrix(np.array([0.1, 0.5, -0.7, 0.5])).T
+
+
+def test_a_body_has_the_same_bits_alone_and_in_a_stack(rng: np.random.Generator) -> None:
+    masses, positions = stack_of(rng)
+    stack = RigidBody.from_particles(masses, positions)
+    assert stack.shape == (200,)
+    for row, body in enumerate(stack):
+        assert body == RigidBody.from_particles(masses[row], positions[row])
+    shuffled = RigidBody.from_particles(masses[::-7], positions[::-7])
+    assert shuffled == stack[::-7]
+
+
+class TestLabels:
+    def test_bodies_have_the_bits_of_their_particles_alone(self, rng: np.random.Generator) -> None:
+        sizes = [1, 3, 20, 5000, 4096, 150_000, 2]
+        labels = rng.permutation(np.repeat(np.arange(-1, 7), [50, *sizes]))
+        masses, positions = rng.uniform(0.1, 1, len(labels)), rng.normal(size=(len(labels), 3))
+        positions[labels == 3] *= [1e-6, 1.0, 1e-6]
+        for order in (slice(None), np.argsort(labels, kind="stable")):
+            m, r, k = masses[order], positions[order], labels[order]
+            bodies = RigidBody.from_labelled_particles(m, r, k.astype(np.int16))
+            assert bodies.shape == (7,)
+            for label, body in enumerate(bodies):
+                assert body == RigidBody.from_particles(m[k == label], r[k == label])
+
+    def test_no_label_at_all_is_a_stack_of_none(self) -> None:
+        assert RigidBody.from_labelled_particles([1.0], [(0, 0, 0)], [-1]).shape == (0,)
+        assert RigidBody.from_labelled_particles([], np.zeros((0, 3)), []).shape == (0,)
+
+    @pytest.mark.parametrize(
+        ("masses", "labels", "words"),
+        [
+            ([1.0, 1.0], [0, -2], r"labels\[1\] is -2.*counted from 0|counted from 0.*labels\[1\] is -2"),
+            ([1.0, 1.0], [0, 2], r"label 1: .*0 particles"),
+            ([1.0, 1.0], [2**62, 0], r"label 1: .*0 particles"),
+            ([1.0, 0.0], [0, 1], r"label 1: .*1 particles.*positive"),
+            ([1.0, -3.0], [1, 0], r"label 0: .*-3\.0"),
+            ([1.0, 1.0], [0, 1, 2], r"labels.*shape \(2,\).*got \(3,\)"),
+        ],
+    )
+    def test_errors_name_the_label(self, masses: list[float], labels: list[int], words: str) -> None:
+        with pytest.raises(ValueError, match=words):
+            RigidBody.from_labelled_particles(masses, np.zeros((2, 3)), labels)
+
+    def test_labels_must_be_integers(self) -> None:
+        with pytest.raises(TypeError, match=r"labels.*integers.*float64"):
+            RigidBody.from_labelled_particles([1.0], [(0, 0, 0)], [0.0])
+
+
+LARGE = """
+import hashlib, numpy as np
+from polhode import MassAccumulator, RigidBody
+rng = np.random.default_rng(1)
+masses, positions = rng.uniform(0.1, 1, 3_000_017), rng.normal(size=(3_000_017, 3))
+stream = MassAccumulator()
+stream.add(masses, positions)
+bodies = [
+    RigidBody.from_particles(masses, positions),
+    RigidBody.from_particles(masses, positions * [1e-5, 1.0, 1e-5]),
+    RigidBody.from_particles(masses[:3_000_000].reshape(-1, 20), positions[:3_000_000].reshape(-1, 20, 3)),
+    RigidBody.from_voxels(masses[:2_985_984].reshape(144, 144, 144), 1.0),
+    stream.finish(),
+]
+numbers = b"".join(x.tobytes() for b in bodies for x in (b.center_of_mass, b.inertia, b.principal.axes))
+print(hashlib.sha256(numbers).hexdigest())
+"""
+
+
+def test_any_number_of_threads_gives_the_same_bits() -> None:
+    digests = {
+        subprocess.run(
+            [sys.executable, "-c", LARGE],
+            env={**os.environ, "POLHODE_NUM_THREADS": count},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for count in ("1", "2", "5")
+    }
+    assert len(digests) == 1
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from polhode import (
     solids,
     tops,
 )
-from polhode._core import RigidBody, __version__, principal_axes, principal_moments
+from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
 from polhode.results import (
     AngularMomentum,
     FreePrecession,
@@ -25,6 +25,7 @@ __all__ = [
     "AngularMomentum",
     "FreePrecession",
     "KineticEnergy",
+    "MassAccumulator",
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",

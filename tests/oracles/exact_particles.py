@@ -9,9 +9,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
+import mpmath
+
 from oracles import Exact, dot, rational
 
-__all__ = ["Particles", "cross", "inertia_about", "sum_vectors"]
+__all__ = ["Particles", "cross", "inertia_about", "moments", "sum_vectors"]
 
 Vector = list[Fraction]
 
@@ -36,6 +38,13 @@ def inertia_about(masses: Exact, positions: Exact, point: Exact) -> list[Vector]
             for j in range(3):
                 total[i][j] += m * ((square if i == j else 0) - r[i] * r[j])
     return total
+
+
+def moments(inertia: Exact) -> list[float]:
+    """Principal moments of an exact tensor, ascending: eigenvalues to 80 digits, then rounded."""
+    with mpmath.mp.workdps(80):
+        entries = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in inertia]
+        return sorted(float(value) for value in mpmath.eigsy(mpmath.matrix(entries), eigvals_only=True))
 
 
 class Particles:

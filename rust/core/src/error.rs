@@ -1,6 +1,10 @@
 //! Every way an input can be unphysical, each with the number that offends, the law and the way out.
 
+use std::convert::Infallible;
+
 use thiserror::Error as ThisError;
+
+use crate::numerics::threads::Halt;
 
 /// What kind of mistake an [`Error`] reports, for callers that map errors to classes of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +69,56 @@ pub enum Error {
         count: usize,
         /// Their total mass.
         mass: f64,
+    },
+    /// One cell has negative density.
+    #[error(
+        "density must not be negative: density[{}, {}, {}] is {density:?}; model a cavity by subtracting a body",
+        index[0], index[1], index[2]
+    )]
+    NegativeDensity {
+        /// Which cell.
+        index: [usize; 3],
+        /// Its density.
+        density: f64,
+    },
+    /// Particles that were added twice.
+    #[error(
+        "start must place each particle once: numbers {start} to {last} meet the particles {from} to {} that are already          there; leave start out to add one chunk after the other", to - 1,
+        last = end - 1
+    )]
+    Overlap {
+        /// The number of the first new particle.
+        start: u64,
+        /// The number after the last new one.
+        end: u64,
+        /// The number of the first particle of the piece already there.
+        from: u64,
+        /// The number after its last.
+        to: u64,
+    },
+    /// Particles that were never added.
+    #[error(
+        "the particles {start} to {} have not been added: add or merge the chunks that hold them, or leave start out",
+        end - 1
+    )]
+    MissingParticles {
+        /// The number of the first.
+        start: u64,
+        /// The number after the last.
+        end: u64,
+    },
+    /// Bytes that no accumulator wrote.
+    #[error("the bytes are not those of a MassAccumulator, or not whole")]
+    NotAnAccumulator,
+    /// A label that names no body.
+    #[error(
+        "labels must be the numbers of bodies, counted from 0, or -1 for particles of no body: labels[{index}] is {label}"
+    )]
+    Label {
+        /// Which particle.
+        index: usize,
+        /// Its label.
+        label: i64,
     },
     /// The tensor is not symmetric.
     #[error(
@@ -274,6 +328,18 @@ pub enum Error {
         /// Where.
         time: f64,
     },
+    /// Whoever watched the work asked it to stop.
+    #[error("the computation was stopped before it was finished")]
+    Stopped,
+}
+
+impl From<Halt<Infallible>> for Error {
+    fn from(halt: Halt<Infallible>) -> Self {
+        match halt {
+            Halt::Stopped => Self::Stopped,
+            Halt::Failed(never) => match never {},
+        }
+    }
 }
 
 impl Error {
@@ -293,6 +359,7 @@ impl Error {
             }
             | Self::NonPositiveMass { .. }
             | Self::NegativeMass { .. }
+            | Self::NegativeDensity { .. }
             | Self::NoMass { .. }
             | Self::NotSymmetric { .. }
             | Self::NegativeMoment { .. }

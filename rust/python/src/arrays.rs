@@ -120,25 +120,32 @@ pub(crate) fn read_list<T: Item>(
     name: &str,
     leading: &str,
 ) -> PyResult<Stack<T>> {
-    let wrong = |shape: &[usize]| {
-        let tail: Vec<String> = T::TAIL.iter().map(usize::to_string).collect();
-        let axes = [&[leading.to_owned()], &tail[..]].concat().join(", ");
-        PyValueError::new_err(format!(
-            "{name}: expected shape ({axes}), got {}",
-            tuple(shape)
-        ))
-    };
+    list_floats(object, name, leading, T::TAIL)?;
+    read(object, name)
+}
+
+/// The numbers of items in a row, shape (n, tail) or (..., n, tail), not copied where they are C-ordered float64.
+pub(crate) fn list_floats<'py>(
+    object: &Bound<'py, PyAny>,
+    name: &str,
+    leading: &str,
+    tail: &[usize],
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let array = floats(object, name)?;
     let shape = array.shape();
-    let depth = shape.len().checked_sub(T::TAIL.len());
+    let depth = shape.len().checked_sub(tail.len());
     let is_list = depth.is_some_and(|depth| {
-        shape[depth..] == *T::TAIL && (depth == 1 || depth > 1 && leading.starts_with("..."))
+        shape[depth..] == *tail && (depth == 1 || depth > 1 && leading.starts_with("..."))
     });
     if is_list {
-        read(object, name)
-    } else {
-        Err(wrong(shape))
+        return Ok(array);
     }
+    let tail: Vec<String> = tail.iter().map(usize::to_string).collect();
+    let axes = [&[leading.to_owned()], &tail[..]].concat().join(", ");
+    Err(PyValueError::new_err(format!(
+        "{name}: expected shape ({axes}), got {}",
+        tuple(shape)
+    )))
 }
 
 /// As [`read`], with a default for an argument that was not given.
@@ -157,11 +164,33 @@ pub(crate) fn write<'py, T: Item>(
     py: Python<'py>,
     stack: &Stack<T>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let mut numbers = Vec::with_capacity(stack.rows.len() * T::TAIL.iter().product::<usize>());
+    let mut numbers = Vec::with_capacity(stack.rows.len() * size::<T>());
     stack.rows.iter().for_each(|row| row.write(&mut numbers));
-    numbers
-        .into_pyarray(py)
-        .reshape([&stack.shape[..], T::TAIL].concat())
+    shaped::<T>(py, numbers, &stack.shape)
+}
+
+/// The array of one item for each row of a stack.
+pub(crate) fn write_of<'py, R, T: Item>(
+    py: Python<'py>,
+    stack: &Stack<R>,
+    item: impl Fn(&R) -> T,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let mut numbers = Vec::with_capacity(stack.rows.len() * size::<T>());
+    (stack.rows.iter()).for_each(|row| item(row).write(&mut numbers));
+    shaped::<T>(py, numbers, &stack.shape)
+}
+
+/// How many numbers an item has.
+fn size<T: Item>() -> usize {
+    T::TAIL.iter().product()
+}
+
+fn shaped<'py, T: Item>(
+    py: Python<'py>,
+    numbers: Vec<f64>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    numbers.into_pyarray(py).reshape([shape, T::TAIL].concat())
 }
 
 /// A float for one value, an array for a stack.
@@ -299,7 +328,7 @@ fn as_quaternion<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, 
         .transpose()
 }
 
-fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = object.py();
     numpy(py)?
         .call_method1("asarray", (object,))

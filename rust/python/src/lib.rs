@@ -12,6 +12,7 @@
 // What Python sees is documented in Python's terms; the names are public to it alone.
 #![allow(missing_docs, clippy::doc_markdown, clippy::needless_pass_by_value)]
 
+mod accumulator;
 mod arrays;
 mod environment;
 mod equimomental;
@@ -22,6 +23,7 @@ mod interrupt;
 mod kinematics;
 mod loads;
 mod parallel_axis;
+mod particles;
 mod principal;
 mod rigid_body;
 mod rotations;
@@ -35,6 +37,8 @@ use pyo3::prelude::*;
 mod _core {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::accumulator::PyMassAccumulator;
     #[pymodule_export]
     use crate::equimomental::stick;
     #[pymodule_export]

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyString, PyType};
 
-use crate::arrays::{Item, floats, numpy, read, write, write_numbers};
+use crate::arrays::{Item, floats, numpy, read, write, write_numbers, write_of};
 use crate::errors::{at_row, to_py, wrong_shape};
 use crate::interrupt::Interrupt;
 use crate::stack::{Broadcast, Stack};
@@ -181,8 +181,17 @@ pub(crate) fn to_python<'py>(
     py: Python<'py>,
     found: &Stack<PrincipalAxes>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let moments = write(py, &found.map(|principal| principal.moments))?;
-    let axes = write(py, &found.map(|principal| principal.axes))?;
+    to_python_of(py, found, |principal| *principal)
+}
+
+/// As [`to_python`], for one item of each row.
+pub(crate) fn to_python_of<'py, R>(
+    py: Python<'py>,
+    rows: &Stack<R>,
+    principal: impl Fn(&R) -> PrincipalAxes,
+) -> PyResult<Bound<'py, PyAny>> {
+    let moments = write_of(py, rows, |row| principal(row).moments)?;
+    let axes = write_of(py, rows, |row| principal(row).axes)?;
     results(py)?.call1((moments, axes))
 }
 

@@ -10,6 +10,7 @@ use super::validity::{
     trace,
 };
 use crate::error::{Error, all_finite};
+use crate::numerics::eigen3::{Eigen3, eigen3};
 use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
 
 /// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
@@ -40,6 +41,22 @@ impl PartialEq for RigidBody {
 }
 
 impl RigidBody {
+    /// A particle of unit mass at the origin: what stands in a stack until it is filled.
+    pub(super) const UNIT_POINT: Self = Self {
+        mass: 1.0,
+        center_of_mass: Vector3::new(0.0, 0.0, 0.0),
+        inertia: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        principal: PrincipalAxes {
+            moments: [0.0; 3],
+            axes: Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+        },
+        error_bound: ErrorBound {
+            mass: 0.0,
+            center_of_mass: 0.0,
+            inertia: 0.0,
+        },
+    };
+
     /// From mass, tensor about the centre of mass C, and C.
     ///
     /// `rtol` admits tables printed to few digits: asymmetry and violations of the triangle inequality up to that
@@ -129,6 +146,11 @@ impl RigidBody {
     /// # Errors
     /// When the mass is not positive or a number is not finite.
     pub fn from_second_moment(matter: &SecondMoment) -> Result<Self, Error> {
+        Self::with_spectrum(matter, &eigen3(&matter.central))
+    }
+
+    /// As [`Self::from_second_moment`], with the spectral decomposition of its `central` already at hand.
+    pub(super) fn with_spectrum(matter: &SecondMoment, spectrum: &Eigen3) -> Result<Self, Error> {
         check_mass(matter.mass)?;
         all_finite("center_of_mass", &matter.center_of_mass)?;
         let inertia = matter.inertia();
@@ -137,7 +159,7 @@ impl RigidBody {
             mass: matter.mass,
             center_of_mass: matter.center_of_mass,
             inertia,
-            principal: matter.principal_axes(),
+            principal: matter.principal_axes(spectrum),
             error_bound: matter.error_bound,
         })
     }

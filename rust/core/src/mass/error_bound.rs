@@ -27,8 +27,19 @@ impl ErrorBound {
     /// whose trace is `spread`.
     #[must_use]
     pub fn of_sums(terms: usize, mass: f64, center_of_mass: &Vector3<f64>, spread: f64) -> Self {
-        // Each term is rounded a few times by itself, and once in each addition on its way to the total.
-        let relative = 2.0 * UNIT * (depth(terms) + 20.0);
+        Self::of_additions(depth(terms), mass, center_of_mass, spread)
+    }
+
+    /// As [`Self::of_sums`], for sums whose terms pass that many additions on their way to the total.
+    #[must_use]
+    pub fn of_additions(
+        additions: f64,
+        mass: f64,
+        center_of_mass: &Vector3<f64>,
+        spread: f64,
+    ) -> Self {
+        // Each term is rounded a few times by itself, and once in each addition.
+        let relative = 2.0 * UNIT * (additions + 20.0);
         Self {
             mass: relative * mass,
             // Σ m |d| is at most √(Σ m · Σ m d²).

@@ -8,11 +8,14 @@
 //! | what rounding can have done | [`error_bound`] |
 //! | second moment ∫ r rᵀ dm, from which every tensor comes | [`second_moment`] |
 //! | parallel-axis (Steiner, Huygens) theorem | [`parallel_axis`] |
-//! | particles | [`particles`] |
+//! | particles, stacks of them, particles with labels | [`particles`] |
+//! | particles in chunks, more than fit into memory | [`accumulator`] |
+//! | voxels | [`voxels`] |
 //! | homogeneous solids | [`solids`] |
 //! | closed triangle mesh | [`polyhedron`] |
 //! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 
+pub mod accumulator;
 pub mod body;
 pub mod composition;
 pub mod equimomental;
@@ -23,7 +26,9 @@ pub mod polyhedron;
 pub mod second_moment;
 pub mod solids;
 pub mod validity;
+pub mod voxels;
 
+pub use accumulator::MassAccumulator;
 pub use body::RigidBody;
 pub use error_bound::ErrorBound;
 pub use second_moment::SecondMoment;

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::error_bound::ErrorBound;
-use crate::numerics::eigen3::eigen3;
+use crate::numerics::eigen3::Eigen3;
 use crate::principal::{PrincipalAxes, with_sign_rule};
 
 /// Mass, centre of mass and second moment `S = ∫ (r − c)(r − c)ᵀ dm` about it.
@@ -65,12 +65,11 @@ impl SecondMoment {
         Matrix3::new(y + z, xy, xz, xy, x + z, yz, xz, yz, x + y)
     }
 
-    /// Principal moments and axes about C, found before S is rounded to body axes.
+    /// Principal moments and axes about C, found before S is rounded to body axes; `s` decomposes [`Self::central`].
     ///
     /// The largest principal value of S belongs to the axis of the smallest moment.
     #[must_use]
-    pub fn principal_axes(&self) -> PrincipalAxes {
-        let s = eigen3(&self.central);
+    pub fn principal_axes(&self, s: &Eigen3) -> PrincipalAxes {
         // S is a sum of squares: a negative value is rounding, and zero is what it stands for.
         let [s1, s2, s3] = s.values.map(|value| value.max(0.0));
         let column = |k: usize| self.axes * s.vectors.column(k);

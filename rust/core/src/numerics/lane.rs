@@ -12,6 +12,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::double_double::two_product;
+
 /// A double with a known way of multiplying and adding: one lane of a vectorised loop.
 pub trait Lane:
     Copy
@@ -32,6 +34,9 @@ pub trait Lane:
     /// software routine, which is fifty times slower.
     #[must_use]
     fn mul_add(self, b: Self, c: Self) -> Self;
+    /// `self * b = p + e` exactly, p the rounded product, for factors below 2⁹⁹⁶ and products above 2⁻⁹⁶⁸.
+    #[must_use]
+    fn two_product(self, b: Self) -> (Self, Self);
     /// Square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -110,6 +115,17 @@ impl<const FMA: bool> Lane for Double<FMA> {
     }
 
     #[inline(always)]
+    fn two_product(self, b: Self) -> (Self, Self) {
+        if FMA {
+            let p = self.0 * b.0;
+            (Self(p), Self(self.0.mul_add(b.0, -p)))
+        } else {
+            let (p, e) = two_product(self.0, b.0);
+            (Self(p), Self(e))
+        }
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt())
     }
@@ -159,6 +175,16 @@ mod tests {
             let (s, inverse) = Double::<false>(x).power_of_two_scale();
             assert!(s.0.is_normal() && s.0 * inverse.0 == 1.0);
         }
+    }
+
+    #[test]
+    fn rests_of_products_are_exact_in_either_type() {
+        let (a, b) = (1.0 + f64::EPSILON, 1.0 - f64::EPSILON);
+        let exact = (1.0, -f64::EPSILON * f64::EPSILON);
+        let (p, e) = Double::<true>(a).two_product(Double(b));
+        assert_eq!((p.get(), e.get()), exact);
+        let (p, e) = Double::<false>(a).two_product(Double(b));
+        assert_eq!((p.get(), e.get()), exact);
     }
 
     #[test]

@@ -4,10 +4,44 @@
 //! result is therefore the same for any number of threads, and the rounding error grows with the logarithm of the
 //! number of terms beyond one block.
 
+use std::convert::Infallible;
+use std::ops::{ControlFlow, Range};
+
+use super::threads::{Halt, fill_blocks};
+
 /// Virtual lanes of a block.
-const LANES: usize = 8;
+pub const LANES: usize = 8;
 /// Terms of a block.
 pub const BLOCK: usize = 4096;
+
+/// Blocks that a thread does at a time.
+const SHARE: usize = 8;
+
+/// The sums of all blocks of `0..n`, merged: the bits of [`sum_terms`] where `block` adds as that does.
+///
+/// Large sums are taken on all cores; about every 20 ms `watch` gets the fraction done and may end them.
+///
+/// # Errors
+/// [`Halt::Stopped`] when `watch` said so.
+pub fn sum_blocks<const K: usize>(
+    n: usize,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    block: impl Fn(Range<usize>) -> [f64; K] + Sync,
+) -> Result<[f64; K], Halt<Infallible>> {
+    let range = |index: usize| index * BLOCK..n.min((index + 1) * BLOCK);
+    let count = n.div_ceil(BLOCK).max(1);
+    if count == 1 {
+        return Ok(block(range(0)));
+    }
+    let mut sums = vec![[0.0; K]; count];
+    fill_blocks(&mut sums, SHARE, watch, |first, share| {
+        for (index, sum) in (first..).zip(share) {
+            *sum = block(range(index));
+        }
+        Ok(())
+    })?;
+    Ok(tree(0, count, &|index| sums[index]))
+}
 
 /// `Σ term(i)` over `0..n`, for K sums at once.
 pub fn sum_terms<const K: usize>(n: usize, term: impl Fn(usize) -> [f64; K]) -> [f64; K] {
@@ -51,7 +85,12 @@ fn block_sum<const K: usize>(
     for (lane, i) in lanes.iter_mut().zip(whole..to) {
         *lane = add(*lane, term(i));
     }
-    let [a, b, c, d, e, f, g, h] = lanes;
+    merge_lanes(lanes, add)
+}
+
+/// The lanes of a block in their tree.
+#[inline(always)]
+pub(crate) fn merge_lanes<T>([a, b, c, d, e, f, g, h]: [T; LANES], add: impl Fn(T, T) -> T) -> T {
     add(add(add(a, e), add(c, g)), add(add(b, f), add(d, h)))
 }
 

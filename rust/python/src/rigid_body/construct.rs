@@ -2,7 +2,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::io::TriangleMesh;
-use polhode::mass::particles::particles;
 use polhode::mass::polyhedron::{MeshFault, polyhedron};
 use polhode::{Error, RigidBody};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -123,66 +122,6 @@ impl PyRigidBody {
             RigidBody::from_principal(mass[m], &moments[i], &axes[v], &center[c], rtol)
         };
         Ok(grid.try_map(py, body)?.into())
-    }
-
-    /// Body made of particles.
-    ///
-    /// ``I = Σ m (r² 1 − r rᵀ)``, summed about the centre of mass; the smallest moment of a thin body
-    /// is as accurate as the coordinates are.
-    ///
-    /// Parameters
-    /// ----------
-    /// masses : array_like, shape (..., n)
-    ///     None negative, their sum positive.
-    /// positions : array_like, shape (..., n, 3)
-    ///
-    /// Returns
-    /// -------
-    /// RigidBody
-    ///
-    /// Raises
-    /// ------
-    /// InvalidInertiaError
-    ///     Naming the particle whose mass is negative.
-    ///
-    /// Examples
-    /// --------
-    /// >>> from polhode import RigidBody
-    /// >>> dumbbell = RigidBody.from_particles([1.0, 3.0], [(0, 0, 0), (4, 0, 0)])
-    /// >>> dumbbell.center_of_mass
-    /// array([3., 0., 0.])
-    /// >>> dumbbell.principal_moments
-    /// array([ 0., 12., 12.])
-    #[staticmethod]
-    fn from_particles(
-        py: Python<'_>,
-        masses: &Bound<'_, PyAny>,
-        positions: &Bound<'_, PyAny>,
-    ) -> PyResult<Self> {
-        let masses: Stack<f64> = read_list(masses, "masses", "..., n")?;
-        let positions: Stack<[f64; 3]> = read_list(positions, "positions", "..., n")?;
-        let ([mass_shape @ .., n], [position_shape @ .., m]) =
-            (&masses.shape[..], &positions.shape[..])
-        else {
-            return Err(PyValueError::new_err(
-                "masses and positions: expected lists of particles",
-            ));
-        };
-        let (n, m) = (*n, *m);
-        if n != m {
-            return Err(PyValueError::new_err(format!(
-                "masses and positions: expected shapes (..., n) and (..., n, 3), got n = {n} and n = {m}"
-            )));
-        }
-        let grid = Broadcast::of(["masses", "positions"], [mass_shape, position_shape])?;
-        Ok(grid
-            .try_map(py, |[i, j]| {
-                particles(
-                    &masses.rows[i * n..(i + 1) * n],
-                    &positions.rows[j * n..(j + 1) * n],
-                )
-            })?
-            .into())
     }
 
     /// Solid of uniform density bounded by a closed triangle mesh.

@@ -4,6 +4,7 @@ mod construct;
 mod container;
 mod dynamics;
 mod ensemble;
+mod matter;
 mod motion;
 mod properties;
 mod simulate;

@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyNotImplemented;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{Argument, read, read_or, read_rotation, write, write_numbers};
-use crate::principal::to_python;
+use crate::arrays::{Argument, read, read_or, read_rotation, write, write_numbers, write_of};
+use crate::principal::{to_python, to_python_of};
 use crate::stack::{Broadcast, Stack};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
@@ -26,19 +26,19 @@ impl PyRigidBody {
     /// Centre of mass C from the origin of the body frame, shape (..., 3).
     #[getter]
     fn center_of_mass<'py>(&self, py: Python<'py>) -> Array<'py> {
-        write(py, &self.bodies.map(RigidBody::center_of_mass))
+        write_of(py, &self.bodies, RigidBody::center_of_mass)
     }
 
     /// Inertia tensor about C in the body frame, shape (..., 3, 3); off-diagonal elements are minus the products.
     #[getter]
     fn inertia<'py>(&self, py: Python<'py>) -> Array<'py> {
-        write(py, &self.bodies.map(RigidBody::inertia))
+        write_of(py, &self.bodies, RigidBody::inertia)
     }
 
     /// Principal moments about C, ascending, shape (..., 3).
     #[getter]
     fn principal_moments<'py>(&self, py: Python<'py>) -> Array<'py> {
-        write(py, &self.bodies.map(|body| body.principal().moments))
+        write_of(py, &self.bodies, |body| body.principal().moments)
     }
 
     /// Principal moments and axes about C, with the class of the top.
@@ -50,13 +50,13 @@ impl PyRigidBody {
     /// 'prolate'
     #[getter]
     fn principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        to_python(py, &self.bodies.map(RigidBody::principal))
+        to_python_of(py, &self.bodies, RigidBody::principal)
     }
 
     /// Radii of gyration √(I/m) about the principal axes through C, ascending, shape (..., 3).
     #[getter]
     fn radii_of_gyration<'py>(&self, py: Python<'py>) -> Array<'py> {
-        write(py, &self.bodies.map(RigidBody::radii_of_gyration))
+        write_of(py, &self.bodies, RigidBody::radii_of_gyration)
     }
 
     /// Inertia tensor about a point P: the parallel-axis theorem ``I_P = I_C + m (d² 1 − d dᵀ)``.

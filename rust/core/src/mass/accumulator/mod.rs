@@ -1,0 +1,338 @@
+//! Bodies of more particles than fit into memory: chunk by chunk, on one machine or on many.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `moments.rs` | what is kept of a chunk: moments in double-double, and how two of them merge |
+//! | `bytes.rs` | an accumulator as bytes, to be stored or sent |
+//!
+//! Every particle has a number, its place in the whole. Whole blocks of 4096 are summed as they come and merged pairwise
+//! like the digits of a binary counter; the particles of a block that is not complete yet are kept. So the result has the
+//! same bits however the particles are cut into chunks and in whatever order the chunks come, and memory grows with the
+//! logarithm of their number.
+
+mod bytes;
+mod moments;
+
+use std::collections::BTreeMap;
+
+use self::moments::Moments;
+use super::body::RigidBody;
+use super::particles::{Particles, Watch, check};
+use crate::error::Error;
+use crate::numerics::reduce::{BLOCK, depth};
+use crate::numerics::threads::{Halt, fill_blocks};
+
+/// Blocks that a thread does at a time.
+const SHARE: usize = 4;
+
+/// A block as a number of particles.
+const WHOLE: u64 = BLOCK as u64;
+
+/// Particles in chunks, and in the end the body of all of them.
+///
+/// Second moments are kept in double-double: even a rod 1e-8 as thick as long keeps its smallest moment to 1e-14.
+///
+/// ```
+/// use polhode::mass::MassAccumulator;
+///
+/// let mut sums = MassAccumulator::new();
+/// sums.add(&[1.0], &[[0.0, 0.0, 0.0]], None, &mut |_| std::ops::ControlFlow::Continue(()))?;
+/// sums.add(&[3.0], &[[4.0, 0.0, 0.0]], None, &mut |_| std::ops::ControlFlow::Continue(()))?;
+/// assert_eq!(sums.finish()?.principal().moments, [0.0, 12.0, 12.0]);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MassAccumulator {
+    /// What has been added, by the number of its first particle. None overlap, and what can be joined is.
+    pieces: BTreeMap<u64, Piece>,
+    /// Whether the places of the chunks were given, rather than one after the other.
+    is_placed: bool,
+}
+
+/// The particles from some number up to `end`.
+#[derive(Clone, Debug, PartialEq)]
+struct Piece {
+    end: u64,
+    matter: Matter,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Matter {
+    /// Part of a block.
+    Loose {
+        masses: Vec<f64>,
+        positions: Vec<[f64; 3]>,
+    },
+    Summed(Moments),
+}
+
+impl MassAccumulator {
+    /// Nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// How many particles have been added.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.pieces
+            .iter()
+            .map(|(start, piece)| piece.end - start)
+            .sum()
+    }
+
+    /// The number after that of the last particle.
+    fn end(&self) -> u64 {
+        self.pieces
+            .last_key_value()
+            .map_or(0, |(_, piece)| piece.end)
+    }
+
+    /// Adds particles; `start` is the number of the first in the whole, by default the one after the last.
+    ///
+    /// About every 20 ms `watch` gets the fraction done and may end the work; then, and after any error, nothing of the
+    /// chunk is added.
+    ///
+    /// # Errors
+    /// When a mass is negative, a number is not finite, a particle with that number is already there, or `watch` said stop.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn add(
+        &mut self,
+        masses: &[f64],
+        positions: &[[f64; 3]],
+        start: Option<u64>,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), Error> {
+        let _ = Particles::new(masses, positions);
+        let first = start.unwrap_or_else(|| self.end());
+        let count = masses.len() as u64;
+        let end = first.checked_add(count).ok_or(Error::OutOfDomain {
+            what: "start",
+            law: "such that the last particle's number is below 2^64",
+            value: first as f64,
+        })?;
+        self.check_free(first, end)?;
+        // Up to the first whole block, the whole blocks, and what is left.
+        let to_block = first.next_multiple_of(WHOLE) - first;
+        let head = usize::try_from(to_block.min(count)).unwrap_or(masses.len());
+        let tail = head + (masses.len() - head) / BLOCK * BLOCK;
+        for odd in [0..head, tail..masses.len()] {
+            check_loose(Particles::new(
+                &masses[odd.clone()],
+                &positions[odd.clone()],
+            ))
+            .map_err(|error| shifted(error, odd.start))?;
+        }
+        let mut sums = vec![Moments::default(); (tail - head) / BLOCK];
+        fill_blocks(&mut sums, SHARE, watch, |index, share| {
+            for (block, sums) in (index..).zip(share) {
+                let from = head + block * BLOCK;
+                let range = from..from + BLOCK;
+                *sums = Moments::of(Particles::new(&masses[range.clone()], &positions[range]))
+                    .map_err(|error| shifted(error, from))?;
+            }
+            Ok(())
+        })
+        .map_err(|halt| match halt {
+            Halt::Stopped => Error::Stopped,
+            Halt::Failed(error) => error,
+        })?;
+        let at = |index: usize| first + index as u64;
+        self.insert_loose(first, &masses[..head], &positions[..head])?;
+        for (block, sums) in sums.into_iter().enumerate() {
+            let start = at(head + block * BLOCK);
+            self.insert(start, start + WHOLE, Matter::Summed(sums))?;
+        }
+        self.insert_loose(at(tail), &masses[tail..], &positions[tail..])?;
+        self.is_placed |= start.is_some();
+        Ok(())
+    }
+
+    /// Adds what another accumulator holds.
+    ///
+    /// Chunks whose places were given keep them; those of an accumulator without places come after the last particle here.
+    /// Then the bits may depend on how the accumulators were merged, the result agrees within its bound.
+    ///
+    /// # Errors
+    /// When a particle with the same number is in both; then nothing is added.
+    pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
+        let shift = if other.is_placed { 0 } else { self.end() };
+        for (start, piece) in &other.pieces {
+            self.check_free(start + shift, piece.end + shift)?;
+        }
+        for (start, piece) in &other.pieces {
+            match &piece.matter {
+                Matter::Loose { masses, positions } => {
+                    self.insert_loose(start + shift, masses, positions)?;
+                }
+                Matter::Summed(_) => {
+                    self.insert(start + shift, piece.end + shift, piece.matter.clone())?;
+                }
+            }
+        }
+        self.is_placed |= other.is_placed;
+        Ok(())
+    }
+
+    /// The body of all particles so far; more may be added afterwards.
+    ///
+    /// # Errors
+    /// When particles before the last have not been added, or the total mass is not positive.
+    pub fn finish(&self) -> Result<RigidBody, Error> {
+        let mut next = 0;
+        for (&start, piece) in &self.pieces {
+            if start > next {
+                return Err(Error::MissingParticles {
+                    start: next,
+                    end: start,
+                });
+            }
+            next = piece.end;
+        }
+        // From the last on, the tree of `numerics::reduce`.
+        let mut total = Moments::default();
+        for piece in self.pieces.values().rev() {
+            total = piece.matter.moments()?.merged(&total);
+        }
+        let count = usize::try_from(self.count()).unwrap_or(usize::MAX);
+        if total.mass.high <= 0.0 {
+            let mass = total.mass.high;
+            return Err(Error::NoMass { count, mass });
+        }
+        RigidBody::from_second_moment(&total.rounded(depth(count)))
+    }
+
+    /// Nothing in `start..end` yet.
+    fn check_free(&self, start: u64, end: u64) -> Result<(), Error> {
+        match self.pieces.range(..end).next_back() {
+            Some((&from, piece)) if start < end && piece.end > start => Err(Error::Overlap {
+                start,
+                end,
+                from,
+                to: piece.end,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Particles, of any block or blocks.
+    fn insert_loose(
+        &mut self,
+        mut start: u64,
+        mut masses: &[f64],
+        mut positions: &[[f64; 3]],
+    ) -> Result<(), Error> {
+        while !masses.is_empty() {
+            let left = (start + 1).next_multiple_of(WHOLE) - start;
+            let count = usize::try_from(left).map_or(masses.len(), |left| left.min(masses.len()));
+            let end = start + count as u64;
+            let matter = Matter::Loose {
+                masses: masses[..count].to_vec(),
+                positions: positions[..count].to_vec(),
+            };
+            self.insert(start, end, matter)?;
+            (masses, positions, start) = (&masses[count..], &positions[count..], end);
+        }
+        Ok(())
+    }
+
+    /// A piece in its place, joined with its neighbours as far as it goes.
+    fn insert(&mut self, mut start: u64, mut end: u64, mut matter: Matter) -> Result<(), Error> {
+        loop {
+            if let Matter::Loose { .. } = matter
+                && end - start == WHOLE
+            {
+                matter = Matter::Summed(matter.moments()?);
+            }
+            let before = self.pieces.range(..start).next_back();
+            if let Some((&from, left)) = before
+                && left.end == start
+                && joins(&left.matter, &matter, [from, start, end])
+                && let Some(left) = self.pieces.remove(&from)
+            {
+                (matter, start) = (left.matter.joined(matter), from);
+            } else if let Some(right) = self.pieces.get(&end)
+                && joins(&matter, &right.matter, [start, end, right.end])
+                && let Some(right) = self.pieces.remove(&end)
+            {
+                (matter, end) = (matter.joined(right.matter), right.end);
+            } else {
+                self.pieces.insert(start, Piece { end, matter });
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Whether two pieces that meet become one: parts of the same block, the halves of a node of the tree, or sums of which
+/// one belongs to no tree, because its accumulator was appended.
+fn joins(left: &Matter, right: &Matter, [start, middle, end]: [u64; 3]) -> bool {
+    let is_node = |from: u64, to: u64| {
+        let count = to - from;
+        count.is_multiple_of(WHOLE)
+            && (count / WHOLE).is_power_of_two()
+            && from.is_multiple_of(count)
+    };
+    match (left, right) {
+        (Matter::Loose { .. }, Matter::Loose { .. }) => start / WHOLE == (end - 1) / WHOLE,
+        (Matter::Summed(_), Matter::Summed(_)) => {
+            is_node(start, end) && middle - start == end - middle
+                || !is_node(start, middle)
+                || !is_node(middle, end)
+        }
+        _ => false,
+    }
+}
+
+impl Matter {
+    fn moments(&self) -> Result<Moments, Error> {
+        match self {
+            Self::Loose { masses, positions } => Moments::of(Particles::new(masses, positions)),
+            Self::Summed(moments) => Ok(*moments),
+        }
+    }
+
+    /// Two pieces of one kind that meet.
+    fn joined(self, right: Self) -> Self {
+        match (self, right) {
+            (Self::Summed(left), Self::Summed(right)) => Self::Summed(left.merged(&right)),
+            (
+                Self::Loose {
+                    mut masses,
+                    mut positions,
+                },
+                Self::Loose {
+                    masses: more_masses,
+                    positions: more_positions,
+                },
+            ) => {
+                masses.extend(more_masses);
+                positions.extend(more_positions);
+                Self::Loose { masses, positions }
+            }
+            (left, _) => left,
+        }
+    }
+}
+
+/// Particles that a body may have; here their masses may all be zero.
+fn check_loose(particles: Particles<'_>) -> Result<(), Error> {
+    match check(particles) {
+        Err(Error::NoMass { .. }) => Ok(()),
+        checked => checked,
+    }
+}
+
+/// The error of part of a chunk, its particles counted from the chunk's first.
+fn shifted(error: Error, by: usize) -> Error {
+    match error {
+        Error::NegativeMass { index, mass } => Error::NegativeMass {
+            index: index + by,
+            mass,
+        },
+        error => error,
+    }
+}

@@ -1,0 +1,120 @@
+//! Bodies of particles by the thousand: molecules, fragments, the frames of a trajectory.
+
+use std::ops::ControlFlow;
+
+use super::{Watch, about_center, in_own_axes, is_thin, particles_watched};
+use crate::error::Error;
+use crate::mass::body::RigidBody;
+use crate::mass::second_moment::SecondMoment;
+use crate::numerics::eigen3::{Eigen3, eigen3_many};
+use crate::numerics::threads::{Halt, fill_blocks};
+
+/// Bodies whose tensors are decomposed side by side.
+const BATCH: usize = 64;
+
+/// A body of more particles than this is shared among the threads, the smaller ones are shared out to them.
+const LARGE: usize = 1 << 17;
+
+/// The particles of one body.
+#[derive(Clone, Copy, Debug)]
+pub struct Particles<'a> {
+    pub(crate) masses: &'a [f64],
+    pub(crate) positions: &'a [[f64; 3]],
+}
+
+impl<'a> Particles<'a> {
+    /// A mass for each position.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    #[must_use]
+    pub fn new(masses: &'a [f64], positions: &'a [[f64; 3]]) -> Self {
+        assert_eq!(masses.len(), positions.len(), "one position for each mass");
+        Self { masses, positions }
+    }
+}
+
+/// The bodies `0..count`, each with the bits it has alone; `row` tells the particles of each.
+///
+/// About every 20 ms `watch` gets the fraction done and may end the work.
+///
+/// # Errors
+/// The first body that cannot be, with its index, or [`Error::Stopped`].
+pub fn particle_stack<'a>(
+    count: usize,
+    row: impl Fn(usize) -> Particles<'a> + Sync,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<RigidBody>, (usize, Error)> {
+    let is_large = |index: usize| row(index).masses.len() > LARGE;
+    let mut bodies = vec![RigidBody::UNIT_POINT; count];
+    let outcome = fill_blocks(&mut bodies, BATCH, watch, |start, bodies| {
+        let small: Vec<usize> = (0..bodies.len()).filter(|k| !is_large(start + k)).collect();
+        batch(&small, &|k| row(start + k), bodies).map_err(|(k, error)| (start + k, error))
+    });
+    outcome.map_err(|halt| match halt {
+        Halt::Stopped => (0, Error::Stopped),
+        Halt::Failed(fault) => fault,
+    })?;
+    for index in (0..count).filter(|&index| is_large(index)) {
+        let Particles { masses, positions } = row(index);
+        bodies[index] =
+            particles_watched(masses, positions, watch).map_err(|error| (index, error))?;
+    }
+    Ok(bodies)
+}
+
+/// Some of at most [`BATCH`] bodies on the calling thread, their tensors decomposed together.
+fn batch<'a>(
+    which: &[usize],
+    row: &impl Fn(usize) -> Particles<'a>,
+    bodies: &mut [RigidBody],
+) -> Result<(), (usize, Error)> {
+    let watch = &mut |_: f64| ControlFlow::Continue(());
+    let mut moments = Vec::with_capacity(which.len());
+    for &k in which {
+        moments.push(about_center(row(k), watch).map_err(|error| (k, error))?);
+    }
+    decompose(which, &moments, bodies)?;
+    let thin: Vec<usize> = which
+        .iter()
+        .copied()
+        .filter(|&k| is_thin(&bodies[k]))
+        .collect();
+    moments.clear();
+    for &k in &thin {
+        moments.push(in_own_axes(row(k), &bodies[k], watch).map_err(|error| (k, error))?);
+    }
+    decompose(&thin, &moments, bodies)
+}
+
+/// The bodies with these second moments, each in its place.
+fn decompose(
+    which: &[usize],
+    moments: &[SecondMoment],
+    bodies: &mut [RigidBody],
+) -> Result<(), (usize, Error)> {
+    for ((&k, matter), spectrum) in which.iter().zip(moments).zip(spectra(moments)) {
+        bodies[k] = RigidBody::with_spectrum(matter, &spectrum).map_err(|error| (k, error))?;
+    }
+    Ok(())
+}
+
+/// The principal values and axes of at most [`BATCH`] second moments.
+fn spectra(moments: &[SecondMoment]) -> impl Iterator<Item = Eigen3> + use<> {
+    let mut matrices = [[0.0; 9]; BATCH];
+    let (mut values, mut vectors) = ([[0.0; 3]; BATCH], [[0.0; 9]; BATCH]);
+    let count = moments.len();
+    for (matrix, matter) in matrices.iter_mut().zip(moments) {
+        // The columns of a symmetric matrix are its rows, and only the lower triangle of rows is read.
+        matrix.copy_from_slice(matter.central.transpose().as_slice());
+    }
+    eigen3_many(
+        &matrices[..count],
+        &mut values[..count],
+        &mut vectors[..count],
+    );
+    (0..count).map(move |k| Eigen3 {
+        values: values[k],
+        vectors: nalgebra::Matrix3::from_row_slice(&vectors[k]),
+    })
+}

@@ -1,0 +1,165 @@
+//! Sums over particles, eight particles side by side.
+//!
+//! Particle i goes to the virtual lane i mod 8 of its block, see [`reduce`](crate::numerics::reduce).
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::double_double::two_sum;
+use crate::numerics::lane::Lane;
+use crate::numerics::reduce::{LANES, merge_lanes};
+
+/// What one particle adds to `K` sums.
+pub(crate) trait Addend<const K: usize>: Copy + Sync {
+    /// The sums with the particle of this mass at this position. Mark the implementation `#[inline(always)]`.
+    fn add<L: Lane>(&self, mass: L, position: [L; 3], sums: [L; K]) -> [L; K];
+
+    /// Two sets of sums as one.
+    fn merge(a: [f64; K], b: [f64; K]) -> [f64; K] {
+        std::array::from_fn(|k| a[k] + b[k])
+    }
+}
+
+/// The sums over one block of particles.
+pub(crate) fn block_sums<const K: usize, A: Addend<K>>(
+    masses: &[f64],
+    positions: &[[f64; 3]],
+    addend: A,
+) -> [f64; K] {
+    let lanes = dispatch(Block {
+        masses,
+        positions,
+        addend,
+    });
+    merge_lanes(lanes, A::merge)
+}
+
+struct Block<'a, const K: usize, A> {
+    masses: &'a [f64],
+    positions: &'a [[f64; 3]],
+    addend: A,
+}
+
+impl<const K: usize, A: Addend<K>> Kernel for Block<'_, K, A> {
+    type Output = [[f64; K]; LANES];
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Self::Output {
+        let mut sums = [[L::new(0.0); LANES]; K];
+        let (masses, odd_masses) = self.masses.as_chunks::<LANES>();
+        let (positions, odd_positions) = self.positions.as_chunks::<LANES>();
+        for (masses, positions) in masses.iter().zip(positions) {
+            add_eight(masses, positions, &self.addend, &mut sums);
+        }
+        if let Some(&last) = odd_positions.last() {
+            // Filled up with particles of no mass, which add exactly zero.
+            let (mut masses, mut positions) = ([0.0; LANES], [last; LANES]);
+            masses[..odd_masses.len()].copy_from_slice(odd_masses);
+            positions[..odd_positions.len()].copy_from_slice(odd_positions);
+            add_eight(&masses, &positions, &self.addend, &mut sums);
+        }
+        std::array::from_fn(|lane| std::array::from_fn(|k| sums[k][lane].get()))
+    }
+}
+
+/// One particle to each lane. All of its sums in one loop over the lanes: a loop so long is not unrolled before it is
+/// vectorised, and the sums stay in registers.
+#[inline(always)]
+fn add_eight<const K: usize, A: Addend<K>, L: Lane>(
+    masses: &[f64; LANES],
+    positions: &[[f64; 3]; LANES],
+    addend: &A,
+    sums: &mut [[L; LANES]; K],
+) {
+    for lane in 0..LANES {
+        let mut own = [L::new(0.0); K];
+        let mut k = 0;
+        while k < K {
+            own[k] = sums[k][lane];
+            k += 1;
+        }
+        let [x, y, z] = positions[lane];
+        let r = [L::new(x), L::new(y), L::new(z)];
+        let own = addend.add(L::new(masses[lane]), r, own);
+        let mut k = 0;
+        while k < K {
+            sums[k][lane] = own[k];
+            k += 1;
+        }
+    }
+}
+
+/// The sums of [`Central`] and [`Turned`]: m; m y (3); m y yᵀ (xx, xy, xz, yy, yz, zz); masses below zero.
+pub(crate) const MOMENTS: usize = 11;
+
+/// Moments about a point, in body axes: `y = r − reference`.
+#[derive(Clone, Copy)]
+pub(crate) struct Central {
+    pub(crate) reference: Vector3<f64>,
+}
+
+impl Addend<MOMENTS> for Central {
+    #[inline(always)]
+    fn add<L: Lane>(&self, mass: L, r: [L; 3], sums: [L; MOMENTS]) -> [L; MOMENTS] {
+        let [x, y, z] = r;
+        let c = &self.reference;
+        let y = [x - L::new(c.x), y - L::new(c.y), z - L::new(c.z)];
+        moments(mass, y, sums)
+    }
+}
+
+/// Moments about a point in the given axes: `y = axesᵀ (r − reference)`, with the rounding errors of difference and
+/// products carried along. Across the thin direction large terms cancel, and what is left must be that of the stored
+/// coordinates.
+#[derive(Clone, Copy)]
+pub(crate) struct Turned {
+    pub(crate) reference: Vector3<f64>,
+    pub(crate) axes: Matrix3<f64>,
+}
+
+impl Addend<MOMENTS> for Turned {
+    #[inline(always)]
+    fn add<L: Lane>(&self, mass: L, r: [L; 3], sums: [L; MOMENTS]) -> [L; MOMENTS] {
+        let c = &self.reference;
+        let (d0, low0) = two_sum(r[0], L::new(-c.x));
+        let (d1, low1) = two_sum(r[1], L::new(-c.y));
+        let (d2, low2) = two_sum(r[2], L::new(-c.z));
+        let mut y = [mass; 3];
+        let mut k = 0;
+        while k < 3 {
+            let axis = [
+                L::new(self.axes[(0, k)]),
+                L::new(self.axes[(1, k)]),
+                L::new(self.axes[(2, k)]),
+            ];
+            let (p0, e0) = d0.two_product(axis[0]);
+            let (p1, e1) = d1.two_product(axis[1]);
+            let (p2, e2) = d2.two_product(axis[2]);
+            let (partial, f0) = two_sum(p0, p1);
+            let (sum, f1) = two_sum(partial, p2);
+            let low = low0.mul_add(axis[0], low1.mul_add(axis[1], low2 * axis[2]));
+            y[k] = sum + (low + (e0 + e1 + e2) + (f0 + f1));
+            k += 1;
+        }
+        moments(mass, y, sums)
+    }
+}
+
+#[inline(always)]
+fn moments<L: Lane>(m: L, [x, y, z]: [L; 3], sums: [L; MOMENTS]) -> [L; MOMENTS] {
+    let [s, sx, sy, sz, xx, xy, xz, yy, yz, zz, below] = sums;
+    let (mx, my, mz) = (m * x, m * y, m * z);
+    [
+        s + m,
+        sx + mx,
+        sy + my,
+        sz + mz,
+        mx.mul_add(x, xx),
+        mx.mul_add(y, xy),
+        mx.mul_add(z, xz),
+        my.mul_add(y, yy),
+        my.mul_add(z, yz),
+        mz.mul_add(z, zz),
+        below + m.min(L::new(0.0)),
+    ]
+}

@@ -1,0 +1,189 @@
+//! The class `MassAccumulator`.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use polhode::mass::MassAccumulator;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+
+use crate::errors::to_py;
+use crate::particles::{ParticleArrays, watched};
+use crate::rigid_body::PyRigidBody;
+use crate::stack::Stack;
+
+/// Particles in chunks: for files larger than memory, streams, and many machines at a time.
+///
+/// Add the chunks, then `finish` gives the body of all of them; what is kept meanwhile is a few
+/// kilobytes. Second moments are kept in twice the precision, since there is no second pass over a
+/// stream: a rod 1e-8 as thick as long keeps its smallest moment to 1e-14. However the particles are
+/// cut into chunks, and in whatever order chunks with a `start` come, the result has the same bits.
+///
+/// Accumulators pickle: each worker adds its own chunks, and their accumulators are merged.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> from polhode import MassAccumulator
+/// >>> particles = MassAccumulator()
+/// >>> for x in range(5):
+/// ...     particles.add([1.0, 1.0], [(x, 1, 0), (x, -1, 0)])
+/// >>> particles.count
+/// 10
+/// >>> particles.finish().principal_moments
+/// array([10., 20., 30.])
+///
+/// A file of n rows (mass, x, y, z) that does not fit into memory::
+///
+///     rows = np.memmap(path, dtype=np.float64).reshape(-1, 4)
+///     for start in range(0, len(rows), 1 << 20):
+///         chunk = rows[start : start + (1 << 20)]
+///         particles.add(chunk[:, 0], chunk[:, 1:])
+#[pyclass(name = "MassAccumulator", module = "polhode", frozen)]
+#[derive(Default)]
+pub(crate) struct PyMassAccumulator {
+    /// Locked only without the interpreter lock, which whoever holds it may be waiting for.
+    sums: Mutex<MassAccumulator>,
+}
+
+#[pymethods]
+impl PyMassAccumulator {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    /// Add particles.
+    ///
+    /// Parameters
+    /// ----------
+    /// masses : array_like, shape (n,)
+    /// positions : array_like, shape (n, 3)
+    /// start : int, optional
+    ///     The number of the first of these particles in the whole; by default they come after the last one.
+    ///     With it chunks may come in any order, and from several accumulators that are merged.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     Naming the particle, counted within the chunk, whose mass is negative.
+    /// PolhodeError
+    ///     When a particle with the same number is there already. After any error nothing of the chunk is
+    ///     added.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import MassAccumulator
+    /// >>> particles = MassAccumulator()
+    /// >>> particles.add([3.0], [(4, 0, 0)], start=1)
+    /// >>> particles.add([1.0], [(0, 0, 0)], start=0)
+    /// >>> particles.finish().center_of_mass
+    /// array([3., 0., 0.])
+    #[pyo3(signature = (masses, positions, start=None))]
+    fn add(
+        &self,
+        py: Python<'_>,
+        masses: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        start: Option<i128>,
+    ) -> PyResult<()> {
+        let arrays = ParticleArrays::read(masses, positions, "n")?;
+        let rows = arrays.rows()?;
+        let start = start.map(number_of_particle).transpose()?;
+        let added = watched(py, |watch| {
+            self.lock().add(rows.masses, rows.positions, start, watch)
+        })?;
+        added.map_err(|error| to_py(py, &error))
+    }
+
+    /// Add what another accumulator holds, which stays as it is.
+    ///
+    /// Chunks that were added with a `start` keep their places. Those of an accumulator without places come
+    /// after the last particle here; then the last bits may depend on how accumulators were merged.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : MassAccumulator
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     When a particle with the same number is in both; then nothing is added.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import MassAccumulator
+    /// >>> left, right = MassAccumulator(), MassAccumulator()
+    /// >>> left.add([1.0], [(0, 0, 0)])
+    /// >>> right.add([3.0], [(4, 0, 0)])
+    /// >>> left.merge(right)
+    /// >>> left.finish().principal_moments
+    /// array([ 0., 12., 12.])
+    fn merge(&self, py: Python<'_>, other: &Self) -> PyResult<()> {
+        let merged = py.detach(|| {
+            let other = other.lock().clone();
+            self.lock().merge(&other)
+        });
+        merged.map_err(|error| to_py(py, &error))
+    }
+
+    /// The body of all particles so far; more may be added afterwards.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     When the total mass is not positive.
+    /// PolhodeError
+    ///     When particles before the last have not been added.
+    fn finish(&self, py: Python<'_>) -> PyResult<PyRigidBody> {
+        let body = py.detach(|| self.lock().finish());
+        Ok(Stack::one(body.map_err(|error| to_py(py, &error))?).into())
+    }
+
+    /// How many particles have been added.
+    #[getter]
+    fn count(&self, py: Python<'_>) -> u64 {
+        py.detach(|| self.lock().count())
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("<MassAccumulator of {} particles>", self.count(py))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restore = py.get_type::<Self>().getattr("_from_bytes")?;
+        let bytes = py.detach(|| self.lock().to_bytes());
+        Ok((restore, PyTuple::new(py, [PyBytes::new(py, &bytes)])?))
+    }
+
+    /// The accumulator that `__reduce__` took apart; for pickle.
+    #[staticmethod]
+    fn _from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let sums = MassAccumulator::from_bytes(bytes).map_err(|error| to_py(py, &error))?;
+        Ok(Self {
+            sums: Mutex::new(sums),
+        })
+    }
+}
+
+impl PyMassAccumulator {
+    /// Nothing that holds the lock can panic between two changes.
+    fn lock(&self) -> MutexGuard<'_, MassAccumulator> {
+        self.sums.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn number_of_particle(start: i128) -> PyResult<u64> {
+    u64::try_from(start).map_err(|_| {
+        PyValueError::new_err(format!(
+            "start: expected the number of a particle, 0 or more, got {start}"
+        ))
+    })
+}

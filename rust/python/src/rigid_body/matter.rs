@@ -1,0 +1,243 @@
+//! Bodies of particles and of voxels.
+
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use polhode::mass::particles::{labelled_particles, particle_stack, particles_watched};
+use polhode::mass::voxels::{Grid, Voxel, voxels};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::PyRigidBody;
+use crate::arrays::{Argument, floats, read, read_or};
+use crate::errors::{at_row, to_py};
+use crate::particles::{ParticleArrays, read_labels, watched};
+use crate::stack::{Broadcast, Stack, tuple};
+
+#[pymethods]
+impl PyRigidBody {
+    /// Body made of particles, or a stack of such bodies.
+    ///
+    /// ``I = Σ m (r² 1 − r rᵀ)``, summed about a point of the body, so that it does not matter where the
+    /// body stands; the smallest moment of a thin body is as accurate as the coordinates are. Arrays of
+    /// C-ordered float64 are read where they are, and large ones on all cores; the result has the same bits
+    /// for any number of threads, and for a body alone or in any stack.
+    ///
+    /// Parameters
+    /// ----------
+    /// masses : array_like, shape (..., n)
+    ///     None negative, their sum positive.
+    /// positions : array_like, shape (..., n, 3)
+    ///     Leading axes broadcast against those of `masses`: the frames of a trajectory, shape (T, n, 3), take
+    ///     masses of shape (n,).
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     Naming the particle whose mass is negative.
+    ///
+    /// See Also
+    /// --------
+    /// from_labelled_particles : many bodies of different sizes in one list of particles.
+    /// polhode.MassAccumulator : more particles than fit into memory.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> dumbbell = RigidBody.from_particles([1.0, 3.0], [(0, 0, 0), (4, 0, 0)])
+    /// >>> dumbbell.center_of_mass
+    /// array([3., 0., 0.])
+    /// >>> dumbbell.principal_moments
+    /// array([ 0., 12., 12.])
+    ///
+    /// Two frames of the same two particles:
+    ///
+    /// >>> frames = [[(0, 0, 0), (4, 0, 0)], [(0, 0, 0), (0, 8, 0)]]
+    /// >>> RigidBody.from_particles([1.0, 3.0], frames).principal_moments
+    /// array([[ 0., 12., 12.],
+    ///        [ 0., 48., 48.]])
+    #[staticmethod]
+    fn from_particles(
+        py: Python<'_>,
+        masses: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let arrays = ParticleArrays::read(masses, positions, "..., n")?;
+        let grid = Broadcast::of(["masses", "positions"], arrays.shapes())?;
+        let rows = arrays.rows()?;
+        let bodies = watched(py, |watch| {
+            if grid.shape.is_empty() {
+                let body = particles_watched(rows.masses, rows.positions, watch);
+                body.map(|body| vec![body]).map_err(|error| (0, error))
+            } else {
+                particle_stack(grid.len(), |row| rows.row(grid.operands(row)), watch)
+            }
+        })?;
+        stack(py, grid.shape, bodies)
+    }
+
+    /// Bodies of particles that say which body they belong to: haloes, fragments, residues.
+    ///
+    /// Parameters
+    /// ----------
+    /// masses : array_like, shape (n,)
+    /// positions : array_like, shape (n, 3)
+    /// labels : array_like of int, shape (n,)
+    ///     The number of each particle's body, counted from 0, in any order; −1 for a particle of no body.
+    ///     Every number up to the largest must own some mass: for arbitrary labels pass the inverse of
+    ///     ``numpy.unique(labels, return_inverse=True)``.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///     A stack with one body for each label, each with the bits that `from_particles` gives its
+    ///     particles alone.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> positions = [(0, 0, 0), (5, 0, 0), (4, 0, 0), (5, 2, 0), (9, 9, 9)]
+    /// >>> bodies = RigidBody.from_labelled_particles([1, 2, 3, 2, 7], positions, [0, 1, 0, 1, -1])
+    /// >>> bodies.mass
+    /// array([4., 4.])
+    /// >>> bodies.principal_moments
+    /// array([[ 0., 12., 12.],
+    ///        [ 0.,  4.,  4.]])
+    #[staticmethod]
+    fn from_labelled_particles(
+        py: Python<'_>,
+        masses: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        labels: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let arrays = ParticleArrays::read(masses, positions, "n")?;
+        let rows = arrays.rows()?;
+        let labels = read_labels(labels, rows.masses.len())?;
+        let labels = labels.as_slice()?;
+        let bodies = watched(py, |watch| {
+            labelled_particles(rows.masses, rows.positions, labels, watch)
+        })?;
+        match bodies {
+            Err((None, error)) => Err(to_py(py, &error)),
+            Err((Some(label), error)) => {
+                let error = to_py(py, &error);
+                let message = format!("label {label}: {}", error.value(py));
+                Err(PyErr::from_type(error.get_type(py), message))
+            }
+            Ok(bodies) => stack(py, vec![bodies.len()], Ok(bodies)),
+        }
+    }
+
+    /// Body given by its density on a rectangular grid, each cell a homogeneous box.
+    ///
+    /// Exact for such cells, their own extent included: the second moment ``m h²/12`` of a cell along each of its
+    /// edges, which sums over points would lose.
+    ///
+    /// Parameters
+    /// ----------
+    /// density : array_like, shape (..., nx, ny, nz)
+    ///     Mass per volume, not negative; ``density[i, j, k]`` runs along x, y, z. C-ordered float32 and
+    ///     float64 are read where they are; sums are taken in double precision.
+    /// spacing : float or array_like, shape (3,)
+    ///     Edges of a cell.
+    /// origin : array_like, shape (3,), optional
+    ///     Centre of the cell ``density[0, 0, 0]``.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     Naming the cell whose density is negative.
+    ///
+    /// Examples
+    /// --------
+    /// A box of 1 × 2 × 3 cut into any cells is the same box:
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody
+    /// >>> box = RigidBody.from_voxels(np.full((4, 4, 4), 2.0), spacing=(0.25, 0.5, 0.75))
+    /// >>> box.mass
+    /// 12.0
+    /// >>> box.principal_moments
+    /// array([ 5., 10., 13.])
+    #[staticmethod]
+    #[pyo3(signature = (density, spacing, origin=Argument::default()), text_signature = "(density, spacing, origin=(0.0, 0.0, 0.0))")]
+    fn from_voxels(
+        py: Python<'_>,
+        density: &Bound<'_, PyAny>,
+        spacing: &Bound<'_, PyAny>,
+        origin: Argument<'_>,
+    ) -> PyResult<Self> {
+        let spacing = match read::<f64>(spacing, "spacing")? {
+            one if one.is_one() => [one[0]; 3],
+            three if three.shape == [3] => [three[0], three[1], three[2]],
+            other => {
+                let message = format!(
+                    "spacing: expected one edge or shape (3,), got {}",
+                    tuple(&other.shape)
+                );
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        let origin: Stack<[f64; 3]> = read_or(&origin, "origin", [0.0; 3])?;
+        if !origin.is_one() {
+            let message = format!("origin: expected shape (3,), got {}", tuple(&origin.shape));
+            return Err(PyValueError::new_err(message));
+        }
+        if let Ok(array) = density.cast::<PyArrayDyn<f32>>()
+            && array.is_c_contiguous()
+        {
+            let array = array.readonly();
+            return of_voxels(py, array.as_slice()?, array.shape(), spacing, origin[0]);
+        }
+        let array = floats(density, "density")?;
+        of_voxels(py, array.as_slice()?, array.shape(), spacing, origin[0])
+    }
+}
+
+/// The bodies of densities of this shape.
+fn of_voxels<T: Voxel>(
+    py: Python<'_>,
+    density: &[T],
+    shape: &[usize],
+    spacing: [f64; 3],
+    origin: [f64; 3],
+) -> PyResult<PyRigidBody> {
+    let Some((leading, &cells)) = shape.split_last_chunk() else {
+        let message = format!(
+            "density: expected shape (..., nx, ny, nz), got {}",
+            tuple(shape)
+        );
+        return Err(PyValueError::new_err(message));
+    };
+    let size: usize = cells.iter().product();
+    let bodies = watched(py, |watch| {
+        let grids = (0..leading.iter().product()).map(|row| Grid {
+            density: &density[row * size..(row + 1) * size],
+            shape: cells,
+            spacing,
+            origin,
+        });
+        (grids.enumerate())
+            .map(|(row, grid)| voxels(&grid, watch).map_err(|error| (row, error)))
+            .collect()
+    })?;
+    stack(py, leading.to_vec(), bodies)
+}
+
+/// The bodies under their shape, or the error with its row.
+fn stack(
+    py: Python<'_>,
+    shape: Vec<usize>,
+    bodies: Result<Vec<polhode::RigidBody>, (usize, polhode::Error)>,
+) -> PyResult<PyRigidBody> {
+    match bodies {
+        Ok(rows) => Ok(Stack { shape, rows }.into()),
+        Err((row, error)) => Err(at_row(&shape, row, &to_py(py, &error), py)),
+    }
+}
