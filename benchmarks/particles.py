@@ -93,7 +93,6 @@ def rows() -> Iterator[Row]:
         compare=same_body,
         items=COUNT,
     )
-    del thin
 
     labels = rng.integers(0, 1000, 1_000_000)
     some = slice(1_000_000)

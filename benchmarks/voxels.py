@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def separable(density: Any) -> Any:
-    """Inertia about the centre of mass of unit cells from the three plane sums, each cell's own extent included."""
+    """Inertia of unit cells about the centre of mass, from three plane sums and each cell's own extent."""
     x, y, z = (np.arange(n) - (n - 1) / 2 for n in density.shape)
     xy, xz, yz = (density.sum(axis, dtype=np.float64) for axis in (2, 1, 0))
     mass = xy.sum()

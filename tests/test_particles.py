@@ -227,6 +227,46 @@ class TestLabels:
             RigidBody.from_labelled_particles([1.0], [(0, 0, 0)], [0.0])
 
 
+INTERRUPT = """
+import os, signal, threading, time
+import numpy as np
+from polhode import MassAccumulator, RigidBody
+masses, frames = np.ones(200_000), np.random.default_rng(1).normal(size=(1, 200_000, 3))
+frames = np.broadcast_to(frames, (60, 200_000, 3)).copy()
+particles = MassAccumulator()
+struck = []
+def strike():
+    struck.append(time.perf_counter())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer(0.5, strike).start()
+try:
+    while not struck or time.perf_counter() < struck[0] + 5:
+        {call}
+except KeyboardInterrupt:
+    print(time.perf_counter() - struck[0])
+"""
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "RigidBody.from_particles(masses, frames)",
+        "particles.add(np.ones(12_000_000), frames.reshape(-1, 3))",
+        "RigidBody.from_voxels(frames.reshape(300, 300, 400) ** 2, 1.0)",
+    ],
+)
+def test_ctrl_c_is_heard_within_a_fifth_of_a_second(call: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPT.format(call=call)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < 0.2
+
+
 LARGE = """
 import hashlib, numpy as np
 from polhode import MassAccumulator, RigidBody

@@ -41,22 +41,6 @@ impl PartialEq for RigidBody {
 }
 
 impl RigidBody {
-    /// A particle of unit mass at the origin: what stands in a stack until it is filled.
-    pub(super) const UNIT_POINT: Self = Self {
-        mass: 1.0,
-        center_of_mass: Vector3::new(0.0, 0.0, 0.0),
-        inertia: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        principal: PrincipalAxes {
-            moments: [0.0; 3],
-            axes: Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
-        },
-        error_bound: ErrorBound {
-            mass: 0.0,
-            center_of_mass: 0.0,
-            inertia: 0.0,
-        },
-    };
-
     /// From mass, tensor about the centre of mass C, and C.
     ///
     /// `rtol` admits tables printed to few digits: asymmetry and violations of the triangle inequality up to that

@@ -19,6 +19,7 @@ impl MassAccumulator {
         let mut bytes = HEADER.to_vec();
         let mut put = |number: u64| bytes.extend(number.to_le_bytes());
         put(u64::from(self.is_placed));
+        put(self.pieces.len() as u64);
         for (&start, piece) in &self.pieces {
             put(start);
             put(piece.end);
@@ -49,9 +50,8 @@ impl MassAccumulator {
             return Err(fault);
         }
         let mut numbers = numbers.iter().map(|bytes| u64::from_le_bytes(*bytes));
-        let is_placed = match numbers.next() {
-            Some(flag @ (0 | 1)) => flag == 1,
-            _ => return Err(fault),
+        let (Some(is_placed @ (0 | 1)), Some(count)) = (numbers.next(), numbers.next()) else {
+            return Err(fault);
         };
         let mut pieces = BTreeMap::new();
         let mut free = 0;
@@ -72,7 +72,13 @@ impl MassAccumulator {
             let matter = matter.ok_or(fault.clone())?;
             pieces.insert(start, Piece { end, matter });
         }
-        Ok(Self { pieces, is_placed })
+        if pieces.len() as u64 != count {
+            return Err(fault);
+        }
+        Ok(Self {
+            pieces,
+            is_placed: is_placed == 1,
+        })
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use nalgebra::{Matrix3, Vector3};
+
 use super::{Watch, about_center, in_own_axes, is_thin, particles_watched};
 use crate::error::Error;
 use crate::mass::body::RigidBody;
@@ -46,7 +48,10 @@ pub fn particle_stack<'a>(
     watch: &mut Watch<'_>,
 ) -> Result<Vec<RigidBody>, (usize, Error)> {
     let is_large = |index: usize| row(index).masses.len() > LARGE;
-    let mut bodies = vec![RigidBody::UNIT_POINT; count];
+    // A point of unit mass stands in each place until it is filled.
+    let point =
+        RigidBody::from_principal(1.0, &[0.0; 3], &Matrix3::identity(), &Vector3::zeros(), 0.0);
+    let mut bodies = vec![point.map_err(|error| (0, error))?; count];
     let outcome = fill_blocks(&mut bodies, BATCH, watch, |start, bodies| {
         let small: Vec<usize> = (0..bodies.len()).filter(|k| !is_large(start + k)).collect();
         batch(&small, &|k| row(start + k), bodies).map_err(|(k, error)| (start + k, error))
@@ -115,6 +120,6 @@ fn spectra(moments: &[SecondMoment]) -> impl Iterator<Item = Eigen3> + use<> {
     );
     (0..count).map(move |k| Eigen3 {
         values: values[k],
-        vectors: nalgebra::Matrix3::from_row_slice(&vectors[k]),
+        vectors: Matrix3::from_row_slice(&vectors[k]),
     })
 }
