@@ -24,7 +24,12 @@ from polhode import RigidBody, loads, solids
 ROOT = Path(__file__).resolve().parents[1]
 MODULES = [
     "polhode",
+    "polhode.forms",
+    "polhode.laminae",
+    "polhode.regions",
+    "polhode.rods",
     "polhode.solids",
+    "polhode.validity",
     "polhode.loads",
     "polhode.euler_angles",
     "polhode.equimomental",
@@ -90,7 +95,8 @@ class TestNames:
 
     def test_the_contract_of_this_milestone(self) -> None:
         names = """
-            from_principal from_particles from_mesh from_file stack mass center_of_mass inertia principal
+            from_principal from_positive_products from_particles from_mesh from_tetrahedra from_density
+            from_radial_density from_file combined stack mass center_of_mass inertia principal
             principal_moments radii_of_gyration inertia_about moment_about principal_about translated rotated
             scaled isclose kinetic_energy angular_momentum angular_acceleration torque simulate shape
             point_velocity point_acceleration pivot_reaction stability equimomental_particles

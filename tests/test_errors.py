@@ -12,12 +12,15 @@ from polhode import (
     RigidBody,
     errors,
     euler_angles,
+    forms,
     kinematics,
+    laminae,
     loads,
     parallel_axis,
     principal_axes,
     solids,
     tops,
+    validity,
 )
 
 BODY = solids.box((1.0, 2.0, 3.0), mass=1.0)
@@ -71,6 +74,17 @@ ARRAYS: dict[str, tuple[str, Callable[[Any], object], Any]] = {
     "simulate velocity": ("velocity", lambda x: BODY.simulate([0, 1], (1, 2, 3), velocity=x), VECTOR),
     "constant_torque": ("vector", loads.constant_torque, VECTOR),
     "size": ("size", lambda x: solids.box(x, mass=1.0), VECTOR),
+    "polygon": ("vertices", lambda x: laminae.polygon(x, mass=1.0), np.eye(3)[:, :2]),
+    "nodes": (
+        "nodes",
+        lambda x: RigidBody.from_tetrahedra(x, [(0, 1, 2, 3)], density=1.0),
+        np.vstack([np.zeros(3), EYE]),
+    ),
+    "products": ("products", lambda x: RigidBody.from_positive_products(1.0, np.ones(3), x), np.zeros(3)),
+    "pseudo_inertia": ("pseudo_inertia", forms.from_pseudo_inertia, np.eye(4)),
+    "spatial_inertia": ("spatial_inertia", forms.from_spatial_inertia, np.eye(6)),
+    "parameters": ("parameters", forms.from_log_cholesky, np.zeros(10)),
+    "low": ("low", lambda x: validity.fit_in_box(BODY, x, np.ones(3)).margin, -np.ones(3)),
     "angles": ("angles", euler_angles.to_quaternion, VECTOR),
     "quaternion": ("quaternion", euler_angles.from_quaternion, UNIT),
     "vertices": ("vertices", lambda x: RigidBody.from_mesh(x, FACES, mass=1.0, orient=True), POINTS),

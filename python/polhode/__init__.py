@@ -4,11 +4,16 @@ from polhode import (
     equimomental,
     errors,
     euler_angles,
+    forms,
     kinematics,
+    laminae,
     loads,
     parallel_axis,
+    regions,
+    rods,
     solids,
     tops,
+    validity,
 )
 from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
 from polhode.results import (
@@ -35,11 +40,16 @@ __all__ = [
     "equimomental",
     "errors",
     "euler_angles",
+    "forms",
     "kinematics",
+    "laminae",
     "loads",
     "parallel_axis",
     "principal_axes",
     "principal_moments",
+    "regions",
+    "rods",
     "solids",
     "tops",
+    "validity",
 ]

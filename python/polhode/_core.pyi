@@ -20,43 +20,80 @@ from polhode.results import (
 __all__ = [
     "Load",
     "MassAccumulator",
+    "Region",
     "RigidBody",
     "__version__",
     "angular_velocity_from_euler_rates",
+    "annulus",
+    "arc",
     "box",
     "canonical_axes",
+    "capsule",
     "classify_tops",
     "cone",
     "constant_torque",
     "cube",
     "cylinder",
+    "disk",
+    "ellipse",
     "ellipsoid",
     "euler_angles_from_quaternion",
     "euler_rates",
     "free_precession",
+    "from_log_cholesky",
+    "from_parameters",
+    "from_pseudo_inertia",
+    "from_spatial_inertia",
+    "frustum",
+    "hemisphere",
+    "hollow_sphere",
     "inertia_from_center_of_mass",
     "inertia_to_center_of_mass",
     "least_spin",
+    "nearest_valid",
+    "polygon",
     "principal_axes",
     "principal_derivative",
     "principal_gaps",
     "principal_moments",
+    "prism",
+    "pyramid",
     "quaternion_from_euler_angles",
     "quaternion_from_matrix",
     "ray_kappa",
     "read_plates",
     "read_stl",
+    "rectangle",
+    "region_ball",
+    "region_box",
+    "region_cylinder",
+    "region_ellipsoid",
+    "region_mesh",
+    "ring",
+    "rod",
     "rotate",
     "sphere",
     "steady_precession",
     "stick",
     "surface_area",
+    "tetrahedron",
+    "to_log_cholesky",
+    "to_parameters",
+    "to_positive_products",
+    "to_pseudo_inertia",
+    "to_spatial_inertia",
     "torque_callback",
+    "torus",
     "transport",
+    "triangle",
+    "tube",
+    "wedge",
+    "within_box",
 ]
 
 _Floats: TypeAlias = NDArray[np.float64]
 _About: TypeAlias = Literal["center_of_mass", "origin"] | ArrayLike
+_SpatialOrder: TypeAlias = Literal["angular-linear", "linear-angular"]
 _Attitude: TypeAlias = ArrayLike | SupportsQuaternion
 
 __version__: str
@@ -81,6 +118,39 @@ class RigidBody:
         center_of_mass: ArrayLike = (0.0, 0.0, 0.0),
         *,
         rtol: float | None = None,
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_positive_products(
+        mass: ArrayLike,
+        moments: ArrayLike,
+        products: ArrayLike,
+        center_of_mass: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        rtol: float | None = None,
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_tetrahedra(
+        nodes: ArrayLike,
+        cells: ArrayLike,
+        *,
+        density: ArrayLike,
+        at: Literal["cells", "nodes"] | None = None,
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_density(
+        density: Callable[[_Floats], ArrayLike],
+        bounds: Region | ArrayLike,
+        *,
+        rtol: float = 1e-9,
+        max_evaluations: int = 10_000_000,
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_radial_density(
+        density: Callable[[_Floats], ArrayLike],
+        radii: ArrayLike,
+        *,
+        rtol: float = 1e-9,
+        max_evaluations: int = 1_000_000,
     ) -> RigidBody: ...
     @staticmethod
     def from_particles(masses: ArrayLike, positions: ArrayLike) -> RigidBody: ...
@@ -196,9 +266,15 @@ class RigidBody:
     def __iter__(self) -> Iterator[RigidBody]: ...
     def __add__(self, other: RigidBody, /) -> RigidBody: ...
     def __radd__(self, other: int, /) -> RigidBody: ...
+    def __sub__(self, other: RigidBody, /) -> RigidBody: ...
+    def __rsub__(self, other: RigidBody, /) -> RigidBody: ...
+    def combined(self, axis: int | tuple[int, ...] | None = None) -> RigidBody: ...
     def __copy__(self) -> RigidBody: ...
     def __deepcopy__(self, memo: object, /) -> RigidBody: ...
     def __hash__(self) -> int: ...
+
+@final
+class Region: ...
 
 @final
 class MassAccumulator:
@@ -240,6 +316,112 @@ def cylinder(
 def cone(
     radius: ArrayLike, height: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
 ) -> RigidBody: ...
+def hollow_sphere(
+    inner_radius: ArrayLike,
+    outer_radius: ArrayLike,
+    *,
+    mass: ArrayLike | None = None,
+    density: ArrayLike | None = None,
+) -> RigidBody: ...
+def tube(
+    inner_radius: ArrayLike,
+    outer_radius: ArrayLike,
+    height: ArrayLike,
+    *,
+    mass: ArrayLike | None = None,
+    density: ArrayLike | None = None,
+) -> RigidBody: ...
+def frustum(
+    bottom_radius: ArrayLike,
+    top_radius: ArrayLike,
+    height: ArrayLike,
+    *,
+    mass: ArrayLike | None = None,
+    density: ArrayLike | None = None,
+) -> RigidBody: ...
+def capsule(
+    radius: ArrayLike, length: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def torus(
+    major_radius: ArrayLike,
+    minor_radius: ArrayLike,
+    *,
+    mass: ArrayLike | None = None,
+    density: ArrayLike | None = None,
+) -> RigidBody: ...
+def hemisphere(
+    radius: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def tetrahedron(
+    side: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def prism(
+    sides: ArrayLike,
+    radius: ArrayLike,
+    height: ArrayLike,
+    *,
+    mass: ArrayLike | None = None,
+    density: ArrayLike | None = None,
+) -> RigidBody: ...
+def pyramid(
+    size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def wedge(
+    size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def disk(
+    radius: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def annulus(
+    inner_radius: ArrayLike,
+    outer_radius: ArrayLike,
+    *,
+    mass: ArrayLike | None = None,
+    density: ArrayLike | None = None,
+) -> RigidBody: ...
+def ellipse(
+    semi_axes: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def rectangle(
+    size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def triangle(
+    vertices: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def polygon(
+    vertices: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def rod(
+    length: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def ring(
+    radius: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def arc(
+    radius: ArrayLike, angle: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+) -> RigidBody: ...
+def region_box(low: ArrayLike, high: ArrayLike) -> Region: ...
+def region_ball(
+    radius: float, center: ArrayLike = (0.0, 0.0, 0.0), *, inner_radius: float = 0.0
+) -> Region: ...
+def region_ellipsoid(semi_axes: ArrayLike, center: ArrayLike = (0.0, 0.0, 0.0)) -> Region: ...
+def region_cylinder(
+    radius: float, height: float, center: ArrayLike = (0.0, 0.0, 0.0), *, inner_radius: float = 0.0
+) -> Region: ...
+def region_mesh(vertices: ArrayLike, faces: ArrayLike) -> Region: ...
+def to_positive_products(body: RigidBody) -> tuple[_Floats, _Floats]: ...
+def to_pseudo_inertia(body: RigidBody) -> _Floats: ...
+def from_pseudo_inertia(pseudo_inertia: ArrayLike, *, rtol: float | None = None) -> RigidBody: ...
+def to_spatial_inertia(body: RigidBody, order: _SpatialOrder = "angular-linear") -> _Floats: ...
+def from_spatial_inertia(
+    spatial_inertia: ArrayLike, order: _SpatialOrder = "angular-linear", *, rtol: float | None = None
+) -> RigidBody: ...
+def to_parameters(body: RigidBody) -> _Floats: ...
+def from_parameters(parameters: ArrayLike, *, rtol: float | None = None) -> RigidBody: ...
+def to_log_cholesky(body: RigidBody) -> _Floats: ...
+def from_log_cholesky(parameters: ArrayLike) -> RigidBody: ...
+def nearest_valid(inertia: ArrayLike) -> tuple[_Floats, Any]: ...
+def within_box(body: RigidBody, low: ArrayLike, high: ArrayLike) -> tuple[Any, _Floats]: ...
 def quaternion_from_euler_angles(angles: ArrayLike, sequence: str = "ZXZ") -> _Floats: ...
 def euler_angles_from_quaternion(
     quaternion: ArrayLike | SupportsQuaternion,

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from polhode._core import RigidBody
     from polhode.results import Trajectory
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "InvalidInertiaError",
     "MeshError",
     "PolhodeError",
+    "QuadratureError",
     "SingularAttitudeError",
 ]
 
@@ -54,6 +56,24 @@ class IntegrationError(PolhodeError):
     time: float
     state: tuple[object, object]
     partial: Trajectory | None
+
+
+class QuadratureError(PolhodeError):
+    """An integral over a density that did not reach its tolerance.
+
+    Attributes
+    ----------
+    estimate : RigidBody
+        The body as far as it is known.
+    error : float
+        Its estimated relative error.
+    evaluations : int
+        At how many points the density was asked for.
+    """
+
+    estimate: RigidBody
+    error: float
+    evaluations: int
 
 
 class SingularAttitudeError(PolhodeError):

@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AngularMomentum",
+    "BoxFit",
     "FreePrecession",
     "KineticEnergy",
+    "NearestValid",
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",
@@ -176,6 +178,32 @@ class AngularMomentum(NamedTuple):
     def total(self) -> Floats:
         """The sum of the three parts."""
         return self.orbital + self.mixed + self.spin
+
+
+class NearestValid(NamedTuple):
+    """The tensor of a body nearest to a given one, shape (..., 3, 3), and its distance, shape (...)."""
+
+    inertia: Floats
+    distance: Any
+
+
+class BoxFit(NamedTuple):
+    """Whether a body of the size of a box could have given mass properties.
+
+    Attributes
+    ----------
+    possible : bool or numpy.ndarray, shape (...)
+        Whether every condition holds.
+    margin : float or numpy.ndarray, shape (...)
+        The room that the tightest condition leaves, relative to the square of the box's size along its axes;
+        negative where it is broken.
+    axes : tuple of str or numpy.ndarray of str, shape (..., 2)
+        The two axes that condition is about; the same twice for the spread along one.
+    """
+
+    possible: Any
+    margin: Any
+    axes: Any
 
 
 class Particles(NamedTuple):

@@ -1,9 +1,45 @@
 """Homogeneous solids, each with its centre of mass at the origin and its symmetry axis along z.
 
-Each takes exactly one of ``mass=`` and ``density=``; lengths are full lengths unless the name says
-radius or semi-axis. Arrays of sizes, masses or densities broadcast to a stack of bodies.
+Narrow ends, apexes and domes are toward +z. Each takes exactly one of ``mass=`` and ``density=``; lengths are
+full lengths unless the name says radius or semi-axis. Arrays of sizes, masses or densities broadcast to a
+stack of bodies. Zero lengths are limits: a flat cylinder is a disk, a hollow sphere without thickness a
+shell.
 """
 
-from polhode._core import box, cone, cube, cylinder, ellipsoid, sphere
+from polhode._core import (
+    box,
+    capsule,
+    cone,
+    cube,
+    cylinder,
+    ellipsoid,
+    frustum,
+    hemisphere,
+    hollow_sphere,
+    prism,
+    pyramid,
+    sphere,
+    tetrahedron,
+    torus,
+    tube,
+    wedge,
+)
 
-__all__ = ["box", "cone", "cube", "cylinder", "ellipsoid", "sphere"]
+__all__ = [
+    "box",
+    "capsule",
+    "cone",
+    "cube",
+    "cylinder",
+    "ellipsoid",
+    "frustum",
+    "hemisphere",
+    "hollow_sphere",
+    "prism",
+    "pyramid",
+    "sphere",
+    "tetrahedron",
+    "torus",
+    "tube",
+    "wedge",
+]

@@ -20,6 +20,8 @@ pub enum Kind {
     File,
     /// An attitude at which the quantity asked for is not defined.
     SingularAttitude,
+    /// An integral over a density that did not converge.
+    Quadrature,
     /// An integration that could not go on.
     Integration,
 }
@@ -46,6 +48,75 @@ pub enum Error {
         /// The number.
         value: f64,
     },
+    /// Two lengths are the wrong way round.
+    #[error("{smaller} must not exceed {larger}, got {smaller} = {a:?} and {larger} = {b:?}")]
+    OutOfOrder {
+        /// The length that should be the smaller.
+        smaller: &'static str,
+        /// What it is.
+        a: f64,
+        /// The length that should be the larger.
+        larger: &'static str,
+        /// What it is.
+        b: f64,
+    },
+    /// An interval is empty.
+    #[error("{smaller} must be below {larger}, got {smaller} = {a:?} and {larger} = {b:?}")]
+    NotBelow {
+        /// What should be below.
+        smaller: &'static str,
+        /// What it is.
+        a: f64,
+        /// What should be above.
+        larger: &'static str,
+        /// What it is.
+        b: f64,
+    },
+    /// A density that is no density.
+    #[error(
+        "density must be zero or more and finite everywhere in the region: at ({:?}, {:?}, {:?}) it is {value:?}",
+        point[0], point[1], point[2]
+    )]
+    ImpossibleDensity {
+        /// Where.
+        point: [f64; 3],
+        /// The number.
+        value: f64,
+    },
+    /// A density that is zero wherever it was looked at.
+    #[error(
+        "density gives no mass: {mass:?} from {count} points; draw the bounds closely around the matter, so that it is found"
+    )]
+    NoMassFound {
+        /// At how many points.
+        count: usize,
+        /// The mass found.
+        mass: f64,
+    },
+    /// Not even one look at each cell is allowed.
+    #[error("max_evaluations must be at least {needed} for these bounds, got {given}")]
+    TooFewEvaluations {
+        /// What one look takes.
+        needed: usize,
+        /// What was allowed.
+        given: usize,
+    },
+    /// A cubature that did not reach its tolerance.
+    #[error(
+        "the integral of density did not converge: after {evaluations} evaluations its estimated relative error is \
+         {error:.2e} where rtol is {rtol:.1e}; let a jump of the density be a boundary (one region on each side of it), \
+         raise max_evaluations, or loosen rtol"
+    )]
+    Quadrature {
+        /// The estimated relative error.
+        error: f64,
+        /// What was asked for.
+        rtol: f64,
+        /// How many evaluations it took.
+        evaluations: usize,
+        /// The body as far as it is known.
+        estimate: Box<crate::RigidBody>,
+    },
     /// The total mass is not positive.
     #[error("mass must be positive, got {mass:?}")]
     NonPositiveMass {
@@ -61,6 +132,20 @@ pub enum Error {
         index: usize,
         /// Its mass.
         mass: f64,
+    },
+    /// What a subtraction leaves is no body.
+    #[error(
+        "the subtraction leaves no possible body: the {what} of what remains would be {value:?}{}; \
+         the part taken away must lie within the body it is taken from, and be no denser",
+        axis.map(|[x, y, z]| format!(" along the axis ({x:.3}, {y:.3}, {z:.3})")).unwrap_or_default()
+    )]
+    NoRemainder {
+        /// What is negative.
+        what: &'static str,
+        /// Along which axis of the body frame, if along one.
+        axis: Option<[f64; 3]>,
+        /// The number.
+        value: f64,
     },
     /// The particles have no mass in all.
     #[error("the total mass of the {count} particles must be positive, got {mass:?}")]
@@ -140,6 +225,32 @@ pub enum Error {
         relative: f64,
         /// What is allowed.
         allowed: f64,
+    },
+    /// A 6×6 matrix that no mass, first moments and tensor make up.
+    #[error(
+        "spatial_inertia is not that of a body: element [{row}][{column}] is {got:?} where the others imply {expected:?}; \
+         check the order of its halves (order=) and that it is about the origin"
+    )]
+    NotASpatialInertia {
+        /// Row of the element.
+        row: usize,
+        /// Column of the element.
+        column: usize,
+        /// What it is.
+        got: f64,
+        /// What mass, first moments and tensor make it.
+        expected: f64,
+    },
+    /// A body without thickness has no log-Cholesky parameters.
+    #[error(
+        "the body has no log-Cholesky parameters: its second moment along {along} is {square:?}, and they hold its \
+         logarithm; use the pseudo-inertia or the ten parameters"
+    )]
+    NoLogCholesky {
+        /// The axis whose pivot is zero.
+        along: &'static str,
+        /// The pivot.
+        square: f64,
     },
     /// A principal moment about the centre of mass is negative.
     #[error(
@@ -290,6 +401,12 @@ pub enum Error {
     /// The mesh cannot be used; the message says which part of it and why.
     #[error(transparent)]
     Mesh(#[from] crate::mass::polyhedron::MeshFault),
+    /// The corners do not bound a polygon; the message says where and why.
+    #[error(transparent)]
+    Polygon(#[from] crate::mass::laminae::PolygonFault),
+    /// The tetrahedra cannot be used; the message says which and why.
+    #[error(transparent)]
+    Cells(#[from] crate::mass::tetrahedra::CellFault),
     /// The file cannot be used; the message says where and why.
     #[error(transparent)]
     File(#[from] crate::io::FileFault),
@@ -354,6 +471,10 @@ impl Error {
                     | "inertia"
                     | "inertia_about_origin"
                     | "moments"
+                    | "products"
+                    | "parameters"
+                    | "pseudo_inertia"
+                    | "spatial_inertia"
                     | "center_of_mass",
                 ..
             }
@@ -361,12 +482,16 @@ impl Error {
             | Self::NegativeMass { .. }
             | Self::NegativeDensity { .. }
             | Self::NoMass { .. }
+            | Self::NoRemainder { .. }
             | Self::NotSymmetric { .. }
             | Self::NegativeMoment { .. }
+            | Self::NotASpatialInertia { .. }
+            | Self::NoLogCholesky { .. }
             | Self::TriangleInequality { .. }
             | Self::TorqueAlongMasslessAxis { .. } => Kind::Inertia,
-            Self::Mesh(_) => Kind::Mesh,
+            Self::Mesh(_) | Self::Cells(_) => Kind::Mesh,
             Self::File(_) => Kind::File,
+            Self::Quadrature { .. } => Kind::Quadrature,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. } | Self::NotFiniteMotion { .. } => Kind::Integration,
             _ => Kind::Argument,

@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::mass::equimomental::equimomental_particles;
 use polhode::mass::particles::particles;
+use polhode::mass::realizable::nearest_valid;
 use polhode::motion::angular_momentum::angular_momentum;
 use polhode::motion::euler_equations::EulerEquations;
 use polhode::motion::kinetic_energy::kinetic_energy;
@@ -111,6 +112,41 @@ proptest! {
         prop_assert!((sum.inertia_about(&p) - expected).abs().max() <= 1e-13 * size(&expected));
         let reverse = b.combined(&a).expect("finite");
         prop_assert!((sum.inertia() - reverse.inertia()).abs().max() <= 1e-14 * size(&sum.inertia()));
+    }
+
+    #[test]
+    fn taking_out_undoes_putting_in(a in any_body(), b in any_body()) {
+        let sum = a.combined(&b).expect("finite");
+        // Where one body is lost in the other's rounding there is nothing left to take out.
+        if let Ok(rest) = sum.without(&b) {
+            let scale = size(&sum.inertia()) * (1.0 + sum.mass() / a.mass());
+            prop_assert!((rest.inertia() - a.inertia()).abs().max() <= 1e-13 * scale);
+            prop_assert!((rest.mass() - a.mass()).abs() <= 1e-15 * sum.mass());
+        } else {
+            let scale = 1e-13 * size(&sum.inertia()) * (1.0 + sum.mass() / a.mass());
+            prop_assert!(a.mass() <= 1e-15 * sum.mass() || size(&a.inertia()) <= scale);
+        }
+    }
+
+    #[test]
+    fn any_ten_numbers_are_a_body(parameters in proptest::array::uniform10(-3.0..3.0_f64)) {
+        let body = RigidBody::from_log_cholesky(&parameters).expect("possible");
+        let [i1, i2, i3] = body.principal().moments;
+        prop_assert!(i1 >= 0.0 && i1 + i2 >= i3 * (1.0 - 1e-15));
+        let same = RigidBody::from_parameters(&body.parameters(), 1e-9).expect("possible");
+        prop_assert!(same.is_close(&body, 1e-8, 0.0));
+    }
+
+    #[test]
+    fn the_nearest_tensor_is_possible_and_its_own_nearest(
+        moments in proptest::array::uniform3(-1.0..1.0_f64), axes in rotation(), scale in -40.0..40.0_f64,
+    ) {
+        let diagonal = Matrix3::from_diagonal(&Vector3::from(moments));
+        let given = axes * diagonal * axes.transpose() * 10.0_f64.powf(scale);
+        let (nearest, distance) = nearest_valid(&given).expect("symmetric");
+        prop_assert!(((nearest - given).norm() - distance).abs() <= 1e-14 * given.norm());
+        prop_assert_eq!(nearest_valid(&nearest), Ok((nearest, 0.0)));
+        prop_assert!(RigidBody::new(1.0, &nearest, &Vector3::zeros(), 0.0).is_ok());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix4, Matrix6, UnitQuaternion, Vector3};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use polhode::motion::attitude;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -69,7 +69,20 @@ macro_rules! fixed_length {
         }
     )*};
 }
-fixed_length!(2 3 4 25);
+fixed_length!(2 3 4 10 25);
+
+/// The corners of a triangle in the plane.
+impl Item for [[f64; 2]; 3] {
+    const TAIL: &'static [usize] = &[3, 2];
+
+    fn read(numbers: &[f64]) -> Self {
+        std::array::from_fn(|i| [numbers[2 * i], numbers[2 * i + 1]])
+    }
+
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend(self.as_flattened());
+    }
+}
 
 impl Item for Vector3<f64> {
     const TAIL: &'static [usize] = &[3];
@@ -83,17 +96,22 @@ impl Item for Vector3<f64> {
     }
 }
 
-impl Item for Matrix3<f64> {
-    const TAIL: &'static [usize] = &[3, 3];
+macro_rules! square_matrix {
+    ($($matrix:ident $n:literal)*) => {$(
+        impl Item for $matrix<f64> {
+            const TAIL: &'static [usize] = &[$n, $n];
 
-    fn read(numbers: &[f64]) -> Self {
-        Self::from_row_slice(numbers)
-    }
+            fn read(numbers: &[f64]) -> Self {
+                Self::from_row_slice(numbers)
+            }
 
-    fn write(&self, out: &mut Vec<f64>) {
-        out.extend(self.transpose().iter()); // nalgebra stores columns
-    }
+            fn write(&self, out: &mut Vec<f64>) {
+                out.extend(self.transpose().iter()); // nalgebra stores columns
+            }
+        }
+    )*};
 }
+square_matrix!(Matrix3 3 Matrix4 4 Matrix6 6);
 
 /// Items over the last axes and a stack over the leading ones.
 pub(crate) fn read<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Stack<T>> {
@@ -228,43 +246,51 @@ pub(crate) fn floats<'py>(
     Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly())
 }
 
-/// Triples of indices, or the face that has a negative index, and that index.
-type Faces = Result<Vec<[usize; 3]>, (usize, i64)>;
+/// Rows of N indices, or the row that has a negative index, and that index.
+type Indices<const N: usize> = Result<Vec<[usize; N]>, (usize, i64)>;
 
 /// Triples of indices, shape (n, 3); a negative one comes back as the row and the number.
-pub(crate) fn read_faces(object: &Bound<'_, PyAny>) -> PyResult<Faces> {
-    let array = as_array(object, "faces")?;
+pub(crate) fn read_faces(object: &Bound<'_, PyAny>) -> PyResult<Indices<3>> {
+    read_indices(object, "faces")
+}
+
+/// Rows of N indices, shape (n, N); a negative one comes back as the row and the number.
+pub(crate) fn read_indices<const N: usize>(
+    object: &Bound<'_, PyAny>,
+    name: &str,
+) -> PyResult<Indices<N>> {
+    let array = as_array(object, name)?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
-    if shape == [0] || shape == [0, 3] {
+    if shape == [0] || shape == [0, N] {
         return Ok(Ok(Vec::new()));
     }
     if !"iu".contains(&kind) {
         let dtype = array.getattr("dtype")?;
         return Err(PyTypeError::new_err(format!(
-            "faces: expected integers, got dtype {dtype}"
+            "{name}: expected integers, got dtype {dtype}"
         )));
     }
-    if !matches!(shape[..], [_, 3]) {
+    if !matches!(shape[..], [_, columns] if columns == N) {
         return Err(PyValueError::new_err(format!(
-            "faces: expected shape (n, 3), got {}",
+            "{name}: expected shape (n, {N}), got {}",
             tuple(&shape)
         )));
     }
     let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "int64"))?;
     let array = array.cast_into::<PyArrayDyn<i64>>()?.readonly();
-    let mut faces = Vec::with_capacity(shape[0]);
-    for (face, corners) in array.as_slice()?.chunks_exact(3).enumerate() {
-        let mut indices = [0; 3];
-        for (index, &number) in indices.iter_mut().zip(corners) {
+    let mut rows = Vec::with_capacity(shape[0]);
+    for (row, numbers) in array.as_slice()?.chunks_exact(N).enumerate() {
+        let mut indices = [0; N];
+        for (index, &number) in indices.iter_mut().zip(numbers) {
             match usize::try_from(number) {
                 Ok(valid) => *index = valid,
-                Err(_) => return Ok(Err((face, number))),
+                Err(_) => return Ok(Err((row, number))),
             }
         }
-        faces.push(indices);
+        rows.push(indices);
     }
-    Ok(Ok(faces))
+    Ok(Ok(rows))
 }
 
 /// Attitudes: quaternions (..., 4) as (x, y, z, w), or whatever has `as_quat()`; nothing is the identity.

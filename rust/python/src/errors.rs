@@ -16,6 +16,7 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
         Kind::Mesh => "MeshError",
         Kind::File => "FileFormatError",
         Kind::SingularAttitude => "SingularAttitudeError",
+        Kind::Quadrature => "QuadratureError",
         Kind::Integration => "IntegrationError",
         _ => "PolhodeError",
     };

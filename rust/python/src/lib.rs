@@ -19,13 +19,18 @@ mod equimomental;
 mod errors;
 mod euler_rates;
 mod files;
+mod forms;
 mod interrupt;
 mod kinematics;
+mod laminae;
 mod loads;
 mod parallel_axis;
 mod particles;
 mod principal;
+mod realizable;
+mod regions;
 mod rigid_body;
+mod rods;
 mod rotations;
 mod solids;
 mod stack;
@@ -46,7 +51,15 @@ mod _core {
     #[pymodule_export]
     use crate::files::{read_plates, read_stl, surface_area};
     #[pymodule_export]
+    use crate::forms::{
+        from_log_cholesky, from_parameters, from_pseudo_inertia, from_spatial_inertia,
+        to_log_cholesky, to_parameters, to_positive_products, to_pseudo_inertia,
+        to_spatial_inertia,
+    };
+    #[pymodule_export]
     use crate::kinematics::transport;
+    #[pymodule_export]
+    use crate::laminae::{annulus, disk, ellipse, polygon, rectangle, triangle};
     #[pymodule_export]
     use crate::loads::{PyLoad, constant_torque, torque_callback};
     #[pymodule_export]
@@ -57,13 +70,24 @@ mod _core {
         principal_moments, ray_kappa,
     };
     #[pymodule_export]
+    use crate::realizable::{nearest_valid, within_box};
+    #[pymodule_export]
+    use crate::regions::{PyRegion, ball, cuboid as box_region, cylinder as cylinder_region};
+    #[pymodule_export]
+    use crate::regions::{ellipsoid as ellipsoid_region, mesh};
+    #[pymodule_export]
     use crate::rigid_body::PyRigidBody;
+    #[pymodule_export]
+    use crate::rods::{arc, ring, rod};
     #[pymodule_export]
     use crate::rotations::{
         euler_angles_from_quaternion, quaternion_from_euler_angles, quaternion_from_matrix, rotate,
     };
     #[pymodule_export]
-    use crate::solids::{cone, cube, cuboid, cylinder, ellipsoid, sphere};
+    use crate::solids::{
+        capsule, cone, cube, cuboid, cylinder, ellipsoid, frustum, hemisphere, hollow_sphere,
+        prism, pyramid, sphere, tetrahedron, torus, tube, wedge,
+    };
     #[pymodule_export]
     use crate::tops::{free_precession, least_spin, steady_precession};
 

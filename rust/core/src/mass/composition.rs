@@ -1,13 +1,12 @@
-//! Bodies from bodies: moved, turned, scaled, put together.
+//! Bodies from bodies: moved, turned, scaled.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
-use super::parallel_axis::point_inertia;
 use super::validity::{check_mass, check_rotation, mean_of_halves, trace};
 use crate::error::{Error, all_finite, finite};
-use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
+use crate::principal::{PrincipalAxes, with_sign_rule};
 
 impl RigidBody {
     /// The body moved by `d`.
@@ -87,56 +86,11 @@ impl RigidBody {
         all_finite("center_of_mass", &scaled.center_of_mass)?;
         Ok(scaled)
     }
-
-    /// Both bodies as one rigid body.
-    ///
-    /// Composed from centre to centre, `I = I_1 + I_2 + μ (d² 1 − d dᵀ)` with the reduced mass `μ = m₁m₂/(m₁+m₂)` and
-    /// `d = C₂ − C₁`, so that bodies far from the origin lose nothing.
-    ///
-    /// # Errors
-    /// When the sum overflows.
-    pub fn combined(&self, other: &Self) -> Result<Self, Error> {
-        let mass = self.mass + other.mass;
-        check_mass(mass)?;
-        let d = other.center_of_mass - self.center_of_mass;
-        let share = other.mass / mass;
-        let center_of_mass = self.center_of_mass + d * share;
-        let inertia = self.inertia + other.inertia + point_inertia(self.mass * share, &d);
-        all_finite("center_of_mass", &center_of_mass)?;
-        all_finite("inertia", &inertia)?;
-        // The sum of possible bodies is possible.
-        let principal = principal_axes(&inertia);
-        let body = Self::admitted(mass, inertia, &center_of_mass, principal, trace(&inertia));
-        let (a, b) = (&self.error_bound, &other.error_bound);
-        let (length, reduced) = (d.norm(), self.mass * share);
-        let of_masses = a.mass / self.mass + b.mass / other.mass;
-        let of_centers = a.center_of_mass + b.center_of_mass + length * of_masses;
-        let bound = ErrorBound {
-            mass: a.mass + b.mass + 2.0 * UNIT * mass,
-            center_of_mass: of_centers,
-            inertia: a.inertia
-                + b.inertia
-                + reduced * length * (length * of_masses + 4.0 * of_centers),
-        };
-        Ok(body.with_bound(bound.rounded(&center_of_mass, trace(&inertia))))
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn two_particles_are_a_dumbbell_wherever_they_are() {
-        let point = |m, x| {
-            RigidBody::new(m, &Matrix3::zeros(), &Vector3::new(x, 0.0, 0.0), 0.0).expect("point")
-        };
-        let dumbbell = point(1.0, 1e8)
-            .combined(&point(3.0, 1e8 + 4.0))
-            .expect("sum");
-        assert_eq!(dumbbell.principal().moments, [0.0, 12.0, 12.0]);
-        assert_eq!(dumbbell.center_of_mass().x, 1e8 + 3.0);
-    }
 
     #[test]
     fn moments_survive_rotations_exactly() {

@@ -3,33 +3,51 @@
 //! | theorem or source | file |
 //! |---|---|
 //! | rigid body (m, C, `I_C`): tensors about any point | [`body`] |
-//! | bodies from bodies: sums, change of frame, scaling | [`composition`] |
+//! | bodies from bodies: change of frame, scaling | [`composition`] |
+//! | composites: sums, cavities | [`composites`] |
 //! | what makes a tensor possible: symmetry, positivity, triangle inequality | [`validity`] |
 //! | what rounding can have done | [`error_bound`] |
+//! | mass or density, and what homogeneous shapes share | [`amount`] |
+//! | the nearest possible tensor; whether a body of a given size can have it | [`realizable`] |
+//! | other people's forms, to and from | [`forms`] |
 //! | second moment ∫ r rᵀ dm, from which every tensor comes | [`second_moment`] |
 //! | parallel-axis (Steiner, Huygens) theorem | [`parallel_axis`] |
 //! | particles, stacks of them, particles with labels | [`particles`] |
 //! | particles in chunks, more than fit into memory | [`accumulator`] |
 //! | voxels | [`voxels`] |
 //! | homogeneous solids | [`solids`] |
+//! | homogeneous laminae, in the x-y plane | [`laminae`] |
+//! | homogeneous thin rods | [`rods`] |
+//! | tetrahedra, their density linear between nodes | [`tetrahedra`] |
+//! | regions of space | [`regions`] |
+//! | density ρ(r) over a region, and ρ of the radius alone | [`density`] |
 //! | closed triangle mesh | [`polyhedron`] |
 //! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 
 pub mod accumulator;
+pub mod amount;
 pub mod body;
+pub mod composites;
 pub mod composition;
+pub mod density;
 pub mod equimomental;
 pub mod error_bound;
+pub mod forms;
+pub mod laminae;
 pub mod parallel_axis;
 pub mod particles;
 pub mod polyhedron;
+pub mod realizable;
+pub mod regions;
+pub mod rods;
 pub mod second_moment;
 pub mod solids;
+pub mod tetrahedra;
 pub mod validity;
 pub mod voxels;
 
 pub use accumulator::MassAccumulator;
+pub use amount::Amount;
 pub use body::RigidBody;
 pub use error_bound::ErrorBound;
 pub use second_moment::SecondMoment;
-pub use solids::Amount;

@@ -7,6 +7,8 @@
 //! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
+//! | [`split_vector`] | differences, scalar products and determinants that survive cancellation |
+//! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
 //! | [`eigen3`] | eigenvalues and eigenvectors of symmetric 3×3 matrices |
 //!
@@ -18,5 +20,7 @@ pub mod double_double;
 pub mod eigen3;
 pub mod lane;
 pub mod planes;
+pub mod quadrature;
 pub mod reduce;
+pub mod split_vector;
 pub mod threads;

@@ -1,7 +1,9 @@
 //! The class `RigidBody`: one body, or a stack of them.
 
+mod composites;
 mod construct;
 mod container;
+mod continuum;
 mod dynamics;
 mod ensemble;
 mod matter;
@@ -48,8 +50,8 @@ use crate::stack::Stack;
 /// Notes
 /// -----
 /// Leading axes stack and broadcast as in NumPy, and ``body[index]`` picks from a stack. Other ways
-/// to a body: `from_principal`, `from_particles`, `from_mesh`, `from_file`, and
-/// :mod:`polhode.solids`. A principal moment below 16 ε of the trace is stored as exactly zero,
+/// to a body: `from_principal`, `from_particles`, `from_mesh`, `from_tetrahedra`, `from_density`,
+/// `from_file`, and :mod:`polhode.solids`, :mod:`polhode.laminae`, :mod:`polhode.rods`. A principal moment below 16 ε of the trace is stored as exactly zero,
 /// since a float64 tensor cannot tell it from zero.
 ///
 /// Examples

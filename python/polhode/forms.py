@@ -1,0 +1,30 @@
+"""Other people's forms of a rigid body, to and from: each says about which point and in which order.
+
+Positive products and log-Cholesky parameters are about the centre of mass, the others about the origin of
+the body frame, where a body that stands many of its own lengths away loses digits. Positive products come
+in by :meth:`polhode.RigidBody.from_positive_products`.
+"""
+
+from polhode._core import (
+    from_log_cholesky,
+    from_parameters,
+    from_pseudo_inertia,
+    from_spatial_inertia,
+    to_log_cholesky,
+    to_parameters,
+    to_positive_products,
+    to_pseudo_inertia,
+    to_spatial_inertia,
+)
+
+__all__ = [
+    "from_log_cholesky",
+    "from_parameters",
+    "from_pseudo_inertia",
+    "from_spatial_inertia",
+    "to_log_cholesky",
+    "to_parameters",
+    "to_positive_products",
+    "to_pseudo_inertia",
+    "to_spatial_inertia",
+]

@@ -1,0 +1,289 @@
+//! Composites: bodies put together, and parts taken out.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::body::RigidBody;
+use super::error_bound::{ErrorBound, UNIT};
+use super::parallel_axis::point_inertia;
+use super::validity::{ROUNDING, check_mass, trace};
+use crate::error::{Error, all_finite};
+use crate::numerics::eigen3::eigen3;
+use crate::numerics::reduce::{depth, sum_terms};
+use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
+
+/// The bodies as one rigid body.
+///
+/// Composed from centre to centre, `I = Σ I_i + Σ m_i (d_i² 1 − d_i d_iᵀ)` with `d_i = C_i − C`, so that bodies far from the
+/// origin lose nothing. Where the sum is thin its moments come from the parts' own second moments, turned into the axes of
+/// the sum: collinear rods and particles keep the smallest moment that they have.
+///
+/// # Errors
+/// When there are none, or the sum overflows.
+pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
+    match bodies {
+        [] => Err(Error::Empty { what: "bodies" }),
+        [one] => Ok(*one),
+        many => {
+            let sum = Assembly::of(many.len(), |i| (1.0, &many[i]));
+            check_mass(sum.mass)?;
+            all_finite("center_of_mass", &sum.center)?;
+            all_finite("inertia", &sum.inertia)?;
+            // The sum of possible bodies is possible.
+            let mut principal = principal_axes(&sum.inertia);
+            if is_thin(&principal) {
+                principal = sum.refined(&principal);
+                return Ok(sum.body(principal));
+            }
+            let spread = trace(&sum.inertia);
+            let body = RigidBody::admitted(sum.mass, sum.inertia, &sum.center, principal, spread);
+            Ok(body.with_bound(sum.error_bound()))
+        }
+    }
+}
+
+impl RigidBody {
+    /// Both bodies as one rigid body: [`combined`] of the two.
+    ///
+    /// # Errors
+    /// When the sum overflows.
+    pub fn combined(&self, other: &Self) -> Result<Self, Error> {
+        combined(&[*self, *other])
+    }
+
+    /// What is left of the body when `part` is taken out of it: a cavity, a hole.
+    ///
+    /// # Errors
+    /// [`Error::NoRemainder`] when what is left is no body: its mass or its second moment along some axis is negative.
+    pub fn without(&self, part: &Self) -> Result<Self, Error> {
+        let mass = self.mass - part.mass;
+        if mass <= 0.0 {
+            let (what, axis) = ("mass", None);
+            let value = mass;
+            return Err(Error::NoRemainder { what, axis, value });
+        }
+        let pair = [(1.0, self), (-1.0, part)];
+        let rest = Assembly::of(2, |i| pair[i]);
+        all_finite("center_of_mass", &rest.center)?;
+        all_finite("inertia", &rest.inertia)?;
+        let mut principal = principal_axes(&rest.inertia);
+        let [i1, i2, i3] = principal.moments;
+        // Along the axis of the largest moment the second moment is the smallest.
+        let smallest = 0.5 * (i1 + i2 - i3);
+        if smallest < -ROUNDING * rest.spread {
+            let axis = principal.axes.column(2).into_owned();
+            return Err(Error::NoRemainder {
+                what: "second moment",
+                axis: Some([axis.x, axis.y, axis.z]),
+                value: smallest,
+            });
+        }
+        if is_thin(&principal) {
+            principal = rest.refined(&principal);
+        }
+        principal.moments = principal.moments.map(|moment| moment.max(0.0));
+        Ok(rest.body(principal))
+    }
+}
+
+/// Below this ratio of smallest to largest moment the smallest would lose digits in the tensor's own axes.
+const THIN: f64 = 0.05;
+
+fn is_thin(principal: &PrincipalAxes) -> bool {
+    principal.moments[0] < THIN * principal.moments[2]
+}
+
+/// Bodies with signs: what they are together about their common centre of mass.
+struct Assembly<'a, F: Fn(usize) -> (f64, &'a RigidBody)> {
+    count: usize,
+    part: F,
+    mass: f64,
+    center: Vector3<f64>,
+    inertia: Matrix3<f64>,
+    /// The traces of all terms of the tensor, each counted as positive.
+    spread: f64,
+}
+
+impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
+    fn of(count: usize, part: F) -> Self {
+        // The heaviest lies within the whole, so that nothing cancels wherever the bodies stand.
+        let heaviest = (0..count)
+            .max_by(|&i, &j| part(i).1.mass.total_cmp(&part(j).1.mass))
+            .unwrap_or(0);
+        let reference = part(heaviest).1.center_of_mass;
+        let [mass] = sum_terms(count, |i| {
+            let (sign, body) = part(i);
+            [sign * body.mass]
+        });
+        let offset = |from: &Vector3<f64>| {
+            let [x, y, z] = sum_terms(count, |i| {
+                let (sign, body) = part(i);
+                ((body.center_of_mass - from) * (sign * body.mass / mass)).into()
+            });
+            Vector3::new(x, y, z)
+        };
+        let center = reference + offset(&reference);
+        // What rounding has left between the centre as stored and the centre meant.
+        let rest = offset(&center);
+        let [xx, xy, xz, yy, yz, zz, spread] = sum_terms(count, |i| {
+            let (sign, body) = part(i);
+            let lever = point_inertia(body.mass, &(body.center_of_mass - center));
+            let own = body.inertia + lever;
+            let [a, b, c] = [own.row(0) * sign, own.row(1) * sign, own.row(2) * sign];
+            [a[0], a[1], a[2], b[1], b[2], c[2], trace(&own)]
+        });
+        let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        Self {
+            count,
+            part,
+            mass,
+            center,
+            inertia: inertia - point_inertia(mass, &rest),
+            spread,
+        }
+    }
+
+    /// Principal moments and axes from second moments in the axes W that the tensor has, found before they are rounded to
+    /// body axes: `S = Σ ± (V s Vᵀ + m d dᵀ)`, with the parts' axes V and their distances d in W.
+    fn refined(&self, first: &PrincipalAxes) -> PrincipalAxes {
+        let turn = first.axes.transpose();
+        let [x, y, z, xx, xy, xz, yy, yz, zz] = sum_terms(self.count, |i| {
+            let (sign, body) = (self.part)(i);
+            let d = turn * (body.center_of_mass - self.center);
+            let md = d * (sign * body.mass);
+            let axes = turn * body.principal.axes;
+            let s = second_moments(&body.principal.moments).map(|s| sign * s);
+            let term = |i: usize, j: usize| {
+                let own: f64 = (0..3).map(|k| s[k] * (axes[(i, k)] * axes[(j, k)])).sum();
+                own + md[i] * d[j]
+            };
+            [
+                md.x,
+                md.y,
+                md.z,
+                term(0, 0),
+                term(0, 1),
+                term(0, 2),
+                term(1, 1),
+                term(1, 2),
+                term(2, 2),
+            ]
+        });
+        let first_moment = Vector3::new(x, y, z);
+        let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+            - first_moment * first_moment.transpose() / self.mass;
+        let s = eigen3(&second);
+        let [s1, s2, s3] = s.values;
+        let column = |k: usize| first.axes * s.vectors.column(k);
+        let (u, v) = (column(2), column(1));
+        PrincipalAxes {
+            moments: [s1 + s2, s1 + s3, s2 + s3],
+            axes: with_sign_rule(Matrix3::from_columns(&[u, v, u.cross(&v)])),
+        }
+    }
+
+    fn body(&self, principal: PrincipalAxes) -> RigidBody {
+        RigidBody {
+            mass: self.mass,
+            center_of_mass: self.center,
+            inertia: self.inertia,
+            principal,
+            error_bound: self.error_bound(),
+        }
+    }
+
+    /// What the parts' own errors and the rounding of these sums can have done.
+    fn error_bound(&self) -> ErrorBound {
+        let [mass, masses, lever, centers, inertia] = sum_terms(self.count, |i| {
+            let body = (self.part)(i).1;
+            let own = body.error_bound;
+            let length = (body.center_of_mass - self.center).norm();
+            [
+                own.mass,
+                body.mass,
+                own.mass * length,
+                body.mass * own.center_of_mass,
+                own.inertia + length * (own.mass * length + 4.0 * body.mass * own.center_of_mass),
+            ]
+        });
+        let relative = 2.0 * UNIT * (depth(self.count) + 8.0);
+        let width = (self.spread / self.mass).sqrt();
+        ErrorBound {
+            mass: mass + relative * masses,
+            center_of_mass: (lever + centers) / self.mass + relative * (masses / self.mass) * width,
+            inertia: inertia + 2.0 * relative * self.spread,
+        }
+        .rounded(&self.center, self.spread)
+    }
+}
+
+/// `∫ x_k² dm` along the principal axes from ascending moments: `s₂ + s₃ = I₁` to the last bit, so that the smallest moment
+/// of a needle is not lost in the difference of the large ones.
+fn second_moments(&[i1, i2, i3]: &[f64; 3]) -> [f64; 3] {
+    let mut difference = i3 - i2;
+    if difference > i1 && difference - i1 <= ROUNDING * i3 {
+        difference = i1; // rounding of the large moments: a lamina has no thickness
+    }
+    [
+        0.5 * (i2 - i1 + i3),
+        0.5 * (i1 + difference),
+        0.5 * (i1 - difference),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mass::{Amount, rods, solids};
+
+    #[test]
+    fn two_particles_are_a_dumbbell_wherever_they_are() {
+        let point = |m, x| {
+            RigidBody::new(m, &Matrix3::zeros(), &Vector3::new(x, 0.0, 0.0), 0.0).expect("point")
+        };
+        let dumbbell = point(1.0, 1e8)
+            .combined(&point(3.0, 1e8 + 4.0))
+            .expect("sum");
+        assert_eq!(dumbbell.principal().moments, [0.0, 12.0, 12.0]);
+        assert_eq!(dumbbell.center_of_mass().x, 1e8 + 3.0);
+    }
+
+    #[test]
+    fn collinear_rods_stay_without_width_however_they_are_turned() {
+        let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0).into_inner();
+        let rod = rods::rod(2.0, Amount::Mass(3.0)).expect("rod");
+        let part = |x: f64| {
+            let moved = rod.translated(&Vector3::new(0.0, 0.0, x)).expect("moved");
+            moved.rotated(&turn).expect("turned")
+        };
+        let whole = combined(&[part(0.0), part(2.0), part(4.0)]).expect("sum");
+        let [i1, i2, i3] = whole.principal().moments;
+        assert!(i1 < 1e-30 * i3, "{i1:e}");
+        assert!((i2 / 27.0 - 1.0).abs() < 4e-15 && (i3 / 27.0 - 1.0).abs() < 4e-15);
+    }
+
+    #[test]
+    fn cavity_undoes_the_sum_and_too_large_a_cavity_is_told() {
+        let ball = solids::sphere(2.0, Amount::Density(1.0)).expect("ball");
+        let hole = solids::sphere(1.0, Amount::Density(1.0)).expect("hole");
+        let shell = solids::hollow_sphere(1.0, 2.0, Amount::Density(1.0)).expect("shell");
+        assert!(
+            ball.without(&hole)
+                .expect("rest")
+                .is_close(&shell, 1e-14, 0.0)
+        );
+        let heavier = hole.without(&ball).expect_err("negative mass");
+        assert!(matches!(heavier, Error::NoRemainder { what: "mass", .. }));
+        let lead = solids::sphere(1.9, Amount::Mass(20.0)).expect("lead");
+        let far = lead.translated(&Vector3::new(5.0, 0.0, 0.0)).expect("far");
+        let fault = ball.without(&far).expect_err("outside");
+        let Error::NoRemainder {
+            axis: Some([x, ..]),
+            value,
+            ..
+        } = fault
+        else {
+            panic!("{fault}");
+        };
+        assert!(value < 0.0 && (x.abs() - 1.0).abs() < 1e-12);
+    }
+}

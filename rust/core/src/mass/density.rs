@@ -1,0 +1,358 @@
+//! Bodies of given density: `m = ∫ ρ dV`, `C = ∫ r ρ dV/m`, `S = ∫ (r − C)(r − C)ᵀ ρ dV`, by adaptive cubature.
+
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::PI;
+
+use super::body::RigidBody;
+use super::error_bound::{ErrorBound, UNIT};
+use super::regions::Region;
+use super::second_moment::SecondMoment;
+use crate::error::{Error, finite};
+use crate::numerics::quadrature::{Cell, Integrand, Leaf, Rule, integrate};
+use crate::numerics::reduce::{depth, sum_terms};
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Bound on the errors of the mass relative to itself, of C relative to the radius of gyration, and of the second
+    /// moments relative to their trace.
+    pub rtol: f64,
+    /// How often the density may be evaluated at most.
+    pub max_evaluations: usize,
+}
+
+impl Effort {
+    /// Enough for the first look at every cell, with a tolerance that is one.
+    fn check(self, needed: usize) -> Result<Self, Error> {
+        finite("rtol", self.rtol)?;
+        if !(self.rtol > 0.0 && self.rtol < 1.0) {
+            return Err(Error::OutOfDomain {
+                what: "rtol",
+                law: "more than 0 and less than 1",
+                value: self.rtol,
+            });
+        }
+        if self.max_evaluations < needed {
+            return Err(Error::TooFewEvaluations {
+                needed,
+                given: self.max_evaluations,
+            });
+        }
+        Ok(self)
+    }
+}
+
+/// The body that fills a region with the density `ρ(r)`, given at many points at once.
+///
+/// The density should be smooth within the region, on the scale of some tenth of it to be noticed at all; a jump belongs
+/// on the boundary, which may mean several regions whose bodies are added. In a mesh that is not star-shaped about its
+/// centroid the density is also asked for outside, where the signed parts cancel.
+///
+/// # Errors
+/// [`Error::Quadrature`] with the estimate when the evaluations do not suffice; when a value is negative or not finite;
+/// whatever the density itself fails with.
+pub fn from_density<E: From<Error>>(
+    region: &Region,
+    density: impl FnMut(&[[f64; 3]], &mut [f64]) -> Result<(), E>,
+    effort: Effort,
+) -> Result<RigidBody, E> {
+    let (cells, rule) = (region.cells(), region.rule());
+    let effort = effort.check(cells.len() * rule.points::<3>())?;
+    let mut matter = Matter { region, density };
+    let found = integrate(
+        &mut matter,
+        &cells,
+        &rule,
+        effort.rtol,
+        effort.max_evaluations,
+    )?;
+    let total = Total::of(region, &found.leaves);
+    if total.mass <= 0.0 {
+        let (count, mass) = (found.evaluations, total.mass);
+        return Err(Error::NoMassFound { count, mass }.into());
+    }
+    let relative = found.error + 2.0 * UNIT * (depth(found.evaluations) + 32.0);
+    let (width, spread) = (total.width(), total.second.trace());
+    // Points are rounded to the last place of their coordinates.
+    let place = 8.0 * UNIT * (total.center.amax() + width);
+    let body = RigidBody::from_second_moment(&SecondMoment {
+        mass: total.mass,
+        center_of_mass: total.center,
+        central: total.second,
+        axes: Matrix3::identity(),
+        error_bound: ErrorBound {
+            mass: relative * total.mass,
+            center_of_mass: relative * width + place,
+            inertia: 2.0 * (relative * spread + total.mass * width * place),
+        },
+    })?;
+    converged(body, found.error, found.evaluations, effort)
+}
+
+/// The body, or its estimate as an error.
+fn converged<E: From<Error>>(
+    body: RigidBody,
+    error: f64,
+    evaluations: usize,
+    effort: Effort,
+) -> Result<RigidBody, E> {
+    if error <= effort.rtol {
+        return Ok(body);
+    }
+    Err(Error::Quadrature {
+        error,
+        rtol: effort.rtol,
+        evaluations,
+        estimate: Box::new(body),
+    }
+    .into())
+}
+
+/// The density over a region as mass, first and second moments about the middle of each cell.
+struct Matter<'a, F> {
+    region: &'a Region,
+    density: F,
+}
+
+/// m, x, y, z, xx, xy, xz, yy, yz, zz.
+type Moments = [f64; 10];
+
+impl<E, F> Integrand<3, 10> for Matter<'_, F>
+where
+    E: From<Error>,
+    F: FnMut(&[[f64; 3]], &mut [f64]) -> Result<(), E>,
+{
+    type Error = E;
+
+    fn values(
+        &mut self,
+        cells: &[Cell<3>],
+        points: &[[f64; 3]],
+        values: &mut [Moments],
+    ) -> Result<(), E> {
+        let each = points.len() / cells.len().max(1);
+        let placed: Vec<(Vector3<f64>, f64)> = (points.iter().enumerate())
+            .map(|(i, parameters)| self.region.point(cells[i / each].chart, parameters))
+            .collect();
+        let positions: Vec<[f64; 3]> = placed.iter().map(|(at, _)| (*at).into()).collect();
+        let mut densities = vec![0.0; positions.len()];
+        (self.density)(&positions, &mut densities)?;
+        for (i, &value) in densities.iter().enumerate() {
+            if !(value.is_finite() && value >= 0.0) {
+                let point = positions[i];
+                return Err(Error::ImpossibleDensity { point, value }.into());
+            }
+        }
+        for (i, ((at, element), rho)) in placed.iter().zip(densities).enumerate() {
+            let d = at - middle(self.region, &cells[i / each]);
+            let w = rho * element;
+            let wd = d * w;
+            values[i] = [
+                w,
+                wd.x,
+                wd.y,
+                wd.z,
+                wd.x * d.x,
+                wd.x * d.y,
+                wd.x * d.z,
+                wd.y * d.y,
+                wd.y * d.z,
+                wd.z * d.z,
+            ];
+        }
+        Ok(())
+    }
+
+    fn errors(&self, leaves: &[Leaf<3, 10>]) -> Vec<[f64; 3]> {
+        let total = Total::of(self.region, leaves);
+        if total.mass <= 0.0 {
+            return vec![[0.0; 3]; leaves.len()]; // nothing there to refine
+        }
+        let (width, spread) = (total.width(), total.second.trace());
+        let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
+        leaves
+            .iter()
+            .map(|leaf| {
+                let q = middle(self.region, &leaf.cell) - total.center;
+                leaf.differences.map(|difference| {
+                    let (mass, first, second) = about(&difference, &q);
+                    relative(mass.abs(), total.mass)
+                        .max(relative(first.amax(), total.mass * width))
+                        .max(relative(second.amax(), spread))
+                })
+            })
+            .collect()
+    }
+}
+
+/// The whole about its own centre of mass.
+struct Total {
+    mass: f64,
+    center: Vector3<f64>,
+    second: Matrix3<f64>,
+}
+
+impl Total {
+    fn of(region: &Region, leaves: &[Leaf<3, 10>]) -> Self {
+        let middles: Vec<Vector3<f64>> = leaves
+            .iter()
+            .map(|leaf| middle(region, &leaf.cell))
+            .collect();
+        let heaviest = (0..leaves.len())
+            .max_by(|&i, &j| leaves[i].sums[0].total_cmp(&leaves[j].sums[0]))
+            .unwrap_or(0);
+        let reference = middles[heaviest];
+        let [mass, x, y, z] = sum_terms(leaves.len(), |i| {
+            let (mass, first, _) = about(&leaves[i].sums, &(middles[i] - reference));
+            [mass, first.x, first.y, first.z]
+        });
+        let center = reference + Vector3::new(x, y, z) / mass;
+        let [xx, xy, xz, yy, yz, zz] = sum_terms(leaves.len(), |i| {
+            let (_, _, s) = about(&leaves[i].sums, &(middles[i] - center));
+            [s.m11, s.m12, s.m13, s.m22, s.m23, s.m33]
+        });
+        Self {
+            mass,
+            center,
+            second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+        }
+    }
+
+    /// √(tr S/m), the body's own length.
+    fn width(&self) -> f64 {
+        (self.second.trace() / self.mass).sqrt()
+    }
+}
+
+/// Moments about a point that the cell's middle is `q` away from.
+fn about(moments: &Moments, q: &Vector3<f64>) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    let [m, x, y, z, xx, xy, xz, yy, yz, zz] = *moments;
+    let f = Vector3::new(x, y, z);
+    let mixed = f * q.transpose();
+    let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    (
+        m,
+        f + q * m,
+        second + mixed + mixed.transpose() + q * (q.transpose() * m),
+    )
+}
+
+fn middle(region: &Region, cell: &Cell<3>) -> Vector3<f64> {
+    region.point(cell.chart, &cell.middle()).0
+}
+
+/// The ball whose density `ρ(r)` depends on the distance from its centre alone, between the radii in `boundaries`:
+/// `m = 4π ∫ ρ r² dr`, `I = (8π/3) ∫ ρ r⁴ dr`. The density may jump at each of them.
+///
+/// # Errors
+/// As of [`from_density`]; when the boundaries do not ascend from zero or more.
+pub fn from_radial_density<E: From<Error>>(
+    boundaries: &[f64],
+    density: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,
+    effort: Effort,
+) -> Result<RigidBody, E> {
+    for (&r, next) in boundaries.iter().zip(boundaries.iter().skip(1)) {
+        super::amount::length("radius", r)?;
+        finite("radius", *next)?;
+        if r >= *next {
+            let (smaller, a) = ("each radius", r);
+            let (larger, b) = ("the next", *next);
+            return Err(Error::NotBelow {
+                smaller,
+                a,
+                larger,
+                b,
+            }
+            .into());
+        }
+    }
+    let cells: Vec<Cell<1>> = boundaries
+        .windows(2)
+        .map(|ends| Cell {
+            chart: 0,
+            low: [ends[0]],
+            high: [ends[1]],
+        })
+        .collect();
+    let rule = Rule::fifteen();
+    let effort = effort.check(cells.len() * rule.points::<1>())?;
+    let found = integrate(
+        &mut Radial(density),
+        &cells,
+        &rule,
+        effort.rtol,
+        effort.max_evaluations,
+    )?;
+    let [m, s] = radial_totals(&found.leaves);
+    let (mass, along) = (4.0 * PI * m, 4.0 / 3.0 * PI * s);
+    if mass <= 0.0 {
+        let count = found.evaluations;
+        return Err(Error::NoMassFound { count, mass }.into());
+    }
+    let relative = found.error + 2.0 * UNIT * (depth(found.evaluations) + 32.0);
+    let body = RigidBody::from_second_moment(&SecondMoment {
+        mass,
+        center_of_mass: Vector3::zeros(),
+        central: Matrix3::from_diagonal_element(along),
+        axes: Matrix3::identity(),
+        error_bound: ErrorBound {
+            mass: relative * mass,
+            center_of_mass: 0.0,
+            inertia: relative * 2.0 * along,
+        },
+    })?;
+    converged(body, found.error, found.evaluations, effort)
+}
+
+/// ρ r² and ρ r⁴.
+struct Radial<F>(F);
+
+impl<E, F> Integrand<1, 2> for Radial<F>
+where
+    E: From<Error>,
+    F: FnMut(&[f64], &mut [f64]) -> Result<(), E>,
+{
+    type Error = E;
+
+    fn values(
+        &mut self,
+        _: &[Cell<1>],
+        points: &[[f64; 1]],
+        values: &mut [[f64; 2]],
+    ) -> Result<(), E> {
+        let radii: Vec<f64> = points.iter().map(|&[r]| r).collect();
+        let mut densities = vec![0.0; radii.len()];
+        (self.0)(&radii, &mut densities)?;
+        for ((value, rho), r) in values.iter_mut().zip(densities).zip(radii) {
+            if !(rho.is_finite() && rho >= 0.0) {
+                let (point, value) = ([r, 0.0, 0.0], rho);
+                return Err(Error::ImpossibleDensity { point, value }.into());
+            }
+            let mass = rho * r * r;
+            *value = [mass, mass * r * r];
+        }
+        Ok(())
+    }
+
+    fn errors(&self, leaves: &[Leaf<1, 2>]) -> Vec<[f64; 1]> {
+        let totals = radial_totals(leaves);
+        let relative = |value: f64, scale: f64| {
+            if value == 0.0 {
+                0.0
+            } else {
+                value.abs() / scale
+            }
+        };
+        leaves
+            .iter()
+            .map(|leaf| {
+                let [m, s] = leaf.differences[0];
+                [relative(m, totals[0]).max(relative(s, totals[1]))]
+            })
+            .collect()
+    }
+}
+
+fn radial_totals(leaves: &[Leaf<1, 2>]) -> [f64; 2] {
+    sum_terms(leaves.len(), |i| leaves[i].sums)
+}

@@ -1,0 +1,287 @@
+//! Triangles and simple polygons in the x-y plane, where their corners are.
+//!
+//! Two passes: the second one sums again about the centre of mass, in the axes that the first one found, from coordinates
+//! that carry the rounding errors of difference and rotation along. The smallest moment of a narrow sliver is then as
+//! accurate as its corners are, wherever it stands and however it is turned.
+
+use nalgebra::{Matrix2, Matrix3, Rotation2, Vector2, Vector3};
+use thiserror::Error as ThisError;
+
+use super::super::amount::{Amount, Measure, closed_form};
+use super::super::body::RigidBody;
+use super::super::error_bound::{ErrorBound, UNIT};
+use super::super::second_moment::SecondMoment;
+use crate::error::{Error, finite};
+use crate::numerics::reduce::{depth, sum_terms};
+use crate::numerics::split_vector::{SplitVector, cross2};
+
+/// Why corners do not bound a polygon.
+#[derive(Clone, Debug, PartialEq, ThisError)]
+#[non_exhaustive]
+pub enum PolygonFault {
+    /// Fewer than three corners.
+    #[error("vertices must be three corners or more, got {count}")]
+    TooFew {
+        /// How many there are.
+        count: usize,
+    },
+    /// Two edges cross.
+    #[error(
+        "vertices must bound a simple polygon: the edge from vertex {first} crosses the edge from vertex {second}; \
+         order the corners along the boundary, and cut a hole out by subtracting a polygon"
+    )]
+    Crossing {
+        /// Where one edge starts.
+        first: usize,
+        /// Where the other edge starts.
+        second: usize,
+    },
+    /// Nothing inside.
+    #[error(
+        "vertices enclose no area: {area:?} with an extent of {size:?}; model a line as a thin rod instead"
+    )]
+    NoArea {
+        /// The signed area.
+        area: f64,
+        /// The largest extent.
+        size: f64,
+    },
+}
+
+/// Triangle with these corners, in any order: `S = m (e₁e₁ᵀ + e₂e₂ᵀ + e₃e₃ᵀ)/36` with its edges e, C their mean.
+///
+/// # Errors
+/// When a coordinate is not finite, or the amount is not positive.
+pub fn triangle(vertices: &[[f64; 2]; 3], amount: Amount) -> Result<RigidBody, Error> {
+    check_finite(vertices)?;
+    let [a, b, c] = *vertices;
+    let (u, v) = (
+        SplitVector::difference(&b, &a),
+        SplitVector::difference(&c, &a),
+    );
+    let area = 0.5 * cross2(&u, &v).abs();
+    let mass = Measure::Area(area).mass(amount)?;
+    let edges = [u, v, SplitVector::difference(&c, &b)];
+    let sum = |edges: [Vector2<f64>; 3]| {
+        edges
+            .map(|e| e * e.transpose())
+            .iter()
+            .sum::<Matrix2<f64>>()
+            * (mass / 36.0)
+    };
+    let axes = long_axes(&sum(edges.map(|edge| Vector2::from(edge.high))));
+    let central = sum(edges.map(|edge| turned(&edge, &axes)));
+    let (to_b, to_c) = (Vector2::from(u.high), Vector2::from(v.high));
+    let center = Vector2::from(a) + (to_b + to_c) / 3.0;
+    let mut error_bound = closed_form(amount, mass, 2.0 * central.trace());
+    error_bound.center_of_mass = 4.0 * UNIT * (center.amax() + to_b.amax() + to_c.amax());
+    if matches!(amount, Amount::Density(_)) {
+        error_bound.inertia += error_bound.mass / mass * 2.0 * central.trace();
+    }
+    body(mass, &center, &central, &axes, error_bound)
+}
+
+/// Simple polygon with these corners along its boundary, either way round; the last corner joins the first.
+///
+/// Triangles (C, a, b) from a reference to each edge, signed: `A = Σ D/2`, `∫ d dA = Σ D (a + b)/6`,
+/// `∫ d dᵀ dA = Σ D (a aᵀ + b bᵀ + s sᵀ)/24` with `D = a × b` and `s = a + b`.
+///
+/// # Errors
+/// [`PolygonFault`] when edges cross or enclose nothing; when a coordinate is not finite, or the amount is not positive.
+pub fn polygon(vertices: &[[f64; 2]], amount: Amount) -> Result<RigidBody, Error> {
+    let count = vertices.len();
+    if count < 3 {
+        return Err(PolygonFault::TooFew { count }.into());
+    }
+    check_finite(vertices)?;
+    check_simple(vertices)?;
+    let (low, high) = vertices.iter().fold(
+        (
+            Vector2::repeat(f64::INFINITY),
+            Vector2::repeat(f64::NEG_INFINITY),
+        ),
+        |(low, high), &v| (low.inf(&v.into()), high.sup(&v.into())),
+    );
+    let middle = low * 0.5 + high * 0.5;
+    let size = (high - low).max();
+    let (first, magnitude) = sums(vertices, &middle, &Matrix2::identity());
+    if first.area.abs() <= 8.0 * UNIT * depth(count) * magnitude {
+        let area = first.area;
+        return Err(PolygonFault::NoArea { area, size }.into());
+    }
+    let rough = middle + first.moment / first.area;
+    let axes = long_axes(&first.about_centroid());
+    let (sums, magnitude) = sums(vertices, &rough, &axes);
+    let area = sums.area.abs();
+    let mass = Measure::Area(area).mass(amount)?;
+    let central = sums.about_centroid() * (mass / sums.area);
+    let center = rough + axes * (sums.moment / sums.area);
+    let relative = 2.0 * UNIT * (depth(count) + 24.0) * (magnitude / area);
+    let error_bound = ErrorBound {
+        mass: match amount {
+            Amount::Mass(_) => 0.0,
+            Amount::Density(_) => relative * mass,
+        },
+        center_of_mass: 2.0 * relative * size + 4.0 * UNIT * center.amax(),
+        inertia: 4.0 * relative * mass * size * size,
+    };
+    body(mass, &center, &central, &axes, error_bound)
+}
+
+/// The lamina with this second moment, in these axes of its plane.
+fn body(
+    mass: f64,
+    center: &Vector2<f64>,
+    central: &Matrix2<f64>,
+    axes: &Matrix2<f64>,
+    error_bound: ErrorBound,
+) -> Result<RigidBody, Error> {
+    let mut embedded = (Matrix3::zeros(), Matrix3::identity());
+    embedded.0.fixed_view_mut::<2, 2>(0, 0).copy_from(central);
+    embedded.1.fixed_view_mut::<2, 2>(0, 0).copy_from(axes);
+    RigidBody::from_second_moment(&SecondMoment {
+        mass,
+        center_of_mass: Vector3::new(center.x, center.y, 0.0),
+        central: embedded.0,
+        axes: embedded.1,
+        error_bound,
+    })
+}
+
+/// The principal axes of a symmetric 2×2 matrix, as a rotation; the coordinate axes where it is diagonal.
+fn long_axes(s: &Matrix2<f64>) -> Matrix2<f64> {
+    if s[(0, 1)] == 0.0 {
+        return Matrix2::identity();
+    }
+    let angle = 0.5 * (2.0 * s[(0, 1)]).atan2(s[(0, 0)] - s[(1, 1)]);
+    Rotation2::new(angle).into_inner()
+}
+
+/// The vector in these axes, each component rounded once.
+fn turned(v: &SplitVector<2>, axes: &Matrix2<f64>) -> Vector2<f64> {
+    Vector2::from_fn(|k, _| v.dot(&axes.column(k).into()))
+}
+
+/// `∫ dA`, `∫ d dA` and `∫ d dᵀ dA` with `d = axesᵀ (r − reference)`.
+struct Sums {
+    area: f64,
+    moment: Vector2<f64>,
+    second: Matrix2<f64>,
+}
+
+impl Sums {
+    fn about_centroid(&self) -> Matrix2<f64> {
+        self.second - self.moment * self.moment.transpose() / self.area
+    }
+}
+
+/// The sums, and the area with every product counted as positive.
+fn sums(vertices: &[[f64; 2]], reference: &Vector2<f64>, axes: &Matrix2<f64>) -> (Sums, f64) {
+    let at = |k: usize| {
+        let v = SplitVector::difference(&vertices[k % vertices.len()], &(*reference).into());
+        turned(&v, axes)
+    };
+    let [area, magnitude, x, y, xx, xy, yy] = sum_terms(vertices.len(), |k| {
+        let (a, b) = (at(k), at(k + 1));
+        let (d, s) = (a.perp(&b), a + b);
+        [
+            d,
+            (a.x * b.y).abs() + (a.y * b.x).abs(),
+            d * s.x,
+            d * s.y,
+            d * (a.x * a.x + b.x * b.x + s.x * s.x),
+            d * (a.x * a.y + b.x * b.y + s.x * s.y),
+            d * (a.y * a.y + b.y * b.y + s.y * s.y),
+        ]
+    });
+    let sums = Sums {
+        area: area / 2.0,
+        moment: Vector2::new(x, y) / 6.0,
+        second: Matrix2::new(xx, xy, xy, yy) / 24.0,
+    };
+    (sums, magnitude / 2.0)
+}
+
+fn check_finite(vertices: &[[f64; 2]]) -> Result<(), Error> {
+    vertices
+        .iter()
+        .flatten()
+        .try_for_each(|&x| finite("vertices", x).map(drop))
+}
+
+/// No two edges cross; edges that touch within rounding pass, since they bound the same area either way.
+fn check_simple(vertices: &[[f64; 2]]) -> Result<(), PolygonFault> {
+    let count = vertices.len();
+    let ends = |k: usize| (vertices[k], vertices[(k + 1) % count]);
+    let range = |k: usize, axis: usize| {
+        let (a, b) = ends(k);
+        (a[axis].min(b[axis]), a[axis].max(b[axis]))
+    };
+    // Along x, each edge against those that start before it ends.
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&i, &j| range(i, 0).0.total_cmp(&range(j, 0).0));
+    for (place, &i) in order.iter().enumerate() {
+        let ((_, end), (low, high)) = (range(i, 0), range(i, 1));
+        let overlapping = order[place + 1..]
+            .iter()
+            .take_while(|&&j| range(j, 0).0 <= end)
+            .filter(|&&j| range(j, 1).0 <= high && range(j, 1).1 >= low);
+        for &j in overlapping {
+            if cross(ends(i), ends(j)) {
+                let (first, second) = (i.min(j), i.max(j));
+                return Err(PolygonFault::Crossing { first, second });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether the ends of each edge lie on different sides of the other.
+fn cross((a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])) -> bool {
+    let side = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+        let (u, v) = (
+            SplitVector::difference(&q, &p),
+            SplitVector::difference(&r, &p),
+        );
+        let size = (u.high[0] * v.high[1]).abs() + (u.high[1] * v.high[0]).abs();
+        let area = cross2(&u, &v);
+        // Beyond what the rounding of the products' rests can have done.
+        if area.abs() <= 8.0 * UNIT * UNIT * size {
+            0.0
+        } else {
+            area.signum()
+        }
+    };
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polygon_is_its_triangle_and_its_rectangle() {
+        let corners = [[1.0, 2.0], [4.0, 2.5], [2.0, 5.0]];
+        let amount = Amount::Density(2.0);
+        let by_edges = triangle(&corners, amount).expect("triangle");
+        assert!(by_edges.is_close(&polygon(&corners, amount).expect("polygon"), 1e-15, 0.0));
+        let square = [[1e8, 0.0], [1e8 + 2.0, 0.0], [1e8 + 2.0, 3.0], [1e8, 3.0]];
+        let body = polygon(&square, Amount::Mass(12.0)).expect("polygon");
+        assert_eq!(body.principal().moments, [4.0, 9.0, 13.0]);
+        assert_eq!(body.center_of_mass(), Vector3::new(1e8 + 1.0, 1.5, 0.0));
+    }
+
+    #[test]
+    fn crossing_edges_are_told() {
+        let bow = [[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]];
+        let fault = polygon(&bow, Amount::Mass(1.0)).expect_err("bow");
+        let crossing = PolygonFault::Crossing {
+            first: 0,
+            second: 2,
+        };
+        assert_eq!(fault, Error::Polygon(crossing));
+        let line = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]];
+        let fault = polygon(&line, Amount::Mass(1.0)).expect_err("line");
+        assert!(matches!(fault, Error::Polygon(PolygonFault::NoArea { .. })));
+    }
+}

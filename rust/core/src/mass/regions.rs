@@ -1,0 +1,223 @@
+//! Regions of space that a density is integrated over, each covered by smooth charts from boxes of parameters.
+
+use nalgebra::Vector3;
+use std::f64::consts::{PI, TAU};
+
+use super::amount::{Amount, length, ordered};
+use super::polyhedron::polyhedron;
+use crate::error::{Error, all_finite};
+use crate::numerics::quadrature::{Cell, Rule};
+
+/// Where there is matter. Its boundary is where a density may end with a jump.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region(Kind);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    /// Parameters: x, y, z.
+    Box {
+        low: Vector3<f64>,
+        high: Vector3<f64>,
+    },
+    /// Parameters: fraction of the radius, polar angle, azimuth.
+    Ellipsoid {
+        center: Vector3<f64>,
+        semi_axes: Vector3<f64>,
+        /// The cavity, as a fraction of the radius.
+        inner: f64,
+    },
+    /// Parameters: radius, azimuth, height.
+    Cylinder {
+        center: Vector3<f64>,
+        inner_radius: f64,
+        radius: f64,
+        height: f64,
+    },
+    /// One chart for each face: the signed tetrahedron from a point amid the mesh, drawn together at that point and at
+    /// the first corner.
+    Mesh {
+        apex: Vector3<f64>,
+        faces: Vec<[Vector3<f64>; 3]>,
+    },
+}
+
+impl Region {
+    /// Box between two opposite corners, its faces normal to the axes.
+    ///
+    /// # Errors
+    /// When a coordinate is not finite or `low` is not below `high` along each axis.
+    pub fn cuboid(low: &Vector3<f64>, high: &Vector3<f64>) -> Result<Self, Error> {
+        all_finite("low", low)?;
+        all_finite("high", high)?;
+        for axis in 0..3 {
+            let (a, b) = (low[axis], high[axis]);
+            if a >= b {
+                let (smaller, larger) = ("low", "high");
+                return Err(Error::NotBelow {
+                    smaller,
+                    a,
+                    larger,
+                    b,
+                });
+            }
+        }
+        let (low, high) = (*low, *high);
+        Ok(Self(Kind::Box { low, high }))
+    }
+
+    /// Ball, hollow when the inner radius is not zero.
+    ///
+    /// # Errors
+    /// When a number is not finite, or the radii do not leave any volume.
+    pub fn ball(radius: f64, center: &Vector3<f64>, inner_radius: f64) -> Result<Self, Error> {
+        below(inner_radius, radius)?;
+        all_finite("center", center)?;
+        Ok(Self(Kind::Ellipsoid {
+            center: *center,
+            semi_axes: Vector3::repeat(radius),
+            inner: inner_radius / radius,
+        }))
+    }
+
+    /// Ellipsoid with its axes along x, y, z.
+    ///
+    /// # Errors
+    /// When a number is not finite or a semi-axis not positive.
+    pub fn ellipsoid(semi_axes: &Vector3<f64>, center: &Vector3<f64>) -> Result<Self, Error> {
+        for &semi_axis in semi_axes {
+            positive("semi_axes", semi_axis)?;
+        }
+        all_finite("center", center)?;
+        Ok(Self(Kind::Ellipsoid {
+            center: *center,
+            semi_axes: *semi_axes,
+            inner: 0.0,
+        }))
+    }
+
+    /// Cylinder along z, hollow when the inner radius is not zero.
+    ///
+    /// # Errors
+    /// When a number is not finite, the radii do not leave any volume or the height is not positive.
+    pub fn cylinder(
+        radius: f64,
+        height: f64,
+        center: &Vector3<f64>,
+        inner_radius: f64,
+    ) -> Result<Self, Error> {
+        below(inner_radius, radius)?;
+        positive("height", height)?;
+        all_finite("center", center)?;
+        Ok(Self(Kind::Cylinder {
+            center: *center,
+            inner_radius,
+            radius,
+            height,
+        }))
+    }
+
+    /// The inside of a closed, consistently wound triangle mesh.
+    ///
+    /// # Errors
+    /// When the mesh does not bound a solid.
+    pub fn mesh(vertices: &[[f64; 3]], faces: &[[usize; 3]]) -> Result<Self, Error> {
+        // Whatever is wrong with the mesh is told here.
+        let solid = polyhedron(vertices, faces, Amount::Density(1.0), false)?;
+        Ok(Self(Kind::Mesh {
+            apex: solid.center_of_mass(),
+            faces: faces
+                .iter()
+                .map(|face| face.map(|k| Vector3::from(vertices[k])))
+                .collect(),
+        }))
+    }
+
+    /// The rule that suits the size of the region's charts: a mesh has many small ones.
+    pub(super) fn rule(&self) -> Rule {
+        match self.0 {
+            Kind::Mesh { .. } => Rule::seven(),
+            _ => Rule::fifteen(),
+        }
+    }
+
+    /// Boxes of parameters that cover the region once.
+    pub(super) fn cells(&self) -> Vec<Cell<3>> {
+        let whole = |low: [f64; 3], high: [f64; 3]| Cell {
+            chart: 0,
+            low,
+            high,
+        };
+        match &self.0 {
+            Kind::Box { .. } => whole([0.0; 3], [1.0; 3]).divided([2, 2, 2]),
+            Kind::Ellipsoid { inner, .. } => {
+                whole([*inner, 0.0, 0.0], [1.0, PI, TAU]).divided([1, 2, 4])
+            }
+            Kind::Cylinder {
+                inner_radius,
+                radius,
+                ..
+            } => whole([*inner_radius, 0.0, 0.0], [*radius, TAU, 1.0]).divided([1, 4, 2]),
+            Kind::Mesh { faces, .. } => (0..faces.len())
+                .map(|chart| Cell {
+                    chart,
+                    low: [0.0; 3],
+                    high: [1.0; 3],
+                })
+                .collect(),
+        }
+    }
+
+    /// The point with these parameters, and the volume element there.
+    pub(super) fn point(&self, chart: usize, parameters: &[f64; 3]) -> (Vector3<f64>, f64) {
+        let [u, v, w] = *parameters;
+        match &self.0 {
+            Kind::Box { low, high } => {
+                let size = high - low;
+                let at = low + size.component_mul(&Vector3::new(u, v, w));
+                (at, size.product())
+            }
+            Kind::Ellipsoid {
+                center, semi_axes, ..
+            } => {
+                let ((sin, cos), (sin_phi, cos_phi)) = (v.sin_cos(), w.sin_cos());
+                let direction = Vector3::new(sin * cos_phi, sin * sin_phi, cos);
+                let at = center + semi_axes.component_mul(&direction) * u;
+                (at, semi_axes.product() * (u * u * sin))
+            }
+            Kind::Cylinder { center, height, .. } => {
+                let (sin, cos) = v.sin_cos();
+                let at = center + Vector3::new(u * cos, u * sin, height * (w - 0.5));
+                (at, u * height)
+            }
+            Kind::Mesh { apex, faces } => {
+                let [a, b, c] = faces[chart].map(|corner| corner - apex);
+                let at = a + ((b - a) + (c - b) * w) * v;
+                (apex + at * u, a.dot(&b.cross(&c)) * (u * u * v))
+            }
+        }
+    }
+}
+
+fn positive(what: &'static str, value: f64) -> Result<(), Error> {
+    length(what, value)?;
+    if value == 0.0 {
+        let law = "positive";
+        return Err(Error::OutOfDomain { what, law, value });
+    }
+    Ok(())
+}
+
+/// `0 ≤ inner radius < radius`.
+fn below(inner_radius: f64, radius: f64) -> Result<(), Error> {
+    ordered(("inner_radius", inner_radius), ("radius", radius))?;
+    if inner_radius < radius {
+        return Ok(());
+    }
+    let (smaller, a, larger, b) = ("inner_radius", inner_radius, "radius", radius);
+    Err(Error::NotBelow {
+        smaller,
+        a,
+        larger,
+        b,
+    })
+}

@@ -1,0 +1,116 @@
+//! Homogeneous thin rods, straight and bent: mass along a line, centre of mass at the origin.
+
+use std::f64::consts::{PI, TAU};
+
+use super::amount::{Amount, Measure, diagonal, length};
+use super::body::RigidBody;
+use crate::error::{Error, finite};
+
+/// Thin rod of length L along z: `I_x = I_y = m L²/12`, `I_z = 0`.
+///
+/// # Errors
+/// When the length is negative or not finite, or the amount is not positive.
+pub fn rod(length: f64, amount: Amount) -> Result<RigidBody, Error> {
+    self::length("length", length)?;
+    diagonal(
+        Measure::Length(length),
+        amount,
+        [0.0, 0.0, length * length / 12.0],
+    )
+}
+
+/// Thin ring of radius R about z: `I_z = m R²`, `I_x = I_y = ½ m R²`.
+///
+/// # Errors
+/// When the radius is negative or not finite, or the amount is not positive.
+pub fn ring(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+    length("radius", radius)?;
+    let across = radius * radius / 2.0;
+    diagonal(Measure::Length(TAU * radius), amount, [across, across, 0.0])
+}
+
+/// Thin arc of a circle of radius R in the x-y plane that spans the angle α, its middle toward +x and the centre of the
+/// circle at `x = −R sin(α/2)/(α/2)` from C:
+/// `s_y = ½ m R² (1 − sin α/α)`, `s_x = ½ m R² (1 + sin α/α) − m R² (sin(α/2)/(α/2))²`.
+///
+/// # Errors
+/// When the radius is negative or not finite, the angle is not within 0 to 2π, or the amount is not positive.
+pub fn arc(radius: f64, angle: f64, amount: Amount) -> Result<RigidBody, Error> {
+    length("radius", radius)?;
+    finite("angle", angle)?;
+    if !(0.0..=TAU).contains(&angle) {
+        return Err(Error::OutOfDomain {
+            what: "angle",
+            law: "from 0 to 2π",
+            value: angle,
+        });
+    }
+    let square = radius * radius;
+    diagonal(
+        Measure::Length(radius * angle),
+        amount,
+        [square * sagitta(angle), square * chord(angle), 0.0],
+    )
+}
+
+/// `½ (1 − sin α/α)`; of a short arc by its series, where the difference would cancel.
+fn chord(angle: f64) -> f64 {
+    if angle >= 2.0 {
+        return 0.5 * (1.0 - angle.sin() / angle);
+    }
+    // Σ (−1)^(k+1) α^(2k)/(2k + 1)!, k = 1, 2, …
+    let square = angle * angle;
+    let mut term = square / 6.0;
+    let mut sum = 0.0;
+    for k in 1..16 {
+        sum += term;
+        let n = f64::from(2 * k + 2);
+        term *= -square / (n * (n + 1.0));
+    }
+    0.5 * sum
+}
+
+/// `½ (1 + sin α/α) − (sin(α/2)/(α/2))²`; of all but long arcs by its series, where the difference would cancel.
+fn sagitta(angle: f64) -> f64 {
+    if angle >= 1.25 * PI {
+        let (half, whole) = ((angle / 2.0).sin() / (angle / 2.0), angle.sin() / angle);
+        return 0.5 * (1.0 + whole) - half * half;
+    }
+    // Σ (−1)^k (k − 1) α^(2k)/(2k + 2)!, k = 2, 3, …
+    let square = angle * angle;
+    let mut power = square * square / 720.0;
+    let mut sum = 0.0;
+    for k in 2..20 {
+        sum += f64::from(k - 1) * power;
+        let n = f64::from(2 * k + 3);
+        power *= -square / (n * (n + 1.0));
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_ring_and_whole_ring() {
+        let half = arc(2.0, PI, Amount::Mass(1.0)).expect("arc").inertia();
+        // About the centre of the circle a half ring has half the moments of inertia of a ring in each direction.
+        let offset = 2.0 * 2.0 / PI;
+        assert!((half[(2, 2)] - (4.0 - offset * offset)).abs() < 4e-15);
+        assert!((half[(0, 0)] - 2.0).abs() < 4e-15);
+        let whole = arc(2.0, TAU, Amount::Mass(1.0)).expect("arc");
+        assert!(whole.is_close(&ring(2.0, Amount::Mass(1.0)).expect("ring"), 1e-15, 0.0));
+    }
+
+    #[test]
+    fn shallow_arc_is_a_rod_with_a_sagitta() {
+        let (radius, angle) = (1e6, 1e-6);
+        let [i1, i2, _] = arc(radius, angle, Amount::Mass(1.0))
+            .expect("arc")
+            .principal()
+            .moments;
+        assert!((i1 / (radius * radius * angle.powi(4) / 720.0) - 1.0).abs() < 1e-12);
+        assert!((i2 - 1.0 / 12.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,108 @@
+//! Solids with flat faces.
+
+use nalgebra::Matrix3;
+use std::f64::consts::TAU;
+
+use super::super::amount::{Amount, Measure, centered, diagonal, length};
+use super::super::body::RigidBody;
+use crate::error::Error;
+
+/// Box with full edge lengths (x, y, z): `s_x = m x²/12`.
+///
+/// # Errors
+/// When a length is negative or not finite, or the amount is not positive.
+pub fn cuboid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
+    let [x, y, z] = lengths(size)?;
+    diagonal(
+        Measure::Volume(x * y * z),
+        amount,
+        size.map(|edge| edge * edge / 12.0),
+    )
+}
+
+/// Cube with full edge length a: `I = m a²/6`.
+///
+/// # Errors
+/// When the length is negative or not finite, or the amount is not positive.
+pub fn cube(side: f64, amount: Amount) -> Result<RigidBody, Error> {
+    length("side", side)?;
+    cuboid(&[side; 3], amount)
+}
+
+/// Wedge: half of the box (x, y, z), cut along a diagonal of its x-z faces, its right angle at −x, −z:
+/// `s_x = m x²/18`, `s_y = m y²/12`, `s_z = m z²/18`, `s_xz = −m x z/36`.
+///
+/// The corners are (−x/3, ±y/2, −z/3), (2x/3, ±y/2, −z/3) and (−x/3, ±y/2, 2z/3).
+///
+/// # Errors
+/// When a length is negative or not finite, or the amount is not positive.
+pub fn wedge(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
+    let [x, y, z] = lengths(size)?;
+    let xz = -(x * z / 36.0);
+    let (xx, yy, zz) = (x * x / 18.0, y * y / 12.0, z * z / 18.0);
+    centered(
+        Measure::Volume(x * y * z / 2.0),
+        amount,
+        &Matrix3::new(xx, 0.0, xz, 0.0, yy, 0.0, xz, 0.0, zz),
+    )
+}
+
+/// Upright prism of height h over a regular polygon with `sides` corners at the distance R from the axis, one of them
+/// toward +x: `s_x = s_y = m R² (2 + cos 2π/n)/12`, `s_z = m h²/12`.
+///
+/// # Errors
+/// When there are fewer than three sides, a length is negative or not finite, or the amount is not positive.
+pub fn prism(sides: u32, radius: f64, height: f64, amount: Amount) -> Result<RigidBody, Error> {
+    if sides < 3 {
+        return Err(Error::OutOfDomain {
+            what: "sides",
+            law: "a whole number of 3 or more",
+            value: f64::from(sides),
+        });
+    }
+    length("radius", radius)?;
+    length("height", height)?;
+    let n = f64::from(sides);
+    let (sin, cos) = (TAU / n).sin_cos();
+    let across = radius * radius * (2.0 + cos) / 12.0;
+    diagonal(
+        Measure::Volume(0.5 * n * sin * radius * radius * height),
+        amount,
+        [across, across, height * height / 12.0],
+    )
+}
+
+/// Pyramid of height z over a rectangle x by y, apex toward +z at 3z/4 from C: `s_x = m x²/20`, `s_z = 3 m z²/80`.
+///
+/// # Errors
+/// When a length is negative or not finite, or the amount is not positive.
+pub fn pyramid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
+    let [x, y, z] = lengths(size)?;
+    diagonal(
+        Measure::Volume(x * y * z / 3.0),
+        amount,
+        [x * x / 20.0, y * y / 20.0, 3.0 * z * z / 80.0],
+    )
+}
+
+/// Regular tetrahedron with edges a, apex toward +z: `I = m a²/20` about every axis through C.
+///
+/// The corners are (0, 0, a√6/4), (a/√3, 0, −a/√24) and (−a/√12, ±a/2, −a/√24).
+///
+/// # Errors
+/// When the length is negative or not finite, or the amount is not positive.
+pub fn tetrahedron(side: f64, amount: Amount) -> Result<RigidBody, Error> {
+    length("side", side)?;
+    diagonal(
+        Measure::Volume(side * side * side / 72.0_f64.sqrt()),
+        amount,
+        [side * side / 40.0; 3],
+    )
+}
+
+fn lengths(size: &[f64; 3]) -> Result<[f64; 3], Error> {
+    for &edge in size {
+        length("size", edge)?;
+    }
+    Ok(*size)
+}

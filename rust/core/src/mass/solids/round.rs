@@ -1,0 +1,75 @@
+//! Balls and ellipsoids, whole, hollow and halved.
+
+use std::f64::consts::PI;
+
+use super::super::amount::{Amount, Measure, diagonal, length, ordered, ratio};
+use super::super::body::RigidBody;
+use crate::error::Error;
+
+/// Ellipsoid with semi-axes (a, b, c): `s_x = m a²/5`, so `I_x = m (b² + c²)/5` (mex254).
+///
+/// # Errors
+/// When a length is negative or not finite, or the amount is not positive.
+pub fn ellipsoid(semi_axes: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
+    for &semi_axis in semi_axes {
+        length("semi_axes", semi_axis)?;
+    }
+    let [a, b, c] = *semi_axes;
+    diagonal(
+        Measure::Volume(4.0 / 3.0 * PI * a * b * c),
+        amount,
+        semi_axes.map(|semi_axis| semi_axis * semi_axis / 5.0),
+    )
+}
+
+/// Ball of radius R: `I = ⅖ m R²` (mex253).
+///
+/// # Errors
+/// When the radius is negative or not finite, or the amount is not positive.
+pub fn sphere(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+    length("radius", radius)?;
+    ellipsoid(&[radius; 3], amount)
+}
+
+/// Ball of radius R with a concentric cavity of radius r: `I = ⅖ m (R⁵ − r⁵)/(R³ − r³)`, which for r = R is the thin shell,
+/// `I = ⅔ m R²`.
+///
+/// Both differences have the factor `R − r`, which is divided out:
+/// `I = ⅖ m R² (1 + t + t² + t³ + t⁴)/(1 + t + t²)` with `t = r/R`.
+///
+/// # Errors
+/// When a radius is negative or not finite, the inner one is the larger, or the amount is not positive.
+pub fn hollow_sphere(
+    inner_radius: f64,
+    outer_radius: f64,
+    amount: Amount,
+) -> Result<RigidBody, Error> {
+    ordered(
+        ("inner_radius", inner_radius),
+        ("outer_radius", outer_radius),
+    )?;
+    let (r, R) = (inner_radius, outer_radius);
+    let t = ratio(r, R);
+    let quadratic = 1.0 + t * (1.0 + t);
+    let quartic = 1.0 + t * (1.0 + t * quadratic);
+    diagonal(
+        Measure::Volume(4.0 / 3.0 * PI * (R - r) * (R * R * quadratic)),
+        amount,
+        [R * R / 5.0 * (quartic / quadratic); 3],
+    )
+}
+
+/// Half of a ball of radius R, its dome toward +z and its flat face at −3R/8 from C:
+/// `s_x = s_y = m R²/5`, `s_z = m R²/5 − m (3R/8)² = 19 m R²/320`.
+///
+/// # Errors
+/// When the radius is negative or not finite, or the amount is not positive.
+pub fn hemisphere(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+    length("radius", radius)?;
+    let square = radius * radius;
+    diagonal(
+        Measure::Volume(2.0 / 3.0 * PI * square * radius),
+        amount,
+        [square / 5.0, square / 5.0, 19.0 * square / 320.0],
+    )
+}

@@ -1,0 +1,102 @@
+//! Differences of coordinates without rounding, and what is made of them with one rounding.
+
+use super::double_double::{two_product, two_sum};
+
+/// A vector as rounded components and what rounding left of each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SplitVector<const N: usize> {
+    /// The components, rounded.
+    pub high: [f64; N],
+    /// What rounding left.
+    pub low: [f64; N],
+}
+
+impl<const N: usize> SplitVector<N> {
+    /// `a − b` exactly.
+    #[must_use]
+    pub fn difference(a: &[f64; N], b: &[f64; N]) -> Self {
+        let parts: [(f64, f64); N] = std::array::from_fn(|i| two_sum(a[i], -b[i]));
+        Self {
+            high: parts.map(|part| part.0),
+            low: parts.map(|part| part.1),
+        }
+    }
+
+    /// `v·n`, rounded about once even where large terms cancel.
+    #[must_use]
+    pub fn dot(&self, n: &[f64; N]) -> f64 {
+        let (mut sum, mut rest) = (0.0, 0.0);
+        for ((&high, &low), &n) in self.high.iter().zip(&self.low).zip(n) {
+            let (product, product_rest) = two_product(high, n);
+            let (total, total_rest) = two_sum(sum, product);
+            sum = total;
+            rest += product_rest + total_rest + low * n;
+        }
+        sum + rest
+    }
+}
+
+/// `a × b` of two vectors of the plane, rounded about once.
+#[must_use]
+pub fn cross2(a: &SplitVector<2>, b: &SplitVector<2>) -> f64 {
+    let (value, rest) = difference_of_products(a.high[0], b.high[1], a.high[1], b.high[0]);
+    let low = (a.high[0] * b.low[1] - a.high[1] * b.low[0])
+        + (a.low[0] * b.high[1] - a.low[1] * b.high[0]);
+    value + (rest + low)
+}
+
+/// `det(a, b, c)`, rounded about once.
+#[must_use]
+pub fn determinant(a: &SplitVector<3>, b: &SplitVector<3>, c: &SplitVector<3>) -> f64 {
+    let (mut sum, mut rest) = (0.0, 0.0);
+    for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+        let (cross, cross_rest) =
+            difference_of_products(b.high[j], c.high[k], b.high[k], c.high[j]);
+        let (product, product_rest) = two_product(a.high[i], cross);
+        let (total, total_rest) = two_sum(sum, product);
+        sum = total;
+        // To first order in what rounding left of the components.
+        let low = (b.low[j] * c.high[k] - b.low[k] * c.high[j])
+            + (b.high[j] * c.low[k] - b.high[k] * c.low[j]);
+        rest += product_rest + total_rest + a.high[i] * (cross_rest + low) + a.low[i] * cross;
+    }
+    sum + rest
+}
+
+/// `p q − r s` as a rounded value and its rest.
+fn difference_of_products(p: f64, q: f64, r: f64, s: f64) -> (f64, f64) {
+    let ((first, first_rest), (second, second_rest)) = (two_product(p, q), two_product(r, s));
+    let (sum, rest) = two_sum(first, -second);
+    (sum, rest + (first_rest - second_rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slivers_far_away_keep_their_measure() {
+        // Corners on a lattice far from the origin: differences are exact, products cancel to the last bits.
+        let far = 2.0_f64.powi(40);
+        let at = |x: f64, y: f64, z: f64| [far + x, far + y, far + z];
+        let n = 2.0_f64.powi(27) + 1.0;
+        let split = |p: [f64; 3]| SplitVector::difference(&p, &at(0.0, 0.0, 0.0));
+        let (a, b, c) = (
+            split(at(n, n - 1.0, 0.0)),
+            split(at(n + 1.0, n, 0.0)),
+            split(at(0.0, 0.0, 1.0)),
+        );
+        assert_eq!(determinant(&a, &b, &c), 1.0);
+        let plane = |v: SplitVector<3>| SplitVector {
+            high: [v.high[0], v.high[1]],
+            low: [v.low[0], v.low[1]],
+        };
+        assert_eq!(cross2(&plane(a), &plane(b)), 1.0);
+    }
+
+    #[test]
+    fn dot_keeps_what_cancels() {
+        let v = SplitVector::difference(&[1.0, 1.0], &[2.0_f64.powi(-60), 0.0]);
+        assert_eq!(v.dot(&[1.0, -1.0]), -(2.0_f64.powi(-60)));
+    }
+}

@@ -1,0 +1,216 @@
+//! Homogeneous laminae.
+
+use polhode::mass::laminae;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::read_list;
+use crate::rigid_body::PyRigidBody;
+use crate::solids::{Given, amounts, lengths, one};
+use crate::stack::{Broadcast, Stack};
+
+/// Disk about z: I_z = ½ m R², I_x = ¼ m R².
+///
+/// Parameters
+/// ----------
+/// radius : array_like, shape (...)
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two; the density is mass per area.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import laminae
+/// >>> laminae.disk(2.0, mass=3.0).principal_moments
+/// array([3., 3., 6.])
+#[pyfunction]
+#[pyo3(signature = (radius, *, mass=None, density=None))]
+pub(crate) fn disk(
+    radius: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(
+        radius,
+        "radius",
+        (mass, density),
+        |&radius: &f64, amount| laminae::disk(radius, amount),
+    )
+}
+
+/// Disk with a concentric hole: I_z = ½ m (R² + r²). With equal radii a ring.
+///
+/// Parameters
+/// ----------
+/// inner_radius, outer_radius : array_like, shape (...)
+///     r and R, r ≤ R.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two; the density is mass per area.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import laminae
+/// >>> laminae.annulus(inner_radius=1.0, outer_radius=3.0, mass=2.0).principal_moments
+/// array([ 5.,  5., 10.])
+#[pyfunction]
+#[pyo3(signature = (inner_radius, outer_radius, *, mass=None, density=None))]
+pub(crate) fn annulus(
+    inner_radius: &Bound<'_, PyAny>,
+    outer_radius: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    lengths(
+        ["inner_radius", "outer_radius"],
+        [inner_radius, outer_radius],
+        (mass, density),
+        |&[inner, outer], amount| laminae::annulus(inner, outer, amount),
+    )
+}
+
+/// Ellipse with its axes along x and y: I_x = ¼ m b², I_y = ¼ m a².
+///
+/// Parameters
+/// ----------
+/// semi_axes : array_like, shape (..., 2)
+///     a, b: half the lengths along x, y.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two; the density is mass per area.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import laminae
+/// >>> laminae.ellipse((4.0, 2.0), mass=1.0).principal_moments
+/// array([1., 4., 5.])
+#[pyfunction]
+#[pyo3(signature = (semi_axes, *, mass=None, density=None))]
+pub(crate) fn ellipse(
+    semi_axes: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(semi_axes, "semi_axes", (mass, density), laminae::ellipse)
+}
+
+/// Rectangle with its edges along x and y: I_x = m y²/12, I_y = m x²/12.
+///
+/// Parameters
+/// ----------
+/// size : array_like, shape (..., 2)
+///     Full edge lengths.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two; the density is mass per area.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import laminae
+/// >>> laminae.rectangle((2.0, 4.0), mass=3.0).inertia.diagonal()
+/// array([4., 1., 5.])
+#[pyfunction]
+#[pyo3(signature = (size, *, mass=None, density=None))]
+pub(crate) fn rectangle(
+    size: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(size, "size", (mass, density), laminae::rectangle)
+}
+
+/// Triangle in the x-y plane, where its corners are.
+///
+/// Parameters
+/// ----------
+/// vertices : array_like, shape (..., 3, 2)
+///     x, y of the corners, in any order.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two; the density is mass per area.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import laminae
+/// >>> triangle = laminae.triangle([(0, 0), (6, 0), (0, 3)], density=1.0)
+/// >>> triangle.mass, triangle.center_of_mass
+/// (9.0, array([2., 1., 0.]))
+/// >>> triangle.inertia
+/// array([[ 4.5,  4.5,  0. ],
+///        [ 4.5, 18. ,  0. ],
+///        [ 0. ,  0. , 22.5]])
+#[pyfunction]
+#[pyo3(signature = (vertices, *, mass=None, density=None))]
+pub(crate) fn triangle(
+    vertices: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    let shape = |corners: &[[f64; 2]; 3], amount| laminae::triangle(corners, amount);
+    one(vertices, "vertices", (mass, density), shape)
+}
+
+/// Simple polygon in the x-y plane, where its corners are.
+///
+/// Parameters
+/// ----------
+/// vertices : array_like, shape (..., n, 2)
+///     x, y of the corners along the boundary, either way round; the last joins the first. Edges must not
+///     cross; a hole is cut out by subtracting another polygon.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two; the density is mass per area.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     Naming the edges that cross.
+///
+/// Examples
+/// --------
+/// An L:
+///
+/// >>> from polhode import laminae
+/// >>> corners = [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)]
+/// >>> laminae.polygon(corners, density=2.0).center_of_mass
+/// array([1.1, 1.1, 0. ])
+#[pyfunction]
+#[pyo3(signature = (vertices, *, mass=None, density=None))]
+pub(crate) fn polygon(
+    vertices: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    let py = vertices.py();
+    let corners: Stack<[f64; 2]> = read_list(vertices, "vertices", "..., n")?;
+    let [shape @ .., n] = &corners.shape[..] else {
+        return Err(PyValueError::new_err(
+            "vertices: expected a list of corners",
+        ));
+    };
+    let (n, amounts) = (*n, amounts(mass, density)?);
+    let grid = Broadcast::of(["vertices", "mass or density"], [shape, &amounts.shape])?;
+    Ok(grid
+        .try_map(py, |[v, a]| {
+            laminae::polygon(&corners.rows[v * n..(v + 1) * n], amounts[a])
+        })?
+        .into())
+}

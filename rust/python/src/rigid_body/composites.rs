@@ -1,0 +1,88 @@
+//! Composites: parts taken out, stacks put together.
+
+use numpy::{PyArrayDyn, PyArrayMethods};
+use polhode::mass::composites::combined;
+use pyo3::prelude::*;
+use pyo3::types::{PyNotImplemented, PyTuple};
+
+use super::PyRigidBody;
+use crate::arrays::numpy;
+use crate::stack::Broadcast;
+
+#[pymethods]
+impl PyRigidBody {
+    fn __sub__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        let other = &other.get().bodies;
+        let grid = Broadcast::of(["body", "other"], [&self.bodies.shape, &other.shape])?;
+        let rest: Self = grid
+            .try_map(py, |[a, b]| self.bodies[a].without(&other[b]))?
+            .into();
+        Ok(rest.into_pyobject(py)?.into_any())
+    }
+
+    /// The bodies of a stack as one rigid body, or as one for each place along the other axes.
+    ///
+    /// Composed about the common centre of mass in one pass, which is faster and rounds less than adding
+    /// body after body. Collinear rods and particles keep the smallest moment that they have.
+    ///
+    /// Parameters
+    /// ----------
+    /// axis : int or tuple of int, optional
+    ///     The axes of the stack to put together; all of them by default.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// Wheels on an axle:
+    ///
+    /// >>> from polhode import laminae, rods
+    /// >>> wheels = laminae.disk(1.0, mass=2.0).translated([(0, 0, -1), (0, 0, 1)])
+    /// >>> (wheels.combined() + rods.rod(2.0, mass=3.0)).principal_moments
+    /// array([2., 6., 6.])
+    #[pyo3(signature = (axis=None))]
+    fn combined(&self, py: Python<'_>, axis: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let np = numpy(py)?;
+        // NumPy itself tells which rows come together: those axes last, as one.
+        let rows = np
+            .call_method1("arange", (self.bodies.rows.len(),))?
+            .call_method1("reshape", (PyTuple::new(py, &self.bodies.shape)?,))?;
+        let depth = self.bodies.shape.len();
+        let axes: Vec<usize> = match axis {
+            None => (0..depth).collect(),
+            Some(axis) => np
+                .getattr("lib")?
+                .getattr("array_utils")?
+                .call_method1("normalize_axis_tuple", (axis, depth))?
+                .extract()?,
+        };
+        let kept: Vec<usize> = (0..depth).filter(|k| !axes.contains(k)).collect();
+        let shape: Vec<usize> = kept.iter().map(|&k| self.bodies.shape[k]).collect();
+        let count: usize = axes.iter().map(|&k| self.bodies.shape[k]).product();
+        let order = [&kept[..], &axes].concat();
+        let rows = np
+            .call_method1("transpose", (rows, order))?
+            .call_method1("astype", ("int64",))?
+            .cast_into::<PyArrayDyn<i64>>()?;
+        let parts: Vec<_> = rows
+            .readonly()
+            .as_array()
+            .iter()
+            .filter_map(|&row| usize::try_from(row).ok())
+            .map(|row| self.bodies[row])
+            .collect();
+        let grid = Broadcast::of(["body"], [&shape])?;
+        Ok(Self::from(grid.try_map(py, |[row]| {
+            combined(&parts[row * count..(row + 1) * count])
+        })?))
+    }
+}

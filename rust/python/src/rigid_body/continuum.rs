@@ -1,0 +1,319 @@
+//! Bodies from matter that fills space: tetrahedra, and densities over regions.
+
+use polhode::Error;
+use polhode::RigidBody;
+use polhode::mass::density::{Effort, from_density, from_radial_density};
+use polhode::mass::regions::Region;
+use polhode::mass::tetrahedra::{CellDensity, CellFault, tetrahedra};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use super::PyRigidBody;
+use crate::arrays::{Item, read, read_indices, read_list, write};
+use crate::errors::{new, to_py};
+use crate::regions::PyRegion;
+use crate::stack::{Stack, tuple};
+
+#[pymethods]
+impl PyRigidBody {
+    /// Body made of tetrahedra, such as the cells of a finite-element mesh; the integrals are exact.
+    ///
+    /// Cells are what they cover: their nodes may go either way round, and cells that overlap count twice.
+    ///
+    /// Parameters
+    /// ----------
+    /// nodes : array_like, shape (n, 3)
+    /// cells : array_like of int, shape (m, 4)
+    ///     The four nodes of each tetrahedron, counted from zero.
+    /// density : float or array_like, shape (m,) or (n,)
+    ///     One for all, one for each cell, or one for each node and linear between them.
+    /// at : {"cells", "nodes"}, optional
+    ///     What an array of densities belongs to; needed only where there are as many cells as nodes.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     Naming the cell, node or density that is at fault.
+    ///
+    /// Examples
+    /// --------
+    /// A density that grows with x:
+    ///
+    /// >>> from polhode import RigidBody
+    /// >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    /// >>> body = RigidBody.from_tetrahedra(corners, [(0, 1, 2, 3)], density=[0, 24, 0, 0])
+    /// >>> round(body.mass, 12), body.center_of_mass.round(12)
+    /// (1.0, array([0.4, 0.2, 0.2]))
+    #[staticmethod]
+    #[pyo3(signature = (nodes, cells, *, density, at=None))]
+    fn from_tetrahedra(
+        py: Python<'_>,
+        nodes: &Bound<'_, PyAny>,
+        cells: &Bound<'_, PyAny>,
+        density: &Bound<'_, PyAny>,
+        at: Option<&str>,
+    ) -> PyResult<Self> {
+        let nodes: Stack<[f64; 3]> = read_list(nodes, "nodes", "n")?;
+        let cells = read_indices::<4>(cells, "cells")?.map_err(|(cell, index)| {
+            let nodes = nodes.rows.len();
+            to_py(
+                py,
+                &CellFault::IndexOutOfRange { cell, index, nodes }.into(),
+            )
+        })?;
+        let density: Stack<f64> = read(density, "density")?;
+        let given = placed(&density, at, cells.len(), nodes.rows.len())?;
+        let body = py.detach(|| tetrahedra(&nodes.rows, &cells, given));
+        Ok(Stack::one(body.map_err(|error| to_py(py, &error))?).into())
+    }
+
+    /// Body that fills a region of space with a density given as a function.
+    ///
+    /// The integrals are taken by adaptive cubature. The density must be smooth within the region: let a
+    /// jump be a boundary, with one region on each side of it and the bodies added. A feature much
+    /// smaller than a tenth of the region may be missed: draw the bounds closely.
+    ///
+    /// Parameters
+    /// ----------
+    /// density : callable
+    ///     ``density(points)``, with points of shape (n, 3), returns the densities there, shape (n,):
+    ///     none negative.
+    /// bounds : Region or array_like, shape (2, 3)
+    ///     A region of :mod:`polhode.regions`, or two opposite corners of a box.
+    /// rtol : float, optional
+    ///     Bound on the estimated error of the mass, relative; of the centre of mass, relative to the
+    ///     radius of gyration; and of the second moments, relative to their sum.
+    /// max_evaluations : int, optional
+    ///     At how many points the density may be asked for at most.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// QuadratureError
+    ///     When the evaluations do not suffice; it carries the estimate and its error.
+    ///
+    /// Examples
+    /// --------
+    /// A ball whose density falls off from its centre:
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody, regions
+    /// >>> ball = RigidBody.from_density(lambda r: 1 - (r**2).sum(axis=1), regions.ball(radius=1.0))
+    /// >>> round(ball.mass / np.pi, 9)
+    /// 0.533333333
+    #[staticmethod]
+    #[pyo3(signature = (density, bounds, *, rtol=1e-9, max_evaluations=10_000_000))]
+    fn from_density(
+        py: Python<'_>,
+        density: &Bound<'_, PyAny>,
+        bounds: &Bound<'_, PyAny>,
+        rtol: f64,
+        max_evaluations: usize,
+    ) -> PyResult<Self> {
+        callable(density)?;
+        let region = region(bounds)?;
+        let effort = Effort {
+            rtol,
+            max_evaluations,
+        };
+        let at = |points: &[[f64; 3]], values: &mut [f64]| ask(density, points, values);
+        finished(py, from_density(&region, at, effort))
+    }
+
+    /// Ball whose density depends on the distance from its centre alone: a star, a planet, a layered shell.
+    ///
+    /// Parameters
+    /// ----------
+    /// density : callable
+    ///     ``density(radii)``, with radii of shape (n,), returns the densities there, shape (n,): none
+    ///     negative.
+    /// radii : float or array_like, shape (k,)
+    ///     The radius; or ascending radii between which there is matter, at each of which the density may
+    ///     jump. A first one above zero is that of a cavity.
+    /// rtol : float, optional
+    ///     Bound on the estimated relative errors of mass and moments.
+    /// max_evaluations : int, optional
+    ///     At how many radii the density may be asked for at most.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// QuadratureError
+    ///     When the evaluations do not suffice; it carries the estimate and its error.
+    ///
+    /// Examples
+    /// --------
+    /// A core twice as dense as the mantle:
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody, solids
+    /// >>> layers = lambda r: np.where(r < 0.5, 2.0, 1.0)
+    /// >>> planet = RigidBody.from_radial_density(layers, [0, 0.5, 1])
+    /// >>> core_and_all = solids.sphere(0.5, density=1.0) + solids.sphere(1.0, density=1.0)
+    /// >>> planet.isclose(core_and_all, rtol=1e-14)
+    /// True
+    #[staticmethod]
+    #[pyo3(signature = (density, radii, *, rtol=1e-9, max_evaluations=1_000_000))]
+    fn from_radial_density(
+        py: Python<'_>,
+        density: &Bound<'_, PyAny>,
+        radii: &Bound<'_, PyAny>,
+        rtol: f64,
+        max_evaluations: usize,
+    ) -> PyResult<Self> {
+        callable(density)?;
+        let radii: Stack<f64> = read(radii, "radii")?;
+        let boundaries = match radii.shape[..] {
+            [] => vec![0.0, radii[0]],
+            [k] if k >= 2 => radii.rows,
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "radii: expected one radius, or two and more in shape (k,), got {}",
+                    tuple(&radii.shape)
+                )));
+            }
+        };
+        let effort = Effort {
+            rtol,
+            max_evaluations,
+        };
+        let at = |points: &[f64], values: &mut [f64]| ask(density, points, values);
+        finished(py, from_radial_density(&boundaries, at, effort))
+    }
+}
+
+/// Why a cubature ended early: by its own law, or by an exception of the user's function.
+enum Halt {
+    Law(Error),
+    Raised(PyErr),
+}
+
+impl From<Error> for Halt {
+    fn from(error: Error) -> Self {
+        Self::Law(error)
+    }
+}
+
+impl From<PyErr> for Halt {
+    fn from(error: PyErr) -> Self {
+        Self::Raised(error)
+    }
+}
+
+/// The body; or the user's own exception as it was; or what the law says, with the estimate where there is one.
+fn finished(py: Python<'_>, outcome: Result<RigidBody, Halt>) -> PyResult<PyRigidBody> {
+    match outcome {
+        Ok(body) => Ok(Stack::one(body).into()),
+        Err(Halt::Raised(error)) => Err(error),
+        Err(Halt::Law(error)) => {
+            let message = error.to_string();
+            let Error::Quadrature {
+                error,
+                evaluations,
+                estimate,
+                ..
+            } = error
+            else {
+                return Err(to_py(py, &error));
+            };
+            let raised = new(py, "QuadratureError", message);
+            let value = raised.value(py);
+            value.setattr("estimate", PyRigidBody::from(Stack::one(*estimate)))?;
+            value.setattr("error", error)?;
+            value.setattr("evaluations", evaluations)?;
+            Err(raised)
+        }
+    }
+}
+
+/// The user's function at these points.
+fn ask<T: Item + Copy>(
+    density: &Bound<'_, PyAny>,
+    points: &[T],
+    values: &mut [f64],
+) -> Result<(), Halt> {
+    let py = density.py();
+    py.check_signals()?;
+    let batch = Stack {
+        shape: vec![points.len()],
+        rows: points.to_vec(),
+    };
+    let answer = density.call1((write(py, &batch)?,))?;
+    let densities: Stack<f64> = read(&answer, "density")?;
+    if densities.shape != batch.shape {
+        return Err(PyValueError::new_err(format!(
+            "density: expected it to return shape {}, one number for each point, got {}",
+            tuple(&batch.shape),
+            tuple(&densities.shape)
+        ))
+        .into());
+    }
+    values.copy_from_slice(&densities.rows);
+    Ok(())
+}
+
+fn callable(density: &Bound<'_, PyAny>) -> PyResult<()> {
+    if density.is_callable() {
+        return Ok(());
+    }
+    let kind = density.get_type().name()?;
+    Err(PyTypeError::new_err(format!(
+        "density: expected a function of points, got {kind}; a uniform density goes to solids, from_mesh or \
+         from_tetrahedra"
+    )))
+}
+
+/// A region, or the box between two corners.
+fn region(bounds: &Bound<'_, PyAny>) -> PyResult<Region> {
+    if let Ok(region) = bounds.cast::<PyRegion>() {
+        return Ok(region.get().region.clone());
+    }
+    let corners: Stack<[f64; 3]> = read_list(bounds, "bounds", "2")?;
+    let [low, high] = &corners.rows[..] else {
+        return Err(PyValueError::new_err(format!(
+            "bounds: expected a region or two corners of shape (2, 3), got ({}, 3)",
+            corners.rows.len()
+        )));
+    };
+    Region::cuboid(&(*low).into(), &(*high).into()).map_err(|error| to_py(bounds.py(), &error))
+}
+
+/// Which of cells and nodes the densities belong to.
+fn placed<'a>(
+    density: &'a Stack<f64>,
+    at: Option<&str>,
+    cells: usize,
+    nodes: usize,
+) -> PyResult<CellDensity<'a>> {
+    if !matches!(at, None | Some("cells" | "nodes")) {
+        return Err(PyValueError::new_err(format!(
+            "at: expected \"cells\" or \"nodes\", got {:?}",
+            at.unwrap_or_default()
+        )));
+    }
+    if density.is_one() {
+        return Ok(CellDensity::Uniform(density[0]));
+    }
+    let fits = |count: usize| density.shape == [count];
+    match at {
+        None if cells == nodes && fits(cells) => Err(PyValueError::new_err(format!(
+            "density: there are as many cells as nodes, {cells}; say which it belongs to by at=\"cells\" or at=\"nodes\""
+        ))),
+        None | Some("cells") if fits(cells) => Ok(CellDensity::PerCell(&density.rows)),
+        None | Some("nodes") if fits(nodes) => Ok(CellDensity::PerNode(&density.rows)),
+        _ => Err(PyValueError::new_err(format!(
+            "density: expected one number, shape ({cells},) for the cells or ({nodes},) for the nodes, got {}",
+            tuple(&density.shape)
+        ))),
+    }
+}

@@ -1,0 +1,225 @@
+//! Solids with flat faces.
+
+use polhode::Error;
+use polhode::mass::solids;
+use pyo3::prelude::*;
+
+use super::{Given, amounts, one};
+use crate::arrays::read;
+use crate::rigid_body::PyRigidBody;
+use crate::stack::{Broadcast, Stack};
+
+/// Box with its faces normal to the axes: I_x = m (y² + z²)/12.
+///
+/// Parameters
+/// ----------
+/// size : array_like, shape (..., 3)
+///     Full edge lengths along x, y, z.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.box((1, 2, 3), mass=12.0).principal_moments
+/// array([ 5., 10., 13.])
+#[pyfunction]
+#[pyo3(name = "box", signature = (size, *, mass=None, density=None))]
+pub(crate) fn cuboid(
+    size: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(size, "size", (mass, density), solids::cuboid)
+}
+
+/// Cube with its faces normal to the axes: I = m a²/6.
+///
+/// Parameters
+/// ----------
+/// side : array_like, shape (...)
+///     Full edge length.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.cube(2.0, density=1.0).mass
+/// 8.0
+#[pyfunction]
+#[pyo3(signature = (side, *, mass=None, density=None))]
+pub(crate) fn cube(
+    side: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(side, "side", (mass, density), |&side: &f64, amount| {
+        solids::cube(side, amount)
+    })
+}
+
+/// Wedge: half of a box, cut along a diagonal of its x-z faces, the right angle at −x, −z.
+///
+/// With the box's edges x, y, z the corners are (−x/3, ±y/2, −z/3), (2x/3, ±y/2, −z/3) and (−x/3, ±y/2, 2z/3).
+/// The second moments are m x²/18, m y²/12, m z²/18, and ∫ x z dm = −m x z/36.
+///
+/// Parameters
+/// ----------
+/// size : array_like, shape (..., 3)
+///     Edge lengths of the box along x, y, z.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.wedge((6, 2, 6), mass=36.0).inertia
+/// array([[ 84.,   0.,  36.],
+///        [  0., 144.,   0.],
+///        [ 36.,   0.,  84.]])
+#[pyfunction]
+#[pyo3(signature = (size, *, mass=None, density=None))]
+pub(crate) fn wedge(
+    size: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(size, "size", (mass, density), solids::wedge)
+}
+
+/// Upright prism over a regular polygon: I_z = m R² (2 + cos 2π/n)/6. One corner is toward +x.
+///
+/// Parameters
+/// ----------
+/// sides : array_like of int, shape (...)
+///     n, three or more.
+/// radius : array_like, shape (...)
+///     R, from the axis to the corners; an edge has the length 2 R sin(π/n).
+/// height : array_like, shape (...)
+///     Full height.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// A square one is a box:
+///
+/// >>> from polhode import solids
+/// >>> box = solids.box((1, 1, 3), density=2.0)
+/// >>> bool(solids.prism(sides=4, radius=0.5**0.5, height=3, density=2.0).isclose(box))
+/// True
+#[pyfunction]
+#[pyo3(signature = (sides, radius, height, *, mass=None, density=None))]
+pub(crate) fn prism(
+    sides: &Bound<'_, PyAny>,
+    radius: &Bound<'_, PyAny>,
+    height: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    let py = sides.py();
+    let sides: Stack<f64> = read(sides, "sides")?;
+    let (radius, height): (Stack<f64>, Stack<f64>) =
+        (read(radius, "radius")?, read(height, "height")?);
+    let amounts = amounts(mass, density)?;
+    let grid = Broadcast::of(
+        ["sides", "radius", "height", "mass or density"],
+        [&sides.shape, &radius.shape, &height.shape, &amounts.shape],
+    )?;
+    let prism = |[n, r, h, a]: [usize; 4]| {
+        solids::prism(whole(sides[n])?, radius[r], height[h], amounts[a])
+    };
+    Ok(grid.try_map(py, prism)?.into())
+}
+
+/// A number of sides as an integer.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked to be a whole number of that size"
+)]
+fn whole(value: f64) -> Result<u32, Error> {
+    if value >= 0.0 && value <= f64::from(u32::MAX) && value.fract() == 0.0 {
+        return Ok(value as u32);
+    }
+    let (what, law) = ("sides", "a whole number of 3 or more");
+    Err(Error::OutOfDomain { what, law, value })
+}
+
+/// Pyramid over a rectangle, its apex toward +z, at 3z/4 from the centre of mass: I_z = m (x² + y²)/20.
+///
+/// Parameters
+/// ----------
+/// size : array_like, shape (..., 3)
+///     x and y of the base, and the height z.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.pyramid((2, 4, 4), mass=20.0).inertia.diagonal().round(12)
+/// array([28., 16., 20.])
+#[pyfunction]
+#[pyo3(signature = (size, *, mass=None, density=None))]
+pub(crate) fn pyramid(
+    size: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(size, "size", (mass, density), solids::pyramid)
+}
+
+/// Regular tetrahedron, its apex toward +z: I = m a²/20 about every axis through the centre of mass.
+///
+/// The corners are (0, 0, a√6/4), (a/√3, 0, −a/√24) and (−a/√12, ±a/2, −a/√24). Any other tetrahedron:
+/// :meth:`RigidBody.from_tetrahedra`.
+///
+/// Parameters
+/// ----------
+/// side : array_like, shape (...)
+///     Length of an edge.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.tetrahedron(2.0, mass=5.0).principal_moments
+/// array([1., 1., 1.])
+#[pyfunction]
+#[pyo3(signature = (side, *, mass=None, density=None))]
+pub(crate) fn tetrahedron(
+    side: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(side, "side", (mass, density), |&side: &f64, amount| {
+        solids::tetrahedron(side, amount)
+    })
+}

@@ -1,0 +1,133 @@
+//! Balls and ellipsoids, whole, hollow and halved.
+
+use polhode::mass::solids;
+use pyo3::prelude::*;
+
+use super::{Given, lengths, one};
+use crate::rigid_body::PyRigidBody;
+
+/// Ball: I = ⅖ m R².
+///
+/// Parameters
+/// ----------
+/// radius : array_like, shape (...)
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.sphere(1.0, mass=5.0).principal_moments
+/// array([2., 2., 2.])
+#[pyfunction]
+#[pyo3(signature = (radius, *, mass=None, density=None))]
+pub(crate) fn sphere(
+    radius: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(
+        radius,
+        "radius",
+        (mass, density),
+        |&radius: &f64, amount| solids::sphere(radius, amount),
+    )
+}
+
+/// Ellipsoid with its axes along x, y, z: I_x = m (b² + c²)/5.
+///
+/// Parameters
+/// ----------
+/// semi_axes : array_like, shape (..., 3)
+///     a, b, c: half the lengths along x, y, z.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.ellipsoid((1, 2, 3), mass=5.0).principal_moments
+/// array([ 5., 10., 13.])
+#[pyfunction]
+#[pyo3(signature = (semi_axes, *, mass=None, density=None))]
+pub(crate) fn ellipsoid(
+    semi_axes: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(semi_axes, "semi_axes", (mass, density), solids::ellipsoid)
+}
+
+/// Ball with a concentric cavity: I = ⅖ m (R⁵ − r⁵)/(R³ − r³). With equal radii a thin shell, I = ⅔ m R².
+///
+/// Parameters
+/// ----------
+/// inner_radius, outer_radius : array_like, shape (...)
+///     r and R, r ≤ R.
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.hollow_sphere(inner_radius=3.0, outer_radius=3.0, mass=1.0).principal_moments
+/// array([6., 6., 6.])
+#[pyfunction]
+#[pyo3(signature = (inner_radius, outer_radius, *, mass=None, density=None))]
+pub(crate) fn hollow_sphere(
+    inner_radius: &Bound<'_, PyAny>,
+    outer_radius: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    lengths(
+        ["inner_radius", "outer_radius"],
+        [inner_radius, outer_radius],
+        (mass, density),
+        |&[inner, outer], amount| solids::hollow_sphere(inner, outer, amount),
+    )
+}
+
+/// Half of a ball, its dome toward +z, its flat face at −3R/8 from the centre of mass: I_z = ⅖ m R².
+///
+/// Parameters
+/// ----------
+/// radius : array_like, shape (...)
+/// mass, density : array_like, shape (...)
+///     Exactly one of the two.
+///
+/// Returns
+/// -------
+/// RigidBody
+///
+/// Examples
+/// --------
+/// >>> from polhode import solids
+/// >>> solids.hemisphere(4.0, mass=20.0).inertia.diagonal()
+/// array([ 83.,  83., 128.])
+#[pyfunction]
+#[pyo3(signature = (radius, *, mass=None, density=None))]
+pub(crate) fn hemisphere(
+    radius: &Bound<'_, PyAny>,
+    mass: Given<'_, '_>,
+    density: Given<'_, '_>,
+) -> PyResult<PyRigidBody> {
+    one(
+        radius,
+        "radius",
+        (mass, density),
+        |&radius: &f64, amount| solids::hemisphere(radius, amount),
+    )
+}
