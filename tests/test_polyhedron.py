@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from oracles.exact_polyhedron import polyhedron
 from oracles.meshes import box, cube, icosphere, merge, tetrahedron
 from polhode import RigidBody
 from polhode.errors import MeshError
+from polhode.io import read_mesh
 
 Mesh = tuple[np.ndarray, np.ndarray]
 
@@ -85,6 +87,23 @@ class TestAccuracy:
         want = np.array([[6.0, 1, 1], [1, 6, 1], [1, 1, 6]])
         assert np.abs(body.inertia / size / size - want).max() < 1e-14
         assert np.abs(body.center_of_mass / size - 0.25).max() < 1e-15
+
+    @pytest.mark.parametrize("size", [1e-15, 1e-9, 1.0, 1e6, 1e21])
+    @pytest.mark.parametrize("mass", [1e-27, 1.0, 1e30])
+    def test_a_box_of_any_size_and_mass(self, size: float, mass: float) -> None:
+        vertices, faces = box((1.0, 2.0, 3.0))
+        scaled = size * vertices
+        exact = polyhedron(scaled, faces)
+        body = RigidBody.from_mesh(scaled, faces, mass=mass)
+        per_mass = [[x / exact.volume * Fraction(mass) for x in row] for row in exact.inertia]
+        assert worst_error(body.inertia, per_mass) <= 4e-15
+        assert worst_error(RigidBody.from_mesh(scaled, faces, density=1.0).mass, exact.volume) <= 4e-15
+
+    @pytest.mark.parametrize("distance", [1e3, 1e6, 1e8])
+    def test_an_asteroid_wherever_it_stands(self, shared_data: object, distance: float) -> None:
+        mesh = read_mesh(f"{shared_data}/asteroids/4179_toutatis_low.obj")
+        size = float(np.ptp(mesh.vertices))
+        assert_exact((mesh.vertices + distance * size * np.array([0.6, 0.5, -0.4]), mesh.faces))
 
     def test_the_ball_of_5120_triangles_approaches_the_ball(self) -> None:
         body = RigidBody.from_mesh(*icosphere(4), mass=1.0)

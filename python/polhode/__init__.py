@@ -18,22 +18,26 @@ from polhode import (
 from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
 from polhode.results import (
     AngularMomentum,
+    ErrorBound,
     FreePrecession,
     KineticEnergy,
     Particles,
     PrincipalAxes,
     PrincipalDerivative,
+    Provenance,
     Trajectory,
 )
 
 __all__ = [
     "AngularMomentum",
+    "ErrorBound",
     "FreePrecession",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",
+    "Provenance",
     "RigidBody",
     "Trajectory",
     "__version__",

@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from polhode._typing import SupportsQuaternion
 from polhode.results import (
     AngularMomentum,
+    ErrorBound,
     FreePrecession,
     KineticEnergy,
     Particles,
     PrincipalAxes,
+    Provenance,
     Trajectory,
 )
 
@@ -75,6 +77,7 @@ __all__ = [
     "sphere",
     "steady_precession",
     "stick",
+    "stream_solid",
     "surface_area",
     "tetrahedron",
     "to_log_cholesky",
@@ -167,7 +170,21 @@ class RigidBody:
         *,
         density: float | None = None,
         mass: float | None = None,
+        closure: Literal["caps", "hull"] | None = None,
         orient: bool = False,
+        check: bool = True,
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_surface(
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        areal_density: float | None = None,
+        mass: float | None = None,
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_curve(
+        points: ArrayLike, *, linear_density: float | None = None, mass: float | None = None
     ) -> RigidBody: ...
     @staticmethod
     def from_file(
@@ -176,6 +193,7 @@ class RigidBody:
         density: float | None = None,
         mass: float | None = None,
         length_unit: str | None = None,
+        progress: Callable[[float], object] | None = None,
     ) -> RigidBody: ...
     @staticmethod
     def stack(bodies: Iterable[RigidBody]) -> RigidBody: ...
@@ -191,6 +209,10 @@ class RigidBody:
     def principal(self) -> PrincipalAxes: ...
     @property
     def radii_of_gyration(self) -> _Floats: ...
+    @property
+    def provenance(self) -> Provenance: ...
+    @property
+    def error_bound(self) -> ErrorBound: ...
     def inertia_about(self, point: _About) -> _Floats: ...
     def moment_about(self, axis: ArrayLike, point: _About = "center_of_mass") -> Any: ...
     def principal_about(self, point: _About) -> PrincipalAxes: ...
@@ -260,6 +282,7 @@ class RigidBody:
     ) -> Trajectory: ...
     @property
     def shape(self) -> tuple[int, ...]: ...
+    def _welded(self, corners: int) -> RigidBody: ...
     def __len__(self) -> int: ...
     def __getitem__(self, key: Any, /) -> RigidBody: ...
     def __bool__(self) -> Literal[True]: ...
@@ -466,3 +489,12 @@ def classify_tops(moments: ArrayLike, rtol: float) -> Any: ...
 def read_stl(path: str) -> tuple[_Floats, NDArray[np.int64]]: ...
 def read_plates(path: str, index_base: int = 1) -> tuple[_Floats, NDArray[np.int64]]: ...
 def surface_area(vertices: ArrayLike, faces: ArrayLike) -> float: ...
+def stream_solid(
+    path: str | PathLike[str],
+    *,
+    scale: float = 1.0,
+    density: float | None = None,
+    mass: float | None = None,
+    orient: bool = False,
+    progress: Callable[[float], object] | None = None,
+) -> tuple[RigidBody, int, float, float]: ...

@@ -24,20 +24,24 @@ from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, isotopes
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
 __all__ = [
     "MOLECULE_SUFFIX",
     "Mesh",
+    "MeshSolid",
     "Molecule",
     "body_from_file",
-    "mesh_body",
     "molecule_isotopes",
     "read_mesh",
     "read_xyz",
+    "solid_from_file",
 ]
 
 MOLECULE_SUFFIX = ".xyz"
+_SMALL_FILE = 1 << 28
 _EXPECTED = {
     ".stl": ("binary STL", "ASCII STL"),
     ".obj": ("v/f text",),
@@ -68,12 +72,41 @@ class Molecule(NamedTuple):
     comment: str
 
 
+class MeshSolid(NamedTuple):
+    """A solid from a mesh file, and what the file holds.
+
+    Attributes
+    ----------
+    body : RigidBody
+        The solid.
+    format : str
+        As in :class:`Mesh`.
+    vertices : int or None
+        How many vertices; None in a format that stores the corners of each triangle anew.
+    faces : int
+        How many triangles.
+    volume, area : float
+        In units of the result.
+    welded : int
+        Corners that were joined to others within the length asked for.
+    """
+
+    body: _core.RigidBody
+    format: str
+    vertices: int | None
+    faces: int
+    volume: float
+    area: float
+    welded: int
+
+
 def body_from_file(
     path: str | os.PathLike[str],
     *,
     density: float | None = None,
     mass: float | None = None,
     length_unit: str | None = None,
+    progress: Callable[[float], object] | None = None,
 ) -> _core.RigidBody:
     """Read the body a file describes: what ``RigidBody.from_file`` does.
 
@@ -87,6 +120,8 @@ def body_from_file(
     length_unit : str, optional
         Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's
         masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
+    progress : callable, optional
+        Is told the fraction of a large mesh file done, now and then; an exception it raises ends the reading.
 
     Returns
     -------
@@ -103,7 +138,7 @@ def body_from_file(
     """
     scale = 1.0 if length_unit is None else metres_per(length_unit)
     if not _is_molecule(path):
-        return mesh_body(path, read_mesh(path), scale=scale, density=density, mass=mass)
+        return solid_from_file(path, density=density, mass=mass, scale=scale, progress=progress).body
     if density is not None or mass is not None:
         given = "density" if density is not None else "mass"
         raise PolhodeError(
@@ -204,40 +239,80 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
     return Molecule(labels, np.array(positions), comment)
 
 
-def mesh_body(
+def solid_from_file(
     path: str | os.PathLike[str],
-    mesh: Mesh,
     *,
-    scale: float = 1.0,
     density: float | None = None,
     mass: float | None = None,
+    scale: float = 1.0,
+    weld: float = 0.0,
     orient: bool = False,
-) -> _core.RigidBody:
-    """Make a body of a mesh, naming the file in what is wrong with it.
+    index_base: int = 1,
+    progress: Callable[[float], object] | None = None,
+) -> MeshSolid:
+    """Make the solid that the mesh in a file bounds, naming the file in what is wrong with it.
+
+    Binary STL and PLY go through memory block by block, whatever their size; other formats, and files whose
+    corners are to be welded within a length, are read whole.
 
     Parameters
     ----------
     path : str or os.PathLike
-        Where the mesh comes from.
-    mesh : Mesh
-        What was read.
-    scale : float
-        Unit of the coordinates, in the unit of the result.
+        See :func:`read_mesh`.
     density, mass : float, optional
         Exactly one of them.
+    scale : float
+        Unit of the coordinates, in the unit of the result.
+    weld, index_base
+        See :func:`read_mesh`.
     orient : bool
         Turn triangles that face inward; without it they are an error.
+    progress : callable, optional
+        Is told the fraction of the file done, now and then.
 
     Returns
     -------
-    RigidBody
+    MeshSolid
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, damaged or empty.
+    MeshError
+        If the mesh does not bound a solid.
+    OSError
+        If the file cannot be read.
     """
+    file = Path(path)
+    streamed = _stream_format(file) if weld == 0.0 and index_base == 1 else None
+    if streamed is not None:
+        try:
+            body, faces, volume, area = _core.stream_solid(
+                str(file), scale=scale, density=density, mass=mass, orient=orient, progress=progress
+            )
+        except MeshError as error:
+            is_told = streamed == "PLY" or " is not closed" not in str(error)
+            hint = "" if is_told or file.stat().st_size > _SMALL_FILE else _weld_hint(read_mesh(file))
+            raise MeshError(f"{error}{hint}") from None
+        return MeshSolid(body, streamed, None, faces, volume, area, 0)
+    mesh = read_mesh(file, index_base=index_base)
+    corners = len(mesh.vertices)
+    if weld != 0.0:
+        mesh = meshes.weld_within(mesh, weld)
+    vertices = mesh.vertices * scale
+
+    def solid(density: float | None, mass: float | None = None) -> _core.RigidBody:
+        return _core.RigidBody.from_mesh(vertices, mesh.faces, density=density, mass=mass, orient=orient)
+
     try:
-        return _core.RigidBody.from_mesh(
-            mesh.vertices * scale, mesh.faces, density=density, mass=mass, orient=orient
-        )
+        body = solid(density, mass)
+        volume = float(body.mass) / density if density is not None else float(solid(1.0).mass)
     except MeshError as error:
-        raise MeshError(f"{os.fspath(path)}: {error}{_weld_hint(mesh)}") from None
+        raise MeshError(f"{file}: {error}{_weld_hint(mesh)}") from None
+    area = _core.surface_area(vertices, mesh.faces)
+    welded = corners - len(mesh.vertices)
+    count = len(mesh.vertices)
+    return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
 
 
 def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[Isotope]:
@@ -283,6 +358,19 @@ def _read(file: Path, suffix: str, index_base: int) -> Mesh:
     if suffix in (".obj", ".tab", ".txt"):
         return Mesh(*_core.read_plates(str(file), index_base), "v/f text")
     return read_scene(file, readable=tuple(known for known in _EXPECTED if known != MOLECULE_SUFFIX))
+
+
+def _stream_format(file: Path) -> str | None:
+    """Name the format of a file whose triangles can be read one after the other; None of another."""
+    suffix = file.suffix.lower()
+    if suffix not in (".stl", ".ply"):
+        return None
+    actual = _checked_format(file)
+    if suffix == ".stl":
+        # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
+        return "binary STL" if actual != "ASCII STL" else None
+    with file.open("rb") as stream:
+        return "PLY" if actual == "PLY" and b"\nformat binary" in stream.read(4096) else None
 
 
 def _weld_hint(mesh: Mesh) -> str:

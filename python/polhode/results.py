@@ -22,12 +22,14 @@ if TYPE_CHECKING:
 __all__ = [
     "AngularMomentum",
     "BoxFit",
+    "ErrorBound",
     "FreePrecession",
     "KineticEnergy",
     "NearestValid",
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",
+    "Provenance",
     "Trajectory",
 ]
 
@@ -204,6 +206,77 @@ class BoxFit(NamedTuple):
     possible: Any
     margin: Any
     axes: Any
+
+
+class ErrorBound(NamedTuple):
+    """What rounding can have done to a body's numbers, against exact arithmetic on what was given.
+
+    Attributes
+    ----------
+    mass : float or numpy.ndarray, shape (...)
+        Of the mass.
+    center_of_mass : float or numpy.ndarray, shape (...)
+        Of each component of the centre of mass.
+    inertia : float or numpy.ndarray, shape (...)
+        Of each element of the tensor about the centre of mass.
+    """
+
+    mass: Any
+    center_of_mass: Any
+    inertia: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Provenance:
+    """Where a body's numbers come from; for a stack each field is an array of the stack's shape.
+
+    Attributes
+    ----------
+    source : str
+        What the body was made of: ``"tensor"``, ``"principal moments"``, ``"particles"``, ``"mesh"``,
+        ``"surface"``, ``"curve"``, ``"tetrahedra"``, ``"voxels"``, ``"density"``, ``"solid"``, ``"lamina"``,
+        ``"rod"``, ``"bodies"``, ``"second moment"``.
+    elements : int
+        How many of them: particles, triangles, segments, cells, bodies; 1 for one tensor or solid.
+    checked : str
+        What the input has passed, separated by commas; ``"unchecked"`` among them says that checks were left
+        out on request.
+    welded : int
+        Corners joined to others within a length that was asked for. Equal corners are one, and not counted.
+    closure : str
+        How an open mesh was closed on request: ``"caps"``, ``"hull"`` or ``""``.
+    volume_change : float
+        By how much that changed the volume that the faces span with the middle of the mesh.
+    moments : str
+        What the principal moments were found from: ``"given"``, ``"tensor"``, ``"second moment"`` (before it
+        is rounded to a tensor) or ``"second moment in own axes"`` (summed again, for thin bodies).
+    rounded_to_zero : int
+        Principal moments that rounding had left, or a table had admitted, and that are stored as zero.
+    """
+
+    source: Any
+    elements: Any
+    checked: Any
+    welded: Any
+    closure: Any
+    volume_change: Any
+    moments: Any
+    rounded_to_zero: Any
+
+    def __str__(self) -> str:
+        """Tell it in one line, for one body."""
+        made = self.source if self.elements == 1 else f"{self.source} of {self.elements} elements"
+        parts = [made, f"checked: {self.checked}"]
+        if self.welded:
+            parts.append(f"{self.welded} corners welded")
+        if self.closure:
+            parts.append(f"closed by {self.closure}, which changed the volume by {self.volume_change:.6g}")
+        parts.append(
+            f"moments {self.moments}" if self.moments == "given" else f"moments from the {self.moments}"
+        )
+        if self.rounded_to_zero:
+            parts.append(f"{self.rounded_to_zero} rounded to zero")
+        return "; ".join(parts)
 
 
 class Particles(NamedTuple):

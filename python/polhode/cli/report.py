@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -9,15 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from cyclopts import Parameter
 
-from polhode import RigidBody, _core
-from polhode._files.mesh import weld_within
-from polhode.cli.layout import Field, Report
+from polhode import RigidBody
+from polhode.cli.layout import Field, Report, printable
 from polhode.errors import PolhodeError
-from polhode.io import MOLECULE_SUFFIX, Mesh, mesh_body, molecule_isotopes, read_mesh, read_xyz
+from polhode.io import MOLECULE_SUFFIX, MeshSolid, molecule_isotopes, read_xyz, solid_from_file
 from polhode.molecules import Isotope, ray_kappa, rotational_constants
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -26,6 +27,7 @@ __all__ = ["BodyOptions", "LoadedBody", "body_fields", "file_report", "load_body
 
 LengthUnit = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]
 UNKNOWN = "unit unknown"
+_LARGE_FILE = 1 << 26
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,8 +66,8 @@ class LoadedBody:
     ----------
     body : RigidBody
         In kg and m, in u and angstrom (molecules), or in the file's own units.
-    source : Mesh or list of Isotope
-        What was read: a mesh (in the unit of the file) or the nuclides of a molecule.
+    source : MeshSolid or list of Isotope
+        What was read: a mesh or the nuclides of a molecule.
     comment : str
         A molecule's comment.
     mass_unit, length : str
@@ -81,7 +83,7 @@ class LoadedBody:
     """
 
     body: RigidBody
-    source: Mesh | list[Isotope]
+    source: MeshSolid | list[Isotope]
     mass_unit: str
     length: str
     comment: str = ""
@@ -109,31 +111,44 @@ def load_body(file: Path, options: BodyOptions) -> LoadedBody:
         raise PolhodeError(
             "--density and --mass: give one of the two, since the other follows from the volume"
         )
-    mesh = read_mesh(file, index_base=options.index_base)
+    scale = 1.0 if options.length_unit is None else metres_per(options.length_unit)
+    assumed = options.density is None and options.mass is None
+    density = 1.0 if assumed else options.density
+    solid = solid_from_file(
+        file,
+        density=density,
+        mass=options.mass,
+        scale=scale,
+        weld=options.weld,
+        orient=options.orient,
+        index_base=options.index_base,
+        progress=_progress(file),
+    )
     notes: tuple[str, ...] = ()
     if options.weld != 0.0:
-        welded = weld_within(mesh, options.weld)
-        joined = len(mesh.vertices) - len(welded.vertices)
-        mesh, notes = welded, (f"{joined} corners were joined to others within {options.weld:g} (--weld)",)
-    scale = 1.0 if options.length_unit is None else metres_per(options.length_unit)
-    if options.mass is not None:
-        volume = float(mesh_body(file, mesh, scale=scale, density=1.0, orient=options.orient).mass)
-        body = mesh_body(file, mesh, scale=scale, mass=options.mass, orient=options.orient)
-        density = options.mass / volume
-    else:
-        density = 1.0 if options.density is None else options.density
-        body = mesh_body(file, mesh, scale=scale, density=density, orient=options.orient)
-        volume = float(body.mass) / density
+        notes = (f"{solid.welded} corners were joined to others within {options.weld:g} (--weld)",)
     return LoadedBody(
-        body=body,
-        source=mesh,
+        body=solid.body,
+        source=solid,
         mass_unit="kg" if options.length_unit is not None else "mass",
         length="m" if options.length_unit is not None else "unit",
-        density=density,
-        volume=volume,
-        assumed=options.density is None and options.mass is None,
+        density=float(solid.body.mass) / solid.volume if density is None else density,
+        volume=solid.volume,
+        assumed=assumed,
         notes=notes,
     )
+
+
+def _progress(file: Path) -> Callable[[float], object] | None:
+    """Tell a terminal how much of a large file is done."""
+    if not sys.stderr.isatty() or not file.is_file() or file.stat().st_size < _LARGE_FILE:
+        return None
+
+    def tell(fraction: float) -> None:
+        line = f"\rreading {printable(file.name)}: {fraction:4.0%}" if fraction < 1.0 else "\r\x1b[K"
+        print(line, end="", file=sys.stderr, flush=True)
+
+    return tell
 
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
@@ -158,14 +173,16 @@ def file_report(file: Path, options: BodyOptions) -> Report:
     """Report on the body in a file."""
     loaded = load_body(file, options)
     report = Report()
-    if isinstance(loaded.source, Mesh):
+    if isinstance(loaded.source, MeshSolid):
         _mesh_sections(report, file, loaded, loaded.source, options)
     else:
         _molecule_sections(report, file, loaded, loaded.source)
     return report
 
 
-def _mesh_sections(report: Report, file: Path, loaded: LoadedBody, mesh: Mesh, options: BodyOptions) -> None:
+def _mesh_sections(
+    report: Report, file: Path, loaded: LoadedBody, mesh: MeshSolid, options: BodyOptions
+) -> None:
     unit, body = options.length_unit, loaded.body
     report.section(
         "",
@@ -178,13 +195,12 @@ def _mesh_sections(report: Report, file: Path, loaded: LoadedBody, mesh: Mesh, o
             hint="" if unit else "(state it with --length-unit)",
         ),
     )
-    area = _core.surface_area(mesh.vertices, mesh.faces)
-    scale = 1.0 if unit is None else metres_per(unit)
+    vertices = [] if mesh.vertices is None else [Field("vertices", "vertices", mesh.vertices)]
     shape = [
-        Field("vertices", "vertices", len(mesh.vertices)),
-        Field("faces", "faces", len(mesh.faces)),
+        *vertices,
+        Field("faces", "faces", mesh.faces),
         *_with_file_unit("volume", "volume", loaded.volume, 3, loaded=loaded, unit=unit),
-        *_with_file_unit("area", "surface area", area * scale**2, 2, loaded=loaded, unit=unit),
+        *_with_file_unit("area", "surface area", mesh.area, 2, loaded=loaded, unit=unit),
     ]
     report.section("shape", *shape)
     report.section(
@@ -197,6 +213,7 @@ def _mesh_sections(report: Report, file: Path, loaded: LoadedBody, mesh: Mesh, o
     )
     report.section("inertia, file axes", *_tensor_fields(loaded))
     report.section("principal axes", *body_fields(loaded, unit))
+    report.section("trust", *_trust_fields(loaded))
     report.notes += loaded.notes
     if loaded.assumed:
         report.notes.append(
@@ -240,6 +257,7 @@ def _molecule_sections(report: Report, file: Path, loaded: LoadedBody, atoms: li
     if top == "asymmetric":
         fields.append(Field("ray_kappa", "Ray's kappa", ray_kappa(frequencies)))
     report.section("rotational constants", *fields)
+    report.section("trust", *_trust_fields(loaded))
 
 
 def _tensor_fields(loaded: LoadedBody) -> list[Field]:
@@ -248,6 +266,17 @@ def _tensor_fields(loaded: LoadedBody) -> list[Field]:
     return [
         Field("inertia_about_center_of_mass", "about C", body.inertia, unit, scale=body.inertia.max()),
         Field("inertia_about_origin", "about O", about_origin, unit, scale=about_origin.max()),
+    ]
+
+
+def _trust_fields(loaded: LoadedBody) -> list[Field]:
+    """Where the numbers come from and what rounding can have done to them."""
+    provenance, bound = loaded.body.provenance, loaded.body.error_bound
+    return [
+        Field("provenance", "made of", str(provenance)),
+        Field("error_bound.mass", "bound on mass", bound.mass, loaded.mass_unit),
+        Field("error_bound.center_of_mass", "  on centre", bound.center_of_mass, loaded.length),
+        Field("error_bound.inertia", "  on inertia", bound.inertia, loaded.moment_unit),
     ]
 
 

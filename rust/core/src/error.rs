@@ -499,6 +499,21 @@ impl Error {
     }
 }
 
+impl From<Error> for Halt<Error> {
+    fn from(error: Error) -> Self {
+        Self::Failed(error)
+    }
+}
+
+impl From<Halt<Self>> for Error {
+    fn from(halt: Halt<Self>) -> Self {
+        match halt {
+            Halt::Stopped => Self::Stopped,
+            Halt::Failed(error) => error,
+        }
+    }
+}
+
 /// `Ok` with a finite number, else [`Error::NonFinite`].
 pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, Error> {
     if value.is_finite() {

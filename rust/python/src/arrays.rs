@@ -69,7 +69,7 @@ macro_rules! fixed_length {
         }
     )*};
 }
-fixed_length!(2 3 4 10 25);
+fixed_length!(2 3 4 10 33);
 
 /// The corners of a triangle in the plane.
 impl Item for [[f64; 2]; 3] {
@@ -248,11 +248,6 @@ pub(crate) fn floats<'py>(
 
 /// Rows of N indices, or the row that has a negative index, and that index.
 type Indices<const N: usize> = Result<Vec<[usize; N]>, (usize, i64)>;
-
-/// Triples of indices, shape (n, 3); a negative one comes back as the row and the number.
-pub(crate) fn read_faces(object: &Bound<'_, PyAny>) -> PyResult<Indices<3>> {
-    read_indices(object, "faces")
-}
 
 /// Rows of N indices, shape (n, N); a negative one comes back as the row and the number.
 pub(crate) fn read_indices<const N: usize>(

@@ -1,17 +1,26 @@
 //! Triangles from files.
 
 use std::fs::File;
-use std::io;
+use std::io::{self, BufRead};
 use std::path::{Path, PathBuf};
 
 use numpy::{PyArray2, PyArrayMethods};
-use polhode::io::{FileFault, TriangleMesh, plates, stl};
-use polhode::mass::polyhedron;
+use polhode::Error;
+use polhode::io::ply::PlyStream;
+use polhode::io::stl::{self, StlStream};
+use polhode::io::{FileFault, StreamError, TriangleMesh, TriangleStream, plates};
+use polhode::mass::polyhedron::Options;
+use polhode::mass::polyhedron::streamed::streamed;
+use polhode::mass::surface;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::errors::{new, to_py};
-use crate::rigid_body::mesh;
+use crate::interrupt::Interrupt;
+use crate::meshes::{read_mesh, with_mesh};
+use crate::rigid_body::PyRigidBody;
+use crate::solids::amount;
+use crate::stack::Stack;
 
 /// Vertices (n, 3) and faces (m, 3).
 type Arrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>);
@@ -23,14 +32,68 @@ pub(crate) fn read_stl(py: Python<'_>, path: PathBuf) -> PyResult<Arrays<'_>> {
         let file = File::open(&path)?;
         let held = file.metadata()?;
         if held.is_dir() {
-            return Err(stl::StlError::Io(io::ErrorKind::IsADirectory.into()));
+            return Err(StreamError::Io(io::ErrorKind::IsADirectory.into()));
         }
         stl::read(io::BufReader::new(file), held.len())
     });
     match mesh {
         Ok(mesh) => to_arrays(py, mesh),
-        Err(stl::StlError::Io(error)) => Err(os_error(&path, &error)),
-        Err(stl::StlError::Fault(fault)) => Err(file_error(py, &path, &fault)),
+        Err(error) => Err(stream_error(py, &path, error)),
+    }
+}
+
+/// What goes through a file once: the solid that the triangles of a binary STL or PLY bound, how many they are, the volume and
+/// the area; coordinates are multiplied by `scale`.
+#[pyfunction]
+#[pyo3(signature = (path, *, scale=1.0, density=None, mass=None, orient=false, progress=None))]
+pub(crate) fn stream_solid(
+    py: Python<'_>,
+    path: PathBuf,
+    scale: f64,
+    density: Option<f64>,
+    mass: Option<f64>,
+    orient: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(PyRigidBody, usize, f64, f64)> {
+    let amount = amount(mass, density)?;
+    let options = Options {
+        orient,
+        check: true,
+    };
+    let interrupt = Interrupt::new(progress);
+    let outcome = py.detach(|| {
+        let mut file = io::BufReader::with_capacity(1 << 18, File::open(&path)?);
+        let held = file.get_ref().metadata()?.len();
+        let is_ply = file.fill_buf()?.starts_with(b"ply");
+        let mut stl;
+        let mut ply;
+        let stream: &mut dyn TriangleStream = if is_ply {
+            ply = PlyStream::new(file, held)?;
+            &mut ply
+        } else {
+            stl = StlStream::new(file, held)?;
+            &mut stl
+        };
+        let watch = &mut |fraction| interrupt.poll(Some(fraction));
+        streamed(stream, scale, amount, options, watch)
+    });
+    interrupt.finish(py, outcome.is_ok())?;
+    let solid = outcome.map_err(|error| stream_error(py, &path, error))?;
+    let body = Stack::one(solid.body).into();
+    Ok((body, solid.triangles, solid.volume, solid.area))
+}
+
+/// An error with the file's name in front.
+fn stream_error(py: Python<'_>, path: &Path, error: StreamError) -> PyErr {
+    match error {
+        StreamError::Io(error) => os_error(path, &error),
+        StreamError::Stopped => to_py(py, &Error::Stopped),
+        StreamError::Failed(error @ (Error::Mesh(_) | Error::File(_))) => {
+            let bare = to_py(py, &error);
+            let message = format!("{}: {error}", path.display());
+            PyErr::from_type(bare.get_type(py), message)
+        }
+        StreamError::Failed(error) => to_py(py, &error),
     }
 }
 
@@ -61,8 +124,9 @@ pub(crate) fn surface_area(
     vertices: &Bound<'_, PyAny>,
     faces: &Bound<'_, PyAny>,
 ) -> PyResult<f64> {
-    let mesh = mesh(py, vertices, faces)?;
-    let area = py.detach(|| polyhedron::surface_area(&mesh.vertices, &mesh.faces));
+    let mesh = read_mesh(vertices, faces)?;
+    let area = with_mesh!(mesh, |vertices, faces| py
+        .detach(|| surface::area(vertices, faces)));
     area.map_err(|error| to_py(py, &error))
 }
 

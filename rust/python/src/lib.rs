@@ -2,7 +2,7 @@
 //!
 //! | file | what it knows |
 //! |---|---|
-//! | `arrays` | NumPy layout |
+//! | `arrays`, `meshes` | NumPy layout |
 //! | `stack` | shape arithmetic |
 //! | `errors` | which exception an error of the core becomes |
 //! | `interrupt` | Ctrl-C and progress |
@@ -24,6 +24,7 @@ mod interrupt;
 mod kinematics;
 mod laminae;
 mod loads;
+mod meshes;
 mod parallel_axis;
 mod particles;
 mod principal;
@@ -49,7 +50,7 @@ mod _core {
     #[pymodule_export]
     use crate::euler_rates::{angular_velocity_from_euler_rates, euler_rates};
     #[pymodule_export]
-    use crate::files::{read_plates, read_stl, surface_area};
+    use crate::files::{read_plates, read_stl, stream_solid, surface_area};
     #[pymodule_export]
     use crate::forms::{
         from_log_cholesky, from_parameters, from_pseudo_inertia, from_spatial_inertia,

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, Item, read, read_or};
 use crate::errors::to_py;
-use crate::rigid_body;
+use crate::meshes::{read_mesh, with_mesh};
 use crate::stack::{Stack, tuple};
 
 /// A region of space: where there is matter. Made by the functions of :mod:`polhode.regions`.
@@ -205,9 +205,11 @@ pub(crate) fn cylinder(
 #[pyo3(name = "region_mesh")]
 pub(crate) fn mesh(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<PyRegion> {
     let py = vertices.py();
-    let mesh = rigid_body::mesh(py, vertices, faces)?;
-    let told = format!("<Region inside a mesh of {} faces>", mesh.faces.len());
-    made(py, Region::mesh(&mesh.vertices, &mesh.faces), told)
+    let mesh = read_mesh(vertices, faces)?;
+    with_mesh!(mesh, |vertices, faces| {
+        let told = format!("<Region inside a mesh of {} faces>", faces.len());
+        made(py, Region::mesh(vertices, faces), told)
+    })
 }
 
 fn made(py: Python<'_>, region: Result<Region, Error>, made_by: String) -> PyResult<PyRegion> {

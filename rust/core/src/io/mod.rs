@@ -3,12 +3,19 @@
 //! | format | file |
 //! |---|---|
 //! | binary STL | [`stl`] |
+//! | binary PLY | [`ply`] |
 //! | `v`/`f` text: OBJ geometry and plate models | [`plates`] |
 
 pub mod plates;
+pub mod ply;
 pub mod stl;
 
+use std::io;
+use std::ops::ControlFlow;
+
 use thiserror::Error as ThisError;
+
+use crate::error::Error;
 
 /// Vertices and the triangles that count them from zero.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +24,54 @@ pub struct TriangleMesh {
     pub vertices: Vec<[f64; 3]>,
     /// Corners of each triangle.
     pub faces: Vec<[usize; 3]>,
+}
+
+/// The corners of a triangle.
+pub type Triangle = [[f64; 3]; 3];
+
+/// Triangles that a stream hands over at a time, but for the last time.
+pub const BLOCK: usize = crate::numerics::reduce::BLOCK;
+
+/// The triangles of a file in order, as often as asked, without all of them ever being in memory.
+pub trait TriangleStream {
+    /// Once through: `visit` gets [`BLOCK`] triangles at a time, at the end perhaps fewer, and the fraction of the file
+    /// done; where it says [`ControlFlow::Break`] there is no more.
+    ///
+    /// # Errors
+    /// When reading fails or the file is not what its header says.
+    fn blocks(
+        &mut self,
+        visit: &mut dyn FnMut(&[Triangle], f64) -> ControlFlow<()>,
+    ) -> Result<(), StreamError>;
+}
+
+/// Why a stream ended early.
+#[derive(Debug)]
+pub enum StreamError {
+    /// The operating system says so.
+    Io(io::Error),
+    /// The contents say so.
+    Failed(Error),
+    /// Whoever watched said stop.
+    Stopped,
+}
+
+impl From<io::Error> for StreamError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl From<Error> for StreamError {
+    fn from(error: Error) -> Self {
+        Self::Failed(error)
+    }
+}
+
+impl From<FileFault> for StreamError {
+    fn from(fault: FileFault) -> Self {
+        Self::Failed(fault.into())
+    }
 }
 
 /// Why a file cannot be read.
@@ -53,6 +108,24 @@ pub enum FileFault {
     NoStlHeader {
         /// Bytes in the file.
         held: u64,
+    },
+    /// A header of a PLY file that cannot be understood.
+    #[error("not a readable PLY file: {why}")]
+    BadPly {
+        /// What is wrong with it.
+        why: String,
+    },
+    /// A PLY file that ends before its last face.
+    #[error(
+        "truncated PLY: its header promises {promised} {element} elements, but the file ends in number {held}"
+    )]
+    TruncatedPly {
+        /// Name of the element.
+        element: String,
+        /// How many the header promises.
+        promised: usize,
+        /// The element that is not whole, from zero.
+        held: usize,
     },
     /// A line that cannot be understood.
     #[error("line {line}: {why}")]

@@ -1,29 +1,16 @@
 //! Binary STL: 80 bytes of anything, the number of triangles, then 50 bytes a triangle.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
-use std::io::{self, Read};
+use std::io::{Read, Seek, SeekFrom};
+use std::ops::ControlFlow;
 
-use super::{FileFault, TriangleMesh};
+use super::{BLOCK, FileFault, StreamError, Triangle, TriangleMesh, TriangleStream};
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 /// Triangles read at a time.
 const CHUNK: usize = 1024;
-
-/// Why a binary STL cannot be read.
-#[derive(Debug)]
-pub enum StlError {
-    /// The operating system says so.
-    Io(io::Error),
-    /// The contents say so.
-    Fault(FileFault),
-}
-
-impl From<io::Error> for StlError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
 
 /// Reads a binary STL of `held` bytes; corners with the same coordinates (−0 equals +0) become one vertex.
 ///
@@ -32,29 +19,8 @@ impl From<io::Error> for StlError {
 ///
 /// # Errors
 /// When reading fails or the length is not what the header promises.
-pub fn read(mut source: impl Read, held: u64) -> Result<TriangleMesh, StlError> {
-    let mut header = [0; HEADER];
-    if held < HEADER as u64 {
-        return Err(StlError::Fault(FileFault::NoStlHeader { held }));
-    }
-    source.read_exact(&mut header)?;
-    let triangles = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
-    let promised = HEADER as u64 + RECORD as u64 * u64::from(triangles);
-    if held < promised {
-        return Err(StlError::Fault(FileFault::TruncatedStl {
-            held,
-            promised,
-            triangles,
-        }));
-    }
-    if held > promised {
-        return Err(StlError::Fault(FileFault::NotStl {
-            held,
-            promised,
-            triangles,
-        }));
-    }
-    let count = triangles as usize;
+pub fn read(mut source: impl Read, held: u64) -> Result<TriangleMesh, StreamError> {
+    let count = triangles(&mut source, held)?;
     let mut welder = Welder::default();
     let mut faces = Vec::with_capacity(count);
     let mut buffer = vec![0; RECORD * CHUNK.min(count)];
@@ -73,6 +39,84 @@ pub fn read(mut source: impl Read, held: u64) -> Result<TriangleMesh, StlError> 
     })
 }
 
+/// The number of triangles that the header promises and the length confirms; `source` is then at the first of them.
+fn triangles(source: &mut impl Read, held: u64) -> Result<usize, StreamError> {
+    let mut header = [0; HEADER];
+    if held < HEADER as u64 {
+        return Err(FileFault::NoStlHeader { held }.into());
+    }
+    source.read_exact(&mut header)?;
+    let triangles = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
+    let promised = HEADER as u64 + RECORD as u64 * u64::from(triangles);
+    match held.cmp(&promised) {
+        Ordering::Less => Err(FileFault::TruncatedStl {
+            held,
+            promised,
+            triangles,
+        }
+        .into()),
+        Ordering::Greater => Err(FileFault::NotStl {
+            held,
+            promised,
+            triangles,
+        }
+        .into()),
+        Ordering::Equal => Ok(triangles as usize),
+    }
+}
+
+/// A binary STL as a stream of triangles.
+#[derive(Debug)]
+pub struct StlStream<R> {
+    source: R,
+    count: usize,
+}
+
+impl<R: Read + Seek> StlStream<R> {
+    /// A file of `held` bytes, read from its beginning.
+    ///
+    /// # Errors
+    /// When reading fails or the length is not what the header promises.
+    pub fn new(mut source: R, held: u64) -> Result<Self, StreamError> {
+        let count = triangles(&mut source, held)?;
+        Ok(Self { source, count })
+    }
+}
+
+impl<R: Read + Seek> TriangleStream for StlStream<R> {
+    fn blocks(
+        &mut self,
+        visit: &mut dyn FnMut(&[Triangle], f64) -> ControlFlow<()>,
+    ) -> Result<(), StreamError> {
+        self.source.seek(SeekFrom::Start(HEADER as u64))?;
+        let mut buffer = vec![0; RECORD * BLOCK.min(self.count)];
+        let mut block = Vec::with_capacity(BLOCK.min(self.count));
+        let mut done = 0;
+        while done < self.count {
+            let size = BLOCK.min(self.count - done);
+            let records = &mut buffer[..RECORD * size];
+            self.source.read_exact(records)?;
+            block.clear();
+            block.extend(
+                records.chunks_exact(RECORD).map(|record| {
+                    [12, 24, 36].map(|at| point(&record[at..at + 12]).map(f64::from))
+                }),
+            );
+            done += size;
+            if visit(&block, done as f64 / self.count as f64).is_break() {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Three coordinates as stored.
+#[inline(always)]
+fn point(corner: &[u8]) -> [f32; 3] {
+    [0, 4, 8].map(|k| f32::from_le_bytes([corner[k], corner[k + 1], corner[k + 2], corner[k + 3]]))
+}
+
 /// Gives equal corners the same number.
 #[derive(Default)]
 struct Welder {
@@ -82,9 +126,7 @@ struct Welder {
 
 impl Welder {
     fn vertex(&mut self, corner: &[u8]) -> usize {
-        let at =
-            |k: usize| f32::from_le_bytes([corner[k], corner[k + 1], corner[k + 2], corner[k + 3]]);
-        let point = [at(0), at(4), at(8)].map(|x| x + 0.0);
+        let point = point(corner).map(|x| x + 0.0);
         let next = self.vertices.len();
         let number = *self.numbers.entry(point.map(f32::to_bits)).or_insert(next);
         if number == next {
@@ -97,6 +139,7 @@ impl Welder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Error;
 
     fn file(triangles: u32, corners: &[[f32; 3]]) -> Vec<u8> {
         let mut bytes = vec![b' '; 80];
@@ -126,12 +169,12 @@ mod tests {
         let error = read(&bytes[..], bytes.len() as u64).expect_err("truncated");
         assert!(matches!(
             error,
-            StlError::Fault(FileFault::TruncatedStl { held: 84, .. })
+            StreamError::Failed(Error::File(FileFault::TruncatedStl { held: 84, .. }))
         ));
         let error = read(&bytes[..10], 10).expect_err("too short");
         assert!(matches!(
             error,
-            StlError::Fault(FileFault::NoStlHeader { held: 10 })
+            StreamError::Failed(Error::File(FileFault::NoStlHeader { held: 10 }))
         ));
     }
 }

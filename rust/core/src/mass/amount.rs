@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
 use super::error_bound::ErrorBound;
+use super::provenance::{Checks, Provenance, Source};
 use super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
 
@@ -87,13 +88,19 @@ pub(super) fn centered(
 ) -> Result<RigidBody, Error> {
     let mass = measure.mass(amount)?;
     let error_bound = closed_form(amount, mass, 2.0 * mass * per_mass.trace());
-    RigidBody::from_second_moment(&SecondMoment {
+    let body = RigidBody::from_second_moment(&SecondMoment {
         mass,
         center_of_mass: Vector3::zeros(),
         central: per_mass * mass,
         axes: Matrix3::identity(),
         error_bound,
-    })
+    })?;
+    let source = match measure {
+        Measure::Volume(_) => Source::Solid,
+        Measure::Area(_) => Source::Lamina,
+        Measure::Length(_) => Source::Rod,
+    };
+    Ok(body.with_provenance(Provenance::of_matter(source, 1, Checks::FINITE)))
 }
 
 /// What a few operations can have done to mass and tensor; a mass that was given is exact.

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::error_bound::ErrorBound;
 use super::parallel_axis::{from_center_of_mass, to_center_of_mass};
+use super::provenance::{Checks, MomentsFrom, Provenance, Source};
 use super::second_moment::SecondMoment;
 use super::validity::{
     ROUNDING, check_mass, check_moments, check_rotation, check_rtol, mean_of_halves, symmetrized,
@@ -28,9 +29,10 @@ pub struct RigidBody {
     pub(super) inertia: Matrix3<f64>,
     pub(super) principal: PrincipalAxes,
     pub(super) error_bound: ErrorBound,
+    pub(super) provenance: Provenance,
 }
 
-/// The same mass, centre, tensor, moments and axes; how well they are known does not matter.
+/// The same mass, centre, tensor, moments and axes; how well they are known and whence does not matter.
 impl PartialEq for RigidBody {
     fn eq(&self, other: &Self) -> bool {
         self.mass == other.mass
@@ -122,10 +124,19 @@ impl RigidBody {
             inertia,
             principal,
             error_bound: ErrorBound::default().rounded(&Vector3::zeros(), trace(&inertia)),
+            provenance: Provenance {
+                source: Source::PrincipalMoments,
+                elements: 1,
+                checks: Checks::FINITE.and(Checks::TENSOR),
+                moments: MomentsFrom::Given,
+                rounded_to_zero: moments.iter().filter(|&&moment| moment < 0.0).count(),
+                ..Provenance::default()
+            },
         })
     }
 
-    /// From matter: its second moment about its own centre of mass.
+    /// From matter: its second moment about its own centre of mass. What matter it is, the source of the second moment
+    /// adds by [`Self::with_provenance`].
     ///
     /// # Errors
     /// When the mass is not positive or a number is not finite.
@@ -145,6 +156,7 @@ impl RigidBody {
             inertia,
             principal: matter.principal_axes(spectrum),
             error_bound: matter.error_bound,
+            provenance: Provenance::of_matter(Source::SecondMoment, 1, Checks::FINITE),
         })
     }
 
@@ -184,7 +196,7 @@ impl RigidBody {
     ) -> Self {
         // A table may be admitted with a moment below zero by more than rounding: then the tensor too is of the zero.
         let is_repaired = principal.moments[0] < -ROUNDING * scale;
-        clear_noise(&mut principal, scale);
+        let rounded_to_zero = clear_noise(&mut principal, scale);
         Self {
             mass,
             center_of_mass: *center_of_mass,
@@ -195,6 +207,13 @@ impl RigidBody {
             },
             principal,
             error_bound: ErrorBound::default(),
+            provenance: Provenance {
+                source: Source::Tensor,
+                elements: 1,
+                checks: Checks::FINITE.and(Checks::TENSOR),
+                rounded_to_zero,
+                ..Provenance::default()
+            },
         }
     }
 
@@ -204,6 +223,12 @@ impl RigidBody {
             error_bound,
             ..self
         }
+    }
+
+    /// The same body, its numbers from where this says.
+    #[must_use]
+    pub fn with_provenance(self, provenance: Provenance) -> Self {
+        Self { provenance, ..self }
     }
 
     /// Mass m.
@@ -234,6 +259,12 @@ impl RigidBody {
     #[must_use]
     pub fn error_bound(&self) -> ErrorBound {
         self.error_bound
+    }
+
+    /// What the body was made from, what was checked and what was changed on the way.
+    #[must_use]
+    pub fn provenance(&self) -> Provenance {
+        self.provenance
     }
 
     /// Inertia tensor `I_P` about the point P (from the origin of the body frame).
@@ -283,18 +314,20 @@ impl RigidBody {
             .map(|moment| (moment / self.mass).sqrt())
     }
 
-    /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows, bounds.
+    /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows, bounds,
+    /// provenance.
     #[must_use]
-    pub fn to_array(&self) -> [f64; 25] {
+    pub fn to_array(&self) -> [f64; 33] {
         let (c, i) = (&self.center_of_mass, &self.inertia);
-        let mut numbers = [0.0; 25];
+        let mut numbers = [0.0; 33];
         numbers[0] = self.mass;
         numbers[1..4].copy_from_slice(c.as_slice());
         numbers[4..10].copy_from_slice(&[i.m11, i.m12, i.m13, i.m22, i.m23, i.m33]);
         numbers[10..13].copy_from_slice(&self.principal.moments);
         numbers[13..22].copy_from_slice(self.principal.axes.transpose().as_slice());
         let bound = &self.error_bound;
-        numbers[22..].copy_from_slice(&[bound.mass, bound.center_of_mass, bound.inertia]);
+        numbers[22..25].copy_from_slice(&[bound.mass, bound.center_of_mass, bound.inertia]);
+        numbers[25..].copy_from_slice(&self.provenance.to_array());
         numbers
     }
 
@@ -302,7 +335,7 @@ impl RigidBody {
     ///
     /// # Errors
     /// When the numbers are not those of a body: moments, axes and tensor must agree.
-    pub fn from_array(numbers: &[f64; 25]) -> Result<Self, Error> {
+    pub fn from_array(numbers: &[f64; 33]) -> Result<Self, Error> {
         let [mass, x, y, z, xx, xy, xz, yy, yz, zz, i1, i2, i3, ..] = *numbers;
         let moments = [i1, i2, i3];
         let axes = Matrix3::from_row_slice(&numbers[13..22]);
@@ -311,6 +344,7 @@ impl RigidBody {
             center_of_mass: numbers[23],
             inertia: numbers[24],
         };
+        let provenance: [f64; 8] = std::array::from_fn(|k| numbers[25 + k]);
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         let center_of_mass = Vector3::new(x, y, z);
         check_mass(mass)?;
@@ -334,6 +368,7 @@ impl RigidBody {
             inertia,
             principal,
             error_bound,
+            provenance: Provenance::from_array(&provenance),
         })
     }
 
@@ -365,13 +400,17 @@ fn sorted(moments: &[f64; 3], axes: &Matrix3<f64>) -> PrincipalAxes {
     }
 }
 
-/// Moments that a tensor with this trace cannot tell from zero, or that rounding has put below it, are zero.
-fn clear_noise(principal: &mut PrincipalAxes, trace: f64) {
+/// Moments that a tensor with this trace cannot tell from zero, or that rounding has put below it, are zero; how many
+/// were not.
+fn clear_noise(principal: &mut PrincipalAxes, trace: f64) -> usize {
+    let mut cleared = 0;
     for moment in &mut principal.moments {
         if *moment <= ROUNDING * trace {
+            cleared += usize::from(*moment != 0.0);
             *moment = 0.0;
         }
     }
+    cleared
 }
 
 /// `V diag(I) Vᵀ`, exactly symmetric; exactly diagonal where the axes are the coordinate axes.

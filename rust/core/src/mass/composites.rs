@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::parallel_axis::point_inertia;
+use super::provenance::Provenance;
 use super::validity::{ROUNDING, check_mass, trace};
 use crate::error::{Error, all_finite};
 use crate::numerics::eigen3::eigen3;
@@ -36,7 +37,13 @@ pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
             }
             let spread = trace(&sum.inertia);
             let body = RigidBody::admitted(sum.mass, sum.inertia, &sum.center, principal, spread);
-            Ok(body.with_bound(sum.error_bound()))
+            let provenance = Provenance {
+                rounded_to_zero: body.provenance.rounded_to_zero,
+                ..sum.provenance()
+            };
+            Ok(body
+                .with_bound(sum.error_bound())
+                .with_provenance(provenance))
         }
     }
 }
@@ -188,7 +195,15 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
             inertia: self.inertia,
             principal,
             error_bound: self.error_bound(),
+            provenance: self.provenance(),
         }
+    }
+
+    /// What was done to any part was done to the whole.
+    fn provenance(&self) -> Provenance {
+        (1..self.count).fold((self.part)(0).1.provenance, |whole, i| {
+            whole.of_both(&(self.part)(i).1.provenance)
+        })
     }
 
     /// What the parts' own errors and the rounding of these sums can have done.

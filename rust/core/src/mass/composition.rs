@@ -47,6 +47,7 @@ impl RigidBody {
                 axes: with_sign_rule(rotation * self.principal.axes),
             },
             error_bound: turned.rounded(&center_of_mass, trace(&inertia)),
+            provenance: self.provenance,
         })
     }
 
@@ -80,6 +81,7 @@ impl RigidBody {
                 inertia: scale(self.error_bound.inertia),
             }
             .rounded(&(self.center_of_mass * length), scale(trace(&self.inertia))),
+            provenance: self.provenance,
         };
         check_mass(scaled.mass)?;
         all_finite("inertia", &scaled.inertia)?;

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
+use super::provenance::{Checks, Provenance, Source};
 use super::regions::Region;
 use super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
@@ -86,24 +87,30 @@ pub fn from_density<E: From<Error>>(
             inertia: 2.0 * (relative * spread + total.mass * width * place),
         },
     })?;
-    converged(body, found.error, found.evaluations, effort)
+    let provenance = Provenance::of_matter(Source::Density, found.evaluations, Checks::FINITE);
+    converged(
+        &body.with_provenance(provenance),
+        found.error,
+        found.evaluations,
+        effort,
+    )
 }
 
 /// The body, or its estimate as an error.
 fn converged<E: From<Error>>(
-    body: RigidBody,
+    body: &RigidBody,
     error: f64,
     evaluations: usize,
     effort: Effort,
 ) -> Result<RigidBody, E> {
     if error <= effort.rtol {
-        return Ok(body);
+        return Ok(*body);
     }
     Err(Error::Quadrature {
         error,
         rtol: effort.rtol,
         evaluations,
-        estimate: Box::new(body),
+        estimate: Box::new(*body),
     }
     .into())
 }
@@ -301,7 +308,13 @@ pub fn from_radial_density<E: From<Error>>(
             inertia: relative * 2.0 * along,
         },
     })?;
-    converged(body, found.error, found.evaluations, effort)
+    let provenance = Provenance::of_matter(Source::Density, found.evaluations, Checks::FINITE);
+    converged(
+        &body.with_provenance(provenance),
+        found.error,
+        found.evaluations,
+        effort,
+    )
 }
 
 /// ρ r² and ρ r⁴.

@@ -10,6 +10,7 @@
 //! | mass or density, and what homogeneous shapes share | [`amount`] |
 //! | the nearest possible tensor; whether a body of a given size can have it | [`realizable`] |
 //! | other people's forms, to and from | [`forms`] |
+//! | where the numbers come from | [`provenance`] |
 //! | second moment ∫ r rᵀ dm, from which every tensor comes | [`second_moment`] |
 //! | parallel-axis (Steiner, Huygens) theorem | [`parallel_axis`] |
 //! | particles, stacks of them, particles with labels | [`particles`] |
@@ -21,7 +22,10 @@
 //! | tetrahedra, their density linear between nodes | [`tetrahedra`] |
 //! | regions of space | [`regions`] |
 //! | density ρ(r) over a region, and ρ of the radius alone | [`density`] |
-//! | closed triangle mesh | [`polyhedron`] |
+//! | closed triangle mesh: divergence theorem | [`polyhedron`] |
+//! | simplices: what segments, triangles and tetrahedra add up to | `simplex` |
+//! | thin shells | [`surface`] |
+//! | thin wires | [`curve`] |
 //! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 
 pub mod accumulator;
@@ -29,6 +33,7 @@ pub mod amount;
 pub mod body;
 pub mod composites;
 pub mod composition;
+pub mod curve;
 pub mod density;
 pub mod equimomental;
 pub mod error_bound;
@@ -37,11 +42,14 @@ pub mod laminae;
 pub mod parallel_axis;
 pub mod particles;
 pub mod polyhedron;
+pub mod provenance;
 pub mod realizable;
 pub mod regions;
 pub mod rods;
 pub mod second_moment;
+mod simplex;
 pub mod solids;
+pub mod surface;
 pub mod tetrahedra;
 pub mod validity;
 pub mod voxels;
@@ -50,4 +58,6 @@ pub use accumulator::MassAccumulator;
 pub use amount::Amount;
 pub use body::RigidBody;
 pub use error_bound::ErrorBound;
+pub use polyhedron::Index;
+pub use provenance::Provenance;
 pub use second_moment::SecondMoment;

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
 use super::amount::{Amount, length, ordered};
-use super::polyhedron::polyhedron;
+use super::polyhedron::{Index, polyhedron};
 use crate::error::{Error, all_finite};
 use crate::numerics::quadrature::{Cell, Rule};
 
@@ -120,14 +120,14 @@ impl Region {
     ///
     /// # Errors
     /// When the mesh does not bound a solid.
-    pub fn mesh(vertices: &[[f64; 3]], faces: &[[usize; 3]]) -> Result<Self, Error> {
+    pub fn mesh<I: Index>(vertices: &[[f64; 3]], faces: &[[I; 3]]) -> Result<Self, Error> {
         // Whatever is wrong with the mesh is told here.
         let solid = polyhedron(vertices, faces, Amount::Density(1.0), false)?;
         Ok(Self(Kind::Mesh {
             apex: solid.center_of_mass(),
             faces: faces
                 .iter()
-                .map(|face| face.map(|k| Vector3::from(vertices[k])))
+                .map(|face| face.map(|k| Vector3::from(vertices[k.position()])))
                 .collect(),
         }))
     }

@@ -8,6 +8,7 @@ use thiserror::Error as ThisError;
 
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
+use super::provenance::{Checks, Provenance, Source};
 use super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
 use crate::numerics::reduce::sum_terms;
@@ -104,7 +105,12 @@ pub fn tetrahedra(
     // About the centre of mass, which the cells' bounding box may be far from when their densities differ much.
     let center = low * 0.5 + high * 0.5 + first.moment / first.mass;
     let matter = sums(&center, &Matrix3::identity()).matter(&center, cells.len(), density);
-    let body = RigidBody::from_second_moment(&matter)?;
+    let provenance = Provenance::of_matter(
+        Source::Tetrahedra,
+        cells.len(),
+        Checks::INDICES.and(Checks::FINITE).and(Checks::MASSES),
+    );
+    let body = RigidBody::from_second_moment(&matter)?.with_provenance(provenance);
     let principal = body.principal();
     if principal.moments[0] >= THIN * principal.moments[2] {
         return Ok(body);
@@ -112,7 +118,7 @@ pub fn tetrahedra(
     let mut thin = sums(&center, &principal.axes).matter(&center, cells.len(), density);
     thin.axes = principal.axes;
     thin.center_of_mass = matter.center_of_mass;
-    RigidBody::from_second_moment(&thin)
+    Ok(RigidBody::from_second_moment(&thin)?.with_provenance(provenance.in_own_axes()))
 }
 
 /// `∫ dm`, `∫ d dm` and `∫ d dᵀ dm` with `d = axesᵀ (r − reference)`.

@@ -1,6 +1,7 @@
 //! Bodies of voxels: a density for each cell of a rectangular grid, each cell a homogeneous box.
 
 use nalgebra::{Matrix3, Vector3};
+use std::convert::Infallible;
 
 use super::body::RigidBody;
 use super::error_bound::ErrorBound;
@@ -8,6 +9,7 @@ use super::particles::sums::{Turned, block_sums};
 use super::particles::{Watch, is_thin};
 use super::second_moment::SecondMoment;
 use crate::error::{Error, all_finite, finite};
+use crate::mass::provenance::{Checks, Provenance, Source};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 use crate::numerics::reduce::{depth, sum_blocks, sum_terms};
@@ -69,11 +71,17 @@ pub fn voxels<T: Voxel>(grid: &Grid<'_, T>, watch: &mut Watch<'_>) -> Result<Rig
     if found.mass * d.norm_squared() > found.central.trace() {
         found = grid.second_moment(grid.cell(&found.center_of_mass), watch)?;
     }
+    let provenance = Provenance::of_matter(
+        Source::Voxels,
+        grid.shape.iter().product(),
+        Checks::FINITE.and(Checks::MASSES),
+    );
     let body = RigidBody::from_second_moment(&found)?;
     if is_thin(&body) {
-        return RigidBody::from_second_moment(&grid.in_own_axes(&body, watch)?);
+        let again = RigidBody::from_second_moment(&grid.in_own_axes(&body, watch)?)?;
+        return Ok(again.with_provenance(provenance.in_own_axes()));
     }
-    Ok(body)
+    Ok(body.with_provenance(provenance))
 }
 
 impl<T: Voxel> Grid<'_, T> {
@@ -114,7 +122,7 @@ impl<T: Voxel> Grid<'_, T> {
                 length: nz,
                 reference: [reference.y, reference.z],
             });
-            Ok(())
+            Ok::<(), Infallible>(())
         })?;
         let sums = sum_terms(nx, |i| {
             let x = i as f64 - reference.x;

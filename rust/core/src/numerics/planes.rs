@@ -50,8 +50,10 @@ impl<const K: usize> Planes<K> {
         numbers
     }
 
+    /// The numbers of one row as lanes.
     #[inline(always)]
-    fn lanes<L: Lane>(&self, row: usize) -> [L; K] {
+    #[must_use]
+    pub fn lanes<L: Lane>(&self, row: usize) -> [L; K] {
         let mut numbers = [L::new(0.0); K];
         let mut k = 0;
         while k < K {
@@ -61,8 +63,9 @@ impl<const K: usize> Planes<K> {
         numbers
     }
 
+    /// Sets the numbers of one row from lanes.
     #[inline(always)]
-    fn set_lanes<L: Lane>(&mut self, row: usize, numbers: [L; K]) {
+    pub fn set_lanes<L: Lane>(&mut self, row: usize, numbers: [L; K]) {
         let mut k = 0;
         while k < K {
             self.0[k][row] = numbers[k].get();
@@ -87,6 +90,23 @@ impl<const K: usize> Planes<K> {
     pub fn update<L: Lane, F: Formula<K, K>>(&mut self, rows: usize) {
         for row in 0..rows.min(ROWS) {
             self.set_lanes(row, F::apply(self.lanes::<L>(row)));
+        }
+    }
+
+    /// Adds row i of each of the first `summed` planes to lane i mod N of its total; of the other planes, whose numbers
+    /// are not negative, a lane keeps the largest.
+    #[inline(always)]
+    pub fn add_to<const N: usize>(&self, totals: &mut [[f64; N]; K], summed: usize) {
+        for (k, total) in totals.iter_mut().enumerate() {
+            for rows in self.0[k].chunks_exact(N) {
+                let mut lane = 0;
+                while lane < N {
+                    let (x, old) = (rows[lane], total[lane]);
+                    let larger = if x > old { x } else { old };
+                    total[lane] = if k < summed { old + x } else { larger };
+                    lane += 1;
+                }
+            }
         }
     }
 

@@ -17,6 +17,9 @@ const WATCH_INTERVAL: Duration = Duration::from_millis(20);
 /// Work shorter than this is not worth the start of a thread.
 const ALONE: Duration = Duration::from_millis(1);
 
+/// Asked now and then, with the fraction done, whether to go on.
+pub type Watch<'a> = dyn FnMut(f64) -> ControlFlow<()> + 'a;
+
 /// Why a job ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt<E> {

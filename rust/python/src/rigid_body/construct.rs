@@ -1,17 +1,13 @@
 //! Ways to a body.
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::io::TriangleMesh;
-use polhode::mass::polyhedron::{MeshFault, polyhedron};
 use polhode::{Error, RigidBody};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::PyRigidBody;
-use crate::arrays::{Argument, read, read_faces, read_list, read_or, read_rotation};
-use crate::errors::to_py;
-use crate::solids::amount;
+use crate::arrays::{Argument, read, read_or, read_rotation};
 use crate::stack::{Broadcast, Stack};
 
 /// An optional argument of any array-like kind.
@@ -124,59 +120,6 @@ impl PyRigidBody {
         Ok(grid.try_map(py, body)?.into())
     }
 
-    /// Solid of uniform density bounded by a closed triangle mesh.
-    ///
-    /// The mesh is checked before any number is computed: indices in range, coordinates finite, every
-    /// edge shared by two faces that run along it in opposite directions. Corners with the same
-    /// coordinates count as one vertex. Several components and cavities (inner surfaces wound
-    /// inward) are counted as they are. Coordinates far from the origin cost no accuracy.
-    ///
-    /// Parameters
-    /// ----------
-    /// vertices : array_like, shape (n, 3)
-    /// faces : array_like of int, shape (m, 3)
-    ///     Vertices of each triangle, counted from zero, counter-clockwise seen from outside.
-    /// density, mass : float
-    ///     Exactly one of the two.
-    /// orient : bool, optional
-    ///     Accept a mesh whose normals all point inward.
-    ///
-    /// Returns
-    /// -------
-    /// RigidBody
-    ///
-    /// Raises
-    /// ------
-    /// MeshError
-    ///     Naming the face, edge or vertex that keeps the mesh from bounding a solid.
-    ///
-    /// Examples
-    /// --------
-    /// >>> from polhode import RigidBody
-    /// >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
-    /// >>> faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
-    /// >>> RigidBody.from_mesh(corners, faces, density=6.0).center_of_mass
-    /// array([0.25, 0.25, 0.25])
-    /// >>> RigidBody.from_mesh(corners, faces[:3], density=6.0)
-    /// Traceback (most recent call last):
-    ///     ...
-    /// polhode.errors.MeshError: the mesh is not closed: the edge from vertex 2 to vertex 1 of faces[0] has no face on its other side (3 such edges in all); close the mesh, or model a thin shell instead
-    #[staticmethod]
-    #[pyo3(signature = (vertices, faces, *, density=None, mass=None, orient=false))]
-    fn from_mesh(
-        py: Python<'_>,
-        vertices: &Bound<'_, PyAny>,
-        faces: &Bound<'_, PyAny>,
-        density: Option<f64>,
-        mass: Option<f64>,
-        orient: bool,
-    ) -> PyResult<Self> {
-        let amount = amount(mass, density)?;
-        let mesh = mesh(py, vertices, faces)?;
-        let body = py.detach(|| polyhedron(&mesh.vertices, &mesh.faces, amount, orient));
-        Ok(Stack::one(body.map_err(|error| to_py(py, &error))?).into())
-    }
-
     /// Body from a file: a mesh (STL, OBJ, PLY, plate models, …) or a molecule (XYZ).
     ///
     /// Parameters
@@ -187,6 +130,9 @@ impl PyRigidBody {
     /// length_unit : str, optional
     ///     Unit of the coordinates, such as ``"mm"``: they are converted to metres. Without it the
     ///     numbers stay as they are stored.
+    /// progress : callable, optional
+    ///     Is told the fraction of a large mesh file done, now and then; an exception it raises ends the
+    ///     reading. Binary STL and PLY go through memory block by block, whatever their size.
     ///
     /// Returns
     /// -------
@@ -203,18 +149,20 @@ impl PyRigidBody {
     /// --------
     /// polhode.io : the reader, which also returns vertices and faces.
     #[staticmethod]
-    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None))]
+    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, progress=None))]
     fn from_file<'py>(
         py: Python<'py>,
         path: &Bound<'py, PyAny>,
         density: Option<f64>,
         mass: Option<f64>,
         length_unit: Option<&str>,
+        progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let options = PyDict::new(py);
         options.set_item("density", density)?;
         options.set_item("mass", mass)?;
         options.set_item("length_unit", length_unit)?;
+        options.set_item("progress", progress)?;
         py.import("polhode.io")?
             .call_method("body_from_file", (path,), Some(&options))
     }
@@ -260,25 +208,4 @@ impl PyRigidBody {
             .collect();
         Ok(Stack { shape, rows }.into())
     }
-}
-
-/// Vertices and faces, with a negative index told as a fault of the mesh.
-pub(crate) fn mesh(
-    py: Python<'_>,
-    vertices: &Bound<'_, PyAny>,
-    faces: &Bound<'_, PyAny>,
-) -> PyResult<TriangleMesh> {
-    let vertices: Stack<[f64; 3]> = read_list(vertices, "vertices", "n")?;
-    let faces = read_faces(faces)?.map_err(|(face, index)| {
-        let fault = MeshFault::IndexOutOfRange {
-            face,
-            index,
-            vertices: vertices.rows.len(),
-        };
-        to_py(py, &fault.into())
-    })?;
-    Ok(TriangleMesh {
-        vertices: vertices.rows,
-        faces,
-    })
 }

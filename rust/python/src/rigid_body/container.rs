@@ -99,7 +99,7 @@ impl PyRigidBody {
         Ok((restore, PyTuple::new(py, [write(py, &self.numbers())?])?))
     }
 
-    /// The bodies that `__reduce__` took apart, shape (..., 25); for pickle.
+    /// The bodies that `__reduce__` took apart, shape (..., 33); for pickle.
     #[staticmethod]
     fn _from_numbers(py: Python<'_>, numbers: &Bound<'_, PyAny>) -> PyResult<Self> {
         Self::from_numbers(&read(numbers, "numbers")?, py)

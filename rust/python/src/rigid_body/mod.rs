@@ -6,12 +6,12 @@ mod container;
 mod continuum;
 mod dynamics;
 mod ensemble;
+mod from_shapes;
 mod matter;
 mod motion;
 mod properties;
 mod simulate;
-
-pub(crate) use construct::mesh;
+mod trust;
 
 use nalgebra::Vector3;
 use polhode::RigidBody;

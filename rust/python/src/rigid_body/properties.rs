@@ -332,13 +332,13 @@ impl PyRigidBody {
     }
 
     /// One body's numbers for each row.
-    pub(super) fn numbers(&self) -> Stack<[f64; 25]> {
+    pub(super) fn numbers(&self) -> Stack<[f64; 33]> {
         self.bodies.map(RigidBody::to_array)
     }
 
     /// Bodies from their numbers.
-    pub(super) fn from_numbers(numbers: &Stack<[f64; 25]>, py: Python<'_>) -> PyResult<Self> {
-        crate::arrays::try_rows(py, numbers, |row: &[f64; 25]| -> Result<RigidBody, Error> {
+    pub(super) fn from_numbers(numbers: &Stack<[f64; 33]>, py: Python<'_>) -> PyResult<Self> {
+        crate::arrays::try_rows(py, numbers, |row: &[f64; 33]| -> Result<RigidBody, Error> {
             RigidBody::from_array(row)
         })
         .map(Self::from)

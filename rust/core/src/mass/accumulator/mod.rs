@@ -19,6 +19,7 @@ use self::moments::Moments;
 use super::body::RigidBody;
 use super::particles::{Particles, Watch, check};
 use crate::error::Error;
+use crate::mass::provenance::Provenance;
 use crate::numerics::reduce::{BLOCK, depth};
 use crate::numerics::threads::{Halt, fill_blocks};
 
@@ -202,7 +203,8 @@ impl MassAccumulator {
             let mass = total.mass.high;
             return Err(Error::NoMass { count, mass });
         }
-        RigidBody::from_second_moment(&total.rounded(depth(count)))
+        let body = RigidBody::from_second_moment(&total.rounded(depth(count)))?;
+        Ok(body.with_provenance(Provenance::of_particles(count)))
     }
 
     /// Nothing in `start..end` yet.

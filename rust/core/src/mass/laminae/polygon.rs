@@ -10,6 +10,7 @@ use thiserror::Error as ThisError;
 use super::super::amount::{Amount, Measure, closed_form};
 use super::super::body::RigidBody;
 use super::super::error_bound::{ErrorBound, UNIT};
+use super::super::provenance::{Checks, Provenance, Source};
 use super::super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
 use crate::numerics::reduce::{depth, sum_terms};
@@ -139,13 +140,15 @@ fn body(
     let mut embedded = (Matrix3::zeros(), Matrix3::identity());
     embedded.0.fixed_view_mut::<2, 2>(0, 0).copy_from(central);
     embedded.1.fixed_view_mut::<2, 2>(0, 0).copy_from(axes);
-    RigidBody::from_second_moment(&SecondMoment {
+    let body = RigidBody::from_second_moment(&SecondMoment {
         mass,
         center_of_mass: Vector3::new(center.x, center.y, 0.0),
         central: embedded.0,
         axes: embedded.1,
         error_bound,
-    })
+    })?;
+    let provenance = Provenance::of_matter(Source::Lamina, 1, Checks::FINITE);
+    Ok(body.with_provenance(provenance))
 }
 
 /// The principal axes of a symmetric 2×2 matrix, as a rotation; the coordinate axes where it is diagonal.

@@ -22,6 +22,7 @@ use super::body::RigidBody;
 use super::error_bound::ErrorBound;
 use super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
+use crate::mass::provenance::Provenance;
 use crate::numerics::reduce::sum_blocks;
 
 pub use labelled::labelled_particles;
@@ -33,8 +34,7 @@ const THIN: f64 = 0.05;
 /// How many particles are asked for the point that the sums are taken about.
 const SAMPLE: usize = 64;
 
-/// Asked now and then, with the fraction done, whether to go on.
-pub type Watch<'a> = dyn FnMut(f64) -> ControlFlow<()> + 'a;
+pub use crate::numerics::threads::Watch;
 
 /// The body of the particles with these masses at these positions.
 ///
@@ -63,11 +63,13 @@ pub fn particles_watched(
     watch: &mut Watch<'_>,
 ) -> Result<RigidBody, Error> {
     let particles = Particles::new(masses, positions);
+    let provenance = Provenance::of_particles(masses.len());
     let body = RigidBody::from_second_moment(&about_center(particles, watch)?)?;
     if is_thin(&body) {
-        return RigidBody::from_second_moment(&in_own_axes(particles, &body, watch)?);
+        let again = RigidBody::from_second_moment(&in_own_axes(particles, &body, watch)?)?;
+        return Ok(again.with_provenance(provenance.in_own_axes()));
     }
-    Ok(body)
+    Ok(body.with_provenance(provenance))
 }
 
 /// Whether one pass cost the smallest moment digits: its error is relative to the largest.

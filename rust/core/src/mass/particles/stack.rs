@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Watch, about_center, in_own_axes, is_thin, particles_watched};
 use crate::error::Error;
 use crate::mass::body::RigidBody;
+use crate::mass::provenance::Provenance;
 use crate::mass::second_moment::SecondMoment;
 use crate::numerics::eigen3::{Eigen3, eigen3_many};
 use crate::numerics::threads::{Halt, fill_blocks};
@@ -79,7 +80,8 @@ fn batch<'a>(
     for &k in which {
         moments.push(about_center(row(k), watch).map_err(|error| (k, error))?);
     }
-    decompose(which, &moments, bodies)?;
+    let provenance = |k| Provenance::of_particles(row(k).masses.len());
+    decompose(which, &moments, provenance, bodies)?;
     let thin: Vec<usize> = which
         .iter()
         .copied()
@@ -89,17 +91,19 @@ fn batch<'a>(
     for &k in &thin {
         moments.push(in_own_axes(row(k), &bodies[k], watch).map_err(|error| (k, error))?);
     }
-    decompose(&thin, &moments, bodies)
+    decompose(&thin, &moments, |k| provenance(k).in_own_axes(), bodies)
 }
 
 /// The bodies with these second moments, each in its place.
 fn decompose(
     which: &[usize],
     moments: &[SecondMoment],
+    provenance: impl Fn(usize) -> Provenance,
     bodies: &mut [RigidBody],
 ) -> Result<(), (usize, Error)> {
     for ((&k, matter), spectrum) in which.iter().zip(moments).zip(spectra(moments)) {
-        bodies[k] = RigidBody::with_spectrum(matter, &spectrum).map_err(|error| (k, error))?;
+        let body = RigidBody::with_spectrum(matter, &spectrum).map_err(|error| (k, error))?;
+        bodies[k] = body.with_provenance(provenance(k));
     }
     Ok(())
 }

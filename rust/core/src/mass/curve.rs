@@ -1,0 +1,90 @@
+//! Thin wires: straight segments from point to point, with a mass per length.
+
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
+
+use super::body::RigidBody;
+use super::error_bound::UNIT;
+use super::polyhedron::widen;
+use super::provenance::{Checks, Provenance, Source};
+use super::simplex::{Corners, Frame, Wire};
+use super::solids::Amount;
+use super::surface::{finish, thin};
+use crate::error::{Error, all_finite};
+
+/// Points joined by straight segments.
+struct Polyline<'a>(&'a [[f64; 3]]);
+
+impl Corners<2> for Polyline<'_> {
+    fn count(&self) -> usize {
+        self.0.len().saturating_sub(1)
+    }
+
+    #[inline(always)]
+    fn corners(&self, index: usize) -> [[f64; 3]; 2] {
+        [self.0[index], self.0[index + 1]]
+    }
+}
+
+/// A thin wire of uniform mass per length through the points: `∫ r rᵀ dm = λ L (a aᵀ + b bᵀ + s sᵀ)/6` for a segment
+/// (a, b) of length L, `s = a + b`.
+///
+/// `amount` is the total mass or the mass per length λ. A closed wire ends at its first point.
+///
+/// # Errors
+/// When a coordinate is not finite, the wire has no length, or the amount is not positive.
+pub fn curve(points: &[[f64; 3]], amount: Amount) -> Result<RigidBody, Error> {
+    all_finite("points", points.as_flattened())?;
+    let line = Polyline(points);
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for point in points {
+        widen(&mut low, &mut high, point);
+    }
+    if low == high || points.is_empty() {
+        return Err(Error::OutOfDomain {
+            what: "length of the curve",
+            law: "positive: points must be two or more, not all in one place",
+            value: 0.0,
+        });
+    }
+    let frame = Frame::of_box(&Vector3::from(low), &Vector3::from(high));
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let found = thin::<_, Wire, 2>(&line, &frame, || frame, go_on);
+    let (sums, moments) = found.ok_or(Error::Stopped)?;
+    // Each end of a segment is off by a unit of rounding of the extent, its length by four.
+    let error =
+        sums.roundings() * sums.content + 8.0 * UNIT * sums.extent.norm() * sums.count as f64;
+    let checks = Checks::FINITE.and(Checks::VOLUME);
+    let body = finish(&sums, sums.content * sums.frame.unit, 2.0 * error, amount)?;
+    Ok(body.with_provenance(Provenance {
+        moments,
+        ..Provenance::of_matter(Source::Curve, sums.count, checks)
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn straight_wire_is_a_rod() {
+        let points: Vec<[f64; 3]> = [0.0, 0.25, 1.0, 3.0]
+            .iter()
+            .map(|t| [3.0 * t, 4.0 * t, 12.0 * t])
+            .collect();
+        let rod = curve(&points, Amount::Density(2.0)).expect("rod");
+        let length = 39.0;
+        assert!((rod.mass() - 2.0 * length).abs() < 1e-12);
+        let [i1, i2, i3] = rod.principal().moments;
+        assert!(i1 < 1e-28 * i3, "{i1:e}");
+        assert!((i2 / (rod.mass() * length * length / 12.0) - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn nothing_is_no_wire() {
+        assert!(curve(&[], Amount::Mass(1.0)).is_err());
+        assert!(curve(&[[1.0; 3]], Amount::Mass(1.0)).is_err());
+        assert!(curve(&[[1.0; 3]; 4], Amount::Mass(1.0)).is_err());
+        assert!(curve(&[[1.0; 3], [f64::NAN; 3]], Amount::Mass(1.0)).is_err());
+    }
+}

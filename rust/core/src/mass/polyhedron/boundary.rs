@@ -1,0 +1,319 @@
+//! Whether triangles bound a solid: every edge must be run along as often one way as the other.
+//!
+//! Every corner is thrown to a random place in a plane, equal corners to the same place. The signed area of a triangle
+//! there is the sum over its edges of `p × q/2`, which changes sign with the direction of the edge: so the areas of all
+//! triangles add up to zero when the edges cancel, and, but for a chance below 2⁻¹⁰⁰, only then. Two planes of integers
+//! modulo 2⁶⁴ make 128 bits in all; one sum suffices for a mesh of any size. Only when it is not zero are the triangles
+//! gone through again, to find the edge.
+
+use std::collections::HashSet;
+use std::hash::{BuildHasher, RandomState};
+use std::sync::LazyLock;
+
+use super::fault::Count;
+
+/// The three corners of a triangle.
+pub(super) type Triangle = [[f64; 3]; 3];
+
+/// What every place depends on: drawn once for each process, so that no file can be made to fit it.
+static KEY: LazyLock<[u64; 12]> = LazyLock::new(|| {
+    let state = RandomState::new();
+    std::array::from_fn(|k| state.hash_one(k))
+});
+
+/// A corner as bits; equal numbers have equal bits (−0 is +0).
+type Bits = [u64; 3];
+
+#[inline(always)]
+fn bits(corner: &[f64; 3]) -> Bits {
+    corner.map(|x| (x + 0.0).to_bits())
+}
+
+/// The upper half of a product folded onto the lower one.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "the two halves")]
+fn fold(a: u64, b: u64) -> u64 {
+    let product = u128::from(a) * u128::from(b);
+    product as u64 ^ (product >> 64) as u64
+}
+
+/// Where a corner is thrown, in two planes.
+#[inline(always)]
+fn place(key: &[u64; 12], [x, y, z]: Bits) -> [[u64; 2]; 2] {
+    let a = fold(x ^ key[0], y ^ key[1]);
+    let b = fold(y ^ key[2], z ^ key[3]);
+    let c = fold(z ^ key[4], x ^ key[5]);
+    [
+        [fold(a ^ key[6], b ^ key[7]), fold(b ^ key[8], c ^ key[9])],
+        [fold(c ^ key[10], a ^ key[11]), fold(a ^ key[8], c ^ key[7])],
+    ]
+}
+
+/// Twice the signed area of a triangle in each plane: the same for whichever corner comes first, the opposite when it is
+/// turned over.
+#[inline(always)]
+fn areas(key: &[u64; 12], triangle: &Triangle) -> [u64; 2] {
+    let [a, b, c] = [0, 1, 2].map(|k| place(key, bits(&triangle[k])));
+    [0, 1].map(|plane| {
+        let ([a, b, c], sub) = ([a[plane], b[plane], c[plane]], u64::wrapping_sub);
+        let (e, f) = (
+            [sub(b[0], a[0]), sub(b[1], a[1])],
+            [sub(c[0], a[0]), sub(c[1], a[1])],
+        );
+        sub(e[0].wrapping_mul(f[1]), e[1].wrapping_mul(f[0]))
+    })
+}
+
+/// The sum of the areas of some triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Boundary([u64; 2]);
+
+impl Boundary {
+    /// Of these triangles; a mark of each goes to `marks`, the same for the same triangle seen from the same side, zero
+    /// for one that has no three corners.
+    #[inline(always)]
+    pub(super) fn of(
+        triangles: impl Iterator<Item = Triangle>,
+        mut marks: impl FnMut(u64),
+    ) -> Self {
+        let key = &*KEY;
+        let mut sum = Self::default();
+        for triangle in triangles {
+            let areas = areas(key, &triangle);
+            marks(areas[0]);
+            sum = sum.and(Self(areas));
+        }
+        sum
+    }
+
+    /// Of both together.
+    #[inline(always)]
+    pub(super) fn and(self, other: Self) -> Self {
+        Self([0, 1].map(|k| self.0[k].wrapping_add(other.0[k])))
+    }
+
+    /// Whether every edge is run along as often one way as the other.
+    pub(super) fn is_closed(self) -> bool {
+        self.0 == [0, 0]
+    }
+}
+
+/// Goes through the triangles in order, each with its number, as often as asked.
+pub(super) trait Replay {
+    /// What can go wrong on the way.
+    type Error;
+    /// Once through.
+    fn each(&mut self, visit: &mut dyn FnMut(usize, &Triangle)) -> Result<(), Self::Error>;
+}
+
+/// The first of the faces that repeat an earlier one, that one, and how many there are; `marks` may come in any order.
+pub(super) fn find_duplicates<R: Replay>(
+    triangles: &mut R,
+    marks: &mut [u64],
+) -> Result<Option<(usize, usize, usize)>, R::Error> {
+    marks.sort_unstable();
+    let mut repeated: Vec<u64> = marks
+        .windows(2)
+        .filter(|pair| pair[0] == pair[1] && pair[0] != 0)
+        .map(|pair| pair[0])
+        .collect();
+    repeated.dedup();
+    if repeated.is_empty() {
+        return Ok(None);
+    }
+    let key = &*KEY;
+    let mut suspects: Vec<([Bits; 3], usize)> = Vec::new();
+    triangles.each(&mut |face, triangle| {
+        if repeated.binary_search(&areas(key, triangle)[0]).is_ok() {
+            let mut corners = [0, 1, 2].map(|k| bits(&triangle[k]));
+            let lowest = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
+            corners.rotate_left(lowest);
+            suspects.push((corners, face));
+        }
+    })?;
+    suspects.sort_unstable();
+    let pairs = suspects.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    let count = pairs.clone().count();
+    Ok(pairs
+        .map(|pair| (pair[1].1, pair[0].1))
+        .min()
+        .map(|(second, first)| (first, second, count)))
+}
+
+/// An edge that is run along more often one way than the other.
+pub(super) struct Unbalanced {
+    /// A face that runs along it the more frequent way.
+    pub(super) face: usize,
+    /// Another one, where the edge has no open side.
+    pub(super) second: Option<usize>,
+    /// Where it starts and ends.
+    pub(super) ends: [[f64; 3]; 2],
+    /// How many there are.
+    pub(super) count: Count,
+}
+
+/// One run along an edge: its lower and higher end, whether upward, and the face.
+type Run = (Bits, Bits, bool, usize);
+
+/// Sums of runs that the edges are spread over.
+const BUCKETS: usize = 1 << 16;
+/// Runs that are looked at one by one.
+const RUNS: usize = 1 << 20;
+
+/// The edge that keeps the triangles from being closed, an open one if there is any, of the first face that has one.
+///
+/// In memory for a million runs: one time through tells which of 65536 groups of edges are unbalanced, another one
+/// collects the runs in them.
+pub(super) fn find_unbalanced<R: Replay>(
+    triangles: &mut R,
+) -> Result<Option<Unbalanced>, R::Error> {
+    let mut sums = vec![0_u64; BUCKETS];
+    let mut sizes = vec![0_usize; BUCKETS];
+    triangles.each(&mut |face, triangle| {
+        for (hash, run) in runs(face, triangle) {
+            let bucket = bucket(hash);
+            let signed = if run.2 { hash } else { hash.wrapping_neg() };
+            sums[bucket] = sums[bucket].wrapping_add(signed);
+            sizes[bucket] += 1;
+        }
+    })?;
+    let mut room = RUNS;
+    let mut is_least = false;
+    let mut wanted = HashSet::new();
+    for bucket in (0..BUCKETS).filter(|&bucket| sums[bucket] != 0) {
+        if sizes[bucket] > room {
+            is_least = true;
+        } else {
+            room -= sizes[bucket];
+            wanted.insert(bucket);
+        }
+    }
+    let mut found: Vec<Run> = Vec::with_capacity(RUNS - room);
+    triangles.each(&mut |face, triangle| {
+        found.extend(
+            runs(face, triangle)
+                .filter(|(hash, _)| wanted.contains(&bucket(*hash)))
+                .map(|(_, run)| run),
+        );
+    })?;
+    found.sort_unstable();
+    let upward = |group: &[Run]| group.iter().filter(|run| run.2).count();
+    let faulty: Vec<&[Run]> = found
+        .chunk_by(|p, q| (p.0, p.1) == (q.0, q.1))
+        .filter(|group| 2 * upward(group) != group.len())
+        .collect();
+    let seen = faulty.len();
+    // A wrongly wound face shows as two runs the same way, an open mesh as one run alone; the open edge is told first.
+    let fault = faulty
+        .into_iter()
+        .map(|group| {
+            let way = 2 * upward(group) > group.len();
+            let mut faces = group.iter().filter(|run| run.2 == way).map(|run| run.3);
+            let face = faces.next().unwrap_or(group[0].3);
+            let is_even = group.len().is_multiple_of(2);
+            let ends = [group[0].0, group[0].1].map(|end| end.map(f64::from_bits));
+            (is_even, face, faces.next().filter(|_| is_even), way, ends)
+        })
+        .min_by_key(|fault| (fault.0, fault.1));
+    Ok(fault.map(|(_, face, second, way, [low, high])| Unbalanced {
+        face,
+        second,
+        ends: if way { [low, high] } else { [high, low] },
+        count: Count { seen, is_least },
+    }))
+}
+
+fn bucket(hash: u64) -> usize {
+    (hash >> 48) as usize % BUCKETS
+}
+
+/// The runs of a triangle along its edges, each with a mixture of its ends that does not depend on the direction and is
+/// the same in every process, so that the same mesh has the same message.
+fn runs(face: usize, triangle: &Triangle) -> impl Iterator<Item = (u64, Run)> {
+    const KEY: [u64; 12] = [
+        0x9e37_79b9_7f4a_7c15,
+        0xbf58_476d_1ce4_e5b9,
+        0x94d0_49bb_1331_11eb,
+        0xd6e8_feb8_6659_fd93,
+        0xa076_1d64_78bd_642f,
+        0xe703_7ed1_a0b4_28db,
+        0x8ebc_6af0_9c88_c6e3,
+        0x5899_65cc_7537_4cc3,
+        0x1d8e_4e27_c47d_124f,
+        0xeb44_acca_b455_d165,
+        0xc2b2_ae3d_27d4_eb4f,
+        0x1656_67b1_9e37_79f9,
+    ];
+    let corners = [0, 1, 2].map(|k| bits(&triangle[k]));
+    [(0, 1), (1, 2), (2, 0)]
+        .into_iter()
+        .map(move |(from, to)| (corners[from], corners[to]))
+        .filter(|(from, to)| from != to)
+        .map(move |(from, to)| {
+            let (low, high) = (from.min(to), from.max(to));
+            let ([p, _], [_, q]) = (place(&KEY, low), place(&KEY, high));
+            let hash = fold(p[0] ^ q[1], p[1] ^ q[0]);
+            (hash, (low, high, from < to, face))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [Triangle; 4] = [
+        [[0.0; 3], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
+        [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
+        [[0.0; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]],
+        [[1.0, 0.0, -0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    ];
+
+    struct List(Vec<Triangle>);
+
+    impl Replay for List {
+        type Error = ();
+
+        fn each(&mut self, visit: &mut dyn FnMut(usize, &Triangle)) -> Result<(), ()> {
+            self.0.iter().enumerate().for_each(|(i, t)| visit(i, t));
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn areas_cancel_when_edges_do() {
+        let of = |list: &[Triangle]| Boundary::of(list.iter().copied(), |_| ());
+        assert!(of(&TETRAHEDRON).is_closed());
+        for (place, missing) in TETRAHEDRON.iter().enumerate() {
+            let mut rest = TETRAHEDRON.to_vec();
+            let turned = [0, 2, 1].map(|k| missing[k]);
+            rest.remove(place);
+            assert!(!of(&rest).is_closed());
+            rest.push(turned);
+            assert!(!of(&rest).is_closed());
+            rest.push(*missing);
+            rest.push([1, 2, 0].map(|k| missing[k]));
+            assert!(of(&rest).is_closed());
+        }
+    }
+
+    #[test]
+    fn the_edge_is_found() {
+        let mut open = List(TETRAHEDRON[..3].to_vec());
+        let fault = find_unbalanced(&mut open).expect("list").expect("open");
+        assert_eq!((fault.face, fault.second, fault.count.seen), (0, None, 3));
+        assert_eq!(fault.ends, [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
+        let mut whole = List(TETRAHEDRON.to_vec());
+        assert!(find_unbalanced(&mut whole).expect("list").is_none());
+    }
+
+    #[test]
+    fn duplicates_are_found_whichever_corner_comes_first() {
+        let mut list = TETRAHEDRON.to_vec();
+        list.push([2, 0, 1].map(|k| TETRAHEDRON[1][k]));
+        list.push([1, 0, 2].map(|k| TETRAHEDRON[2][k]));
+        let mut marks = Vec::new();
+        let _ = Boundary::of(list.iter().copied(), |mark| marks.push(mark));
+        let found = find_duplicates(&mut List(list), &mut marks).expect("list");
+        assert_eq!(found, Some((1, 4, 1)));
+    }
+}

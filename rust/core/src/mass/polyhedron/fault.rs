@@ -1,0 +1,157 @@
+//! Why triangles do not bound a solid.
+
+use std::fmt;
+
+use thiserror::Error as ThisError;
+
+/// A corner of a triangle, by its number or, where a file does not number its corners, by its coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Corner {
+    /// Number in the list of vertices.
+    Vertex(usize),
+    /// Coordinates.
+    At([f64; 3]),
+}
+
+impl fmt::Display for Corner {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Vertex(number) => write!(f, "vertex {number}"),
+            Self::At([x, y, z]) => write!(f, "({x:?}, {y:?}, {z:?})"),
+        }
+    }
+}
+
+/// How many edges or faces share a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Count {
+    /// So many were seen.
+    pub seen: usize,
+    /// Whether there may be more, which were not looked at.
+    pub is_least: bool,
+}
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.is_least { "at least " } else { "" })?;
+        write!(f, "{}", self.seen)
+    }
+}
+
+/// Why a mesh does not bound a solid.
+#[derive(Clone, Debug, PartialEq, ThisError)]
+#[non_exhaustive]
+pub enum MeshFault {
+    /// No faces.
+    #[error("the mesh has no faces")]
+    NoFaces,
+    /// A face names a vertex that does not exist.
+    #[error(
+        "faces[{face}] names vertex {index}, but there are {vertices} vertices, numbered from 0; \
+         if the faces count from 1 subtract 1"
+    )]
+    IndexOutOfRange {
+        /// The face.
+        face: usize,
+        /// The index it holds.
+        index: i64,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("vertices[{vertex}] is not finite: {value:?}")]
+    NonFiniteVertex {
+        /// The vertex.
+        vertex: usize,
+        /// The coordinate.
+        value: f64,
+    },
+    /// A coordinate of a triangle is NaN or infinite.
+    #[error("faces[{face}] has a corner that is not finite: {corner}")]
+    NonFiniteCorner {
+        /// The triangle.
+        face: usize,
+        /// The corner.
+        corner: Corner,
+    },
+    /// Two faces are the same triangle, seen from the same side.
+    #[error(
+        "faces[{first}] and faces[{second}] are the same triangle, seen from the same side ({count} such pairs in all): \
+         their matter would count twice; remove one of them"
+    )]
+    DuplicateFaces {
+        /// One face.
+        first: usize,
+        /// The other face.
+        second: usize,
+        /// How many faces repeat an earlier one.
+        count: usize,
+    },
+    /// An edge with a face on one side only.
+    #[error(
+        "the mesh is not closed: the edge from {from} to {to} of faces[{face}] has no face on its other side \
+         ({count} such edges in all); close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead"
+    )]
+    Open {
+        /// Start of the edge.
+        from: Corner,
+        /// End of the edge.
+        to: Corner,
+        /// The face that has it.
+        face: usize,
+        /// How many open edges.
+        count: Count,
+    },
+    /// Two faces run along an edge in the same direction.
+    #[error(
+        "the mesh is not consistently wound: faces[{first}] and faces[{second}] both run from {from} to {to} \
+         ({count} such edges in all); reverse the order of the vertices of one of them"
+    )]
+    InconsistentWinding {
+        /// Start of the edge.
+        from: Corner,
+        /// End of the edge.
+        to: Corner,
+        /// One face.
+        first: usize,
+        /// The other face.
+        second: usize,
+        /// How many edges are run along in one direction only.
+        count: Count,
+    },
+    /// The mass properties are beyond the largest float.
+    #[error("the mesh is too large: its extent is {size:?}; choose a larger unit of length")]
+    TooLarge {
+        /// The largest extent.
+        size: f64,
+    },
+    /// The normals point inward.
+    #[error(
+        "the mesh is inverted: its signed volume is {volume:?}, so the normals point inward; \
+         pass orient=True to turn them all"
+    )]
+    Inverted {
+        /// The signed volume.
+        volume: f64,
+    },
+    /// The mesh encloses nothing.
+    #[error(
+        "the mesh encloses no volume: {volume:?} with edges up to {size:?}; model a sheet as a thin shell instead"
+    )]
+    NoVolume {
+        /// The signed volume.
+        volume: f64,
+        /// The largest extent.
+        size: f64,
+    },
+    /// Triangles without area.
+    #[error(
+        "the surface has no area: {area:?} from {faces} faces; model a line as a thin wire instead"
+    )]
+    NoArea {
+        /// The area.
+        area: f64,
+        /// How many faces.
+        faces: usize,
+    },
+}

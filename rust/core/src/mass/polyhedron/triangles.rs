@@ -1,0 +1,220 @@
+//! Triangles in memory: vertices, and faces that count them.
+
+use std::convert::Infallible;
+
+use nalgebra::Vector3;
+
+use super::boundary::{Boundary, Replay, Triangle};
+use super::fault::{Corner, MeshFault};
+use super::{Marks, Triangles};
+use crate::error::Error;
+use crate::mass::simplex::{Corners, Frame, Partial, Shell, Solid, Sums, block_sum, merge, sums};
+use crate::numerics::reduce::BLOCK;
+use crate::numerics::threads::{Halt, Watch, fill_blocks};
+
+/// An integer that numbers vertices.
+pub trait Index: Copy + Send + Sync {
+    /// The position it stands for; one that no list has where it is negative.
+    fn position(self) -> usize;
+    /// The number itself.
+    fn told(self) -> i64;
+}
+
+macro_rules! index {
+    ($($integer:ty)*) => {$(
+        impl Index for $integer {
+            #[inline(always)]
+            fn position(self) -> usize {
+                usize::try_from(self).unwrap_or(usize::MAX)
+            }
+
+            fn told(self) -> i64 {
+                i64::try_from(self).unwrap_or(i64::MAX)
+            }
+        }
+    )*};
+}
+index!(i32 u32 i64 u64 usize);
+
+/// Faces and the vertices they count.
+pub(super) struct Faces<'a, I> {
+    mesh: View<'a, I>,
+    watch: &'a mut Watch<'a>,
+}
+
+/// What several threads share.
+#[derive(Clone, Copy)]
+pub(in crate::mass) struct View<'a, I> {
+    pub(in crate::mass) vertices: &'a [[f64; 3]],
+    pub(in crate::mass) faces: &'a [[I; 3]],
+}
+
+impl<I: Index> Corners<3> for View<'_, I> {
+    fn count(&self) -> usize {
+        self.faces.len()
+    }
+
+    #[inline(always)]
+    fn corners(&self, index: usize) -> Triangle {
+        self.faces[index].map(|k| {
+            let vertex = self.vertices.get(k.position());
+            vertex.copied().unwrap_or([f64::NAN; 3])
+        })
+    }
+}
+
+impl<I: Index> View<'_, I> {
+    /// The box of the vertices, in units of its size.
+    pub(in crate::mass) fn frame(&self) -> Frame {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for vertex in self.vertices {
+            widen(&mut low, &mut high, vertex);
+        }
+        Frame::of_box(&Vector3::from(low), &Vector3::from(high))
+    }
+
+    /// The box of the corners that faces use.
+    pub(in crate::mass) fn used_frame(&self) -> Frame {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for corner in (0..self.faces.len()).flat_map(|face| self.corners(face)) {
+            widen(&mut low, &mut high, &corner);
+        }
+        Frame::of_box(&Vector3::from(low), &Vector3::from(high))
+    }
+
+    /// The first index or coordinate that is none.
+    pub(in crate::mass) fn find_unusable(&self) -> Option<MeshFault> {
+        let vertices = self.vertices.len();
+        for (face, corners) in self.faces.iter().enumerate() {
+            if let Some(index) = corners.iter().find(|k| k.position() >= vertices) {
+                return Some(MeshFault::IndexOutOfRange {
+                    face,
+                    index: index.told(),
+                    vertices,
+                });
+            }
+        }
+        for (vertex, coordinates) in self.vertices.iter().enumerate() {
+            if let Some(&value) = coordinates.iter().find(|x| !x.is_finite()) {
+                return Some(MeshFault::NonFiniteVertex { vertex, value });
+            }
+        }
+        None
+    }
+}
+
+#[inline(always)]
+pub(in crate::mass) fn widen(low: &mut [f64; 3], high: &mut [f64; 3], point: &[f64; 3]) {
+    for k in 0..3 {
+        low[k] = low[k].min(point[k]);
+        high[k] = high[k].max(point[k]);
+    }
+}
+
+impl<'a, I: Index> Faces<'a, I> {
+    pub(super) fn new(
+        vertices: &'a [[f64; 3]],
+        faces: &'a [[I; 3]],
+        watch: &'a mut Watch<'a>,
+    ) -> Self {
+        Self {
+            mesh: View { vertices, faces },
+            watch,
+        }
+    }
+}
+
+impl<I: Index> Replay for Faces<'_, I> {
+    type Error = Halt<Error>;
+
+    fn each(&mut self, visit: &mut dyn FnMut(usize, &Triangle)) -> Result<(), Halt<Error>> {
+        let count = self.mesh.count();
+        for face in 0..count {
+            if face % BLOCK == 0 && (self.watch)(face as f64 / count as f64).is_break() {
+                return Err(Halt::Stopped);
+            }
+            visit(face, &self.mesh.corners(face));
+        }
+        Ok(())
+    }
+}
+
+/// What one block of faces comes to.
+struct Part<'a> {
+    partial: Partial,
+    boundary: Boundary,
+    marks: &'a mut [u64],
+}
+
+impl<I: Index> Triangles for Faces<'_, I> {
+    fn first_frame(&mut self) -> Result<Frame, Halt<Error>> {
+        Ok(self.mesh.frame())
+    }
+
+    fn box_frame(&mut self) -> Result<Frame, Halt<Error>> {
+        Ok(self.mesh.used_frame())
+    }
+
+    fn solid_sums(
+        &mut self,
+        frame: &Frame,
+        check: bool,
+    ) -> Result<(Sums, Option<Marks>), Halt<Error>> {
+        let mesh = self.mesh;
+        if !check {
+            let sums = sums::<_, Solid, 3>(&mesh, frame, self.watch);
+            return sums.map(|sums| (sums, None)).ok_or(Halt::Stopped);
+        }
+        let count = mesh.count();
+        let mut marks = vec![0; count];
+        let mut parts: Vec<Part<'_>> = marks
+            .chunks_mut(BLOCK)
+            .map(|marks| Part {
+                partial: Partial::default(),
+                boundary: Boundary::default(),
+                marks,
+            })
+            .collect();
+        fill_blocks(&mut parts, 1, self.watch, |block, parts| {
+            let part = &mut parts[0];
+            let (from, to) = (block * BLOCK, count.min((block + 1) * BLOCK));
+            part.partial = block_sum::<_, Solid, 3>(&mesh, from, to, frame);
+            let mut next = part.marks.iter_mut();
+            let triangles = (from..to).map(|face| mesh.corners(face));
+            part.boundary = Boundary::of(triangles, |mark| {
+                if let Some(place) = next.next() {
+                    *place = mark;
+                }
+            });
+            Ok::<(), Infallible>(())
+        })
+        .map_err(|_| Halt::Stopped)?;
+        let partials: Vec<Partial> = parts.iter().map(|part| part.partial).collect();
+        let boundary = parts
+            .iter()
+            .fold(Boundary::default(), |sum, part| sum.and(part.boundary));
+        drop(parts);
+        let marks = Marks {
+            boundary,
+            marks: Some(marks),
+        };
+        let sums = Sums::new::<Solid, 3>(&merge(&partials), count, frame);
+        Ok((sums, Some(marks)))
+    }
+
+    fn shell_sums(&mut self, frame: &Frame) -> Result<Sums, Halt<Error>> {
+        sums::<_, Shell, 3>(&self.mesh, frame, self.watch).ok_or(Halt::Stopped)
+    }
+
+    fn find_unusable(&mut self) -> Result<Option<MeshFault>, Halt<Error>> {
+        Ok(self.mesh.find_unusable())
+    }
+
+    fn corner(&self, face: usize, position: &[f64; 3]) -> Corner {
+        let number = self.mesh.faces[face]
+            .map(Index::position)
+            .into_iter()
+            .find(|&k| self.mesh.vertices.get(k) == Some(position));
+        number.map_or(Corner::At(*position), Corner::Vertex)
+    }
+}

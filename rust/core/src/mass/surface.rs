@@ -1,0 +1,163 @@
+//! Thin shells: triangles, open or closed, with a mass per area.
+
+use std::ops::ControlFlow;
+
+use super::body::RigidBody;
+use super::error_bound::{ErrorBound, UNIT};
+use super::polyhedron::{Index, MeshFault, View, is_settled, matter};
+use super::provenance::{Checks, MomentsFrom, Provenance, Source};
+use super::simplex::{Corners, Frame, Kind, Shell, Sums, sums};
+use super::solids::Amount;
+use crate::error::Error;
+use crate::numerics::threads::{Halt, Watch};
+use crate::principal::principal_axes;
+
+/// A thin shell of uniform mass per area: `∫ r rᵀ dm = σ A (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/12` for a triangle (a, b, c) of
+/// area A, `s = a + b + c`.
+///
+/// `amount` is the total mass or the mass per area σ. Open or closed, the winding does not matter. `watch` is asked about
+/// every 20 ms whether to go on.
+///
+/// # Errors
+/// [`MeshFault`] when a face names no vertex, a coordinate is not finite or there is no area; [`Halt::Stopped`] where
+/// `watch` said so.
+pub fn surface<I: Index>(
+    vertices: &[[f64; 3]],
+    faces: &[[I; 3]],
+    amount: Amount,
+    watch: &mut Watch<'_>,
+) -> Result<RigidBody, Halt<Error>> {
+    let mesh = View { vertices, faces };
+    let failed = |fault: MeshFault| Halt::Failed(fault.into());
+    if faces.is_empty() {
+        return Err(failed(MeshFault::NoFaces));
+    }
+    let found = thin::<_, Shell, 3>(&mesh, &mesh.frame(), || mesh.used_frame(), watch);
+    let (sums, moments) = found.ok_or(Halt::Stopped)?;
+    if !sums.magnitude.is_finite()
+        && let Some(fault) = mesh.find_unusable()
+    {
+        return Err(failed(fault));
+    }
+    let unit = sums.frame.unit;
+    let area = sums.content * unit * unit;
+    if sums.content <= 0.0 || sums.content.is_nan() {
+        let faces = faces.len();
+        return Err(failed(MeshFault::NoArea { area, faces }));
+    }
+    // The normal of a triangle is off by a few units of rounding of its products; its corners by one of the extent.
+    let error = sums.roundings() * sums.content
+        + UNIT * (8.0 * sums.scale.x + 8.0 * sums.extent.max() * sums.scale.y);
+    let checks = Checks::INDICES.and(Checks::FINITE).and(Checks::VOLUME);
+    finish(&sums, area, 2.0 * error, amount)
+        .map(|body| {
+            body.with_provenance(Provenance {
+                moments,
+                ..Provenance::of_matter(Source::Surface, faces.len(), checks)
+            })
+        })
+        .map_err(Halt::Failed)
+}
+
+/// Area of a triangle mesh, open or closed.
+///
+/// # Errors
+/// When a face names no vertex or a coordinate is not finite.
+pub fn area<I: Index>(vertices: &[[f64; 3]], faces: &[[I; 3]]) -> Result<f64, Error> {
+    let mesh = View { vertices, faces };
+    if faces.is_empty() {
+        return Err(MeshFault::NoFaces.into());
+    }
+    let frame = mesh.frame();
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let area = sums::<_, Shell, 3>(&mesh, &frame, go_on).map_or(f64::NAN, |sums| sums.content);
+    if !area.is_finite()
+        && let Some(fault) = mesh.find_unusable()
+    {
+        return Err(fault.into());
+    }
+    Ok(area * frame.unit * frame.unit)
+}
+
+/// Sums of positive terms, taken again in the body's own axes where it is thin: shells and wires.
+pub(super) fn thin<C: Corners<N>, K: Kind<N>, const N: usize>(
+    corners: &C,
+    first: &Frame,
+    used: impl FnOnce() -> Frame,
+    watch: &mut Watch<'_>,
+) -> Option<(Sums, MomentsFrom)> {
+    let mut found = sums::<C, K, N>(corners, first, watch)?;
+    let is_near = |sums: &Sums| {
+        let size = sums.central().trace();
+        size.is_finite() && sums.center().norm_squared() <= 16.0 * size && size > 1e-6
+    };
+    if !is_near(&found) {
+        found = sums::<C, K, N>(corners, &used(), watch)?;
+    }
+    let central = principal_axes(&found.central());
+    let [thinnest, middle, longest] = central.moments;
+    if !found.content.is_finite() || thinnest + middle > 0.05 * longest {
+        return Some((found, MomentsFrom::SecondMoment));
+    }
+    let mut frame = found.own_frame(&central.axes);
+    for _ in 0..3 {
+        found = sums::<C, K, N>(corners, &frame, watch)?;
+        if is_settled(&found) {
+            break;
+        }
+        frame = found.own_frame(&principal_axes(&found.central()).axes);
+    }
+    Some((found, MomentsFrom::OwnAxes))
+}
+
+/// The body of these sums, whose content in the user's units is given and off by `error` in the unit of the frame.
+pub(super) fn finish(
+    sums: &Sums,
+    content: f64,
+    error: f64,
+    amount: Amount,
+) -> Result<RigidBody, Error> {
+    let mass = amount.mass(content)?;
+    let relative = error / sums.content;
+    let bound = ErrorBound {
+        mass: match amount {
+            Amount::Mass(_) => 0.0,
+            Amount::Density(_) => mass * (relative + 16.0 * UNIT),
+        },
+        ..ErrorBound::default()
+    };
+    matter(sums, mass, relative, bound)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn hollow_cube() {
+        // Six plates m/6 each: I = 5/18 m a².
+        let vertices: Vec<[f64; 3]> = (0..8)
+            .map(|k| [k & 1, k >> 1 & 1, k >> 2].map(f64::from))
+            .collect();
+        let quads = [
+            [0, 1, 3, 2],
+            [4, 6, 7, 5],
+            [0, 4, 5, 1],
+            [2, 3, 7, 6],
+            [0, 2, 6, 4],
+            [1, 5, 7, 3],
+        ];
+        let faces: Vec<[usize; 3]> = quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect();
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let body = surface(&vertices, &faces, Amount::Density(3.0), go_on).expect("shell");
+        assert!((body.mass() - 18.0).abs() < 1e-14);
+        assert!((body.center_of_mass() - Vector3::repeat(0.5)).norm() < 1e-15);
+        assert!((body.principal().moments[0] - 5.0).abs() < 1e-14);
+        assert!((area(&vertices, &faces).expect("area") - 6.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,217 @@
+//! Bodies from meshes, surfaces and curves.
+
+use numpy::{PyArrayDyn, PyArrayMethods};
+use polhode::RigidBody;
+use polhode::mass::polyhedron::{Options, closure, polyhedron_watched};
+use polhode::mass::{Amount, curve, surface};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use super::PyRigidBody;
+use crate::arrays::read_list;
+use crate::interrupt::Interrupt;
+use crate::meshes::{finish, read_mesh, with_mesh};
+use crate::solids::amount;
+use crate::stack::{Broadcast, Stack};
+
+#[pymethods]
+impl PyRigidBody {
+    /// Solid of uniform density bounded by a closed triangle mesh.
+    ///
+    /// The mesh is checked before any number is computed: indices in range, coordinates finite, every
+    /// edge shared by two faces that run along it in opposite directions, no face twice, normals
+    /// outward, a volume beyond rounding. Corners with the same coordinates count as one vertex.
+    /// Several components and cavities (inner surfaces wound inward) are counted as they are.
+    /// Coordinates far from the origin cost no accuracy, nor does a thin shape its smallest moment.
+    ///
+    /// Parameters
+    /// ----------
+    /// vertices : array_like, shape (n, 3)
+    /// faces : array_like of int, shape (m, 3)
+    ///     Vertices of each triangle, counted from zero, counter-clockwise seen from outside.
+    /// density, mass : float
+    ///     Exactly one of the two.
+    /// closure : {"caps", "hull"}, optional
+    ///     What to make of an open mesh, which by itself is an error: ``"caps"`` closes each hole by
+    ///     triangles to the mean of the ends of its edges (the flat cap, where it is flat), ``"hull"`` takes the
+    ///     convex hull instead (needs SciPy). `provenance` tells the volume it changed.
+    /// orient : bool, optional
+    ///     Accept a mesh whose normals all point inward.
+    /// check : bool, optional
+    ///     False leaves out whether the mesh is closed, consistently wound and without duplicate faces:
+    ///     an open mesh then gives numbers that mean nothing, and `provenance` says "unchecked".
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     Naming the face, edge or vertex that keeps the mesh from bounding a solid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    /// >>> faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    /// >>> RigidBody.from_mesh(corners, faces, density=6.0).center_of_mass
+    /// array([0.25, 0.25, 0.25])
+    /// >>> RigidBody.from_mesh(corners, faces[:3], density=6.0)
+    /// Traceback (most recent call last):
+    ///     ...
+    /// polhode.errors.MeshError: the mesh is not closed: the edge from vertex 2 to vertex 1 of faces[0] has no face on its other side (3 such edges in all); close the mesh (closure="caps" or "hull"), or model a thin shell instead
+    /// >>> RigidBody.from_mesh(corners, faces[:3], density=6.0, closure="caps").mass
+    /// 1.0
+    #[staticmethod]
+    #[pyo3(signature = (vertices, faces, *, density=None, mass=None, closure=None, orient=false, check=true))]
+    #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
+    fn from_mesh(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        density: Option<f64>,
+        mass: Option<f64>,
+        closure: Option<&str>,
+        orient: bool,
+        check: bool,
+    ) -> PyResult<Self> {
+        let amount = amount(mass, density)?;
+        let mesh = read_mesh(vertices, faces)?;
+        let options = Options { orient, check };
+        let interrupt = Interrupt::new(None);
+        let watch = &mut |_| interrupt.poll(None);
+        let outcome = match closure {
+            None => with_mesh!(mesh, |vertices, faces| {
+                py.detach(|| polyhedron_watched(vertices, faces, amount, options, watch))
+            }),
+            Some("caps") => with_mesh!(mesh, |vertices, faces| {
+                py.detach(|| closure::capped(vertices, faces, amount, options, watch))
+            }),
+            Some("hull") => {
+                let hull = py
+                    .import("polhode._files.hull")?
+                    .call_method1("hull", (vertices, faces))?
+                    .cast_into::<PyArrayDyn<i64>>()?;
+                let hull = hull.readonly();
+                let hull = hull.as_slice()?.as_chunks::<3>().0;
+                with_mesh!(mesh, |vertices, faces| {
+                    py.detach(|| closure::hulled(vertices, faces, hull, amount, watch))
+                })
+            }
+            Some(other) => {
+                return Err(PyValueError::new_err(format!(
+                    "closure: expected None, \"caps\" or \"hull\", got \"{other}\""
+                )));
+            }
+        };
+        Ok(Stack::one(finish(py, interrupt, outcome)?).into())
+    }
+
+    /// Thin shell of uniform mass per area: a triangle mesh, open or closed, however wound.
+    ///
+    /// Parameters
+    /// ----------
+    /// vertices : array_like, shape (n, 3)
+    /// faces : array_like of int, shape (m, 3)
+    ///     Vertices of each triangle, counted from zero.
+    /// areal_density, mass : float
+    ///     Mass per area, or the mass in all: exactly one of the two.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     Naming the face or vertex that is none, or when there is no area.
+    ///
+    /// Examples
+    /// --------
+    /// A sheet in the x-y plane:
+    ///
+    /// >>> from polhode import RigidBody
+    /// >>> corners = [(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)]
+    /// >>> sheet = RigidBody.from_surface(corners, [(0, 1, 2), (0, 2, 3)], areal_density=6.0)
+    /// >>> sheet.mass, sheet.principal_moments
+    /// (12.0, array([ 1.,  4.,  5.]))
+    #[staticmethod]
+    #[pyo3(signature = (vertices, faces, *, areal_density=None, mass=None))]
+    fn from_surface(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        areal_density: Option<f64>,
+        mass: Option<f64>,
+    ) -> PyResult<Self> {
+        let amount = amount_per("areal_density", mass, areal_density)?;
+        let mesh = read_mesh(vertices, faces)?;
+        let interrupt = Interrupt::new(None);
+        let watch = &mut |_| interrupt.poll(None);
+        let outcome = with_mesh!(mesh, |vertices, faces| {
+            py.detach(|| surface::surface(vertices, faces, amount, watch))
+        });
+        Ok(Stack::one(finish(py, interrupt, outcome)?).into())
+    }
+
+    /// Thin wire of uniform mass per length: straight segments from point to point.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : array_like, shape (..., n, 3)
+    ///     Two or more, in order; a closed wire ends at its first point.
+    /// linear_density, mass : float
+    ///     Mass per length, or the mass in all: exactly one of the two.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     When a coordinate is not finite or there is no length.
+    ///
+    /// Examples
+    /// --------
+    /// A square of wire:
+    ///
+    /// >>> from polhode import RigidBody
+    /// >>> corners = [(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0), (1, 1, 0)]
+    /// >>> RigidBody.from_curve(corners, mass=3.0).principal_moments
+    /// array([2., 2., 4.])
+    #[staticmethod]
+    #[pyo3(signature = (points, *, linear_density=None, mass=None))]
+    fn from_curve(
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        linear_density: Option<f64>,
+        mass: Option<f64>,
+    ) -> PyResult<Self> {
+        let amount = amount_per("linear_density", mass, linear_density)?;
+        let points: Stack<[f64; 3]> = read_list(points, "points", "..., n")?;
+        let [shape @ .., n] = &points.shape[..] else {
+            return Err(PyValueError::new_err("points: expected a list of points"));
+        };
+        let grid = Broadcast::of(["points"], [shape])?;
+        let body = |[row]: [usize; 1]| -> Result<RigidBody, polhode::Error> {
+            curve::curve(&points.rows[row * n..(row + 1) * n], amount)
+        };
+        Ok(grid.try_map(py, body)?.into())
+    }
+}
+
+/// Exactly one of the mass in all and a mass per length or area, under its own name.
+fn amount_per(name: &str, mass: Option<f64>, density: Option<f64>) -> PyResult<Amount> {
+    if let Some(value) = density
+        && mass.is_none()
+        && !(value > 0.0 && value.is_finite())
+    {
+        return Err(PyValueError::new_err(format!(
+            "{name} must be positive and finite, got {value:?}"
+        )));
+    }
+    amount(mass, density)
+        .map_err(|_| PyTypeError::new_err(format!("give exactly one of mass= and {name}=")))
+}

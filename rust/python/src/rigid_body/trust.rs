@@ -1,0 +1,95 @@
+//! Where a body's numbers come from, and how well they are known.
+
+use polhode::RigidBody;
+use polhode::mass::{ErrorBound, Provenance};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+
+use super::PyRigidBody;
+use crate::arrays::{numpy, write_numbers};
+use crate::stack::Stack;
+
+#[pymethods]
+impl PyRigidBody {
+    /// Where the numbers come from: what the body was made of, what was checked, what was changed.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    /// >>> faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    /// >>> print(RigidBody.from_mesh(corners, faces, density=6.0).provenance)
+    /// mesh of 4 elements; checked: indices, finite, closed, winding, orientation, volume, duplicates; moments from the second moment
+    #[getter]
+    fn provenance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let provenance = self.bodies.map(RigidBody::provenance);
+        let words = |of: fn(&Provenance) -> String| write_any(py, provenance.map(of));
+        let counts = |of: fn(&Provenance) -> usize| write_any(py, provenance.map(of));
+        let closure = |p: &Provenance| p.closure.map(|closure| closure.to_string());
+        let fields = (
+            words(|p| p.source.to_string())?,
+            counts(|p| p.elements)?,
+            words(|p| p.checks.to_string())?,
+            counts(|p| p.welded)?,
+            write_any(py, provenance.map(|p| closure(p).unwrap_or_default()))?,
+            write_numbers(py, &provenance.map(|p| p.volume_change))?,
+            words(|p| p.moments.to_string())?,
+            counts(|p| p.rounded_to_zero)?,
+        );
+        py.import("polhode.results")?
+            .getattr("Provenance")?
+            .call1(fields)
+    }
+
+    /// What rounding can have done to mass, centre of mass and tensor.
+    ///
+    /// Bounds against exact arithmetic on the very floats that were given: worst cases, mostly far above
+    /// the actual errors. A number that was given has the bound zero. What the given numbers themselves
+    /// are worth no bound can say.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> body = RigidBody.from_particles([1.0, 2.0], [(0, 0, 0), (0.1, 0.2, 0.3)])
+    /// >>> body.error_bound.inertia < 1e-13
+    /// True
+    #[getter]
+    fn error_bound<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let of = |f: fn(&ErrorBound) -> f64| {
+            write_numbers(py, &self.bodies.map(|body| f(&body.error_bound())))
+        };
+        let fields = (
+            of(|bound| bound.mass)?,
+            of(|bound| bound.center_of_mass)?,
+            of(|bound| bound.inertia)?,
+        );
+        py.import("polhode.results")?
+            .getattr("ErrorBound")?
+            .call1(fields)
+    }
+
+    /// The same bodies, of meshes of which so many corners were joined to others on request.
+    fn _welded(&self, corners: usize) -> Self {
+        let welded = |body: &RigidBody| {
+            let provenance = Provenance {
+                welded: corners,
+                ..body.provenance()
+            };
+            body.with_provenance(provenance)
+        };
+        self.bodies.map(welded).into()
+    }
+}
+
+/// One object for one value, an array of them for a stack.
+fn write_any<'py, T>(py: Python<'py>, stack: Stack<T>) -> PyResult<Bound<'py, PyAny>>
+where
+    T: IntoPyObject<'py> + Clone,
+{
+    if stack.is_one() {
+        return stack.rows[0].clone().into_bound_py_any(py);
+    }
+    numpy(py)?
+        .call_method1("array", (stack.rows,))?
+        .call_method1("reshape", (stack.shape,))
+}
