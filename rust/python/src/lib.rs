@@ -94,6 +94,8 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // NumPy's interface is looked up on first use, where a Ctrl-C in between would be a panic: use it now.
+        numpy::PyArray1::<f64>::zeros(module.py(), 0, false);
         crate::environment::obey()?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
