@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oracles import errors as errors_of
 from oracles import worst_error
 from oracles.bodies import matrix
 from oracles.exact_particles import Particles, moments
@@ -105,6 +106,28 @@ def test_thin_bodies_keep_their_smallest_moment_without_a_second_pass(
     body = summed(*zip(np.array_split(masses, 7), np.array_split(positions, 7), strict=True))
     exact = moments(Particles(masses, positions).inertia)
     assert body.principal_moments == pytest.approx(exact, rel=1e-14, abs=0)
+
+
+@pytest.mark.parametrize("thickness", 10.0 ** -np.arange(1, 13))
+def test_bounds_hold_at_any_thickness(thickness: float, rng: np.random.Generator) -> None:
+    for count, scale in ((7, 1e-10), (500, 1.0), (5000, 1e8)):
+        masses = rng.uniform(0.1, 1, count)
+        positions = rng.uniform(-0.5, 0.5, (count, 3)) * [thickness, thickness, 1.0] * scale
+        turn = rng.normal(size=4)
+        positions = positions @ matrix(turn / np.linalg.norm(turn)).T + scale
+        particles = MassAccumulator()
+        particles.add(masses, positions)
+        bounds, found = particles.moment_bounds(), particles.finish().principal_moments
+        whole = Particles(masses, positions)
+        exact = moments(whole.inertia)
+        assert (np.abs(found - exact) <= bounds).all()
+        body = particles.finish()
+        assert max(errors_of(body.mass, whole.mass)) <= body.error_bound.mass
+        assert max(errors_of(body.center_of_mass, whole.center_of_mass)) <= body.error_bound.center_of_mass
+        assert max(errors_of(body.inertia, whole.inertia)) <= body.error_bound.inertia
+        # Worst cases, but not idle: the smallest moment has known digits down to a thickness of 1e-10.
+        if thickness >= 1e-10:
+            assert bounds[0] <= 1e-4 * found[0]
 
 
 def test_it_reads_memory_maps_and_iterators(cloud: Any, tmp_path: Path) -> None:

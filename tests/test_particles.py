@@ -233,6 +233,7 @@ import numpy as np
 from polhode import MassAccumulator, RigidBody
 masses, frames = np.ones(200_000), np.random.default_rng(1).normal(size=(1, 200_000, 3))
 frames = np.broadcast_to(frames, (60, 200_000, 3)).copy()
+flat, weights, density = frames.reshape(-1, 3), np.ones(12_000_000), frames.reshape(300, 300, 400) ** 2
 particles = MassAccumulator()
 struck = []
 def strike():
@@ -251,8 +252,8 @@ except KeyboardInterrupt:
     "call",
     [
         "RigidBody.from_particles(masses, frames)",
-        "particles.add(np.ones(12_000_000), frames.reshape(-1, 3))",
-        "RigidBody.from_voxels(frames.reshape(300, 300, 400) ** 2, 1.0)",
+        "particles.add(weights, flat)",
+        "RigidBody.from_voxels(density, 1.0)",
     ],
 )
 def test_ctrl_c_is_heard_within_a_fifth_of_a_second(call: str) -> None:

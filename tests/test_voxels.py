@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from oracles import errors as errors_of
 from oracles import rational, ulp_errors, worst_error
 from oracles.exact_particles import Particles, moments
 from polhode import RigidBody, errors, solids
@@ -63,6 +64,26 @@ def test_sparse_grids_have_their_exact_inertia(
     density = rng.uniform(0, 3, shape) * rng.integers(0, 2, shape)
     density.flat[rng.integers(density.size)] = 1.0
     assert_exact(RigidBody.from_voxels(density, spacing), Cells(density, spacing))
+
+
+@given(
+    shape=st.tuples(*[st.integers(1, 6)] * 3),
+    exponents=st.tuples(*[st.integers(-3, 3)] * 4),
+    seed=st.integers(0, 1000),
+)
+def test_the_error_bound_holds(
+    shape: tuple[int, int, int], exponents: tuple[int, int, int, int], seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    density = rng.uniform(0, 1, shape) * rng.integers(0, 2, shape)
+    density.flat[rng.integers(density.size)] = 1.0
+    *spacing, reach = rng.uniform(1, 2, 4) * 10.0 ** np.array(exponents)
+    origin = reach * rng.normal(size=3)
+    body, exact = RigidBody.from_voxels(density, spacing, origin), Cells(density, spacing, origin)
+    bound = body.error_bound
+    assert max(errors_of(body.mass, exact.mass)) <= bound.mass
+    assert max(errors_of(body.center_of_mass, exact.center_of_mass)) <= bound.center_of_mass
+    assert max(errors_of(body.inertia, exact.inertia)) <= bound.inertia
 
 
 def test_cells_of_a_box_are_the_box() -> None:

@@ -125,8 +125,10 @@ fn fused_levels_have_the_same_bits_and_the_baseline_agrees() {
 
 #[test]
 fn whoever_watches_may_stop_the_work() {
-    // Thin, so that it takes many times the 20 ms after which the watch is asked.
-    let (masses, positions) = cloud(20_000_000, 1e-8, 3);
+    let _turn = take_turn();
+    // A rod, on one thread: its second pass lasts longer than `watch` is left alone.
+    set_thread_limit(NonZeroUsize::new(1));
+    let (masses, positions) = cloud(12_000_000, 1e-7, 3);
     let mut sums = MassAccumulator::new();
     let stop = &mut |_: f64| ControlFlow::Break(());
     let stopped = particles_watched(&masses, &positions, stop);
@@ -136,6 +138,7 @@ fn whoever_watches_may_stop_the_work() {
         Err(Error::Stopped)
     );
     assert_eq!(sums, MassAccumulator::new());
+    set_thread_limit(None);
 }
 
 proptest! {

@@ -2,11 +2,13 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use numpy::PyArrayDyn;
 use polhode::mass::MassAccumulator;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
+use crate::arrays::write;
 use crate::errors::to_py;
 use crate::particles::{ParticleArrays, watched};
 use crate::rigid_body::PyRigidBody;
@@ -142,6 +144,28 @@ impl PyMassAccumulator {
     fn finish(&self, py: Python<'_>) -> PyResult<PyRigidBody> {
         let body = py.detach(|| self.lock().finish());
         Ok(Stack::one(body.map_err(|error| to_py(py, &error))?).into())
+    }
+
+    /// Bounds on the errors of the principal moments of the body that `finish` returns.
+    ///
+    /// They hold against exact arithmetic on the very floats that were added, and are worst cases, mostly
+    /// far above the actual errors. Of a rod thinner than 1e-8 of its length they say how far the
+    /// smallest moment can be trusted.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (3,)
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import MassAccumulator
+    /// >>> rod = MassAccumulator()
+    /// >>> rod.add([1.0, 1.0, 1.0], [(0, 0, 0), (1, 1e-6, 0), (2, 0, 0)])
+    /// >>> bool((rod.moment_bounds() < 1e-13 * rod.finish().principal_moments).all())
+    /// True
+    fn moment_bounds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let bounds = py.detach(|| self.lock().moment_bounds());
+        write(py, &Stack::one(bounds.map_err(|error| to_py(py, &error))?))
     }
 
     /// How many particles have been added.

@@ -41,6 +41,7 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
+    use numpy::{PyArray1, PyArrayMethods};
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -94,8 +95,9 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        // NumPy's interface is looked up on first use, where a Ctrl-C in between would be a panic: use it now.
-        numpy::PyArray1::<f64>::zeros(module.py(), 0, false);
+        // NumPy's interface, and what lends its arrays, is looked up on first use, where a Ctrl-C in between would be a
+        // panic: use it now.
+        drop(PyArray1::<f64>::zeros(module.py(), 0, false).readonly());
         crate::environment::obey()?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

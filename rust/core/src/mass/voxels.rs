@@ -90,6 +90,11 @@ impl<T: Voxel> Grid<'_, T> {
         Vector3::from(self.origin) + Vector3::from(self.spacing).component_mul(index)
     }
 
+    /// How far the way to a place goes: over the origin of the grid, and each part of it is rounded.
+    fn reach(&self, place: &Vector3<f64>) -> Vector3<f64> {
+        place.abs() + Vector3::from(self.origin).abs()
+    }
+
     /// The indices of the cell that a point is in.
     fn cell(&self, point: &Vector3<f64>) -> Vector3<f64> {
         let from_origin = point - Vector3::from(self.origin);
@@ -142,7 +147,7 @@ impl<T: Voxel> Grid<'_, T> {
             + self.of_cells() * mass;
         let place = self.place(&reference);
         let additions = ny as f64 + depth(nx) + depth(nz);
-        let bound = ErrorBound::of_additions(additions, mass, &place, second.trace());
+        let bound = ErrorBound::of_additions(additions, mass, &self.reach(&place), second.trace());
         Ok(SecondMoment::about_reference(
             &place, mass, &first, &second, bound,
         ))
@@ -178,7 +183,7 @@ impl<T: Voxel> Grid<'_, T> {
         let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
             + axes.tr_mul(&self.of_cells()) * axes * mass;
         let place = self.place(&addend.reference);
-        let bound = ErrorBound::of_sums(count, mass, &place, second.trace());
+        let bound = ErrorBound::of_sums(count, mass, &self.reach(&place), second.trace());
         let about = SecondMoment::about_reference(&Vector3::zeros(), mass, &first, &second, bound);
         Ok(SecondMoment {
             center_of_mass: place + axes * about.center_of_mass,

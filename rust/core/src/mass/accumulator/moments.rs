@@ -93,7 +93,7 @@ impl Moments {
         let axes = eigen3(&Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)).vectors;
         let mass = self.mass.rounded();
         let spread = xx + yy + zz;
-        let sums = 2.0 * UNIT * UNIT * (additions + 60.0);
+        let sums = of_sums(additions);
         SecondMoment {
             mass,
             center_of_mass,
@@ -105,6 +105,15 @@ impl Moments {
                 inertia: (32.0 * UNIT + 2.0 * sums) * spread,
             },
         }
+    }
+
+    /// What rounding can have done to each of these principal moments of the rounded body: a few units of itself, and what
+    /// the sums in double-double have lost of the whole.
+    pub(super) fn moment_bounds(&self, moments: [f64; 3], additions: f64) -> [f64; 3] {
+        let spread = self.central[0].high + self.central[3].high + self.central[5].high;
+        // A principal value changes by no more than the matrix, whose norm is at most three times its largest element, and
+        // a moment is the sum of two.
+        moments.map(|moment| 64.0 * UNIT * moment + 6.0 * of_sums(additions) * spread)
     }
 
     /// `axesᵀ S axes`, rounded last. Axes that are orthogonal but for rounding change each principal value by as small a
@@ -123,6 +132,12 @@ impl Moments {
         }
         turned
     }
+}
+
+/// Bound on the part of itself that a sum in double-double can lose, when its terms pass so many additions: the rests add up
+/// in plain doubles, so their own rounding grows with the square (Ogita, Rump, Oishi 2005).
+fn of_sums(additions: f64) -> f64 {
+    2.0 * UNIT * UNIT * (additions * additions + 64.0)
 }
 
 /// Ten sums in two doubles each, m; m d (3); m d dᵀ (6); and the masses below zero.

@@ -15,6 +15,9 @@ use crate::numerics::threads::{Halt, fill_blocks};
 /// Bodies whose tensors are decomposed side by side.
 const BATCH: usize = 64;
 
+/// Particles that a thread does at a time, where they make up more than one body.
+const SHARE: usize = 1 << 15;
+
 /// A body of more particles than this is shared among the threads, the smaller ones are shared out to them.
 const LARGE: usize = 1 << 17;
 
@@ -48,25 +51,33 @@ pub fn particle_stack<'a>(
     row: impl Fn(usize) -> Particles<'a> + Sync,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<RigidBody>, (usize, Error)> {
-    let is_large = |index: usize| row(index).masses.len() > LARGE;
+    let (mut largest, mut total) = (0, 0);
+    for index in 0..count {
+        let size = row(index).masses.len();
+        (largest, total) = (size.max(largest), size + total);
+    }
+    let is_small = |index: usize| largest <= LARGE || row(index).masses.len() <= LARGE;
     // A point of unit mass stands in each place until it is filled.
     let point =
         RigidBody::from_principal(1.0, &[0.0; 3], &Matrix3::identity(), &Vector3::zeros(), 0.0);
     let mut bodies = vec![point.map_err(|error| (0, error))?; count];
-    let outcome = fill_blocks(&mut bodies, BATCH, watch, |start, bodies| {
-        let small: Vec<usize> = (0..bodies.len()).filter(|k| !is_large(start + k)).collect();
+    let rows = (count * SHARE / total.max(1)).clamp(1, BATCH);
+    let outcome = fill_blocks(&mut bodies, rows, watch, |start, bodies| {
+        let small: Vec<usize> = (0..bodies.len()).filter(|k| is_small(start + k)).collect();
         batch(&small, &|k| row(start + k), bodies).map_err(|(k, error)| (start + k, error))
     });
-    outcome.map_err(|halt| match halt {
-        Halt::Stopped => (0, Error::Stopped),
-        Halt::Failed(fault) => fault,
-    })?;
-    for index in (0..count).filter(|&index| is_large(index)) {
+    let fault = match outcome {
+        Ok(()) => None,
+        Err(Halt::Stopped) => return Err((0, Error::Stopped)),
+        Err(Halt::Failed(fault)) => Some(fault),
+    };
+    let before = fault.as_ref().map_or(count, |(index, _)| *index);
+    for index in (0..before).filter(|&index| !is_small(index)) {
         let Particles { masses, positions } = row(index);
         bodies[index] =
             particles_watched(masses, positions, watch).map_err(|error| (index, error))?;
     }
-    Ok(bodies)
+    fault.map_or(Ok(bodies), Err)
 }
 
 /// Some of at most [`BATCH`] bodies on the calling thread, their tensors decomposed together.
