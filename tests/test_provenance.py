@@ -14,7 +14,7 @@ from oracles.exact_particles import Particles
 from oracles.exact_polyhedron import polyhedron
 from oracles.exact_simplices import shell, wire
 from oracles.meshes import box, cube, icosphere, merge, tetrahedron
-from polhode import MassAccumulator, RigidBody, solids
+from polhode import MassAccumulator, RigidBody, laminae, regions, rods, solids
 from polhode.errors import MeshError
 
 TURN = matrix(np.array([0.2, -0.5, 0.4, 0.7]) / np.linalg.norm([0.2, -0.5, 0.4, 0.7]))
@@ -33,6 +33,9 @@ class TestProvenance:
             "surface": RigidBody.from_surface(*cube(), mass=1.0),
             "curve": RigidBody.from_curve(points, mass=1.0),
             "solid": solids.sphere(1.0, mass=1.0),
+            "lamina": laminae.disk(1.0, mass=1.0),
+            "rod": rods.rod(1.0, mass=1.0),
+            "tetrahedra": RigidBody.from_tetrahedra(points, [(0, 1, 2, 3)], density=1.0),
             "bodies": solids.sphere(1.0, mass=1.0) + solids.cube(1.0, mass=1.0),
         }
         assert {name: body.provenance.source for name, body in told.items()} == {name: name for name in told}
@@ -45,6 +48,9 @@ class TestProvenance:
             "surface": 12,
             "curve": 3,
             "solid": 1,
+            "lamina": 1,
+            "rod": 1,
+            "tetrahedra": 1,
             "bodies": 2,
         }
 
@@ -62,6 +68,9 @@ class TestProvenance:
         assert accumulator.finish().provenance.elements == 6
         voxels = RigidBody.from_voxels(np.ones((2, 3, 4)), (1.0, 1.0, 1.0)).provenance
         assert (voxels.source, voxels.elements, voxels.checked) == ("voxels", 24, "finite, masses")
+        density = RigidBody.from_density(lambda r: np.ones(len(r)), regions.ball(1.0))
+        assert density.provenance.source == "density"
+        assert (solids.cube(2.0, mass=8.0) - solids.cube(1.0, mass=1.0)).provenance.source == "bodies"
 
     def test_what_was_checked(self) -> None:
         assert RigidBody.from_mesh(*cube(), mass=1.0).provenance.checked == CHECKED

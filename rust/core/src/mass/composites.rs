@@ -33,7 +33,8 @@ pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
             let mut principal = principal_axes(&sum.inertia);
             if is_thin(&principal) {
                 principal = sum.refined(&principal);
-                return Ok(sum.body(principal));
+                let provenance = sum.provenance().in_own_axes();
+                return Ok(sum.body(principal).with_provenance(provenance));
             }
             let spread = trace(&sum.inertia);
             let body = RigidBody::admitted(sum.mass, sum.inertia, &sum.center, principal, spread);
@@ -84,11 +85,13 @@ impl RigidBody {
                 value: smallest,
             });
         }
+        let mut provenance = rest.provenance();
         if is_thin(&principal) {
             principal = rest.refined(&principal);
+            provenance = provenance.in_own_axes();
         }
         principal.moments = principal.moments.map(|moment| moment.max(0.0));
-        Ok(rest.body(principal))
+        Ok(rest.body(principal).with_provenance(provenance))
     }
 }
 
@@ -199,11 +202,10 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
         }
     }
 
-    /// What was done to any part was done to the whole.
+    /// Of all parts together.
     fn provenance(&self) -> Provenance {
-        (1..self.count).fold((self.part)(0).1.provenance, |whole, i| {
-            whole.of_both(&(self.part)(i).1.provenance)
-        })
+        let of = |i: usize| (self.part)(i).1.provenance;
+        (1..self.count).fold(of(0), |whole, i| whole.of_both(&of(i)))
     }
 
     /// What the parts' own errors and the rounding of these sums can have done.
