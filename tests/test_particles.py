@@ -168,8 +168,7 @@ class TestSampling:
 
     def test_light_particles_far_away_that_it_meets(self, rng: np.random.Generator) -> None:
         masses, positions = rng.uniform(0.1, 1, 10_000), rng.normal(size=(10_000, 3))
-        stride = -(-10_000 // 64)
-        masses[::stride], positions[::stride] = 1e-25, 1e9
+        masses[::25], positions[::25] = 1e-25, 1e9
         assert_exact(RigidBody.from_particles(masses, positions), masses, positions, 4e-15)
 
 

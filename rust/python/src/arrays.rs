@@ -64,7 +64,7 @@ macro_rules! fixed_length {
             }
 
             fn write(&self, out: &mut Vec<f64>) {
-                out.extend(self);
+                out.extend_from_slice(self);
             }
         }
     )*};
@@ -92,7 +92,7 @@ impl Item for Vector3<f64> {
     }
 
     fn write(&self, out: &mut Vec<f64>) {
-        out.extend(self.iter());
+        out.extend_from_slice(self.as_slice());
     }
 }
 
@@ -106,7 +106,7 @@ macro_rules! square_matrix {
             }
 
             fn write(&self, out: &mut Vec<f64>) {
-                out.extend(self.transpose().iter()); // nalgebra stores columns
+                out.extend_from_slice(self.transpose().as_slice()); // nalgebra stores columns
             }
         }
     )*};

@@ -32,7 +32,7 @@ pub use stack::{Particles, particle_stack};
 const THIN: f64 = 0.05;
 
 /// How many particles are asked for the point that the sums are taken about.
-const SAMPLE: usize = 64;
+const SAMPLE: usize = 16;
 
 pub use crate::numerics::threads::Watch;
 

@@ -87,40 +87,28 @@ fn batch<'a>(
     bodies: &mut [RigidBody],
 ) -> Result<(), (usize, Error)> {
     let watch = &mut |_: f64| ControlFlow::Continue(());
-    let mut moments = Vec::with_capacity(which.len());
-    for &k in which {
-        moments.push(about_center(row(k), watch).map_err(|error| (k, error))?);
+    let particles: Vec<_> = which.iter().map(|&k| (k, row(k))).collect();
+    let mut moments = Vec::with_capacity(particles.len());
+    for &(k, row) in &particles {
+        moments.push(about_center(row, watch).map_err(|error| (k, error))?);
     }
-    let provenance = |k| Provenance::of_particles(row(k).masses.len());
-    decompose(which, &moments, provenance, bodies)?;
-    let thin: Vec<usize> = which
-        .iter()
-        .copied()
-        .filter(|&k| is_thin(&bodies[k]))
-        .collect();
+    decompose(&particles, &moments, |provenance| provenance, bodies)?;
+    let is_thin = |&(k, _): &(usize, Particles<'_>)| is_thin(&bodies[k]);
+    let thin: Vec<_> = particles.into_iter().filter(is_thin).collect();
     moments.clear();
-    for &k in &thin {
-        moments.push(in_own_axes(row(k), &bodies[k], watch).map_err(|error| (k, error))?);
+    for &(k, row) in &thin {
+        moments.push(in_own_axes(row, &bodies[k], watch).map_err(|error| (k, error))?);
     }
-    decompose(&thin, &moments, |k| provenance(k).in_own_axes(), bodies)
+    decompose(&thin, &moments, Provenance::in_own_axes, bodies)
 }
 
-/// The bodies with these second moments, each in its place.
+/// At most [`BATCH`] bodies with these second moments, each in its place.
 fn decompose(
-    which: &[usize],
+    particles: &[(usize, Particles<'_>)],
     moments: &[SecondMoment],
-    provenance: impl Fn(usize) -> Provenance,
+    provenance: impl Fn(Provenance) -> Provenance,
     bodies: &mut [RigidBody],
 ) -> Result<(), (usize, Error)> {
-    for ((&k, matter), spectrum) in which.iter().zip(moments).zip(spectra(moments)) {
-        let body = RigidBody::with_spectrum(matter, &spectrum).map_err(|error| (k, error))?;
-        bodies[k] = body.with_provenance(provenance(k));
-    }
-    Ok(())
-}
-
-/// The principal values and axes of at most [`BATCH`] second moments.
-fn spectra(moments: &[SecondMoment]) -> impl Iterator<Item = Eigen3> + use<> {
     let mut matrices = [[0.0; 9]; BATCH];
     let (mut values, mut vectors) = ([[0.0; 3]; BATCH], [[0.0; 9]; BATCH]);
     let count = moments.len();
@@ -133,8 +121,14 @@ fn spectra(moments: &[SecondMoment]) -> impl Iterator<Item = Eigen3> + use<> {
         &mut values[..count],
         &mut vectors[..count],
     );
-    (0..count).map(move |k| Eigen3 {
-        values: values[k],
-        vectors: Matrix3::from_row_slice(&vectors[k]),
-    })
+    for (i, (&(k, row), matter)) in particles.iter().zip(moments).enumerate() {
+        let spectrum = Eigen3 {
+            values: values[i],
+            vectors: Matrix3::from_row_slice(&vectors[i]),
+        };
+        let body = &mut bodies[k];
+        *body = RigidBody::with_spectrum(matter, &spectrum).map_err(|error| (k, error))?;
+        body.provenance = provenance(Provenance::of_particles(row.masses.len()));
+    }
+    Ok(())
 }
