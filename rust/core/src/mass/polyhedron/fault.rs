@@ -144,6 +144,40 @@ pub enum MeshFault {
         /// The largest extent.
         size: f64,
     },
+    /// A shell that folds over itself.
+    #[error(
+        "thickness {thickness:?} folds the shell over itself at faces[{face}], where at most {limit:?} is possible: the \
+         surface bends too sharply there for triangles of that size; make the shell thinner or the triangles larger"
+    )]
+    TooThick {
+        /// The face that turns over first.
+        face: usize,
+        /// What was asked for.
+        thickness: f64,
+        /// The thickness at which it turns over.
+        limit: f64,
+    },
+    /// A face without a normal, where one is needed.
+    #[error(
+        "faces[{face}] has no normal: its corners lie on a line; remove the face for a shell of finite thickness"
+    )]
+    NoNormal {
+        /// The face.
+        face: usize,
+    },
+    /// An edge at which a surface branches.
+    #[error(
+        "{faces} faces meet in the edge from {from} to {to}: a shell of finite thickness needs one or two at each edge; \
+         make a body of each sheet and add them"
+    )]
+    Branching {
+        /// One end of the edge.
+        from: Corner,
+        /// The other end.
+        to: Corner,
+        /// How many faces.
+        faces: usize,
+    },
     /// Triangles without area.
     #[error(
         "the surface has no area: {area:?} from {faces} faces; model a line as a thin wire instead"
