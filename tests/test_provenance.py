@@ -18,7 +18,7 @@ from polhode import MassAccumulator, RigidBody, laminae, regions, rods, solids
 from polhode.errors import MeshError
 
 TURN = matrix(np.array([0.2, -0.5, 0.4, 0.7]) / np.linalg.norm([0.2, -0.5, 0.4, 0.7]))
-CHECKED = "indices, finite, closed, winding, orientation, volume, duplicates"
+CHECKED = "indices, finite, closed, winding, orientation, volume, duplicates, cavities"
 LINE = np.array([[-1.0], [0.5], [2.0]]) * np.array([1.0, 2.0, -0.5])
 
 

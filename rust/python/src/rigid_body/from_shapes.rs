@@ -21,7 +21,8 @@ impl PyRigidBody {
     /// The mesh is checked before any number is computed: indices in range, coordinates finite, every
     /// edge shared by two faces that run along it in opposite directions, no face twice, normals
     /// outward, a volume beyond rounding. Corners with the same coordinates count as one vertex.
-    /// Several components and cavities (inner surfaces wound inward) are counted as they are.
+    /// Several components and cavities are counted as they are; a component wound inward that lies in
+    /// no other is no cavity but inside out, and an error.
     /// Coordinates far from the origin cost no accuracy, nor does a thin shape its smallest moment.
     ///
     /// Parameters
@@ -36,7 +37,7 @@ impl PyRigidBody {
     ///     triangles to the mean of the ends of its edges (the flat cap, where it is flat), ``"hull"`` takes the
     ///     convex hull instead (needs SciPy). `provenance` tells the volume it changed.
     /// orient : bool, optional
-    ///     Accept a mesh whose normals all point inward.
+    ///     Turn a mesh whose normals all point inward, and components that are inside out.
     /// check : bool, optional
     ///     False leaves out whether the mesh is closed, consistently wound and without duplicate faces:
     ///     an open mesh then gives numbers that mean nothing, and `provenance` says "unchecked".

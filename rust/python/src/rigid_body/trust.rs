@@ -19,7 +19,7 @@ impl PyRigidBody {
     /// >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
     /// >>> faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     /// >>> print(RigidBody.from_mesh(corners, faces, density=6.0).provenance)
-    /// mesh of 4 elements; checked: indices, finite, closed, winding, orientation, volume, duplicates; moments from the second moment
+    /// mesh of 4 elements; checked: indices, finite, closed, winding, orientation, volume, duplicates, cavities; moments from the second moment
     #[getter]
     fn provenance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let provenance = self.bodies.map(RigidBody::provenance);

@@ -85,7 +85,7 @@ pub enum MeshFault {
         /// The other face.
         second: usize,
         /// How many faces repeat an earlier one.
-        count: usize,
+        count: Count,
     },
     /// An edge with a face on one side only.
     #[error(
@@ -132,6 +132,20 @@ pub enum MeshFault {
     )]
     Inverted {
         /// The signed volume.
+        volume: f64,
+    },
+    /// A component wound like a cavity, but in nothing.
+    #[error(
+        "a component of the mesh is inside out: the {faces} connected faces with faces[{face}] are wound the other way \
+         than the rest, signed volume {volume:?}, and are no cavity, as no other component has them inside; \
+         pass orient=True to turn them"
+    )]
+    InsideOut {
+        /// Its first face.
+        face: usize,
+        /// How many faces it has.
+        faces: usize,
+        /// Its signed volume.
         volume: f64,
     },
     /// The mesh encloses nothing.
