@@ -244,7 +244,9 @@ class TestCavities:
 
     def test_beside_the_others_it_is_refused_and_named(self) -> None:
         mesh = _parts((2.0, self.O, True), (1.0, self.BESIDE, False))
-        with pytest.raises(MeshError, match=r"12 connected faces with faces\[12\].*-(1\.0|0\.9).*orient=True"):
+        with pytest.raises(
+            MeshError, match=r"12 connected faces with faces\[12\].*-(1\.0|0\.9).*orient=True"
+        ):
             RigidBody.from_mesh(*mesh, density=1.0)
         soup = mesh[0][mesh[1]].reshape(-1, 3), np.arange(72).reshape(24, 3)
         with pytest.raises(MeshError, match=r"12 connected faces with faces\[12\]"):
