@@ -59,16 +59,18 @@ def radial(
 
 
 def gaussian_box(width: float, at: tuple[float, float, float]) -> Case:
-    factors = [lambda x, c=c: mp.exp(-(((x - mpf(c)) / mpf(width)) ** 2) / 2) for c in at]
+    def factor(c: float) -> Callable[[Any], Any]:
+        return lambda x: mp.exp(-(((x - mpf(c)) / mpf(width)) ** 2) / 2)
+
     return product(
         (-1.0, -1.0, -1.0),
         (1.0, 1.0, 1.0),
-        factors,
+        [factor(c) for c in at],
         lambda r: np.exp(-(((r - at) / width) ** 2).sum(axis=1) / 2),
     )
 
 
-def norm(r: np.ndarray) -> np.ndarray:
+def norm(r: np.ndarray) -> Any:
     return np.sqrt((r**2).sum(axis=1))
 
 
@@ -194,7 +196,7 @@ class TestSuite:
             j = (i + 1) % 6
             faces += [(i, j, j + 6), (i, j + 6, i + 6)]
 
-        def density(r: np.ndarray) -> np.ndarray:
+        def density(r: np.ndarray) -> Any:
             return np.exp(-r[:, 0]) * (1 + r[:, 1])
 
         body = RigidBody.from_density(density, regions.mesh(vertices, faces))

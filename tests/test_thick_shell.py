@@ -17,7 +17,7 @@ from oracles.meshes import box, cube, icosphere, tetrahedron
 from polhode import RigidBody, solids
 from polhode.errors import MeshError
 
-Box = tuple[tuple[Fraction, Fraction], ...]
+Box = tuple[tuple[Fraction | int, Fraction | int], ...]
 SHEET = np.array([(0.0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)])
 TWO = np.array([(0, 1, 2), (0, 2, 3)])
 
@@ -38,14 +38,10 @@ class Boxes:
 
     @staticmethod
     def moments(box: Box) -> list[Fraction]:
-        size, middle, third = (
-            [f(Fraction(a), Fraction(b)) for a, b in box]
-            for f in (
-                lambda a, b: b - a,
-                lambda a, b: (a + b) / 2,
-                lambda a, b: (a * a + a * b + b * b) / 3,
-            )
-        )
+        ends = [(Fraction(a), Fraction(b)) for a, b in box]
+        size = [b - a for a, b in ends]
+        middle = [(a + b) / 2 for a, b in ends]
+        third = [(a * a + a * b + b * b) / 3 for a, b in ends]
         v = size[0] * size[1] * size[2]
         mixed = [middle[i] * middle[j] for i, j in ((0, 1), (0, 2), (1, 2))]
         return [v, *(v * m for m in middle), *(v * q for q in third), *(v * p for p in mixed)]
@@ -251,7 +247,7 @@ class TestRefusals:
             ({"thickness": 0.1, "mass": 1.0, "density": 1.0}, "exactly one of mass= and density="),
         ):
             with pytest.raises(TypeError, match=message):
-                RigidBody.from_surface(*mesh, **amounts)  # type: ignore[arg-type]
+                RigidBody.from_surface(*mesh, **amounts)
         for bad in (0.0, -1.0, np.nan, np.inf):
             with pytest.raises(ValueError, match="thickness"):
                 RigidBody.from_surface(*mesh, density=1.0, thickness=bad)
