@@ -1,6 +1,6 @@
 //! Shells of finite thickness: what a surface sweeps when its faces are moved to both sides.
 //!
-//! The mid-surface has corners v and, at each, a direction d ([`offset`]): at the distance s it has the corners `v + s d`,
+//! The mid-surface has corners v and, at each, a direction d (`offset`): at the distance s it has the corners `v + s d`,
 //! and s runs over ±t/2. With the barycentric coordinates λ of a triangle, edges e and f,
 //!
 //! `∫ g dV = ∫ ds ∫ g(x) Σ λ_i J_i dλ`, `x = Σ λ_i (v_i + s d_i)`, `J_i = d_i · (e(s) × f(s))`,
