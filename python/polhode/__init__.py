@@ -23,23 +23,29 @@ from polhode._core import (
     principal_axes,
     principal_moments,
 )
+from polhode.events import Event, Events
 from polhode.results import (
     AngularMomentum,
     ErrorBound,
     FreePrecession,
+    Invariants,
     KineticEnergy,
     Particles,
     PrincipalAxes,
     PrincipalDerivative,
     Provenance,
-    Trajectory,
+    State,
 )
+from polhode.trajectory import Trajectory
 
 __all__ = [
     "AngularMomentum",
     "ErrorBound",
+    "Event",
+    "Events",
     "FreeMotion",
     "FreePrecession",
+    "Invariants",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",
@@ -47,6 +53,7 @@ __all__ = [
     "PrincipalDerivative",
     "Provenance",
     "RigidBody",
+    "State",
     "Trajectory",
     "__version__",
     "equimomental",
