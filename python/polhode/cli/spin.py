@@ -2,59 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from cyclopts import Parameter
 
 from polhode._extras import require
 from polhode._files.trajectory import TRAJECTORY_SUFFIXES
 from polhode.cli.layout import Field, Report
-from polhode.cli.report import load_body
+from polhode.cli.loading import load_body
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     from polhode import Trajectory
-    from polhode.cli.report import BodyOptions
+    from polhode.cli.options import BodyOptions, SpinOptions
 
-__all__ = ["PICTURE_SUFFIXES", "SpinOptions", "spin_report"]
+__all__ = ["PICTURE_SUFFIXES", "spin_report"]
 
 PICTURE_SUFFIXES = (".png", ".pdf", ".svg")
-
-
-@dataclass(frozen=True, kw_only=True)
-class SpinOptions:
-    """How the body spins and what is kept of it.
-
-    Attributes
-    ----------
-    omega
-        Angular velocity at the start: three components in the body, rad/s.
-    until
-        Time of the end, s; the start is 0.
-    degrees
-        Take and print angular velocity in deg/s.
-    axes
-        Axes of the components: the file's, or the principal axes (ascending moments).
-    samples
-        Number of times, start and end included.
-    rtol
-        Relative tolerance of the integration.
-    save
-        Where to write the motion: a picture (.png, .pdf, .svg) or its numbers (.csv, .npz). May be repeated.
-    """
-
-    omega: Annotated[tuple[float, float, float], Parameter(name="--omega", negative="")]
-    until: Annotated[float, Parameter(name="--until")]
-    degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False
-    axes: Annotated[Literal["file", "principal"], Parameter(name="--axes")] = "file"
-    samples: Annotated[int, Parameter(name="--samples")] = 1001
-    rtol: Annotated[float, Parameter(name="--rtol")] = 1e-10
-    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="")] = ()
 
 
 def spin_report(file: Path, spin: SpinOptions, options: BodyOptions) -> Report:
