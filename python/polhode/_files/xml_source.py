@@ -111,7 +111,7 @@ def parse_xml(source: bytes, name: str) -> Element:
                 f"{name}: line {element.line}: elements are nested more than {_TOO_DEEP} deep"
             )
 
-    def end(tag: str) -> None:
+    def end(_: str) -> None:
         element = stack.pop()
         if source[element.inside - 2 : element.inside] == b"/>":
             element.outside = element.end = element.inside
@@ -125,8 +125,8 @@ def parse_xml(source: bytes, name: str) -> Element:
 
     def refuse(*_: object) -> None:
         raise FileFormatError(
-            f"{name}: line {parser.CurrentLineNumber}: declares a document type or entities, which are not read; "
-            "remove the declaration"
+            f"{name}: line {parser.CurrentLineNumber}: declares a document type or entities, which are not "
+            "read; remove the declaration"
         )
 
     parser.StartElementHandler = start

@@ -134,24 +134,38 @@ class SpinOptions:
 
     Attributes
     ----------
+    moments
+        Three principal moments instead of a file, as in "1 3 3.2" or "2 4 5 g cm^2"; a bare number is kg m^2.
+    center
+        Where the centre of mass stands on those axes, from the fixed point; a bare number is in m.
     omega
-        Angular velocity at the start: three components in the body, rad/s.
+        Angular velocity at the start, its components in the body, as in 0 6 0.01 or "10 20 30 deg/s"; a bare
+        number is rad/s.
+    gravity
+        A top: the origin of the body is fixed in space and this acceleration pulls along -z, as in 9.81; a
+        bare number is m/s^2.
+    attitude
+        Euler angles phi theta psi (ZXZ) at the start, as in "0 30 0 deg"; a bare number is in radians.
     until
-        Time of the end, s; the start is 0.
+        Time of the end, as in 20 or "30 d"; a bare number is in s. The start is 0.
     degrees
-        Take and print angular velocity in deg/s.
+        Print angular velocity in deg/s, and take it so where no unit stands with it.
     axes
         Axes of the components: the file's, or the principal axes (ascending moments).
     samples
         Number of times, start and end included.
     rtol
-        Relative tolerance of the integration.
+        Relative tolerance where the motion is integrated.
     save
         Where to write the motion: a picture (.png, .pdf, .svg) or its numbers (.csv, .npz). May be repeated.
     """
 
-    omega: Annotated[tuple[float, float, float], Parameter(name="--omega", negative="")]
-    until: Annotated[float, Parameter(name="--until")]
+    moments: Annotated[Words, Parameter(name="--moments", negative="", consume_multiple=True)] = ()
+    center: Annotated[Words, Parameter(name="--center", negative="", consume_multiple=True)] = ()
+    omega: Annotated[Words, Parameter(name="--omega", negative="", consume_multiple=True)] = ()
+    gravity: Annotated[str | None, Parameter(name="--gravity")] = None
+    attitude: Annotated[Words, Parameter(name="--attitude", negative="", consume_multiple=True)] = ()
+    until: Annotated[str | None, Parameter(name="--until")] = None
     degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False
     axes: Annotated[Literal["file", "principal"], Parameter(name="--axes")] = "file"
     samples: Annotated[int, Parameter(name="--samples")] = 1001

@@ -102,8 +102,6 @@ def parse_robot(source: bytes, *, name: str, folder: str | os.PathLike[str]) -> 
         raise FileFormatError(f"{name}: holds <{unexpanded}>; expand it first: xacro {name} > out.urdf")
     try:
         links = tuple(reader.links(root))
-    except FileFormatError as error:
-        raise FileFormatError(f"{name}: {error}") from None
     except ValueError as error:
         raise FileFormatError(f"{name}: {error}") from None
     if not links:

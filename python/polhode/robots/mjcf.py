@@ -24,7 +24,7 @@ __all__ = ["links"]
 
 _ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 _HALF_LENGTHS = {"sphere": 1, "ellipsoid": 3, "box": 3, "cylinder": 2, "capsule": 2}
-_WATER = 1000.0
+_WATER = "1000"
 
 
 def links(root: Element) -> Iterator[Link]:
@@ -92,7 +92,7 @@ class _Reader:
         to_radians = 1.0 if self.in_radians else np.pi / 180.0
         if "quat" in attributes:
             w, x, y, z = numbers(element, attributes["quat"], 4, "quat")
-            return _matrix(np.array([x, y, z, w]))
+            return _matrix(_unit(element, np.array([x, y, z, w])))
         if "euler" in attributes:
             angles = numbers(element, attributes["euler"], 3, "euler") * to_radians
             return _matrix(euler_angles.to_quaternion(angles, self.sequence))
@@ -124,7 +124,7 @@ class _Reader:
         name = geom.attributes.get("class", inherited) or "main"
         attributes = {**self.geoms.get(name, {}), **geom.attributes}
         kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
-        density = numbers(geom, attributes.get("density", str(_WATER)), 1, "density")[0] / _WATER
+        density = float(numbers(geom, attributes.get("density", _WATER), 1, "density")[0])
         mass = float(numbers(geom, attributes["mass"], 1, "mass")[0]) if "mass" in attributes else None
         if kind == "mesh":
             mesh = self.meshes.get(attributes.get("mesh", ""))

@@ -71,7 +71,7 @@ class Shape:
     mesh : str
         Address of a mesh, as the file has it.
     density : float
-        Relative to that of the other shapes of the link.
+        Weighs it against the other shapes of the link.
     mass : float, optional
         Its own mass, where the file gives one.
     """
