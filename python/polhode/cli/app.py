@@ -135,10 +135,10 @@ def molecule(
 
 @app.command
 def spin(
-    file: File,
+    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
     /,
     *,
-    spin: Annotated[SpinOptions, Parameter(name="*")],
+    spin: Annotated[SpinOptions, Parameter(name="*")] = SpinOptions(),  # noqa: B008
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:

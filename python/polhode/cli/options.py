@@ -141,9 +141,6 @@ class SpinOptions:
     omega
         Angular velocity at the start, its components in the body, as in 0 6 0.01 or "10 20 30 deg/s"; a bare
         number is rad/s.
-    gravity
-        A top: the origin of the body is fixed in space and this acceleration pulls along -z, as in 9.81; a
-        bare number is m/s^2.
     attitude
         Euler angles phi theta psi (ZXZ) at the start, as in "0 30 0 deg"; a bare number is in radians.
     until
@@ -163,7 +160,6 @@ class SpinOptions:
     moments: Annotated[Words, Parameter(name="--moments", negative="", consume_multiple=True)] = ()
     center: Annotated[Words, Parameter(name="--center", negative="", consume_multiple=True)] = ()
     omega: Annotated[Words, Parameter(name="--omega", negative="", consume_multiple=True)] = ()
-    gravity: Annotated[str | None, Parameter(name="--gravity")] = None
     attitude: Annotated[Words, Parameter(name="--attitude", negative="", consume_multiple=True)] = ()
     until: Annotated[str | None, Parameter(name="--until")] = None
     degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False

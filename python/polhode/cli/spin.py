@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from polhode import RigidBody, loads
+from polhode import RigidBody
 from polhode._extras import require
 from polhode._files.trajectory import TRAJECTORY_SUFFIXES
 from polhode.cli.layout import Field, Report
@@ -31,6 +29,8 @@ if TYPE_CHECKING:
 __all__ = ["PICTURE_SUFFIXES", "spin_report"]
 
 PICTURE_SUFFIXES = (".png", ".pdf", ".svg")
+_LONG = 1e5
+"""Radians of turning beyond which an integration is worth a bar."""
 
 
 def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> Report:
@@ -62,7 +62,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         Field("omega_end", "omega, end", rates[1], rate_unit),
         Field("euler_angles_end", "Euler angles, end", angles, "deg", "ZXZ phi, theta, psi"),
     )
-    report.section("conserved", *_conserved_fields(trajectory, loaded, spin))
+    report.section("conserved", *_conserved_fields(trajectory, loaded))
     report.notes += loaded.notes
     if np.isnan(angles).any():
         report.notes.append("at the end theta is 0 or 180 deg, where phi and psi are not defined one by one")
@@ -117,3 +117,54 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
     center = vector(spin.center, "m", "--center") if spin.center else (0.0, 0.0, 0.0)
     body = RigidBody.from_principal(mass, moments, center_of_mass=center)
     return LoadedBody(body=body, source=[], mass_unit="kg", length="m")
+
+
+def _moved(body: RigidBody, omega: Floats, until: float, spin: SpinOptions) -> Trajectory:
+    """Move the body: freely, or about its origin under gravity."""
+    attitude = to_quaternion(vector(spin.attitude, "rad", "--attitude")) if spin.attitude else None
+    times = np.linspace(0.0, until, spin.samples)
+    with progress("moving", is_long=abs(until) * float(np.linalg.norm(omega)) > _LONG) as tell:
+        return body.simulate(times, omega, attitude, rtol=spin.rtol, progress=tell)
+
+
+def _conserved_fields(trajectory: Trajectory, loaded: LoadedBody) -> list[Field]:
+    energy = trajectory.kinetic_energy().total
+    momentum = trajectory.angular_momentum().total
+    return [
+        Field("kinetic_energy", "kinetic energy", energy[0], f"{loaded.moment_unit}/s^2"),
+        Field("kinetic_energy_drift", "  drift", _drift(energy), hint="largest, relative"),
+        Field("angular_momentum", "|L|", np.linalg.norm(momentum[0]), f"{loaded.moment_unit}/s"),
+        Field(
+            "angular_momentum_drift",
+            "  drift of L",
+            _drift(momentum),
+            hint="largest, relative; the vector in space",
+        ),
+    ]
+
+
+def _axes_text(spin: SpinOptions) -> str:
+    return "along the principal axes e1 e2 e3" if spin.axes == "principal" else "along the file's axes x y z"
+
+
+def _drift(values: Floats) -> float:
+    """Largest distance from the value at the start, relative to that value."""
+    distance = values - values[0]
+    size = np.abs(values[0]) if values.ndim == 1 else np.linalg.norm(values[0])
+    largest = np.max(np.abs(distance) if values.ndim == 1 else np.linalg.norm(distance, axis=-1))
+    return float(largest / size) if size > 0.0 else 0.0
+
+
+def _save(trajectory: Trajectory, path: Path, spin: SpinOptions, *, title: str) -> None:
+    if path.suffix.lower() in TRAJECTORY_SUFFIXES:
+        trajectory.save(path)
+        return
+    figure_module = require("matplotlib.figure", extra="plot", purpose=f"--save {path}:")
+    from polhode.plot import angular_velocity
+
+    # A figure of its own, outside pyplot: no window system is asked for.
+    figure = figure_module.Figure(figsize=(8.0, 4.5), layout="constrained")
+    frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
+    ax = angular_velocity(trajectory, figure.add_subplot(), frame=frame, degrees=spin.degrees)
+    ax.set_title(title, loc="left")
+    figure.savefig(path, dpi=160)
