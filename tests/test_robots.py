@@ -322,10 +322,25 @@ class TestMuJoCo:
             link.inertial.inertia, turn @ np.diag([1, 2, 2.5]) @ turn.T, rtol=0, atol=1e-14
         )
 
+    def test_frames_and_classes(self) -> None:
+        text = b"""<mujoco><default><default class="big"><geom size="0.5"/></default></default><worldbody>
+            <frame><body name="b"><inertial mass="1" pos="0 0 0" diaginertia="1 2 2.5"/>
+            <geom size="0.5"/><frame pos="0 0 1" euler="90 0 0" childclass="big"><geom pos="0 3 0"/></frame></body>
+            </frame></worldbody></mujoco>"""
+        robot = robots.parse_robot(text, name="m", folder=".")
+        assert [shape.size for shape in robot.links[0].shapes] == [(0.5,), (0.5,)]
+        np.testing.assert_allclose(robot.links[0].shapes[1].place.position, [0, 0, 4], atol=1e-15)
+        (verdict,) = robots.check(robot)
+        np.testing.assert_allclose(verdict.shape_moments, [0.1, 4.1, 4.1], rtol=1e-14)
+
     def test_nothing_declared_is_inferred(self) -> None:
         text = b'<mujoco><worldbody><body name="b"><geom size="1"/><body/></body></worldbody></mujoco>'
         verdicts = robots.check(robots.parse_robot(text, name="m", folder="."))
         assert [verdict.verdict for verdict in verdicts] == ["inferred", "none"]
+        text = b"""<sdf><model><link name="a"><inertial auto="true"/>
+            <collision><geometry><sphere><radius>1</radius></sphere></geometry></collision></link></model></sdf>"""
+        (verdict,) = robots.check(robots.parse_robot(text, name="s", folder="."))
+        assert verdict.verdict == "inferred"
 
 
 class TestSafety:

@@ -31,8 +31,8 @@ def links(root: Element) -> Iterator[Link]:
     """Read every body below the world."""
     reader = _Reader(root)
     for world in root.all("worldbody"):
-        for body in world.all("body"):
-            yield from reader.bodies(body, None)
+        for body, _, inherited in reader.members(world, "body", Place.here(), None):
+            yield from reader.bodies(body, inherited)
 
 
 class _Reader:
@@ -69,12 +69,26 @@ class _Reader:
             line=body.line,
             inertial=inertial,
             problem=problem,
-            shapes=tuple(self._shape(geom, inherited) for geom in body.all("geom")),
+            shapes=tuple(
+                self._shape(geom, place, name)
+                for geom, place, name in self.members(body, "geom", Place.here(), inherited)
+            ),
             inferred=declared is None or self.infers_always,
             rewrite=partial(_rewrite, declared) if declared is not None else None,
         )
-        for child in body.all("body"):
-            yield from self.bodies(child, inherited)
+        for child, _, name in self.members(body, "body", Place.here(), inherited):
+            yield from self.bodies(child, name)
+
+    def members(
+        self, parent: Element, tag: str, place: Place, inherited: str | None
+    ) -> Iterator[tuple[Element, Place, str | None]]:
+        """Give the elements of a body or the world, those in frames too, with the frame and its class."""
+        for child in parent.children:
+            if child.tag == tag:
+                yield child, place, inherited
+            elif child.tag == "frame":
+                inside = place.then(self._place(child, child.attributes))
+                yield from self.members(child, tag, inside, child.attributes.get("childclass", inherited))
 
     def _add_class(self, default: Element, inherited: dict[str, str], name: str) -> None:
         own = dict(inherited)
@@ -120,7 +134,7 @@ class _Reader:
             tensor = np.diag(numbers(element, attributes.get("diaginertia"), 3, "diaginertia"))
         return Inertial(float(mass), place.position, place.rotation @ tensor @ place.rotation.T)
 
-    def _shape(self, geom: Element, inherited: str | None) -> Shape:
+    def _shape(self, geom: Element, frame: Place, inherited: str | None) -> Shape:
         name = geom.attributes.get("class", inherited) or "main"
         attributes = {**self.geoms.get(name, {}), **geom.attributes}
         kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
@@ -128,7 +142,7 @@ class _Reader:
         mass = float(numbers(geom, attributes["mass"], 1, "mass")[0]) if "mass" in attributes else None
         if kind == "mesh":
             mesh = self.meshes.get(attributes.get("mesh", ""))
-            place = self._place(geom, attributes)
+            place = frame.then(self._place(geom, attributes))
             if mesh is None:
                 return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass)
             scale = tuple(numbers(mesh, mesh.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
@@ -136,7 +150,7 @@ class _Reader:
             address = f"{self.folder.rstrip('/')}/{file}" if self.folder and file else file
             return Shape("mesh", scale, place, "collision", address, density, mass)
         place, size = self._sized(geom, attributes, kind)
-        return Shape(kind, size, place, "collision", "", density, mass)
+        return Shape(kind, size, frame.then(place), "collision", "", density, mass)
 
     def _sized(self, geom: Element, attributes: dict[str, str], kind: str) -> tuple[Place, tuple[float, ...]]:
         """Full lengths and the place; ``fromto`` gives the length and place of what is long."""

@@ -100,7 +100,7 @@ class Link:
         Why the declaration cannot be read; "" if it can.
     shapes : tuple of Shape
     inferred : bool
-        Whether a simulator takes the inertia from the geometry because none is declared (MJCF).
+        Whether a simulator takes the inertia from the geometry (MJCF without any, SDF where it says so).
     rewrite : callable, optional
         Given the source and other mass properties, the edits that write them.
     """

@@ -33,7 +33,8 @@ def links(root: Element) -> Iterator[Link]:
     for element in root.descendants("link"):
         inertial, problem = None, ""
         declared = element.find("inertial")
-        if declared is not None:
+        inferred = declared is not None and declared.attributes.get("auto", "false").lower() in ("true", "1")
+        if declared is not None and not inferred:
             try:
                 inertial = _inertial(declared)
             except FileFormatError as error:
@@ -44,6 +45,7 @@ def links(root: Element) -> Iterator[Link]:
             inertial=inertial,
             problem=problem,
             shapes=tuple(_shapes(element)),
+            inferred=inferred,
             rewrite=partial(_rewrite, declared) if declared is not None else None,
         )
 
