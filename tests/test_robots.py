@@ -325,8 +325,8 @@ class TestMuJoCo:
     def test_frames_and_classes(self) -> None:
         text = b"""<mujoco><default><default class="big"><geom size="0.5"/></default></default><worldbody>
             <frame><body name="b"><inertial mass="1" pos="0 0 0" diaginertia="1 2 2.5"/>
-            <geom size="0.5"/><frame pos="0 0 1" euler="90 0 0" childclass="big"><geom pos="0 3 0"/></frame></body>
-            </frame></worldbody></mujoco>"""
+            <geom size="0.5"/><frame pos="0 0 1" euler="90 0 0" childclass="big"><geom pos="0 3 0"/></frame>
+            </body></frame></worldbody></mujoco>"""
         robot = robots.parse_robot(text, name="m", folder=".")
         assert [shape.size for shape in robot.links[0].shapes] == [(0.5,), (0.5,)]
         np.testing.assert_allclose(robot.links[0].shapes[1].place.position, [0, 0, 4], atol=1e-15)
