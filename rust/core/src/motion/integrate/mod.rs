@@ -3,11 +3,15 @@
 //! | method | file | for |
 //! |---|---|---|
 //! | DOP853 | [`dop853`] | loads that are smooth but not analytic to us: callbacks |
+//! | Radau IIA | [`radau`] | stiff loads: strong damping, stiff control |
 
 pub mod dop853;
+mod first_step;
+pub mod radau;
 mod tableau;
 
 pub use dop853::Dop853;
+pub use radau::Radau;
 
 use nalgebra::SVector;
 
