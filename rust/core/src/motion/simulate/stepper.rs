@@ -2,7 +2,6 @@
 
 use super::equations::{Equations, MOVING, Scales, TURNING};
 use super::{Effort, Method, Task};
-use crate::error::Error;
 use crate::motion::integrate::Dop853;
 use crate::motion::integrate::dop853::Dense;
 use crate::motion::loads::Load;
@@ -61,7 +60,7 @@ where
     L::Error: 'a,
 {
     let moves = !task.subject.pivoted && load.exerts_force();
-    Ok(match task.method.for_load(load)? {
+    Ok(match task.method {
         Method::Auto | Method::Dop853 if moves => {
             Box::new(Explicit::<L, MOVING>::new(task, span, load)?)
         }
@@ -137,14 +136,5 @@ impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
             scales: self.equations.scales,
             step: Some(self.stepper.step()),
         }
-    }
-}
-
-impl Method {
-    /// The method itself when it can serve `load`; what [`Method::Auto`] chooses for it.
-    fn for_load<L: Load>(self, _load: &L) -> Result<Self, Error> {
-        Ok(match self {
-            Self::Auto | Self::Dop853 => Self::Dop853,
-        })
     }
 }
