@@ -57,29 +57,78 @@ struct Point {
     velocity: Sum,
 }
 
+/// A body with two equal moments: it precesses about L at `L/I_t` and spins about its axis at `(1/I_s − 1/I_t) L_s`.
+#[derive(Clone, Copy, Debug)]
+struct Symmetry {
+    axis: usize,
+    transverse: f64,
+    /// `1/I_s − 1/I_t`; zero for a body without axial moment, whose spin is kept beside.
+    slip: f64,
+    /// ω along an axis without a moment.
+    spin: f64,
+}
+
+impl Symmetry {
+    fn of(moments: &[f64; 3], massless: &Vector3<f64>) -> Option<Self> {
+        let &[i1, i2, i3] = moments;
+        let (axis, axial, transverse) = if i1 == i2 {
+            (2, i3, i1)
+        } else if i2 == i3 {
+            (0, i1, i2)
+        } else {
+            return None;
+        };
+        let slip = if axial == 0.0 {
+            0.0
+        } else {
+            (transverse - axial) / axial / transverse
+        };
+        (transverse > 0.0).then_some(Self {
+            axis,
+            transverse,
+            slip,
+            spin: massless[axis],
+        })
+    }
+
+    fn turned(&self, point: &Point, time: f64) -> UnitQuaternion<f64> {
+        let momentum = point.momentum.value;
+        let along = point.attitude.inverse_transform_vector(&momentum)[self.axis];
+        let mut spin = Vector3::zeros();
+        spin[self.axis] = (self.slip * along + self.spin) * time;
+        UnitQuaternion::from_scaled_axis(momentum * (time / self.transverse))
+            * point.attitude
+            * UnitQuaternion::from_scaled_axis(spin)
+    }
+}
+
 /// The body as it drifts and is kicked.
 #[derive(Clone, Copy, Debug)]
 struct Body {
-    mass: f64,
+    /// Of a body that moves about.
+    mass: Option<f64>,
     euler: EulerEquations,
     moments: [f64; 3],
     principal: RefinedPrincipal,
     q_bp: UnitQuaternion<f64>,
     /// ω along axes without a moment, in P: it stays as it is.
     massless: Vector3<f64>,
+    symmetry: Option<Symmetry>,
 }
 
 impl Body {
-    fn of(euler: &EulerEquations, mass: f64, phase: &Phase) -> Self {
+    fn of(euler: &EulerEquations, mass: Option<f64>, phase: &Phase) -> Self {
         let moments = euler.moments();
         let along = euler.axes().tr_mul(&phase.omega);
+        let massless = Vector3::from_fn(|i, _| if moments[i] == 0.0 { along[i] } else { 0.0 });
         Self {
             mass,
             euler: *euler,
             moments,
             principal: RefinedPrincipal::given(&moments, &Matrix3::identity()),
             q_bp: from_axes(euler.axes()),
-            massless: Vector3::from_fn(|i, _| if moments[i] == 0.0 { along[i] } else { 0.0 }),
+            massless,
+            symmetry: Symmetry::of(&moments, &massless),
         }
     }
 
@@ -119,8 +168,14 @@ impl Body {
     }
 
     fn drift(&self, point: &mut Point, time: f64) -> Result<(), Error> {
-        let motion = FreeMotion::refined(&self.principal, &self.omega(point), &point.attitude)?;
-        let mut attitude = motion.at(time).attitude;
+        let mut attitude = match self.symmetry {
+            Some(top) => top.turned(point, time),
+            None => {
+                let omega = self.omega(point);
+                let motion = FreeMotion::refined(&self.principal, &omega, &point.attitude)?;
+                motion.at(time).attitude
+            }
+        };
         attitude.renormalize();
         point.attitude = attitude;
         point.position.add(&(point.velocity.value * time));
@@ -142,7 +197,9 @@ impl Body {
             (self.euler).principal_acceleration(&Vector3::zeros(), &along)?;
         }
         point.momentum.add(&(phase.attitude * wrench.torque * time));
-        point.velocity.add(&(wrench.force * (time / self.mass)));
+        if let Some(mass) = self.mass {
+            point.velocity.add(&(wrench.force * (time / mass)));
+        }
         Ok(())
     }
 
@@ -186,13 +243,13 @@ impl Splitting {
     /// `tolerance` (of the attitude in radians, half, and of ω relative to the largest on the trial) with the scheme that
     /// takes fewest kicks.
     ///
-    /// `euler`, `mass`: of the body, about the reference point.
+    /// `euler`: of the body, about the reference point. `mass`: of a body that moves about; of none fixed at that point.
     ///
     /// # Errors
     /// What the load refuses; a torque along an axis without a moment; more than 2³² steps.
     pub fn new<L: Load>(
         euler: &EulerEquations,
-        mass: f64,
+        mass: Option<f64>,
         [start, end]: [f64; 2],
         phase: &Phase,
         load: &mut L,
@@ -444,8 +501,8 @@ mod tests {
             let gravity = [Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81)).expect("finite")];
             let mut load = Analytic::new(&gravity, Subject::pivoted(&body, 0.0));
             let times = [0.0, 200.0];
-            let mut run = Splitting::new(&euler, body.mass(), times, &phase, &mut load, 1e-8, None)
-                .expect("smooth");
+            let mut run =
+                Splitting::new(&euler, None, times, &phase, &mut load, 1e-8, None).expect("smooth");
             let vertical = |phase: &Phase| {
                 let tensor = body.inertia_about(&Vector3::zeros());
                 (phase.attitude * (tensor * phase.omega)).z
@@ -479,7 +536,7 @@ mod tests {
         let mut load = Analytic::new(&gravity, Subject::pivoted(&body, 0.0));
         let mut go = |times: [f64; 2], phase: &Phase| {
             let mut run =
-                Splitting::new(&euler, 1.3, times, phase, &mut load, 1e-12, None).expect("smooth");
+                Splitting::new(&euler, None, times, phase, &mut load, 1e-12, None).expect("smooth");
             let mut between = *phase;
             while run.elapsed() != times[1] - times[0] {
                 let from = run.elapsed();
