@@ -15,7 +15,14 @@ from polhode import (
     tops,
     validity,
 )
-from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
+from polhode._core import (
+    FreeMotion,
+    MassAccumulator,
+    RigidBody,
+    __version__,
+    principal_axes,
+    principal_moments,
+)
 from polhode.results import (
     AngularMomentum,
     ErrorBound,
@@ -31,6 +38,7 @@ from polhode.results import (
 __all__ = [
     "AngularMomentum",
     "ErrorBound",
+    "FreeMotion",
     "FreePrecession",
     "KineticEnergy",
     "MassAccumulator",
