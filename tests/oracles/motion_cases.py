@@ -10,8 +10,8 @@ from __future__ import annotations
 import json
 import math
 import sys
-import time
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
@@ -103,16 +103,19 @@ def load_table(name: str) -> tuple[MotionCase, ...]:
 def generate(name: str, cases: Iterable[MotionCase], proven: Callable[[MotionCase], MotionCase]) -> None:
     """Compute the cases and write their table; words on the command line pick cases, the others stay."""
     words = sys.argv[1:]
-    kept = {case.name: case for case in load_table(name)} if words else {}
-    done = []
-    for case in cases:
-        if words and not any(word in case.name for word in words):
-            done.append(kept[case.name])
-            continue
-        began = time.perf_counter()
-        done.append(proven(case))
-        print(f"{time.perf_counter() - began:6.1f} s  {case.name}", file=sys.stderr)
-    write_table(name, done)
+    fresh = list(cases)
+    done = list(fresh)
+    wanted = [i for i, case in enumerate(fresh) if not words or any(word in case.name for word in words)]
+    if words:
+        kept = {case.name: case for case in load_table(name)}
+        done = [kept.get(case.name, case) for case in fresh]
+    with ProcessPoolExecutor() as pool:
+        futures = {pool.submit(proven, fresh[i]): i for i in wanted}
+        for future in as_completed(futures):
+            i = futures[future]
+            done[i] = future.result()
+            print(done[i].name, file=sys.stderr)
+            write_table(name, [case for case in done if case.expected])
 
 
 def write_table(name: str, cases: Iterable[MotionCase]) -> None:
