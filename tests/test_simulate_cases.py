@@ -16,9 +16,6 @@ MATRICES = ("matrix", "quadratic", "K", "D")
 EPSILON = float(np.finfo(float).eps)
 
 
-pytestmark = pytest.mark.skipif(not hasattr(loads, "feedback"), reason="this build has constant torques only")
-
-
 def load_of(case: MotionCase) -> Any:
     """The sum of the case's loads."""
     return reduce(add, (_load(dict(term)) for term in case.load))
