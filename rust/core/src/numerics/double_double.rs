@@ -183,10 +183,6 @@ impl Div for DoubleDouble {
 
     /// Long division: a digit, and the exact remainder's.
     #[inline]
-    #[expect(
-        clippy::suspicious_arithmetic_impl,
-        reason = "division is made of products and differences"
-    )]
     fn div(self, other: Self) -> Self {
         let digit = self.high / other.high;
         let (p, e) = two_product(digit, other.high);
