@@ -1,4 +1,4 @@
-"""Exact free motion beside SciPy's integrator, and beside one elliptic integral of the third kind for each state."""
+"""Exact free motion beside SciPy's integrator, and beside an elliptic integral for each state."""
 
 from __future__ import annotations
 
@@ -43,17 +43,17 @@ def integrated(moments: Any, omega: Any, t: float) -> tuple[Any, Any]:
 
 
 class OneIntegralEach:
-    """Short-axis mode by Jacobi's functions, and the angle of precession by Legendre's third integral at each time."""
+    """Short-axis mode by Jacobi's functions, the angle of precession by a third integral at each time."""
 
     def __init__(self, moments: Any, omega: Any) -> None:
         a, b, c = moments
-        L2, T2 = (moments * omega) ** 2 @ np.ones(3), moments @ omega**2
-        d1, d3 = L2 - T2 * a, T2 * c - L2
+        momentum, energy = np.linalg.norm(moments * omega), moments @ omega**2
+        d1, d3 = momentum**2 - energy * a, energy * c - momentum**2
         self.amplitudes = np.sqrt([d3 / (a * (c - a)), d3 / (b * (c - b)), d1 / (c * (c - a))])
         self.rate = np.sqrt((c - b) * d1 / (a * b * c))
         self.m = (b - a) * d3 / ((c - b) * d1)
         self.n = -c * (b - a) / (a * (c - b))
-        self.moments, self.L = moments, np.sqrt(L2)
+        self.moments, self.L = moments, momentum
         self.lead = self.L * (c - a) / (a * c * self.rate)
         self.K = elliprf(0.0, 1 - self.m, 1.0)
         self.full = self.K + self.n / 3 * elliprj(0.0, 1 - self.m, 1.0, 1 - self.n)
