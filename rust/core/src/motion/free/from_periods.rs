@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
+use super::Mode;
 use super::invariants::Invariants;
-use super::mode::Mode;
 use crate::error::{Error, all_finite};
 use crate::motion::attitude::from_axes;
 use crate::numerics::elliptic::complete_first;

@@ -15,7 +15,7 @@
 
 use nalgebra::Vector3;
 
-use super::mode::Mode;
+use super::{FreeMotion, Mode, power_of_two};
 use crate::numerics::double_double::DoubleDouble;
 
 /// Constants of a free motion, in principal axes and in units of its own in which moments and rates are near one.
@@ -58,6 +58,15 @@ impl Invariants {
             &moments.map(DoubleDouble::from),
             &[x, y, z].map(DoubleDouble::from),
         )
+    }
+
+    /// Of an exact motion.
+    #[must_use]
+    pub fn of_motion(motion: &FreeMotion) -> Self {
+        Self {
+            mode: motion.mode,
+            ..Self::refined(&motion.moments, &motion.principal_omega)
+        }
     }
 
     /// As [`Invariants::of`], of moments and ω that are known to twice the precision.
@@ -232,10 +241,4 @@ fn mode(moments: &[DoubleDouble; 3], omega: &Vector3<f64>, discriminant: f64) ->
     } else {
         Mode::ShortAxis
     }
-}
-
-/// The largest power of two that is not above |x|; one for zero.
-pub(super) fn power_of_two(x: f64) -> f64 {
-    let power = f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000);
-    if power > 0.0 { power } else { 1.0 }
 }

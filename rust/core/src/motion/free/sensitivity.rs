@@ -13,6 +13,7 @@
 
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
+use super::FreeMotion;
 use super::clock::Clock;
 use super::invariants::Invariants;
 use crate::numerics::double_double::DoubleDouble;
@@ -36,6 +37,16 @@ type Slopes = Jet<6>;
 const STRETCH: f64 = 2.0;
 /// Over so many units of 1/λ, on the separatrix, derivatives grow beyond float64.
 const BEYOND: f64 = 700.0;
+
+impl FreeMotion {
+    /// The derivatives of the state at the time t.
+    #[must_use]
+    pub fn sensitivity(&self, t: f64) -> Sensitivity {
+        let attitudes = [&self.initial.attitude, &self.at(t).attitude];
+        let omega_at = |t: f64| self.at(t).omega;
+        Invariants::of_motion(self).sensitivity(t, &self.axes, attitudes, omega_at)
+    }
+}
 
 impl Invariants {
     /// At the time t; the columns of `axes` are the principal axes, `start` is the attitude at time zero, `now` the one at t.
@@ -251,6 +262,7 @@ fn without_momentum(t: f64, turn: &Matrix3<f64>) -> SMatrix<f64, 6, 6> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::free::RefinedPrincipal;
 
     /// (moments, ω, t, ∂ω(t)/∂(ω, I) by rows): differences of Taylor series with mpmath 1.3 and 40 digits.
     type Case = ([f64; 3], [f64; 3], f64, [[f64; 6]; 3]);
@@ -381,16 +393,16 @@ mod tests {
         ),
     ];
 
+    fn motion(moments: [f64; 3], omega: Vector3<f64>) -> FreeMotion {
+        let principal = RefinedPrincipal::given(&moments, &Matrix3::identity());
+        FreeMotion::refined(&principal, &omega, &UnitQuaternion::identity()).expect("finite")
+    }
+
     #[test]
     fn against_differences_in_many_digits() {
-        let identity = UnitQuaternion::identity();
         for (moments, omega, t, exact) in CASES {
-            let motion = Invariants::of(&moments, &Vector3::from(omega));
-            let found = motion.sensitivity(t, &Matrix3::identity(), &identity, &identity);
-            let size = exact
-                .as_flattened()
-                .iter()
-                .fold(0.0, |a: f64, b| a.max(b.abs()));
+            let found = motion(moments, omega.into()).sensitivity(t);
+            let size = (exact.as_flattened().iter()).fold(0.0, |a: f64, b| a.max(b.abs()));
             for (i, row) in exact.iter().enumerate() {
                 for (j, want) in row.iter().enumerate() {
                     let got = if j < 3 {
@@ -398,10 +410,8 @@ mod tests {
                     } else {
                         found.moments[(3 + i, j - 3)]
                     };
-                    assert!(
-                        (got - want).abs() < 4e-15 * size,
-                        "{omega:?} {i} {j}: {got} {want}"
-                    );
+                    let error = (got - want).abs();
+                    assert!(error < 4e-15 * size, "{omega:?} {i} {j}: {got} {want}");
                 }
             }
         }
@@ -410,34 +420,41 @@ mod tests {
     #[test]
     fn scales() {
         let (moments, omega, t, _) = CASES[0];
-        let q = UnitQuaternion::from_euler_angles(0.3, 0.2, -0.7);
-        let one = Matrix3::identity();
-        let plain =
-            Invariants::of(&moments, &Vector3::from(omega)).sensitivity(t, &one, &one_turn(), &q);
+        let plain = motion(moments, omega.into()).sensitivity(t);
         // Powers of two change no digit.
         let (heavy, fast) = (2.0_f64.powi(400), 2.0_f64.powi(-390));
-        let scaled = Invariants::of(&moments.map(|i| i * heavy), &(Vector3::from(omega) * fast))
-            .sensitivity(t / fast, &one, &one_turn(), &q);
+        let scaled = motion(moments.map(|i| i * heavy), Vector3::from(omega) * fast);
+        let scaled = scaled.sensitivity(t / fast);
         assert_eq!(scaled.state[(0, 4)] * fast, plain.state[(0, 4)]);
-        assert_eq!(scaled.state[(4, 3)], plain.state[(4, 3)]);
+        assert_eq!(scaled.state[(4, 3)], plain.state[(4, 3)] * fast);
         assert_eq!(scaled.moments[(1, 2)] * heavy, plain.moments[(1, 2)]);
         assert_eq!(scaled.moments[(4, 2)] * heavy / fast, plain.moments[(4, 2)]);
     }
 
-    fn one_turn() -> UnitQuaternion<f64> {
-        UnitQuaternion::identity()
+    #[test]
+    fn two_spans_make_one() {
+        // The derivatives of the later by the earlier, times those of the earlier by the start.
+        for (moments, omega, t, _) in CASES {
+            let first = motion(moments, omega.into());
+            let middle = first.at(t);
+            let principal = RefinedPrincipal::given(&moments, &Matrix3::identity());
+            let second = FreeMotion::refined(&principal, &middle.omega, &middle.attitude);
+            let second = second.expect("finite").sensitivity(1e3);
+            let (whole, early) = (first.sensitivity(t + 1e3), first.sensitivity(t));
+            let size = second.state.norm() * early.state.norm();
+            assert!((second.state * early.state - whole.state).norm() < 1e-13 * size);
+            let moments = second.state * early.moments + second.moments;
+            assert!((moments - whole.moments).norm() < 1e-12 * size);
+        }
     }
 
     #[test]
     fn where_moments_have_no_derivative() {
-        let q = UnitQuaternion::identity();
-        let rod = Invariants::of(&[0.0, 1.0, 1.0], &Vector3::new(0.5, 0.3, 0.4));
-        let found = rod.sensitivity(2.0, &Matrix3::identity(), &q, &q);
-        assert!(found.state.iter().all(|x| x.is_finite()));
-        assert!(found.moments.iter().all(|x| x.is_nan()));
-        let rest = Invariants::of(&[1.0, 2.0, 2.5], &Vector3::zeros());
-        let found = rest.sensitivity(3.0, &Matrix3::identity(), &q, &q);
-        assert_eq!(found.state[(0, 3)], 3.0);
-        assert_eq!(found.moments[(0, 0)], 0.0);
+        let rod = motion([0.0, 1.0, 1.0], Vector3::new(0.5, 0.3, 0.4)).sensitivity(2.0);
+        assert!(rod.state.iter().all(|x| x.is_finite()));
+        assert!(rod.moments.iter().all(|x| x.is_nan()));
+        let rest = motion([1.0, 2.0, 2.5], Vector3::zeros()).sensitivity(3.0);
+        assert_eq!(rest.state[(0, 3)], 3.0);
+        assert_eq!(rest.moments[(0, 0)], 0.0);
     }
 }
