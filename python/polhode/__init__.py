@@ -15,7 +15,15 @@ from polhode import (
     tops,
     validity,
 )
-from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
+from polhode._core import (
+    FreeMotion,
+    MassAccumulator,
+    RigidBody,
+    __version__,
+    principal_axes,
+    principal_moments,
+)
+from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
 from polhode.results import (
     AngularMomentum,
     ErrorBound,
@@ -30,15 +38,21 @@ from polhode.results import (
 
 __all__ = [
     "AngularMomentum",
+    "Cones",
+    "ErrorBar",
     "ErrorBound",
+    "FreeMotion",
     "FreePrecession",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",
+    "Periods",
+    "Poinsot",
     "PrincipalAxes",
     "PrincipalDerivative",
     "Provenance",
     "RigidBody",
+    "Sensitivity",
     "Trajectory",
     "__version__",
     "equimomental",

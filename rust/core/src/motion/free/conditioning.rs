@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::FreeMotion;
 use super::sensitivity::Sensitivity;
+use crate::numerics::double_double::DoubleDouble;
 
 /// Bounds, to first order, on the change of a state at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +13,15 @@ pub struct ErrorBar {
     pub attitude: f64,
     /// Of ω, its length.
     pub omega: f64,
+}
+
+impl FreeMotion {
+    /// The bounds at the time t: see [`Sensitivity::error_bar`].
+    #[must_use]
+    pub fn error_bar(&self, t: f64, rtol: f64) -> ErrorBar {
+        let moments = self.moments.map(DoubleDouble::rounded);
+        (self.sensitivity(t)).error_bar(&self.initial.omega, &moments, rtol)
+    }
 }
 
 impl Sensitivity {

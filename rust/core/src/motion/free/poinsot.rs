@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::FreeMotion;
 use super::invariants::Invariants;
+use crate::numerics::double_double::DoubleDouble;
 
 /// The ellipsoid `ω·I ω = 2T`, fixed in the body with its centre in C, and the plane on which it rolls.
 ///
@@ -17,6 +19,23 @@ pub struct Poinsot {
     pub distance: f64,
     /// `|ω×L|/L`, least and greatest distance of the herpolhode from the foot of the perpendicular from C.
     pub radii: [f64; 2],
+}
+
+impl FreeMotion {
+    /// L about the centre of mass, components in N: constant.
+    #[must_use]
+    pub fn angular_momentum(&self) -> Vector3<f64> {
+        let moments = Vector3::from(self.moments.map(DoubleDouble::rounded));
+        let omega = Vector3::from(self.principal_omega.map(DoubleDouble::rounded));
+        self.initial.attitude * (self.axes * moments.component_mul(&omega))
+    }
+
+    /// ω at the time t, components in N: the herpolhode, where the ellipsoid of energy touches the invariable plane.
+    #[must_use]
+    pub fn herpolhode(&self, t: f64) -> Vector3<f64> {
+        let state = self.at(t);
+        state.attitude * state.omega
+    }
 }
 
 impl Invariants {

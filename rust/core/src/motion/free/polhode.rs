@@ -2,7 +2,25 @@
 
 use nalgebra::Vector3;
 
+use super::FreeMotion;
 use super::invariants::Invariants;
+
+impl FreeMotion {
+    /// `count` points of the polhode, components in B: see [`Invariants::polhode`].
+    #[must_use]
+    pub fn polhode(&self, count: usize) -> Vec<Vector3<f64>> {
+        let mut points: Vec<_> = (Invariants::of_motion(self).polhode(count).iter())
+            .map(|omega| self.axes * omega)
+            .collect();
+        // Exactly where the motion starts and the curve closes.
+        for end in [0, count.saturating_sub(1)] {
+            if let Some(point) = points.get_mut(end) {
+                *point = self.initial.omega;
+            }
+        }
+        points
+    }
+}
 
 impl Invariants {
     /// `count` points of the polhode, components in principal axes, from ω at time zero in the sense of the motion; the last
@@ -24,18 +42,12 @@ impl Invariants {
         let first = (self.omega.y / a.y).atan2(self.omega[x] / a[x]);
         let steps = count.saturating_sub(1).max(1);
         let fraction = |j: usize| j as f64 / steps as f64;
-        let mut points: Vec<_> = (0..count)
+        (0..count)
             .map(|j| {
                 let phi = first + sense * std::f64::consts::TAU * fraction(j);
                 self.on_polhode(phi.sin_cos(), sense) * self.rate_unit
             })
-            .collect();
-        for end in [0, count.saturating_sub(1)] {
-            if let Some(point) = points.get_mut(end) {
-                *point = start;
-            }
-        }
-        points
+            .collect()
     }
 
     /// The axis in whose plane with axis 2 ω circles, and the circled one.

@@ -426,7 +426,7 @@ mod tests {
         let scaled = motion(moments.map(|i| i * heavy), Vector3::from(omega) * fast);
         let scaled = scaled.sensitivity(t / fast);
         assert_eq!(scaled.state[(0, 4)] * fast, plain.state[(0, 4)]);
-        assert_eq!(scaled.state[(4, 3)], plain.state[(4, 3)] * fast);
+        assert_eq!(scaled.state[(4, 3)], plain.state[(4, 3)]);
         assert_eq!(scaled.moments[(1, 2)] * heavy, plain.moments[(1, 2)]);
         assert_eq!(scaled.moments[(4, 2)] * heavy / fast, plain.moments[(4, 2)]);
     }
