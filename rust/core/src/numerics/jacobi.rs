@@ -29,8 +29,8 @@ pub fn jacobi(u: f64, k_prime: f64) -> (f64, f64, f64) {
         arithmetic = mean;
     }
     let (sine, cosine) = (u * mean).sin_cos();
-    if sine == 0.0 {
-        return (sine, 1.0, 1.0);
+    if sine.abs() < 1e-9 {
+        return (u, 1.0, 1.0);
     }
     let (mut a, mut c, mut dn) = (cosine / sine, mean * (cosine / sine), 1.0);
     for &(arithmetic, geometric) in means[..used].iter().rev() {

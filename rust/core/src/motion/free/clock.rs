@@ -26,26 +26,6 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// After `count` whole half periods `T = 2K/λ`: y is zero again, and the faster of c and d has the sign (−1)^count. The
-    /// derivatives are those of T,
-    /// `∂T/∂q = ½ ∫₀ᵀ y²/d² dt`, `∂T/∂p = −∫₀ᵀ dt/d² / 2p` for p ≥ q.
-    pub(super) fn after_half_periods(motion: &Invariants, count: f64) -> Self {
-        let (p, q, k_prime) = motion.fast_and_slow();
-        let over_cube = 2.0 / (3.0 * p * p.sqrt());
-        let over_d = over_cube * carlson_rd(0.0, 1.0, k_prime * k_prime);
-        let by_p = -0.5 * (motion.half_period().high + q * over_d) / p;
-        let by_q = 0.5 * over_d;
-        let sign = if count % 2.0 == 0.0 { 1.0 } else { -1.0 };
-        let later = |period_slope: f64| [-sign * count * period_slope, 0.0, 0.0];
-        Self {
-            value: [0.0, sign, 1.0],
-            by_short: later(by_p),
-            by_long: later(by_q),
-            square_integral: count * over_cube * carlson_rd(0.0, k_prime * k_prime, 1.0),
-        }
-        .with_roles_of(motion)
-    }
-
     /// At a time within half of a half period, |t| ≤ K/λ, in the units of the motion.
     pub(super) fn at(motion: &Invariants, t: f64) -> Self {
         let (p, q, k_prime) = motion.fast_and_slow();
@@ -108,6 +88,39 @@ impl Clock {
             by_short: exchanged(self.by_long),
             by_long: exchanged(self.by_short),
             square_integral: self.square_integral,
+        }
+    }
+}
+
+/// What the half period T = 2K/λ brings, in the units of the motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HalfPeriod {
+    /// ∂T/∂p.
+    pub by_short: f64,
+    /// ∂T/∂q.
+    pub by_long: f64,
+    /// ∫₀ᵀ y² dt.
+    pub square_integral: f64,
+}
+
+impl HalfPeriod {
+    /// Of a motion with finite T: `∂T/∂q = ½ ∫₀ᵀ y²/d² dt`, `∂T/∂p = −∫₀ᵀ dt/d² / 2p` for p ≥ q, terms of one sign.
+    pub(super) fn of(motion: &Invariants) -> Self {
+        let (p, q, k_prime) = motion.fast_and_slow();
+        let m1 = k_prime * k_prime;
+        let over_cube = 2.0 / (3.0 * p * p.sqrt());
+        let over_d = over_cube * carlson_rd(0.0, 1.0, m1);
+        let by_fast = -0.5 * (motion.half_period().high + q * over_d) / p;
+        let by_slow = 0.5 * over_d;
+        let (by_short, by_long) = if motion.circles_third() {
+            (by_fast, by_slow)
+        } else {
+            (by_slow, by_fast)
+        };
+        Self {
+            by_short,
+            by_long,
+            square_integral: over_cube * carlson_rd(0.0, m1, 1.0),
         }
     }
 }

@@ -14,7 +14,7 @@
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::FreeMotion;
-use super::clock::Clock;
+use super::clock::{Clock, HalfPeriod};
 use super::invariants::Invariants;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::jet::Jet;
@@ -132,7 +132,8 @@ impl Invariants {
         (state, moments)
     }
 
-    /// ω at t with its derivatives: whole half periods first, then stretches, each from the exact ω at its beginning.
+    /// ω at t with its derivatives: in stretches over what whole half periods leave of t, each from the exact ω at its
+    /// beginning, then those half periods T, with `ω(t) = ω(t − nT)` but for signs.
     fn rates(&self, t: f64, omega_at: impl Fn(f64) -> Vector3<f64>) -> Rates {
         let half_period = self.half_period();
         let mut rates = Rates {
@@ -141,18 +142,14 @@ impl Invariants {
             by_moments: Matrix3::zeros(),
             middle_square: 0.0,
         };
-        let (mut rest, mut signs) = (t, Vector3::repeat(1.0));
-        let count = (t / half_period.high).round();
-        if half_period.high.is_finite() && count != 0.0 {
-            rest = (DoubleDouble::from(t) - half_period * count.into()).high;
-            rates.advance(self, &Clock::after_half_periods(self, count));
-            if count % 2.0 != 0.0 {
-                let [x, _] = self.planar_axes();
-                (signs.y, signs[x]) = (-1.0, -1.0);
-            }
-        }
+        let periods = (t / half_period.high).round();
+        let rest = if periods == 0.0 {
+            t
+        } else {
+            (DoubleDouble::from(t) - half_period * periods.into()).high
+        };
         let phase = (rest * self.rate_square().high.sqrt()).abs();
-        if phase > BEYOND {
+        if phase.is_nan() || phase > BEYOND {
             rates.by_omega.fill(f64::NAN);
             rates.by_moments.fill(f64::NAN);
             return rates;
@@ -162,12 +159,15 @@ impl Invariants {
         let mut done = 0.0;
         while done < stretches {
             if done > 0.0 {
-                rates.omega = signs.component_mul(&omega_at(rest * (done / stretches)));
+                rates.omega = omega_at(rest * (done / stretches));
             }
             rates.advance(self, &clock);
             done += 1.0;
         }
-        rates.omega = signs.component_mul(&omega_at(rest));
+        rates.omega = omega_at(rest);
+        if periods != 0.0 {
+            rates.skip(self, periods);
+        }
         rates
     }
 
@@ -184,6 +184,14 @@ impl Invariants {
             middle,
             third * t + a3 / a2 * excess,
         ]
+    }
+
+    /// p and q of an ω on the polhode, with their derivatives.
+    fn squares(&self, w: &[Slopes; 3]) -> [Slopes; 2] {
+        let [a1, a2, a3] = self.contrast_slopes();
+        let around_first = a3 * w[1] * w[1] + a2 * w[2] * w[2];
+        let around_third = a2 * w[0] * w[0] + a1 * w[1] * w[1];
+        [a1 * around_first, a3 * around_third]
     }
 
     /// The contrasts, with their derivatives by the moments.
@@ -217,13 +225,34 @@ struct Rates {
 }
 
 impl Rates {
+    /// By whole half periods `T`, back: `dω = −ω̇ n dT`, and the signs that an odd number gives.
+    fn skip(&mut self, motion: &Invariants, periods: f64) {
+        let whole = HalfPeriod::of(motion);
+        let start = std::array::from_fn(|k| Jet::variable(motion.omega[k], k));
+        let [p, q] = motion.squares(&start);
+        let later = Jet::chain(0.0, [(whole.by_short, &p), (whole.by_long, &q)]).slopes;
+        let [a1, a2, a3] = motion.contrasts;
+        let [x, y, z] = self.omega.into();
+        let rate = Vector3::new(-a1 * y * z, a2 * z * x, -a3 * x * y) * -periods;
+        self.by_omega += rate * Vector3::new(later[0], later[1], later[2]).transpose();
+        self.by_moments += rate * Vector3::new(later[3], later[4], later[5]).transpose();
+        self.middle_square +=
+            motion.around_first * motion.around_third * whole.square_integral * periods;
+        if periods % 2.0 != 0.0 {
+            let [k, _] = motion.planar_axes();
+            for row in [k, 1] {
+                self.omega[row] *= -1.0;
+                self.by_omega.row_mut(row).neg_mut();
+                self.by_moments.row_mut(row).neg_mut();
+            }
+        }
+    }
+
     /// By the time of a clock that is set to zero now.
     fn advance(&mut self, motion: &Invariants, clock: &Clock) {
         let w: [Slopes; 3] = std::array::from_fn(|k| Jet::variable(self.omega[k], k));
         let [a1, a2, a3] = motion.contrast_slopes();
-        let around_first = a3 * w[1] * w[1] + a2 * w[2] * w[2];
-        let around_third = a2 * w[0] * w[0] + a1 * w[1] * w[1];
-        let (p, q) = (a1 * around_first, a3 * around_third);
+        let [p, q] = motion.squares(&w);
         let [y, c, d] = std::array::from_fn(|k| {
             Jet::chain(
                 clock.value[k],
