@@ -92,34 +92,28 @@ impl Clock {
     }
 }
 
-/// What the half period T = 2K/λ brings, in the units of the motion.
+/// What the half period T = 2K/λ brings, in the units of the motion. Near the separatrix it depends on p − q far more than
+/// on either, which is why that stands by itself.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfPeriod {
-    /// ∂T/∂p.
-    pub by_short: f64,
-    /// ∂T/∂q.
-    pub by_long: f64,
+    /// ∂T by the larger of p and q, their difference held.
+    pub by_larger: f64,
+    /// ∂T by |p − q|, the larger held.
+    pub by_gap: f64,
     /// ∫₀ᵀ y² dt.
     pub square_integral: f64,
 }
 
 impl HalfPeriod {
-    /// Of a motion with finite T: `∂T/∂q = ½ ∫₀ᵀ y²/d² dt`, `∂T/∂p = −∫₀ᵀ dt/d² / 2p` for p ≥ q, terms of one sign.
+    /// Of a motion with finite T: for p ≥ q, `∂T/∂q = ½ ∫₀ᵀ y²/d² dt` and, by the scaling law, `2(p ∂_p + q ∂_q)T = −T`.
     pub(super) fn of(motion: &Invariants) -> Self {
-        let (p, q, k_prime) = motion.fast_and_slow();
+        let (p, _, k_prime) = motion.fast_and_slow();
         let m1 = k_prime * k_prime;
         let over_cube = 2.0 / (3.0 * p * p.sqrt());
         let over_d = over_cube * carlson_rd(0.0, 1.0, m1);
-        let by_fast = -0.5 * (motion.half_period().high + q * over_d) / p;
-        let by_slow = 0.5 * over_d;
-        let (by_short, by_long) = if motion.circles_third() {
-            (by_fast, by_slow)
-        } else {
-            (by_slow, by_fast)
-        };
         Self {
-            by_short,
-            by_long,
+            by_larger: 0.5 * (m1 * over_d - motion.half_period().high / p),
+            by_gap: -0.5 * over_d,
             square_integral: over_cube * carlson_rd(0.0, m1, 1.0),
         }
     }

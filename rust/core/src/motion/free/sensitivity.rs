@@ -230,7 +230,14 @@ impl Rates {
         let whole = HalfPeriod::of(motion);
         let start = std::array::from_fn(|k| Jet::variable(motion.omega[k], k));
         let [p, q] = motion.squares(&start);
-        let later = Jet::chain(0.0, [(whole.by_short, &p), (whole.by_long, &q)]).slopes;
+        let [b1, b2, b3] = motion.contrast_slopes();
+        let gap = b2 * (b1 * start[2] * start[2] - b3 * start[0] * start[0]);
+        let (larger, gap) = if motion.circles_third() {
+            (p, gap)
+        } else {
+            (q, -gap)
+        };
+        let later = Jet::chain(0.0, [(whole.by_larger, &larger), (whole.by_gap, &gap)]).slopes;
         let [a1, a2, a3] = motion.contrasts;
         let [x, y, z] = self.omega.into();
         let rate = Vector3::new(-a1 * y * z, a2 * z * x, -a3 * x * y) * -periods;
