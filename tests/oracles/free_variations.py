@@ -2,22 +2,54 @@
 
 With 42 digits a difference quotient loses none that matter: changes of 1e-20 leave twenty. A small
 rotation δ of the attitude is ``R → R exp(δ×)``, components in the body.
+
+The derivatives of all cases take minutes: they are in ``free_variations.json``, which ``python -m
+oracles.free_variations``, run in the folder of the tests, writes anew.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import mpmath
 import numpy as np
 from mpmath import mp, mpf
 
-__all__ = ["jacobian"]
+__all__ = ["CASES", "jacobian", "table"]
+
+TABLE = Path(__file__).with_suffix(".json")
+# Moments, ω at zero, time.
+CASES: dict[str, tuple[tuple[float, ...], tuple[float, ...], float]] = {
+    "short-axis": ((1.0, 2.0, 2.5), (0.3, 0.2, 1.1), 9.0),
+    "long-axis": ((1.0, 2.0, 2.5), (1.3, 0.2, -0.1), 9.0),
+    "near the separatrix": ((1.0, 2.0, 2.5), (1e-3, 1.0, 1.1e-3), 14.0),
+    "nearer": ((1.0, 2.0, 2.5), (1e-7, -1.0, -1.3e-7), 14.0),
+    "onto it": ((1.0, 2.0, 2.5), (1e-3, 1.0, -0.89e-3), 14.0),
+    "many flips": ((1.0, 2.0, 2.5), (1e-2, 1.0, 1.1e-2), 150.0),
+    "the separatrix": ((2.0, 4.0, 4.5), (0.75, 0.3, 1.0), 9.0),
+    "middle spin": ((1.0, 2.0, 2.5), (0.0, 1.0, 0.0), 14.0),
+    "short spin": ((1.0, 2.0, 2.5), (0.0, 0.0, 1.0), 9.0),
+    "nearly steady": ((1.0, 2.0, 2.5), (1.0, 1e-9, -1e-9), 9.0),
+    "oblate": ((2.0, 2.0, 2.5), (0.3, 0.4, 1.0), 9.0),
+    "across an oblate axis": ((2.0, 2.0, 2.5), (0.3, 0.4, 0.0), 9.0),
+    "prolate": ((1.0, 2.0, 2.0), (0.6, 0.4, 0.5), 9.0),
+    "spherical": ((2.0, 2.0, 2.0), (0.3, 0.4, 0.5), 9.0),
+    "nearly spherical": ((2.0, 2.0 + 1e-9, 2.0 + 2e-9), (0.3, 0.4, 0.5), 9.0),
+    "needle": ((1e-3, 2.0, 2.0005), (0.3, 0.4, 0.5), 9.0),
+    "lamina": ((1.0, 2.0, 3.0), (0.3, 0.2, 1.1), -7.0),
+}
 
 ORDER = 30
 STEP = mpf("1e-20")
 State = tuple[list[mpf], list[mpf]]
+
+
+def table() -> dict[str, np.ndarray]:
+    """The derivatives of every case, (6, 9)."""
+    return {name: np.array(rows) for name, rows in json.loads(TABLE.read_text("utf-8")).items()}
 
 
 def jacobian(moments: Sequence[float], omega: Sequence[float], t: float) -> np.ndarray:
@@ -86,3 +118,9 @@ def _product(p: Any, q: Any) -> list[mpf]:
         d * z + a * y - b * x + c * w,
         d * w - a * x - b * y - c * z,
     ]
+
+
+if __name__ == "__main__":
+    found = {name: jacobian(*case).tolist() for name, case in CASES.items()}
+    rows = (f"{json.dumps(name)}: {json.dumps(slopes)}" for name, slopes in found.items())
+    TABLE.write_text("{\n" + ",\n".join(rows) + "\n}\n", "utf-8")
