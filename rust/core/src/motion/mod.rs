@@ -13,6 +13,7 @@
 //! | free motion of any body, exact at any time, and what it tells | [`free`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
+//! | attitude, ω, position and velocity together | [`state`] |
 //! | what acts on the body | [`loads`] |
 //! | motion under a load at the times asked for | [`mod@simulate`] |
 //! | the steppers | [`integrate`] |
@@ -31,3 +32,4 @@ pub mod loads;
 pub mod pivot_reaction;
 pub mod simulate;
 pub mod stability;
+pub mod state;
