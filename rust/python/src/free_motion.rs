@@ -1,5 +1,9 @@
 //! The class `FreeMotion`: exact motions of free bodies.
 
+mod constants;
+mod from_periods;
+mod in_time;
+
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::RigidBody;
