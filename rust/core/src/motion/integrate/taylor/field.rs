@@ -17,13 +17,41 @@ pub(super) struct Field<T, const B: usize> {
     pub(super) on_omega: Square<T>,
     pub(super) on_attitude: [[T; 4]; 3],
     pub(super) on_space: [Square<T>; B],
+    /// E of the torque `E |ω| ω`, over the moments.
+    pub(super) quadratic: Square<T>,
+    /// Force over mass in N, and that constant in the body.
+    pub(super) force: [T; 3],
+    pub(super) thrust: [T; 3],
 }
 
-/// Which parts a field has; the others are zero, and are left out.
+/// Which parts the equations have; the others are zero, and are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Parts {
+    /// How many directions fixed in space.
+    pub(super) directions: usize,
     pub(super) on_omega: bool,
     pub(super) on_attitude: bool,
+    pub(super) quadratic: bool,
+    /// How many gravity gradients.
+    pub(super) gradients: usize,
+    /// Whether parts depend on time.
+    pub(super) is_timed: bool,
+    /// Whether a force acts on a free body.
+    pub(super) is_pushed: bool,
+}
+
+impl<const B: usize> Field<f64, B> {
+    /// Nothing turns.
+    pub(super) const NONE: Self = Self {
+        kappa: [0.0; 3],
+        constant: [0.0; 3],
+        on_omega: [[0.0; 3]; 3],
+        on_attitude: [[0.0; 4]; 3],
+        on_space: [[[0.0; 3]; 3]; B],
+        quadratic: [[0.0; 3]; 3],
+        force: [0.0; 3],
+        thrust: [0.0; 3],
+    };
 }
 
 impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
@@ -36,6 +64,9 @@ impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
             on_omega: [[zero; 3]; 3],
             on_attitude: [[zero; 4]; 3],
             on_space: [[[zero; 3]; 3]; B],
+            quadratic: [[zero; 3]; 3],
+            force: [zero; 3],
+            thrust: [zero; 3],
         }
     }
 
@@ -45,8 +76,11 @@ impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
         for n in 0..3 {
             self.kappa[n].set(row, field.kappa[n]);
             self.constant[n].set(row, field.constant[n]);
+            self.force[n].set(row, field.force[n]);
+            self.thrust[n].set(row, field.thrust[n]);
             for i in 0..3 {
                 self.on_omega[n][i].set(row, field.on_omega[n][i]);
+                self.quadratic[n][i].set(row, field.quadratic[n][i]);
             }
             for i in 0..4 {
                 self.on_attitude[n][i].set(row, field.on_attitude[n][i]);

@@ -22,10 +22,10 @@ pub(super) const HIGHEST_ORDER: usize = 24;
 pub(super) const COUNT: usize = HIGHEST_ORDER + 1;
 
 /// 1/k.
-const RECIPROCALS: [f64; COUNT + 1] = {
-    let mut reciprocals = [0.0; COUNT + 1];
+pub(super) const RECIPROCALS: [f64; COUNT + 2] = {
+    let mut reciprocals = [0.0; COUNT + 2];
     let mut k = 1;
-    while k <= COUNT {
+    while k <= COUNT + 1 {
         reciprocals[k] = 1.0 / k as f64;
         k += 1;
     }
@@ -66,7 +66,8 @@ pub(super) struct Abreast<L, const B: usize, const R: usize> {
     orders: [Coefficient<Pack<L, R>, B>; COUNT],
 }
 
-/// The sums of products of [`Abreast`]: those with each component of ω apart, as in [`Alone`].
+/// The sums of products of [`Abreast`]: those of each component of ω with q, and with the two components of a direction that
+/// it turns.
 pub(super) struct Sums<T, const B: usize> {
     w: [T; 3],
     q: [[T; 4]; 3],
@@ -87,23 +88,40 @@ impl<L: Lane, const B: usize, const R: usize> Sums<Pack<L, R>, B> {
     /// Adds the products of order `a` of all with order `b` of ω.
     #[inline(always)]
     fn add(&mut self, a: &Coefficient<Pack<L, R>, B>, b: &Coefficient<Pack<L, R>, B>) {
-        let [w0, w1, w2] = b.w;
-        self.w[0] = a.w[1].mul_add(w2, self.w[0]);
-        self.w[1] = a.w[2].mul_add(w0, self.w[1]);
-        self.w[2] = a.w[0].mul_add(w1, self.w[2]);
         // Written out, since a loop would keep the sums in memory.
-        let [x, y, z, w] = a.q;
+        let [w0, w1, w2] = b.w;
+        self.w = [
+            a.w[1].mul_add(w2, self.w[0]),
+            a.w[2].mul_add(w0, self.w[1]),
+            a.w[0].mul_add(w1, self.w[2]),
+        ];
         self.q = [
-            add_products(&self.q[0], w0, &[w, z, -y, -x]),
-            add_products(&self.q[1], w1, &[-z, w, x, -y]),
-            add_products(&self.q[2], w2, &[y, -x, w, -z]),
+            add_products(&self.q[0], w0, &a.q),
+            add_products(&self.q[1], w1, &a.q),
+            add_products(&self.q[2], w2, &a.q),
         ];
         for (sum, g) in self.g.iter_mut().zip(&a.g) {
-            sum[0] = [w1.mul_add(-g[2], sum[0][0]), w2.mul_add(g[1], sum[0][1])];
-            sum[1] = [w0.mul_add(g[2], sum[1][0]), w2.mul_add(-g[0], sum[1][1])];
-            sum[2] = [w0.mul_add(-g[1], sum[2][0]), w1.mul_add(g[0], sum[2][1])];
+            *sum = [
+                [w0.mul_add(g[1], sum[0][0]), w0.mul_add(g[2], sum[0][1])],
+                [w1.mul_add(g[0], sum[1][0]), w1.mul_add(g[2], sum[1][1])],
+                [w2.mul_add(g[0], sum[2][0]), w2.mul_add(g[1], sum[2][1])],
+            ];
         }
     }
+}
+
+/// `sum + a × b`.
+#[inline(always)]
+pub(super) fn cross_term<L: Lane, const R: usize>(
+    a: &[Pack<L, R>; 3],
+    b: &[Pack<L, R>; 3],
+    sum: [Pack<L, R>; 3],
+) -> [Pack<L, R>; 3] {
+    [
+        a[1].mul_add(b[2], (-a[2]).mul_add(b[1], sum[0])),
+        a[2].mul_add(b[0], (-a[0]).mul_add(b[2], sum[1])),
+        a[0].mul_add(b[1], (-a[1]).mul_add(b[0], sum[2])),
+    ]
 }
 
 #[inline(always)]
@@ -153,7 +171,10 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
         let last = k - k % 2;
         if last > 2 {
             let first = k + 1 - last;
-            for (a, b) in orders[2..last].iter().zip(orders[first..k - 1].iter().rev()) {
+            for (a, b) in orders[2..last]
+                .iter()
+                .zip(orders[first..k - 1].iter().rev())
+            {
                 sums.add(a, b);
             }
         }
@@ -179,27 +200,37 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
     fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Pack<L, R>; 3]) {
         let reciprocal = Pack::new(RECIPROCALS[k + 1]);
         let half = Pack::new(0.5 * RECIPROCALS[k + 1]);
+        let [a, b, c] = &sums.q;
         let mut next = Coefficient {
             w: *acceleration,
-            q: sums.q[0],
+            q: [
+                a[3] - b[2] + c[1],
+                a[2] + b[3] - c[0],
+                -a[1] + b[0] + c[3],
+                -a[0] - b[1] - c[2],
+            ],
             g: [[reciprocal; 3]; B],
         };
         for w in &mut next.w {
             *w = *w * reciprocal;
         }
-        for i in 0..4 {
-            next.q[i] = (sums.q[0][i] + sums.q[1][i] + sums.q[2][i]) * half;
+        for q in &mut next.q {
+            *q = *q * half;
         }
-        for (g, sum) in next.g.iter_mut().zip(&sums.g) {
-            for i in 0..3 {
-                g[i] = (sum[i][0] + sum[i][1]) * reciprocal;
-            }
+        // The zeros stand where Alone has one, for the signs of zeros.
+        let zero = Pack::new(0.0);
+        for (g, [a, b, c]) in next.g.iter_mut().zip(&sums.g) {
+            *g = [
+                (zero - b[1] + c[1]) * reciprocal,
+                (a[1] + zero - c[0]) * reciprocal,
+                (-a[0] + b[0] + zero) * reciprocal,
+            ];
         }
         self.orders[k + 1] = next;
     }
 }
 
-/// `W` numbers in the lanes: (x, y, z, w) of the attitude, then the directions.
+/// `W` numbers in the lanes: (x, y, z, w) of the attitude, then the directions, then zeros.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 struct Components<L, const W: usize>([L; W]);
@@ -218,21 +249,86 @@ impl<L: Lane, const W: usize> Components<L, W> {
         }
         self
     }
+
+    /// `other`, its lanes put in another order and given signs, added to `self`.
+    #[inline(always)]
+    fn plus_turned(mut self, turn: &Turn<W>, other: &Self) -> Self {
+        for i in 0..W {
+            let factor = L::new(turn.signs[i]);
+            self.0[i] = factor.mul_add(other.0[turn.from[i]], self.0[i]);
+        }
+        self
+    }
+}
+
+/// What a component of ω makes of attitude and directions: which of their components, with which sign, goes where.
+#[derive(Clone, Copy)]
+struct Turn<const W: usize> {
+    from: [usize; W],
+    signs: [f64; W],
+}
+
+/// The turns by the three components of ω: of q by q∘ω, of γ by γ×ω. Since they only change places and signs, they can be
+/// done on sums of products instead of on each factor.
+const fn turns<const B: usize, const W: usize>() -> [Turn<W>; 3] {
+    let nothing = W - 1;
+    let mut turns = [Turn {
+        from: [nothing; W],
+        signs: [1.0; W],
+    }; 3];
+    let from = [[3, 2, 1, 0], [2, 3, 0, 1], [1, 0, 3, 2]];
+    let signs = [
+        [1.0, 1.0, -1.0, -1.0],
+        [-1.0, 1.0, 1.0, -1.0],
+        [1.0, -1.0, 1.0, -1.0],
+    ];
+    let mut n = 0;
+    while n < 3 {
+        let mut i = 0;
+        while i < 4 {
+            turns[n].from[i] = from[n][i];
+            turns[n].signs[i] = signs[n][i];
+            i += 1;
+        }
+        let mut b = 0;
+        while b < B {
+            let at = 4 + 3 * b;
+            let (next, last) = ((n + 1) % 3, (n + 2) % 3);
+            // (γ×e_n): component n + 1 is γ of n + 2, component n + 2 is −γ of n + 1.
+            turns[n].from[at + next] = at + last;
+            turns[n].from[at + last] = at + next;
+            turns[n].signs[at + last] = -1.0;
+            b += 1;
+        }
+        n += 1;
+    }
+    turns
 }
 
 /// One order of [`Alone`].
 #[derive(Clone, Copy, Debug)]
 struct Order<L, const W: usize> {
-    /// What each component of ω multiplies.
-    turned: [Components<L, W>; 3],
+    numbers: Components<L, W>,
+    w: [L; 4],
     /// (ω₂, ω₃, ω₁) and (ω₃, ω₁, ω₂).
     next_w: [L; 4],
     last_w: [L; 4],
-    w: [L; 3],
-    numbers: Components<L, W>,
 }
 
-/// One motion, the lanes over its `W` ≥ 4 + 3 `B` components.
+impl<L: Lane, const W: usize> Order<L, W> {
+    #[inline(always)]
+    fn new([w0, w1, w2]: [L; 3], numbers: Components<L, W>) -> Self {
+        let zero = L::new(0.0);
+        Self {
+            numbers,
+            w: [w0, w1, w2, zero],
+            next_w: [w1, w2, w0, zero],
+            last_w: [w2, w0, w1, zero],
+        }
+    }
+}
+
+/// One motion, the lanes over its components: `W` > 4 + 3 `B`, or four without directions.
 #[derive(Clone, Debug)]
 pub(super) struct Alone<L, const B: usize, const W: usize> {
     orders: [Order<L, W>; COUNT],
@@ -240,10 +336,11 @@ pub(super) struct Alone<L, const B: usize, const W: usize> {
     ahead: LaneSums<L, W>,
 }
 
+/// The sums of products of [`Alone`]: of ω with itself, and of each component of ω with all other numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LaneSums<L, const W: usize> {
     w: [L; 4],
-    turned: [Components<L, W>; 3],
+    numbers: [Components<L, W>; 3],
 }
 
 impl<L: Lane, const W: usize> LaneSums<L, W> {
@@ -251,16 +348,16 @@ impl<L: Lane, const W: usize> LaneSums<L, W> {
     fn new() -> Self {
         Self {
             w: [L::new(0.0); 4],
-            turned: [Components::new(); 3],
+            numbers: [Components::new(); 3],
         }
     }
 
     #[inline(always)]
     fn add(&mut self, a: &Order<L, W>, b: &Order<L, W>) {
-        self.turned = [
-            self.turned[0].plus_product(b.w[0], &a.turned[0]),
-            self.turned[1].plus_product(b.w[1], &a.turned[1]),
-            self.turned[2].plus_product(b.w[2], &a.turned[2]),
+        self.numbers = [
+            self.numbers[0].plus_product(b.w[0], &a.numbers),
+            self.numbers[1].plus_product(b.w[1], &a.numbers),
+            self.numbers[2].plus_product(b.w[2], &a.numbers),
         ];
         for i in 0..4 {
             self.w[i] = a.next_w[i].mul_add(b.last_w[i], self.w[i]);
@@ -268,39 +365,8 @@ impl<L: Lane, const W: usize> LaneSums<L, W> {
     }
 }
 
-impl<L: Lane, const W: usize> Order<L, W> {
-    #[inline(always)]
-    fn new<const B: usize>(w: [L; 3], numbers: Components<L, W>) -> Self {
-        let zero = L::new(0.0);
-        let mut turned = [Components::new(); 3];
-        let half = L::new(0.5);
-        let (x, y) = (numbers.0[0] * half, numbers.0[1] * half);
-        let (z, s) = (numbers.0[2] * half, numbers.0[3] * half);
-        let quaternion = [[s, z, -y, -x], [-z, s, x, -y], [y, -x, s, -z]];
-        for n in 0..3 {
-            for i in 0..4 {
-                turned[n].0[i] = quaternion[n][i];
-            }
-        }
-        for b in 0..B {
-            let at = 4 + 3 * b;
-            let (x, y, z) = (numbers.0[at], numbers.0[at + 1], numbers.0[at + 2]);
-            let direction = [[zero, z, -y], [-z, zero, x], [y, -x, zero]];
-            for n in 0..3 {
-                for i in 0..3 {
-                    turned[n].0[at + i] = direction[n][i];
-                }
-            }
-        }
-        let [w0, w1, w2] = w;
-        Self {
-            turned,
-            next_w: [w1, w2, w0, zero],
-            last_w: [w2, w0, w1, zero],
-            w,
-            numbers,
-        }
-    }
+impl<L: Lane, const B: usize, const W: usize> Alone<L, B, W> {
+    const TURNS: [Turn<W>; 3] = turns::<B, W>();
 }
 
 impl<L: Lane, const B: usize, const W: usize> Series<Pack<L, 1>, B> for Alone<L, B, W> {
@@ -308,7 +374,7 @@ impl<L: Lane, const B: usize, const W: usize> Series<Pack<L, 1>, B> for Alone<L,
     fn new() -> Self {
         let zero = L::new(0.0);
         Self {
-            orders: [Order::new::<0>([zero; 3], Components::new()); COUNT],
+            orders: [Order::new([zero; 3], Components::new()); COUNT],
             ahead: LaneSums::new(),
         }
     }
@@ -325,7 +391,7 @@ impl<L: Lane, const B: usize, const W: usize> Series<Pack<L, 1>, B> for Alone<L,
             }
         }
         let [w0, w1, w2] = &state.w;
-        self.orders[0] = Order::new::<B>([w0.0[0], w1.0[0], w2.0[0]], numbers);
+        self.orders[0] = Order::new([w0.0[0], w1.0[0], w2.0[0]], numbers);
     }
 
     #[inline(always)]
@@ -387,12 +453,19 @@ impl<L: Lane, const B: usize, const W: usize> Series<Pack<L, 1>, B> for Alone<L,
     fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Pack<L, 1>; 3]) {
         let reciprocal = L::new(RECIPROCALS[k + 1]);
         let mut numbers = Components::new();
+        for (turn, sum) in Self::TURNS.iter().zip(&sums.numbers) {
+            numbers = numbers.plus_turned(turn, sum);
+        }
         for i in 0..W {
-            let [a, b, c] = &sums.turned;
-            numbers.0[i] = (a.0[i] + b.0[i] + c.0[i]) * reciprocal;
+            let half = if i < 4 { 0.5 } else { 1.0 };
+            numbers.0[i] = numbers.0[i] * L::new(half * RECIPROCALS[k + 1]);
         }
         let [w0, w1, w2] = acceleration;
-        let w = [w0.0[0] * reciprocal, w1.0[0] * reciprocal, w2.0[0] * reciprocal];
-        self.orders[k + 1] = Order::new::<B>(w, numbers);
+        let w = [
+            w0.0[0] * reciprocal,
+            w1.0[0] * reciprocal,
+            w2.0[0] * reciprocal,
+        ];
+        self.orders[k + 1] = Order::new(w, numbers);
     }
 }

@@ -25,12 +25,7 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
     /// and the next increment takes it along: nothing is rounded for it.
     #[inline(always)]
     pub(super) fn add(&mut self, increment: &[Pack<L, R>; 7]) {
-        for i in 0..7 {
-            for row in 0..R {
-                let change = increment[i].0[row] + self.rest[i].0[row];
-                (self.value[i].0[row], self.rest[i].0[row]) = two_sum(self.value[i].0[row], change);
-            }
-        }
+        compensate(&mut self.value, &mut self.rest, increment);
         // ½ (1 − |q|²), with the rest: the first-order correction.
         let mut lack = Pack::new(1.0);
         for i in 3..7 {
@@ -43,7 +38,16 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
         }
     }
 
-    /// The state moved by `increment`.
+    /// The state of one row.
+    pub(super) fn now(&self, row: usize) -> [f64; 7] {
+        let mut state = [0.0; 7];
+        for i in 0..7 {
+            state[i] = self.value[i].get(row);
+        }
+        state
+    }
+
+    /// The state of one row moved by `increment`.
     #[inline(always)]
     pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [f64; 7] {
         let mut state = [0.0; 7];
@@ -52,6 +56,21 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
             state[i] = self.value[i].get(row) + change;
         }
         state
+    }
+}
+
+/// Adds increments to values and to what rounding has left out of them.
+#[inline(always)]
+pub(super) fn compensate<L: Lane, const R: usize, const N: usize>(
+    values: &mut [Pack<L, R>; N],
+    rests: &mut [Pack<L, R>; N],
+    increments: &[Pack<L, R>; N],
+) {
+    for i in 0..N {
+        for row in 0..R {
+            let change = increments[i].0[row] + rests[i].0[row];
+            (values[i].0[row], rests[i].0[row]) = two_sum(values[i].0[row], change);
+        }
     }
 }
 
