@@ -25,13 +25,16 @@ from polhode.results import (
     PrincipalAxes,
     PrincipalDerivative,
     Provenance,
-    Trajectory,
 )
+from polhode.trajectory import Event, Events, Invariants, State, Trajectory
 
 __all__ = [
     "AngularMomentum",
     "ErrorBound",
+    "Event",
+    "Events",
     "FreePrecession",
+    "Invariants",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",
@@ -39,6 +42,7 @@ __all__ = [
     "PrincipalDerivative",
     "Provenance",
     "RigidBody",
+    "State",
     "Trajectory",
     "__version__",
     "equimomental",

@@ -78,6 +78,12 @@ impl GravityGradient {
         }
     }
 
+    /// Whether its epoch is the start of the motion.
+    #[must_use]
+    pub fn needs_epoch(&self) -> bool {
+        self.epoch.is_none()
+    }
+
     /// The same with the epoch `t` where it has none.
     #[must_use]
     pub fn anchored(self, t: f64) -> Self {

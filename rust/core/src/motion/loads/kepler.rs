@@ -17,11 +17,11 @@ const TURN: DoubleDouble = DoubleDouble {
 /// molecules nor galaxies leave the range of float64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
-    mu_given: f64,
+    mu: f64,
     /// The units of length and time.
     length: f64,
     time: f64,
-    mu: f64,
+    scaled_mu: f64,
     position: Vector3<f64>,
     velocity: Vector3<f64>,
     distance: f64,
@@ -57,7 +57,7 @@ impl Orbit {
         let l = largest.log2().round();
         let t = (0.5 * (3.0 * l - mu.log2())).round();
         let (length, time) = (l.exp2(), t.exp2());
-        let mu_scaled = mu * (2.0 * t - 3.0 * l).exp2();
+        let scaled_mu = mu * (2.0 * t - 3.0 * l).exp2();
         let (r, v) = (position / length, velocity * time / length);
         all_finite("position, velocity and mu, taken together,", &v)?;
         let swept = r.cross(&v).norm();
@@ -69,7 +69,7 @@ impl Orbit {
                 sum + DoubleDouble::from(x) * x.into()
             })
         };
-        let (distance, exact_mu) = (root(square(&r)), DoubleDouble::from(mu_scaled));
+        let (distance, exact_mu) = (root(square(&r)), DoubleDouble::from(scaled_mu));
         let beta = (exact_mu + exact_mu) / distance - square(&v);
         let frequency = if beta.high > 0.0 {
             root(beta * beta * beta) / exact_mu / TURN
@@ -77,10 +77,10 @@ impl Orbit {
             DoubleDouble::default()
         };
         Ok(Self {
-            mu_given: mu,
+            mu,
             length,
             time,
-            mu: mu_scaled,
+            scaled_mu,
             position: r,
             velocity: v,
             distance: distance.high,
@@ -93,7 +93,7 @@ impl Orbit {
     /// μ.
     #[must_use]
     pub fn mu(&self) -> f64 {
-        self.mu_given
+        self.mu
     }
 
     /// Position and velocity at a time after the state the orbit was given with.
@@ -104,7 +104,7 @@ impl Orbit {
     #[must_use]
     pub fn at(&self, elapsed: f64) -> (Vector3<f64>, Vector3<f64>) {
         let t = self.reduced(elapsed / self.time);
-        let (r0, mu) = (self.distance, self.mu);
+        let (r0, mu) = (self.distance, self.scaled_mu);
         let functions = functions(self.beta, self.solve(t));
         let ([_, g1, g2, _], r) = (functions, self.distance_at(&functions));
         let (f, g) = (1.0 - mu * g2 / r0, r0 * g1 + self.sigma * g2);
@@ -138,7 +138,7 @@ impl Orbit {
         if self.beta > 0.0 {
             // E − M is at most the eccentricity, less than one, at both ends.
             let root = self.beta.sqrt();
-            s = t * self.beta / self.mu;
+            s = t * self.beta / self.scaled_mu;
             (low, high) = (s - 2.0 / root, s + 2.0 / root);
         } else {
             s = t / self.distance;
@@ -158,7 +158,7 @@ impl Orbit {
                 low = s;
             }
             let slope = self.distance_at(&g);
-            let bend = self.sigma * g[0] + (self.mu - self.beta * self.distance) * g[1];
+            let bend = self.sigma * g[0] + (self.scaled_mu - self.beta * self.distance) * g[1];
             let radical = (16.0 * slope * slope - 20.0 * excess * bend).abs().sqrt();
             let next = s - 5.0 * excess / (slope + radical);
             let next = if next > low && next < high {
@@ -175,11 +175,11 @@ impl Orbit {
     }
 
     fn time_at(&self, [_, g1, g2, g3]: &[f64; 4]) -> f64 {
-        self.distance * g1 + self.sigma * g2 + self.mu * g3
+        self.distance * g1 + self.sigma * g2 + self.scaled_mu * g3
     }
 
     fn distance_at(&self, [g0, g1, g2, _]: &[f64; 4]) -> f64 {
-        self.distance * g0 + self.sigma * g1 + self.mu * g2
+        self.distance * g0 + self.sigma * g1 + self.scaled_mu * g2
     }
 }
 

@@ -61,9 +61,24 @@ where
     L::Error: 'a,
 {
     let moves = !task.subject.pivoted && load.exerts_force();
-    Ok(match task.method.for_load(load)? {
-        _ if moves => Box::new(Explicit::<L, MOVING>::new(task, span, load)?),
-        _ => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
+    Ok(match task.method {
+        Method::Auto | Method::Dop853 if moves => {
+            Box::new(Explicit::<L, MOVING>::new(task, span, load)?)
+        }
+        Method::Auto | Method::Dop853 => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
+        Method::Taylor => {
+            let needs = if load.analytic().is_none() {
+                "the loads of polhode.loads other than callbacks"
+            } else {
+                "a run without events"
+            };
+            return Err(Error::MethodCannotServe {
+                method: "taylor",
+                needs,
+                instead: "dop853",
+            }
+            .into());
+        }
     })
 }
 
@@ -134,24 +149,6 @@ impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
         Carry {
             scales: self.equations.scales,
             step: Some(self.stepper.step()),
-        }
-    }
-}
-
-impl Method {
-    /// The method itself when it can serve `load`; what [`Method::Auto`] chooses for it.
-    fn for_load<L: Load>(self, load: &L) -> Result<Self, Error> {
-        match self {
-            Self::Auto | Self::Dop853 => Ok(Self::Dop853),
-            Self::Taylor => Err(Error::MethodCannotServe {
-                method: "taylor",
-                needs: if load.analytic().is_none() {
-                    "the loads of polhode.loads other than callbacks"
-                } else {
-                    "a run without events"
-                },
-                instead: "dop853",
-            }),
         }
     }
 }

@@ -22,7 +22,7 @@ const PATIENCE: u32 = 64;
 const LAST_TERM: f64 = 0.05;
 /// How far ω may outgrow the unit of rates before another is taken: far below where its 24th power overflows.
 const OUTGROWN: f64 = 65_536.0;
-/// The halvings that find where a feedback changes its sign within a step.
+/// The halvings that find where within a step the law changes.
 const HALVINGS: u32 = 55;
 
 /// What all motions of a run have in common.
@@ -85,7 +85,7 @@ enum Landing {
     Flip,
 }
 
-/// The search for the first time in a step at which a feedback has changed its sign: a look at its end, then halvings.
+/// The search for the first time in a step at which a feedback has changed its sign or ω passed through zero: a look at its end, then halvings.
 struct Search {
     before: f64,
     after: f64,
@@ -228,7 +228,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         let mut h = longest(&self.series, order, last_term, &self.fastest);
         self.extras
             .limit(&self.series, &self.field, &self.fastest, &mut h);
-        let mut eventful = self.settings.parts.on_attitude;
+        let mut eventful = self.settings.parts.may_flip();
         for row in 0..R {
             let (now, gap) = (self.now[row].0, self.gap(row));
             // Not "h >= gap": NaN is an event too.
@@ -318,7 +318,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
     /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.
     #[inline(always)]
     fn pass(&mut self, row: usize, mut h: f64) -> (f64, Landing) {
-        let mut search = Search::new(self.settings.parts.on_attitude, h);
+        let mut search = Search::new(self.settings.parts.may_flip(), h);
         loop {
             let looked_at = search.time();
             let time = match looked_at {
@@ -332,7 +332,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
             };
             let (state, place) = self.within(row, time);
             if looked_at.is_some() {
-                search.narrow(self.has_flipped(row, &state));
+                search.narrow(self.has_flipped(row, time, &state));
                 h = search.end();
             } else {
                 self.give(row, &state, place.as_ref());
@@ -354,11 +354,13 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         (state, place)
     }
 
-    /// Whether a feedback has another sign in `state` than at the start of the step.
+    /// Whether a feedback has another sign in the `state` at a time since the start of the step than there, or ω has passed
+    /// through zero under quadratic damping.
     #[inline(never)]
-    fn has_flipped(&self, row: usize, state: &[f64; 7]) -> bool {
+    fn has_flipped(&self, row: usize, time: f64, state: &[f64; 7]) -> bool {
         let lead = self.leads[row].as_ref();
         lead.is_some_and(|lead| lead.job.course.has_flipped(state))
+            || self.extras.is_reversed(row, self.settings.order, time)
     }
 
     /// The time from now to the next stop, positive also backward in time.

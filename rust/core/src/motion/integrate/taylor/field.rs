@@ -40,6 +40,13 @@ pub(super) struct Parts {
     pub(super) is_pushed: bool,
 }
 
+impl Parts {
+    /// Whether the law may change with the state: by the sign of a feedback, or of ω that passes through zero.
+    pub(super) fn may_flip(&self) -> bool {
+        self.on_attitude || self.quadratic
+    }
+}
+
 impl<const B: usize> Field<f64, B> {
     /// Nothing turns.
     pub(super) const NONE: Self = Self {
