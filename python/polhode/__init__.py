@@ -15,7 +15,14 @@ from polhode import (
     tops,
     validity,
 )
-from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
+from polhode._core import (
+    FreeMotion,
+    MassAccumulator,
+    RigidBody,
+    __version__,
+    principal_axes,
+    principal_moments,
+)
 from polhode.events import Event, Events
 from polhode.results import (
     AngularMomentum,
@@ -36,6 +43,7 @@ __all__ = [
     "ErrorBound",
     "Event",
     "Events",
+    "FreeMotion",
     "FreePrecession",
     "Invariants",
     "KineticEnergy",
