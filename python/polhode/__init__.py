@@ -15,24 +15,35 @@ from polhode import (
     tops,
     validity,
 )
-from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
+from polhode._core import (
+    FreeMotion,
+    MassAccumulator,
+    RigidBody,
+    __version__,
+    principal_axes,
+    principal_moments,
+)
+from polhode.events import Event, Events
 from polhode.results import (
     AngularMomentum,
     ErrorBound,
     FreePrecession,
+    Invariants,
     KineticEnergy,
     Particles,
     PrincipalAxes,
     PrincipalDerivative,
     Provenance,
+    State,
 )
-from polhode.trajectory import Event, Events, Invariants, State, Trajectory
+from polhode.trajectory import Trajectory
 
 __all__ = [
     "AngularMomentum",
     "ErrorBound",
     "Event",
     "Events",
+    "FreeMotion",
     "FreePrecession",
     "Invariants",
     "KineticEnergy",

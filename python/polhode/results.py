@@ -19,12 +19,14 @@ __all__ = [
     "BoxFit",
     "ErrorBound",
     "FreePrecession",
+    "Invariants",
     "KineticEnergy",
     "NearestValid",
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",
     "Provenance",
+    "State",
 ]
 
 
@@ -303,3 +305,40 @@ class FreePrecession(NamedTuple):
     body_cone: Any
     space_cone: Any
     nutation: Any
+
+
+class State(NamedTuple):
+    """A state of motion, in the words of `simulate`: ``body.simulate(t, **state._asdict())``.
+
+    Attributes
+    ----------
+    omega : numpy.ndarray, shape (..., 3)
+    attitude : numpy.ndarray, shape (..., 4)
+    position, velocity : numpy.ndarray, shape (..., 3)
+    """
+
+    omega: Floats
+    attitude: Floats
+    position: Floats
+    velocity: Floats
+
+
+class Invariants(NamedTuple):
+    """What a motion keeps, and how far the numbers have drifted from it.
+
+    Attributes
+    ----------
+    energy : numpy.ndarray, shape (..., T), or None
+        Kinetic and potential; None where the load has no potential.
+    angular_momentum : numpy.ndarray, shape (..., T, 3) or (..., T), or None
+        About the point `about`, in space, where no torque acts; its component along the field where the
+        torque of a uniform field acts; None where neither is kept.
+    energy_drift, angular_momentum_drift : float or numpy.ndarray, shape (...), or None
+        The largest change since the start, relative to the largest sum of the sizes of both energies, and to
+        the largest angular momentum.
+    """
+
+    energy: Floats | None
+    angular_momentum: Floats | None
+    energy_drift: Any
+    angular_momentum_drift: Any

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from polhode import _core
-from polhode.results import AngularMomentum, KineticEnergy
+from polhode.events import Events
+from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from os import PathLike
 
     from matplotlib.axes import Axes
@@ -23,112 +23,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Event", "Events", "Invariants", "State", "Trajectory"]
-
-
-@dataclass(frozen=True, eq=False)
-class Event:
-    """A function of the motion whose passages through zero `simulate` looks for.
-
-    Any function will do; this gives it the attributes that SciPy's ``solve_ivp`` reads too.
-
-    Attributes
-    ----------
-    function : callable
-        ``function(t, omega, quaternion, position, velocity)`` returns a number: zero at the event.
-    direction : float
-        Positive: only passages that rise in time count; negative: only those that fall; zero: all.
-    terminal : bool or int
-        True ends the run at the first passage, a number n at the n-th.
-
-    Examples
-    --------
-    The flips of a racket that spins about its intermediate axis:
-
-    >>> from polhode import Event, RigidBody
-    >>> racket = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
-    >>> flip = Event(lambda t, omega, *_: omega[1], terminal=3)
-    >>> motion = racket.simulate([0, 200], omega=(1e-3, 1.0, 1e-3), events=flip)
-    >>> motion.events.t.round(4), motion.status
-    (array([ 22.8707,  62.156 , 101.4413]), 'event')
-    """
-
-    function: Callable[..., float]
-    direction: float = 0.0
-    terminal: bool | int = False
-
-    def __call__(
-        self, t: float, omega: Floats, quaternion: Floats, position: Floats, velocity: Floats
-    ) -> float:
-        """Evaluate the function."""
-        return self.function(t, omega, quaternion, position, velocity)
-
-
-class Events(NamedTuple):
-    """The events of all bodies of a stack, one after the other: a table of its columns.
-
-    Attributes
-    ----------
-    row : numpy.ndarray of int, shape (n,)
-        Which body: the index into the flattened stack, see :func:`numpy.unravel_index`.
-    event : numpy.ndarray of int, shape (n,)
-        Which of the functions.
-    t : numpy.ndarray, shape (n,)
-    omega : numpy.ndarray, shape (n, 3)
-    quaternion : numpy.ndarray, shape (n, 4)
-    position, velocity : numpy.ndarray, shape (n, 3)
-        The state then.
-    """
-
-    row: NDArray[np.int64]
-    event: NDArray[np.int64]
-    t: Floats
-    omega: Floats
-    quaternion: Floats
-    position: Floats
-    velocity: Floats
-
-
-def _no_events() -> Events:
-    none, vectors = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
-    return Events(none, none, np.zeros(0), vectors, np.zeros((0, 4)), vectors, vectors)
-
-
-class State(NamedTuple):
-    """A state of motion, in the words of `simulate`: ``body.simulate(t, **state._asdict())``.
-
-    Attributes
-    ----------
-    omega : numpy.ndarray, shape (..., 3)
-    attitude : numpy.ndarray, shape (..., 4)
-    position, velocity : numpy.ndarray, shape (..., 3)
-    """
-
-    omega: Floats
-    attitude: Floats
-    position: Floats
-    velocity: Floats
-
-
-class Invariants(NamedTuple):
-    """What a motion keeps, and how far the numbers have drifted from it.
-
-    Attributes
-    ----------
-    energy : numpy.ndarray, shape (..., T), or None
-        Kinetic and potential; None where the load has no potential.
-    angular_momentum : numpy.ndarray, shape (..., T, 3) or (..., T), or None
-        About the point `about`, in space, where no torque acts; its component along the field where the
-        torque of a uniform field acts; None where neither is kept.
-    energy_drift, angular_momentum_drift : float or numpy.ndarray, shape (...), or None
-        The largest change since the start, relative to the largest sum of the sizes of both energies, and to
-        the largest angular momentum.
-    """
-
-    energy: Floats | None
-    angular_momentum: Floats | None
-    energy_drift: Any
-    angular_momentum_drift: Any
+__all__ = ["Trajectory"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -175,7 +70,7 @@ class Trajectory:
     evaluations: NDArray[np.int64]
     load: _core.Load | None = None
     status: Any = "complete"
-    events: Events = field(default_factory=_no_events)
+    events: Events = field(default_factory=Events.none)
     failures: tuple[IntegrationError | PolhodeError, ...] = ()
     pivoted: bool = False
 

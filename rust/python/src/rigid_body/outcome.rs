@@ -142,7 +142,7 @@ fn table<'py>(py: Python<'py>, runs: &Runs) -> PyResult<Bound<'py, PyAny>> {
         write_of(py, &found, |found| found.1.phase.position)?,
         write_of(py, &found, |found| found.1.phase.velocity)?,
     );
-    py.import("polhode.trajectory")?
+    py.import("polhode.events")?
         .getattr("Events")?
         .call1(columns)
 }
