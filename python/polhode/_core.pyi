@@ -207,7 +207,9 @@ class RigidBody:
         faces: ArrayLike,
         *,
         areal_density: float | None = None,
+        density: float | None = None,
         mass: float | None = None,
+        thickness: float | None = None,
     ) -> RigidBody: ...
     @staticmethod
     def from_curve(

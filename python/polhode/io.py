@@ -252,8 +252,11 @@ def solid_from_file(
 ) -> MeshSolid:
     """Make the solid that the mesh in a file bounds, naming the file in what is wrong with it.
 
-    Binary STL and PLY go through memory block by block, whatever their size; other formats, and files whose
-    corners are to be welded within a length, are read whole.
+    Binary STL and PLY go through memory block by block, whatever their size, but for the vertices of a
+    PLY, which its faces name in any order; other formats, and files whose corners are to be welded within
+    a length, are read whole. A stream is gone through again for every eight million triangles, to look for
+    faces that stand twice; that components wound inward are cavities, inside others, is checked of a
+    quarter of a million triangles at most. `provenance` lists what was checked.
 
     Parameters
     ----------
