@@ -42,7 +42,8 @@ impl Settings {
     /// `tolerance^(1/order)`.
     pub(super) fn new(relative: f64, absolute: f64, parts: Parts) -> Self {
         let nats = -(LAST_TERM * relative).ln();
-        let order = 2 * ((0.3 * nats) as usize).clamp(4, HIGHEST_ORDER / 2);
+        let mut halves = (4..HIGHEST_ORDER / 2).filter(|&half| half as f64 + 1.0 <= 0.3 * nats);
+        let order = 2 * halves.next_back().map_or(4, |half| half + 1);
         Self {
             order,
             last_term: (LAST_TERM * relative).log2(),
@@ -99,7 +100,7 @@ impl Search {
         Self {
             before: if h.is_finite() { h } else { 0.0 },
             after: h,
-            looks: if is_needed && h.is_finite() { 1 } else { 0 },
+            looks: u32::from(is_needed && h.is_finite()),
             has_found: false,
         }
     }
@@ -170,9 +171,9 @@ struct Lanes<'a, L, S, const B: usize, const R: usize> {
 /// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
 /// done, and may stop them.
 #[inline(always)]
-pub(super) fn drive<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize>(
+pub(super) fn drive<L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize>(
     settings: Settings,
-    jobs: &mut dyn Iterator<Item = Job<'a>>,
+    jobs: &mut dyn Iterator<Item = Job<'_>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let zero = Pack::new(0.0);
@@ -231,8 +232,9 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         let mut eventful = self.settings.parts.may_flip();
         for row in 0..R {
             let (now, gap) = (self.now[row].0, self.gap(row));
-            // Not "h >= gap": NaN is an event too.
-            eventful |= !(h[row] < gap) | !(h[row] > f64::EPSILON * now.abs());
+            // What is not a number is an event too.
+            let is_plain = (h[row] < gap) & (h[row] > f64::EPSILON * now.abs());
+            eventful |= !is_plain;
         }
         let mut landings = [Landing::None; R];
         if eventful {
@@ -342,6 +344,10 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
 
     /// The state of a motion, and its position and velocity when it is pushed, at a time since the start of the step.
     #[inline(always)]
+    #[expect(
+        clippy::manual_map,
+        reason = "a closure would be compiled without the instructions of the level"
+    )]
     fn within(&self, row: usize, time: f64) -> ([f64; 7], Option<[f64; 6]>) {
         let mut within = Pack::new(0.0);
         within.set(row, time);
@@ -378,7 +384,8 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         let Some(lead) = &self.leads[row] else {
             return Meeting::End;
         };
-        if !(h > f64::EPSILON * self.now[row].0.abs()) {
+        let advances = h > f64::EPSILON * self.now[row].0.abs();
+        if !advances {
             let error = if h.is_finite() {
                 Error::StepTooSmall {
                     time,

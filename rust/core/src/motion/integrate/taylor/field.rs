@@ -25,6 +25,10 @@ pub(super) struct Field<T, const B: usize> {
 }
 
 /// Which parts the equations have; the others are zero, and are left out.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "the parts come in every combination"
+)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Parts {
     /// How many directions fixed in space.

@@ -1,5 +1,10 @@
 //! Taylor series: each step sums the power series of the motion in time, to the order at which the work is least.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "rows and components are indices of several arrays at once"
+)]
+
 mod course;
 mod drive;
 mod extras;
