@@ -165,7 +165,9 @@ impl Ensemble<'_> {
 
     /// Whether every row is a matter of Taylor series.
     fn is_for_taylor(&self) -> bool {
-        self.method != Method::Dop853 && self.events.is_empty() && self.load.is_analytic()
+        matches!(self.method, Method::Auto | Method::Taylor)
+            && self.events.is_empty()
+            && self.load.is_analytic()
     }
 
     fn task(&self, row: usize) -> Task<'_> {

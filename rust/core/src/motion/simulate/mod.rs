@@ -5,6 +5,8 @@
 
 mod equations;
 pub mod events;
+mod implicit;
+mod kicked;
 mod stepper;
 
 use std::ops::ControlFlow;
@@ -69,6 +71,10 @@ pub enum Method {
     Taylor,
     /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
     Dop853,
+    /// The implicit Runge-Kutta method Radau IIA of order 5: every load, for those that are stiff.
+    Radau,
+    /// Kicks between exact free motions at equal steps: loads that do not depend on rates, for long times.
+    Splitting,
 }
 
 /// What is to be simulated: a body from a state through times, and how.
@@ -232,7 +238,7 @@ fn with_taylor<L: Load>(
     events: &mut dyn Events<Error = L::Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Option<Run<L::Error>> {
-    if task.method == Method::Dop853 || !events.rules().is_empty() {
+    if !matches!(task.method, Method::Auto | Method::Taylor) || !events.rules().is_empty() {
         return None;
     }
     let run = taylor::solve_one(task, load.analytic()?, watch);

@@ -1,4 +1,18 @@
 //! Taylor series: each step sums the power series of the motion in time, to the order at which the work is least.
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
+//! | `field` | the equations that are linear in the coefficients of one order |
+//! | `terms`, `extras` | the recurrences of terms that are not |
+//! | `moment` | what depends on time alone |
+//! | `series` | the sums of products, the lanes over components or over motions |
+//! | `push` | the path of a body that forces act on |
+//! | `step` | the length of a step, the state at its end or within |
+//! | `drive` | steps, outputs, breaks, until all motions are done |
+//! | `pack` | one number of several motions |
+//!
+//! Sources: Jorba & Zou, Experimental Mathematics 14 (2005) 99; Hairer, Nørsett & Wanner, Solving ODEs I, §I.8.
 
 #![expect(
     clippy::needless_range_loop,
