@@ -74,7 +74,7 @@ def marked(case: MotionCase) -> Any:
     return pytest.param(case, id=case.name, marks=[missed] if case.name in UNSTABLE_ON_THE_WAY else [])
 
 
-@pytest.mark.parametrize("case", map(marked, CASES))
+@pytest.mark.parametrize("case", [marked(case) for case in CASES])
 def test_ten_rotations_to_the_last_digits(case: MotionCase) -> None:
     for t, want in list(zip(case.times, case.expected, strict=True))[:2]:
         omega, quaternion = motion(case, case.omega, case.attitude, t)
