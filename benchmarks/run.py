@@ -23,6 +23,7 @@ FILES_OF_ROWS = (
     "voxels",
     "meshes",
     "free_motion",
+    "simulate",
     "threads",
 )
 

@@ -28,7 +28,7 @@ def constant(value: Any) -> Callable[[float, Any, Any], Any]:
 class TestCallback:
     def test_a_callback_that_returns_a_constant_is_the_constant_torque(self) -> None:
         t = np.linspace(0, 10, 11)
-        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE))
+        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE), method="dop853")
         for value in (TORQUE, list(TORQUE), np.array(TORQUE), np.array(TORQUE, dtype=np.float64)[::1]):
             got = BODY.simulate(t, RATES, load=loads.torque_callback(constant(value)))
             assert np.array_equal(got.omega, want.omega)
@@ -79,7 +79,7 @@ class TestCallback:
         t = np.linspace(0, 10, 11)
         half = tuple(x / 2 for x in TORQUE)
         both = loads.torque_callback(lambda _t, _w, _q: half) + loads.constant_torque(half)
-        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE))
+        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE), method="dop853")
         assert np.abs(BODY.simulate(t, RATES, load=both).omega - want.omega).max() < 1e-13
 
     def test_in_a_stack_it_is_asked_row_by_row(self) -> None:
@@ -99,7 +99,7 @@ class TestCallback:
             quaternion[:] = 0.0
             return (0.0, 0.0, 0.0)
 
-        free = BODY.simulate([0.0, 5.0], RATES)
+        free = BODY.simulate([0.0, 5.0], RATES, method="dop853")
         scribbled = BODY.simulate([0.0, 5.0], RATES, load=loads.torque_callback(scribble))
         assert np.array_equal(scribbled.omega, free.omega)
 
@@ -107,7 +107,7 @@ class TestCallback:
         def nested(_t: float, omega: Any, _quaternion: Any) -> Any:
             return 0 * BODY.simulate([0.0, 0.1], omega).omega[-1]
 
-        free = BODY.simulate([0.0, 1.0], RATES)
+        free = BODY.simulate([0.0, 1.0], RATES, method="dop853")
         assert np.array_equal(
             BODY.simulate([0.0, 1.0], RATES, load=loads.torque_callback(nested)).omega, free.omega
         )

@@ -240,16 +240,11 @@ class TestOutput:
         assert np.array_equal(trajectory.omega[0], START)
 
     def test_work_is_counted(self) -> None:
-        trajectory = BRICK.simulate([0.0, 30.0], START)
+        trajectory = BRICK.simulate([0.0, 30.0], START, method="dop853")
         assert 5 < int(trajectory.steps) < 1000
         assert int(trajectory.evaluations) > 11 * int(trajectory.steps)
-        sharper = BRICK.simulate([0.0, 30.0], START, rtol=1e-13)
+        sharper = BRICK.simulate([0.0, 30.0], START, method="dop853", rtol=1e-13)
         assert int(sharper.steps) > int(trajectory.steps)
-
-    def test_auto_is_dop853_here(self) -> None:
-        auto, named = BRICK.simulate(TIMES, START), BRICK.simulate(TIMES, START, method="dop853")
-        assert np.array_equal(auto.omega, named.omega)
-        assert np.array_equal(auto.quaternion, named.quaternion)
 
 
 class TestStacks:

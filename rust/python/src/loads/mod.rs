@@ -112,6 +112,11 @@ impl PyLoad {
         })
     }
 
+    /// Whether it is a sum of analytic terms and nothing else.
+    pub(crate) fn is_analytic(&self) -> bool {
+        self.callbacks().next().is_none() && self.compiled().next().is_none()
+    }
+
     /// Whether it calls Python.
     pub(crate) fn calls_python(&self) -> bool {
         self.callbacks().next().is_some()

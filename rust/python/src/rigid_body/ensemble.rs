@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::RigidBody;
+use polhode::motion::integrate::taylor::solve_many;
 use polhode::motion::loads::Term;
 use polhode::motion::simulate::{End, Events, Method, NoEvents, Run, Task, Tolerance, simulate};
 use polhode::motion::state::Phase;
@@ -94,6 +95,20 @@ impl Ensemble<'_> {
                     break;
                 }
             }
+        } else if count > 1 && self.is_for_taylor() {
+            let mut solved = vec![None; count];
+            py.detach(|| {
+                let task = |row| {
+                    (
+                        self.task(row),
+                        &self.start.terms[self.grid.operands(row)[5]][..],
+                    )
+                };
+                solve_many(&task, &mut solved, &|begun| interrupt.poll(Some(begun)));
+            });
+            for (run, solved) in runs.iter_mut().zip(solved) {
+                *run = solved.map(|run| run.with_error(Fault::Core));
+            }
         } else {
             let fraction = |of_row: f64| (count == 1).then_some(of_row);
             // Where a run ends all, the rows begun so far are kept.
@@ -142,7 +157,21 @@ impl Ensemble<'_> {
         events: &mut dyn Events<Error = Fault>,
         mut watch: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Run<Fault> {
-        let [b, w, q, r, v, l] = self.grid.operands(row);
+        let task = self.task(row);
+        let terms = &self.start.terms[self.grid.operands(row)[5]];
+        let mut load = Acting::new(self.load, terms, task.subject, py);
+        simulate(&task, &mut load, events, &mut watch)
+    }
+
+    /// Whether every row is a matter of Taylor series.
+    fn is_for_taylor(&self) -> bool {
+        matches!(self.method, Method::Auto | Method::Taylor)
+            && self.events.is_empty()
+            && self.load.is_analytic()
+    }
+
+    fn task(&self, row: usize) -> Task<'_> {
+        let [b, w, q, r, v, _] = self.grid.operands(row);
         let initial = Phase {
             attitude: self.start.attitude[q],
             omega: self.start.omega[w],
@@ -155,8 +184,6 @@ impl Ensemble<'_> {
             Task::free
         };
         let body = &self.start.bodies[b];
-        let task = of(body, initial, self.times, self.method, self.tolerance);
-        let mut load = Acting::new(self.load, &self.start.terms[l], task.subject, py);
-        simulate(&task, &mut load, events, &mut watch)
+        of(body, initial, self.times, self.method, self.tolerance)
     }
 }

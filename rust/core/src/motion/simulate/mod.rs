@@ -15,6 +15,7 @@ use self::events::Lookout;
 pub use self::events::{Crossing, Direction, Events, NoEvents, Rule};
 use self::stepper::{Carry, Span, Stepper};
 use super::euler_equations::EulerEquations;
+use super::integrate::taylor;
 use super::loads::{Load, Subject};
 pub use super::state::{Phase, State};
 use crate::error::{Error, all_finite, finite};
@@ -66,6 +67,8 @@ pub enum Method {
     /// The first that can serve the load.
     #[default]
     Auto,
+    /// Taylor series of the order at which the work is least: analytic loads.
+    Taylor,
     /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
     Dop853,
     /// The implicit Runge-Kutta method Radau IIA of order 5: every load, for those that are stiff.
@@ -209,6 +212,9 @@ pub fn simulate<L: Load>(
     events: &mut dyn Events<Error = L::Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<L::Error> {
+    if let Some(run) = with_taylor(task, load, events, watch) {
+        return run;
+    }
     let start = task.times[0];
     let mut run = Run {
         samples: vec![Phase::nan(); task.times.len()],
@@ -225,7 +231,39 @@ pub fn simulate<L: Load>(
     run
 }
 
+/// The run by Taylor series, where that is the method for it: with analytic terms alone, and nothing to look for on the way.
+fn with_taylor<L: Load>(
+    task: &Task<'_>,
+    load: &L,
+    events: &mut dyn Events<Error = L::Error>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Option<Run<L::Error>> {
+    if !matches!(task.method, Method::Auto | Method::Taylor) || !events.rules().is_empty() {
+        return None;
+    }
+    let run = taylor::solve_one(task, load.analytic()?, watch);
+    Some(run.with_error(L::Error::from))
+}
+
 impl<E> Run<E> {
+    /// The same run, its error through `f`.
+    #[must_use]
+    pub fn with_error<F>(self, f: impl FnOnce(E) -> F) -> Run<F> {
+        Run {
+            samples: self.samples,
+            crossings: self.crossings,
+            effort: self.effort,
+            time: self.time,
+            phase: self.phase,
+            end: match self.end {
+                End::Complete => End::Complete,
+                End::Event => End::Event,
+                End::Stopped => End::Stopped,
+                End::Failed(error) => End::Failed(f(error)),
+            },
+        }
+    }
+
     fn through<L: Load<Error = E>>(
         &mut self,
         task: &Task<'_>,

@@ -4,6 +4,7 @@ use super::equations::{Equations, MOVING, Scales, TURNING};
 use super::implicit::Implicit;
 use super::kicked::Kicked;
 use super::{Effort, Method, Task};
+use crate::error::Error;
 use crate::motion::integrate::Dop853;
 use crate::motion::integrate::dop853::Dense;
 use crate::motion::integrate::splitting::Scheme;
@@ -70,6 +71,19 @@ where
             Box::new(Explicit::<L, MOVING>::new(task, span, load)?)
         }
         Method::Auto | Method::Dop853 => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
+        Method::Taylor => {
+            let needs = if load.analytic().is_none() {
+                "the loads of polhode.loads other than callbacks"
+            } else {
+                "a run without events"
+            };
+            return Err(Error::MethodCannotServe {
+                method: "taylor",
+                needs,
+                instead: "dop853",
+            }
+            .into());
+        }
         Method::Radau if moves => Box::new(Implicit::<L, MOVING>::new(task, span, load)?),
         Method::Radau => Box::new(Implicit::<L, TURNING>::new(task, span, load)?),
         Method::Splitting => Box::new(Kicked::new(task, span, load)?),
