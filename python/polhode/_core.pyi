@@ -303,7 +303,7 @@ class RigidBody:
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         about: _Reference = "center_of_mass",
-        method: Literal["auto", "dop853"] = "auto",
+        method: Literal["auto", "exact", "taylor", "dop853"] = "auto",
         rtol: float = 1e-10,
         atol: float | None = None,
         events: Callable[..., float] | Iterable[Callable[..., float]] | None = None,

@@ -6,6 +6,7 @@
 
 pub mod dop853;
 mod tableau;
+pub mod taylor;
 
 pub use dop853::Dop853;
 

@@ -1,6 +1,7 @@
 //! What the run needs of a method, and the one place where a method is chosen.
 
 use super::equations::{Equations, MOVING, Scales, TURNING};
+use super::exact::Exact;
 use super::{Effort, Method, Task};
 use crate::motion::integrate::Dop853;
 use crate::motion::integrate::dop853::Dense;
@@ -48,10 +49,11 @@ pub(super) struct Span {
     pub(super) carry: Carry,
 }
 
-/// The method of `task` at the start of `span`.
+/// A method of steps at the start of `span`.
 ///
 /// A stepper more is an arm more here, and its row in [`Method`].
 pub(super) fn start<'a, L: Load>(
+    method: Method,
     task: &Task<'_>,
     span: &Span,
     load: &'a mut L,
@@ -60,11 +62,10 @@ where
     L::Error: 'a,
 {
     let moves = !task.subject.pivoted && load.exerts_force();
-    Ok(match task.method {
-        Method::Auto | Method::Dop853 if moves => {
-            Box::new(Explicit::<L, MOVING>::new(task, span, load)?)
-        }
-        Method::Auto | Method::Dop853 => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
+    Ok(match method {
+        Method::Exact => Box::new(Exact::<L::Error>::new(task, span)?),
+        _ if moves => Box::new(Explicit::<L, MOVING>::new(task, span, load)?),
+        _ => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
     })
 }
 
