@@ -207,7 +207,9 @@ class RigidBody:
         faces: ArrayLike,
         *,
         areal_density: float | None = None,
+        density: float | None = None,
         mass: float | None = None,
+        thickness: float | None = None,
     ) -> RigidBody: ...
     @staticmethod
     def from_curve(
@@ -303,7 +305,7 @@ class RigidBody:
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         about: _Reference = "center_of_mass",
-        method: Literal["auto", "exact", "taylor", "dop853"] = "auto",
+        method: Literal["auto", "exact", "taylor", "dop853", "radau", "splitting"] = "auto",
         rtol: float = 1e-10,
         atol: float | None = None,
         events: Callable[..., float] | Iterable[Callable[..., float]] | None = None,

@@ -41,11 +41,15 @@ impl PyRigidBody {
     /// about : {"center_of_mass", "origin"}, optional
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.
-    /// method : {"auto", "exact", "taylor", "dop853"}, optional
+    /// method : {"auto", "exact", "taylor", "dop853", "radau", "splitting"}, optional
     ///     "exact" is the closed form of a free body without a load, whose cost and error do not grow with time.
-    ///     "taylor" sums power series of the motion, for loads other than callbacks and compiled functions and
-    ///     without events. "dop853" is the explicit Runge-Kutta method of order 8 by Dormand and Prince with a dense
-    ///     output of order 7, for every load. "auto" takes the first of these that can serve the run.
+    ///     "taylor" sums power series of the motion: loads other than callbacks and compiled functions, without
+    ///     events. "dop853" is the explicit Runge-Kutta method of order 8 by Dormand and Prince with a dense
+    ///     output of order 7: any load. "auto" takes the first of these that can serve the run.
+    ///     "radau" is the implicit Runge-Kutta method Radau IIA of order 5: any load, for those that are stiff,
+    ///     such as strong damping. "splitting" kicks the body between exact free motions at equal steps, as long
+    ///     as `rtol` allows at the start: loads that depend on time, attitude and position alone, for long times,
+    ///     since the energy does not drift.
     /// rtol : float, optional
     ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
     ///     distance and speed so far; from 2.3e-15 to 0.1.
@@ -198,7 +202,14 @@ impl PyRigidBody {
     }
 }
 
-const METHODS: [Method; 4] = [Method::Auto, Method::Exact, Method::Taylor, Method::Dop853];
+const METHODS: [Method; 6] = [
+    Method::Auto,
+    Method::Exact,
+    Method::Taylor,
+    Method::Dop853,
+    Method::Radau,
+    Method::Splitting,
+];
 
 fn parse_method(word: &str) -> PyResult<Method> {
     (METHODS.into_iter())

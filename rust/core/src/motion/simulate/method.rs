@@ -7,7 +7,7 @@ use crate::motion::loads::Term;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The first of the following that can serve the run.
+    /// The first of exact, Taylor and DOP853 that can serve the run.
     #[default]
     Auto,
     /// In closed form: a free body without a load.
@@ -16,6 +16,10 @@ pub enum Method {
     Taylor,
     /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
     Dop853,
+    /// The implicit Runge-Kutta method Radau IIA of order 5: every load, for those that are stiff.
+    Radau,
+    /// Kicks between exact free motions at equal steps: loads that do not depend on rates, for long times.
+    Splitting,
 }
 
 impl Method {
@@ -27,6 +31,8 @@ impl Method {
             Self::Exact => "exact",
             Self::Taylor => "taylor",
             Self::Dop853 => "dop853",
+            Self::Radau => "radau",
+            Self::Splitting => "splitting",
         }
     }
 

@@ -6,6 +6,8 @@
 mod equations;
 pub mod events;
 mod exact;
+mod implicit;
+mod kicked;
 pub mod method;
 mod stepper;
 

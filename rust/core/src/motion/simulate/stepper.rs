@@ -2,9 +2,12 @@
 
 use super::equations::{Equations, MOVING, Scales, TURNING};
 use super::exact::Exact;
+use super::implicit::Implicit;
+use super::kicked::Kicked;
 use super::{Effort, Method, Task};
 use crate::motion::integrate::Dop853;
 use crate::motion::integrate::dop853::Dense;
+use crate::motion::integrate::splitting::Scheme;
 use crate::motion::loads::Load;
 use crate::motion::state::Phase;
 
@@ -35,9 +38,11 @@ pub(super) trait Stepper {
 /// What one span leaves to the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Carry {
-    scales: Scales,
+    pub(super) scales: Scales,
     /// The length of step that the method would try next.
-    step: Option<f64>,
+    pub(super) step: Option<f64>,
+    /// Of a splitting.
+    pub(super) scheme: Option<Scheme>,
 }
 
 /// Where a span of smooth load begins and ends, and in which state.
@@ -64,6 +69,9 @@ where
     let moves = !task.subject.pivoted && load.exerts_force();
     Ok(match method {
         Method::Exact => Box::new(Exact::<L::Error>::new(task, span)?),
+        Method::Radau if moves => Box::new(Implicit::<L, MOVING>::new(task, span, load)?),
+        Method::Radau => Box::new(Implicit::<L, TURNING>::new(task, span, load)?),
+        Method::Splitting => Box::new(Kicked::new(task, span, load)?),
         _ if moves => Box::new(Explicit::<L, MOVING>::new(task, span, load)?),
         _ => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
     })
@@ -136,6 +144,7 @@ impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
         Carry {
             scales: self.equations.scales,
             step: Some(self.stepper.step()),
+            scheme: None,
         }
     }
 }
