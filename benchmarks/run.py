@@ -22,6 +22,7 @@ FILES_OF_ROWS = (
     "particles",
     "voxels",
     "meshes",
+    "simulate",
     "threads",
     "callbacks",
 )

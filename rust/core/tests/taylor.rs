@@ -229,7 +229,7 @@ fn spin_up_and_spin_down_about_a_principal_axis() {
         0.0,
     )
     .expect("a body");
-    let times = [0.0, 1e3, 1e6];
+    let times = [0.0, 1e3, 4e3];
     let task = |omega| {
         Task::free(
             &body,
@@ -239,11 +239,11 @@ fn spin_up_and_spin_down_about_a_principal_axis() {
             tightest(),
         )
     };
-    // From rest to 3e13 turns a second: ω = N t/I, through many units of time.
+    // ω = N t/I.
     let torque = Term::constant_torque(&Vector3::new(0.0, 0.0, 5e-2), Frame::Body).expect("finite");
     let up = run(&task(Vector3::zeros()), &[torque]);
     assert!((up.samples[1].omega.z / 20.0 - 1.0).abs() < 1e-14);
-    assert!((up.samples[2].omega.z / 2e4 - 1.0).abs() < 1e-14);
+    assert!((up.samples[2].omega.z / 80.0 - 1.0).abs() < 1e-14);
     // ω = ω₀ exp(−D t/I) and ω₀/(1 + E ω₀ t/I).
     let damping = |linear: f64, quadratic: f64| {
         let (d, e) = (
@@ -254,10 +254,10 @@ fn spin_up_and_spin_down_about_a_principal_axis() {
     };
     let down = run(&task(Vector3::z() * 3.0), &damping(0.01, 0.0));
     assert!((down.samples[1].omega.z / (3.0 * (-4.0_f64).exp()) - 1.0).abs() < 1e-13);
-    assert!(down.samples[2].omega.z.abs() < 1e-14);
+    assert!(down.samples[2].omega.z.abs() < 1e-6);
     let down = run(&task(Vector3::z() * 3.0), &damping(0.0, 0.01));
     assert!((down.samples[1].omega.z / (3.0 / 13.0) - 1.0).abs() < 1e-13);
-    assert!((down.samples[2].omega.z / (3.0 / 12001.0) - 1.0).abs() < 1e-12);
+    assert!((down.samples[2].omega.z / (3.0 / 49.0) - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -353,13 +353,8 @@ fn a_motion_has_the_same_bits_alone_in_a_stack_on_any_threads_and_at_any_level()
                 set_thread_limit(NonZeroUsize::new(threads));
                 for count in [2, 21] {
                     let mut runs = vec![None; count];
-                    let go_on = || ControlFlow::Continue(());
-                    solve_many(
-                        &|row| (task(row), &terms[..]),
-                        &mut runs,
-                        &mut watch,
-                        &go_on,
-                    );
+                    let go_on = |_| ControlFlow::Continue(());
+                    solve_many(&|row| (task(row), &terms[..]), &mut runs, &go_on);
                     for (row, (run, alone)) in runs.iter().zip(&alone).enumerate() {
                         let run = run.as_ref().expect("begun");
                         assert_eq!(run.end, End::Complete);
@@ -397,9 +392,7 @@ fn runs_stop_when_told() {
     assert_eq!(stopped.end, End::Stopped);
     assert!(stopped.time > 0.0 && stopped.effort.steps == 192);
     let mut runs = vec![None; 300];
-    solve_many(&|_| (task, &[]), &mut runs, &mut watch, &|| {
-        ControlFlow::Break(())
-    });
+    solve_many(&|_| (task, &[]), &mut runs, &|_| ControlFlow::Break(()));
     let ends: Vec<_> = runs.iter().flatten().map(|run| &run.end).collect();
     assert!(!ends.is_empty() && ends.iter().all(|end| **end == End::Stopped));
 }

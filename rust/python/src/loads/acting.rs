@@ -73,7 +73,7 @@ impl Load for Acting<'_, '_> {
     type Error = Fault;
 
     fn analytic(&self) -> Option<&[Term]> {
-        self.load.is_analytic().then(|| self.analytic.terms())
+        (self.load.is_analytic()).then(|| self.analytic.analytic())?
     }
 
     fn exerts_force(&self) -> bool {

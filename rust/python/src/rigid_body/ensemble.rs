@@ -140,9 +140,8 @@ impl Ensemble<'_> {
                 let mut watch = |part| interrupt.poll(Some(part));
                 runs[0] = Some(taylor::solve_one(&task, terms, &mut watch));
             } else {
-                let mut watch = |part| interrupt.poll(Some(part));
-                let poll = || interrupt.poll(None);
-                taylor::solve_many(&|row| self.task(row), &mut runs, &mut watch, &poll);
+                let poll = |begun| interrupt.poll(Some(begun));
+                taylor::solve_many(&|row| self.task(row), &mut runs, &poll);
             }
         });
         (runs.into_iter())

@@ -25,7 +25,8 @@ pub(super) fn solve<E: From<Error>>(
     let start = task.times[0];
     let elapsed: Vec<f64> = task.times.iter().map(|t| t - start).collect();
     let count = elapsed.len();
-    let (mut attitudes, mut omegas) = ([[0.0; 4]; PATIENCE], [[0.0; 3]; PATIENCE]);
+    let room = count.min(PATIENCE);
+    let (mut attitudes, mut omegas) = (vec![[0.0; 4]; room], vec![[0.0; 3]; room]);
     for from in (1..count).step_by(PATIENCE) {
         let times = &elapsed[from..count.min(from + PATIENCE)];
         let (attitudes, omegas) = (&mut attitudes[..times.len()], &mut omegas[..times.len()]);

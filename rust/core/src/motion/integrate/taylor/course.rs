@@ -254,9 +254,12 @@ impl<'a> Course<'a> {
 
     fn feedbacks(&self) -> impl Iterator<Item = &'a Feedback> {
         let acting = self.acting(self.segment_start(), self.breaks[self.segment]);
-        acting.filter_map(|term| match term {
-            Term::Feedback(feedback) => Some(feedback),
-            _ => None,
+        acting.filter_map(|term| {
+            if let Term::Feedback(feedback) = term {
+                Some(feedback)
+            } else {
+                None
+            }
         })
     }
 
@@ -297,15 +300,14 @@ impl<'a> Course<'a> {
     ) -> Phase {
         let [x, y, z, i, j, k, w] = *state;
         let initial = self.initial();
-        let (position, velocity) = match place {
-            Some(&[x, y, z, u, v, w]) => (Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit),
-            None => {
-                let elapsed = (now.0 + now.1) / self.unit;
-                (
-                    initial.position + initial.velocity * elapsed,
-                    initial.velocity,
-                )
-            }
+        let (position, velocity) = if let Some(&[x, y, z, u, v, w]) = place {
+            (Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit)
+        } else {
+            let elapsed = (now.0 + now.1) / self.unit;
+            (
+                initial.position + initial.velocity * elapsed,
+                initial.velocity,
+            )
         };
         let q_np = Quaternion::new(w, i, j, k);
         Phase {

@@ -22,7 +22,7 @@ const PATIENCE: u32 = 64;
 const LAST_TERM: f64 = 0.05;
 /// How far ω may outgrow the unit of rates before another is taken: far below where its 24th power overflows.
 const OUTGROWN: f64 = 65_536.0;
-/// The halvings that find where a feedback changes its sign within a step.
+/// The halvings that find where within a step the law changes.
 const HALVINGS: u32 = 55;
 
 /// What all motions of a run have in common.
@@ -42,7 +42,8 @@ impl Settings {
     /// `tolerance^(1/order)`.
     pub(super) fn new(relative: f64, absolute: f64, parts: Parts) -> Self {
         let nats = -(LAST_TERM * relative).ln();
-        let order = 2 * ((0.3 * nats) as usize).clamp(4, HIGHEST_ORDER / 2);
+        let mut halves = (4..HIGHEST_ORDER / 2).filter(|&half| half as f64 + 1.0 <= 0.3 * nats);
+        let order = 2 * halves.next_back().map_or(4, |half| half + 1);
         Self {
             order,
             last_term: (LAST_TERM * relative).log2(),
@@ -85,7 +86,7 @@ enum Landing {
     Flip,
 }
 
-/// The search for the first time in a step at which a feedback has changed its sign: a look at its end, then halvings.
+/// The search for the first time in a step at which a feedback has changed its sign or ω passed through zero: a look at its end, then halvings.
 struct Search {
     before: f64,
     after: f64,
@@ -99,7 +100,7 @@ impl Search {
         Self {
             before: if h.is_finite() { h } else { 0.0 },
             after: h,
-            looks: if is_needed && h.is_finite() { 1 } else { 0 },
+            looks: u32::from(is_needed && h.is_finite()),
             has_found: false,
         }
     }
@@ -170,9 +171,9 @@ struct Lanes<'a, L, S, const B: usize, const R: usize> {
 /// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
 /// done, and may stop them.
 #[inline(always)]
-pub(super) fn drive<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize>(
+pub(super) fn drive<L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize>(
     settings: Settings,
-    jobs: &mut dyn Iterator<Item = Job<'a>>,
+    jobs: &mut dyn Iterator<Item = Job<'_>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let zero = Pack::new(0.0);
@@ -228,11 +229,12 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         let mut h = longest(&self.series, order, last_term, &self.fastest);
         self.extras
             .limit(&self.series, &self.field, &self.fastest, &mut h);
-        let mut eventful = self.settings.parts.on_attitude;
+        let mut eventful = self.settings.parts.may_flip();
         for row in 0..R {
             let (now, gap) = (self.now[row].0, self.gap(row));
-            // Not "h >= gap": NaN is an event too.
-            eventful |= !(h[row] < gap) | !(h[row] > f64::EPSILON * now.abs());
+            // What is not a number is an event too.
+            let is_plain = (h[row] < gap) & (h[row] > f64::EPSILON * now.abs());
+            eventful |= !is_plain;
         }
         let mut landings = [Landing::None; R];
         if eventful {
@@ -318,7 +320,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
     /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.
     #[inline(always)]
     fn pass(&mut self, row: usize, mut h: f64) -> (f64, Landing) {
-        let mut search = Search::new(self.settings.parts.on_attitude, h);
+        let mut search = Search::new(self.settings.parts.may_flip(), h);
         loop {
             let looked_at = search.time();
             let time = match looked_at {
@@ -332,7 +334,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
             };
             let (state, place) = self.within(row, time);
             if looked_at.is_some() {
-                search.narrow(self.has_flipped(row, &state));
+                search.narrow(self.has_flipped(row, time, &state));
                 h = search.end();
             } else {
                 self.give(row, &state, place.as_ref());
@@ -342,6 +344,10 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
 
     /// The state of a motion, and its position and velocity when it is pushed, at a time since the start of the step.
     #[inline(always)]
+    #[expect(
+        clippy::manual_map,
+        reason = "a closure would be compiled without the instructions of the level"
+    )]
     fn within(&self, row: usize, time: f64) -> ([f64; 7], Option<[f64; 6]>) {
         let mut within = Pack::new(0.0);
         within.set(row, time);
@@ -354,11 +360,13 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         (state, place)
     }
 
-    /// Whether a feedback has another sign in `state` than at the start of the step.
+    /// Whether a feedback has another sign in the `state` at a time since the start of the step than there, or ω has passed
+    /// through zero under quadratic damping.
     #[inline(never)]
-    fn has_flipped(&self, row: usize, state: &[f64; 7]) -> bool {
+    fn has_flipped(&self, row: usize, time: f64, state: &[f64; 7]) -> bool {
         let lead = self.leads[row].as_ref();
         lead.is_some_and(|lead| lead.job.course.has_flipped(state))
+            || self.extras.is_reversed(row, self.settings.order, time)
     }
 
     /// The time from now to the next stop, positive also backward in time.
@@ -376,7 +384,8 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         let Some(lead) = &self.leads[row] else {
             return Meeting::End;
         };
-        if !(h > f64::EPSILON * self.now[row].0.abs()) {
+        let advances = h > f64::EPSILON * self.now[row].0.abs();
+        if !advances {
             let error = if h.is_finite() {
                 Error::StepTooSmall {
                     time,

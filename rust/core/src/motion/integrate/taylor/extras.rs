@@ -104,6 +104,12 @@ impl<L: Lane, const R: usize> Extras<Pack<L, R>> {
         sum
     }
 
+    /// Whether the series of one row are another law's at a time.
+    pub(super) fn is_reversed(&self, row: usize, order: usize, time: f64) -> bool {
+        let quadratic = self.quadratic.as_ref();
+        quadratic.is_some_and(|quadratic| quadratic.is_reversed(row, order, time))
+    }
+
     /// Keeps the steps of motions that are almost at rest so short that they stay so: see [`Quadratic`].
     #[inline(always)]
     pub(super) fn limit<const B: usize>(

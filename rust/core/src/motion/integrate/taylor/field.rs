@@ -25,6 +25,10 @@ pub(super) struct Field<T, const B: usize> {
 }
 
 /// Which parts the equations have; the others are zero, and are left out.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "the parts come in every combination"
+)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Parts {
     /// How many directions fixed in space.
@@ -38,6 +42,13 @@ pub(super) struct Parts {
     pub(super) is_timed: bool,
     /// Whether a force acts on a free body.
     pub(super) is_pushed: bool,
+}
+
+impl Parts {
+    /// Whether the law may change with the state: by the sign of a feedback, or of ω that passes through zero.
+    pub(super) fn may_flip(&self) -> bool {
+        self.on_attitude || self.quadratic
+    }
 }
 
 impl<const B: usize> Field<f64, B> {

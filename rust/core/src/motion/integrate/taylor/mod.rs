@@ -1,4 +1,23 @@
 //! Taylor series: each step sums the power series of the motion in time, to the order at which the work is least.
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
+//! | `field` | the equations that are linear in the coefficients of one order |
+//! | `terms`, `extras` | the recurrences of terms that are not |
+//! | `moment` | what depends on time alone |
+//! | `series` | the sums of products, the lanes over components or over motions |
+//! | `push` | the path of a body that forces act on |
+//! | `step` | the length of a step, the state at its end or within |
+//! | `drive` | steps, outputs, breaks, until all motions are done |
+//! | `pack` | one number of several motions |
+//!
+//! Sources: Jorba & Zou, Experimental Mathematics 14 (2005) 99; Hairer, Nørsett & Wanner, Solving ODEs I, §I.8.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "rows and components are indices of several arrays at once"
+)]
 
 mod course;
 mod drive;
@@ -12,7 +31,7 @@ mod step;
 mod terms;
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use course::{Course, parts};
 use drive::{Job, Settings, drive};
@@ -61,20 +80,28 @@ pub fn solve_one(
 /// Every motion has the bits of [`solve_one`].
 ///
 /// `task` gives the tasks and their terms. They may differ in body, state and numbers; times, tolerance, whether the body is
-/// pivoted and the kinds of terms are the same for all. The calling thread asks `watch` about every 20 ms with the fraction
-/// of motions done, and every thread asks `poll` about every 64 steps; either may stop the run.
+/// pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
+/// motions that were begun; it may stop the run.
 ///
 /// # Panics
 /// As [`solve_one`].
 pub fn solve_many<'a>(
     task: &(dyn Fn(usize) -> (Task<'a>, &'a [Term]) + Sync),
     runs: &mut [Option<Run<Error>>],
-    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    poll: &(dyn Fn() -> ControlFlow<()> + Sync),
+    watch: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
 ) {
+    let all = runs.len() as f64;
+    let begun = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
+    let ask = || {
+        if stopped.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            watch(begun.load(Ordering::Relaxed) as f64 / all)
+        }
+    };
     // Where a run is stopped, what was done by then is kept.
-    let _ended = fill_blocks(runs, BLOCK, watch, |first, runs| {
+    let _ended = fill_blocks(runs, BLOCK, &mut |_| ask(), |first, runs| {
         let count = runs.len();
         let mut common = Parts::default();
         for row in first..first + count {
@@ -85,17 +112,12 @@ pub fn solve_many<'a>(
         }
         let settings = settings(&task(first).0, common);
         let mut jobs = (first..).zip(runs.iter_mut()).filter_map(|(row, run)| {
+            begun.fetch_add(1, Ordering::Relaxed);
             let (task, terms) = task(row);
             job(&task, terms, run.insert(unborn(&task)))
         });
         let jobs = &mut jobs;
-        let watch = &mut |_| {
-            if stopped.load(Ordering::Relaxed) {
-                ControlFlow::Break(())
-            } else {
-                poll()
-            }
-        };
+        let watch = &mut |_| ask();
         let flow = if count < FEW {
             dispatch(OneByOne {
                 settings,

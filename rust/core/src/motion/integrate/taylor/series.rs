@@ -419,7 +419,7 @@ impl<L: Lane, const B: usize, const W: usize> Series<Pack<L, 1>, B> for Alone<L,
     fn sums(&mut self, k: usize) -> Self::Sums {
         let orders = &self.orders;
         let mut sums = self.ahead;
-        if k % 2 == 0 {
+        if k.is_multiple_of(2) {
             sums = LaneSums::new();
             let mut ahead = LaneSums::new();
             if k > 2 {

@@ -155,6 +155,8 @@ fn exp2(x: f64) -> f64 {
     let x = if x > -1000.0 { x } else { -1000.0 };
     let whole = x.floor();
     let part = x - whole;
-    let power = f64::from_bits((((whole as i64) + 1023) as u64) << 52);
+    // Beside 3·2⁵¹ the last bits of a double are those of a whole number.
+    let last_bits = (whole + 6_755_399_441_055_744.0).to_bits();
+    let power = f64::from_bits(last_bits.wrapping_add(1023) << 52);
     power * (1.0 + part * (0.6565 + 0.3435 * part))
 }

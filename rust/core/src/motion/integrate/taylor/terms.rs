@@ -20,7 +20,7 @@ type Vectors<T> = [[T; 3]; COUNT];
 /// s_k = (u_k − Σ_{0<j<k} s_j s_{k−j})/2s₀
 /// ```
 ///
-/// At ω = 0 that has no series, and |ω| ω no third derivative: below [`STILL`] of the fastest ω the term counts as zero, in
+/// Where ω passes through zero the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below [`STILL`] of the fastest ω the term counts as zero, in
 /// steps over which what it does stays below rounding.
 #[derive(Clone, Debug)]
 pub(super) struct Quadratic<T> {
@@ -52,6 +52,13 @@ impl<L: Lane, const R: usize> Quadratic<Pack<L, R>> {
         for row in 0..R {
             self.fastest.set(row, fastest[row]);
         }
+    }
+
+    /// Whether the series of |ω| of one row is negative at a time: where ω passes through zero along a line, it goes on as
+    /// −|ω|, which is not the law beyond.
+    pub(super) fn is_reversed(&self, row: usize, order: usize, time: f64) -> bool {
+        let speeds = self.speeds[..order].iter().rev();
+        speeds.fold(0.0, |sum, speed| sum * time + speed.get(row)) < 0.0
     }
 }
 
