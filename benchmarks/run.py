@@ -25,6 +25,7 @@ FILES_OF_ROWS = (
     "free_motion",
     "simulate",
     "threads",
+    "callbacks",
 )
 
 

@@ -214,9 +214,15 @@ else:
 """
 
 LONG_RUNS = {
-    "one body": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0))",
-    "a stack": "lambda: body.simulate([0.0, 1e8], np.ones((64, 3)) + np.arange(64)[:, None])",
-    "dense output": "lambda: body.simulate(np.linspace(0.0, 1e9, 100_000), (1.0, 1e-3, 1.0))",
+    "dop853": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0), method='dop853')",
+    "taylor": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0), method='taylor')",
+    "a stack by dop853": "lambda: body.simulate([0.0, 1e8], np.ones((64, 3)) + np.arange(64)[:, None],"
+    " method='dop853')",
+    "a stack by taylor": "lambda: body.simulate([0.0, 1e8], np.ones((64, 3)) + np.arange(64)[:, None],"
+    " method='taylor')",
+    "events": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0), events=lambda t, *_: 1.0)",
+    "dense output": "lambda: body.simulate(np.linspace(0.0, 1e9, 100_000), (1.0, 1e-3, 1.0),"
+    " method='dop853')",
     "a callback": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0),"
     " load=loads.torque_callback(lambda t, w, q: (0.0, 0.0, 0.0)))",
 }
@@ -236,7 +242,7 @@ def test_ctrl_c_ends_a_long_run_within_a_fifth_of_a_second(name: str) -> None:
 class TestProgress:
     def test_the_fraction_done_rises_to_one_at_most(self) -> None:
         seen: list[float] = []
-        BODY.simulate([0.0, 2e4], RATES, progress=seen.append)
+        BODY.simulate([0.0, 2e4], RATES, progress=seen.append, method="dop853")
         assert seen
         assert all(isinstance(x, float) for x in seen)
         assert seen == sorted(seen)
@@ -249,7 +255,7 @@ class TestProgress:
             raise error
 
         with pytest.raises(RuntimeError) as caught:
-            BODY.simulate([0.0, 1e7], RATES, progress=stop)
+            BODY.simulate([0.0, 1e7], RATES, progress=stop, method="dop853")
         assert caught.value is error
 
 

@@ -112,9 +112,9 @@ impl PyLoad {
         })
     }
 
-    /// Whether it is a sum of analytic terms and nothing else.
+    /// Whether it has analytic terms alone.
     pub(crate) fn is_analytic(&self) -> bool {
-        self.callbacks().next().is_none() && self.compiled().next().is_none()
+        (self.parts.iter()).all(|part| matches!(part.acts, Acts::Term(_)))
     }
 
     /// Whether it calls Python.

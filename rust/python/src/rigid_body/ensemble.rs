@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::RigidBody;
-use polhode::motion::integrate::taylor::solve_many;
+use polhode::motion::integrate::taylor;
 use polhode::motion::loads::Term;
 use polhode::motion::simulate::{End, Events, Method, NoEvents, Run, Task, Tolerance, simulate};
 use polhode::motion::state::Phase;
@@ -95,20 +95,8 @@ impl Ensemble<'_> {
                     break;
                 }
             }
-        } else if count > 1 && self.is_for_taylor() {
-            let mut solved = vec![None; count];
-            py.detach(|| {
-                let task = |row| {
-                    (
-                        self.task(row),
-                        &self.start.terms[self.grid.operands(row)[5]][..],
-                    )
-                };
-                solve_many(&task, &mut solved, &|begun| interrupt.poll(Some(begun)));
-            });
-            for (run, solved) in runs.iter_mut().zip(solved) {
-                *run = solved.map(|run| run.with_error(Fault::Core));
-            }
+        } else if self.method == Method::Taylor {
+            runs = self.abreast(py, interrupt);
         } else {
             let fraction = |of_row: f64| (count == 1).then_some(of_row);
             // Where a run ends all, the rows begun so far are kept.
@@ -142,6 +130,25 @@ impl Ensemble<'_> {
         Ok(runs)
     }
 
+    /// Integrates every row by Taylor series, eight side by side.
+    fn abreast(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs {
+        let count = self.grid.len();
+        let mut runs: Vec<Option<Run<polhode::Error>>> = (0..count).map(|_| None).collect();
+        py.detach(|| {
+            if count == 1 {
+                let (task, terms) = self.task(0);
+                let mut watch = |part| interrupt.poll(Some(part));
+                runs[0] = Some(taylor::solve_one(&task, terms, &mut watch));
+            } else {
+                let poll = |begun| interrupt.poll(Some(begun));
+                taylor::solve_many(&|row| self.task(row), &mut runs, &poll);
+            }
+        });
+        (runs.into_iter())
+            .map(|run| run.map(|run| run.with_error(Fault::Core)))
+            .collect()
+    }
+
     fn ends_all(&self, run: &Run<Fault>) -> bool {
         match &run.end {
             End::Stopped | End::Failed(Fault::Python(_)) => true,
@@ -157,21 +164,14 @@ impl Ensemble<'_> {
         events: &mut dyn Events<Error = Fault>,
         mut watch: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Run<Fault> {
-        let task = self.task(row);
-        let terms = &self.start.terms[self.grid.operands(row)[5]];
+        let (task, terms) = self.task(row);
         let mut load = Acting::new(self.load, terms, task.subject, py);
         simulate(&task, &mut load, events, &mut watch)
     }
 
-    /// Whether every row is a matter of Taylor series.
-    fn is_for_taylor(&self) -> bool {
-        matches!(self.method, Method::Auto | Method::Taylor)
-            && self.events.is_empty()
-            && self.load.is_analytic()
-    }
-
-    fn task(&self, row: usize) -> Task<'_> {
-        let [b, w, q, r, v, _] = self.grid.operands(row);
+    /// What is to be simulated in a row, and the analytic terms of the load.
+    fn task(&self, row: usize) -> (Task<'_>, &[Term]) {
+        let [b, w, q, r, v, l] = self.grid.operands(row);
         let initial = Phase {
             attitude: self.start.attitude[q],
             omega: self.start.omega[w],
@@ -184,6 +184,7 @@ impl Ensemble<'_> {
             Task::free
         };
         let body = &self.start.bodies[b];
-        of(body, initial, self.times, self.method, self.tolerance)
+        let task = of(body, initial, self.times, self.method, self.tolerance);
+        (task, &self.start.terms[l])
     }
 }

@@ -203,6 +203,12 @@ impl<'a> Analytic<'a> {
         &self.subject
     }
 
+    /// The terms.
+    #[must_use]
+    pub fn terms(&self) -> &'a [Term] {
+        self.terms
+    }
+
     /// The terms that act in the span of time last entered; of scheduled ones what they switch.
     #[must_use]
     pub fn active(&self) -> &[&'a Term] {
