@@ -15,7 +15,7 @@ from polhode import (
     tops,
     validity,
 )
-from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
+from polhode._core import HeavyTop, MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
 from polhode.results import (
     AngularMomentum,
     ErrorBound,
@@ -32,6 +32,7 @@ __all__ = [
     "AngularMomentum",
     "ErrorBound",
     "FreePrecession",
+    "HeavyTop",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",

@@ -1,131 +1,24 @@
-//! The motion of a heavy top as numbers ready for vector lanes.
-//!
-//! At a time t: three quotients of theta functions at the reduced z(t), each turned by its steady phase, are α, β and W; one
-//! constant matrix makes the attitude of α and β, another one ω of W.
+//! The set-up of a heavy top's motion: from its state to the numbers that [`sampling`](super::sampling) runs on.
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::nutation::Nutation;
 use super::phases::Phases;
 use super::pivoted_top::PivotedTop;
 use super::reduced::{Quaternion2, Reduced, conjugate, product, times};
+use super::sampling::{Course, Endless, Functions, Periodic, Series, Steady};
 use super::turning_points::TurningPoints;
-use crate::motion::simulate::State;
-use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::{Double, Lane};
-use crate::numerics::planes::{Planes, ROWS};
 use crate::numerics::power_of_two::times_power_of_two;
 use crate::numerics::theta::quotients::{Circular, Hyperbolic, Values};
 use crate::numerics::theta::{circular, hyperbolic};
-use crate::numerics::turns::{exp_minus, sin_cos_turns, turns, whole_off};
+use crate::numerics::turns::{sin_cos_turns, whole_off};
 
 /// A complex number.
 type Complex = [f64; 2];
-
-/// A motion, ready to be evaluated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Course {
-    series: Series,
-    /// Turns of z, and of the steady phases of α, β and W, for each unit of time.
-    clock: DoubleDouble,
-    start: DoubleDouble,
-    steady: [DoubleDouble; 3],
-    /// (x, y, z, w) of the attitude from the real and imaginary parts of α and β.
-    attitude: [[f64; 4]; 4],
-    /// ω in B from the parts of W.
-    across: [[f64; 2]; 3],
-    /// What of ω lies along the axis.
-    along: [f64; 3],
-}
-
-/// How the three functions are computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "one for each top, never moved")]
-enum Series {
-    /// The axis rests: the sizes of α and β.
-    Steady(Steady),
-    Circular(Circular),
-    Hyperbolic(Periodic),
-    /// The top is reached or left in infinite time.
-    Endless(Endless),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Steady([f64; 2]);
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Periodic {
-    quotients: Hyperbolic,
-    /// πK/2K′.
-    end: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Endless {
-    quotients: Hyperbolic,
-}
-
-/// Three functions of time, but for their steady phases.
-trait Functions {
-    /// Their values, and turns that are to be added to the steady ones.
-    fn at<L: Lane>(&self, course: &Course, t: L) -> (Values<L>, [L; 3]);
-}
-
-impl Functions for Steady {
-    #[inline(always)]
-    fn at<L: Lane>(&self, _: &Course, t: L) -> (Values<L>, [L; 3]) {
-        let zero = t - t;
-        let [alpha, beta] = self.0.map(|size| L::new(size) + zero);
-        ([[alpha, zero], [beta, zero], [zero, zero]], [zero; 3])
-    }
-}
-
-impl Functions for Circular {
-    #[inline(always)]
-    fn at<L: Lane>(&self, course: &Course, t: L) -> (Values<L>, [L; 3]) {
-        let (s, c) = sin_cos_turns(turns(t, course.clock, course.start));
-        let values = self.values(&circular::Argument::new(s, c));
-        (values, [L::new(0.0); 3])
-    }
-}
-
-impl Functions for Periodic {
-    #[inline(always)]
-    fn at<L: Lane>(&self, course: &Course, t: L) -> (Values<L>, [L; 3]) {
-        // Half a turn of z is a period of u, after which all three change sign.
-        let twice = L::new(2.0) * turns(t, course.clock, course.start);
-        let periods = twice.round();
-        let x = twice - periods;
-        let argument =
-            hyperbolic::Argument::new(x * L::new(2.0 * self.end), L::new(self.end));
-        let half = L::new(0.5);
-        let (sign_change, from_end) = (half * periods.abs(), x - half * argument.sign);
-        let [first, second, third] = self.quotients.slopes().map(L::new);
-        let extra = [
-            first.mul_add(x, sign_change),
-            second.mul_add(from_end, sign_change),
-            third.mul_add(from_end, sign_change),
-        ];
-        (self.quotients.values(&argument), extra)
-    }
-}
-
-impl Functions for Endless {
-    #[inline(always)]
-    fn at<L: Lane>(&self, course: &Course, t: L) -> (Values<L>, [L; 3]) {
-        let (p, e) = t.two_product(L::new(course.clock.high));
-        let w = (p + L::new(course.start.high)) + (e + t * L::new(course.clock.low));
-        let argument = hyperbolic::Argument {
-            from_middle: exp_minus(w.abs()),
-            from_end: L::new(0.0),
-            sign: L::new(1.0).copysign(w),
-        };
-        (self.quotients.values(&argument), [L::new(0.0); 3])
-    }
-}
 
 impl Course {
     /// The motion from this state on, and what there is to tell about it. All arguments are finite.
@@ -146,14 +39,18 @@ impl Course {
         let [alpha, beta, _] = motion.start;
         let sizes = [alpha, beta].map(|[re, im]| re.hypot(im));
         let directions = [alpha, beta].map(|z| direction(z).unwrap_or([1.0, 0.0]));
-        let mut course = Self::with(&motion, Series::Steady(Steady(sizes)));
+        let mut course = Self::with(&motion, &Series::Steady(Steady(sizes)));
         course.steady = [half_spin, -half_spin, DoubleDouble::default()];
         course.unit(motion.exponent);
         course.frame(&motion, [directions[0], directions[1], [1.0, 0.0]]);
         (course, Nutation::steady(&motion))
     }
 
-    fn moving(motion: &Reduced, points: &TurningPoints, half_spin: DoubleDouble) -> (Self, Nutation) {
+    fn moving(
+        motion: &Reduced,
+        points: &TurningPoints,
+        half_spin: DoubleDouble,
+    ) -> (Self, Nutation) {
         let phases = Phases::of(motion, points);
         let half = phases.half;
         let is_endless = half.real.is_infinite();
@@ -165,7 +62,7 @@ impl Course {
         let series = if half.real <= half.imaginary {
             let quotients = Circular::new(half, phases.shifts);
             let at = |s: f64, c: f64| {
-                let z = circular::Argument::new(One::new(s), One::new(c));
+                let z = circular::Argument::new(Single::new(s), Single::new(c));
                 quotients.values(&z)
             };
             Series::Circular(quotients.scaled(factors(&sizes, &at(1.0, 0.0), &at(0.0, 1.0))))
@@ -175,9 +72,9 @@ impl Course {
             let least = (-end).exp();
             let at = |from_middle: f64, from_end: f64| {
                 quotients.values(&hyperbolic::Argument {
-                    from_middle: One::new(from_middle),
-                    from_end: One::new(from_end),
-                    sign: One::new(1.0),
+                    from_middle: Single::new(from_middle),
+                    from_end: Single::new(from_end),
+                    sign: Single::new(1.0),
                 })
             };
             let upper = at(least, if is_endless { 0.0 } else { 1.0 });
@@ -188,8 +85,12 @@ impl Course {
                 Series::Hyperbolic(Periodic { quotients, end })
             }
         };
-        let mut course = Self::with(motion, series);
-        course.clock = if is_endless { phases.lambda } else { phases.clock };
+        let mut course = Self::with(motion, &series);
+        course.clock = if is_endless {
+            phases.lambda
+        } else {
+            phases.clock
+        };
         course.start = phases.start;
         course.steady = phases.steady;
         let constants = course.constants(motion, points, &phases);
@@ -202,12 +103,13 @@ impl Course {
         (course, Nutation::of(motion, points, &phases, drift))
     }
 
-    fn with(motion: &Reduced, series: Series) -> Self {
+    fn with(motion: &Reduced, series: &Series) -> Self {
         let back = conjugate(&motion.aligning);
         let [x, y, z, _] = turned_basis(&back, 2);
-        let along = [x, y, z].map(|n| times_power_of_two((n * motion.axial).rounded(), motion.exponent));
+        let along =
+            [x, y, z].map(|n| times_power_of_two((n * motion.axial).rounded(), motion.exponent));
         Self {
-            series,
+            series: *series,
             clock: DoubleDouble::default(),
             start: DoubleDouble::default(),
             steady: [DoubleDouble::default(); 3],
@@ -227,14 +129,14 @@ impl Course {
     /// relative to the largest each becomes. At u₁ the three have `W α β* = ½ i (a − b u₁)`.
     fn constants(&self, motion: &Reduced, points: &TurningPoints, phases: &Phases) -> [Complex; 3] {
         let (values, extra) = match &self.series {
-            Series::Steady(functions) => functions.at(self, One::new(0.0)),
-            Series::Circular(functions) => functions.at(self, One::new(0.0)),
-            Series::Hyperbolic(functions) => functions.at(self, One::new(0.0)),
-            Series::Endless(functions) => functions.at(self, One::new(0.0)),
+            Series::Steady(functions) => functions.at(self, Single::new(0.0)),
+            Series::Circular(functions) => functions.at(self, Single::new(0.0)),
+            Series::Hyperbolic(functions) => functions.at(self, Single::new(0.0)),
+            Series::Endless(functions) => functions.at(self, Single::new(0.0)),
         };
         let found = [0, 1, 2].map(|k| {
             let (s, c) = sin_cos_turns(whole_off(extra[k]));
-            let turned = times_complex(values[k].map(One::get), [c.get(), s.get()]);
+            let turned = times_complex(values[k].map(Single::get), [c.get(), s.get()]);
             direction(times_complex(motion.start[k], [turned[0], -turned[1]]))
         });
         let parts = [
@@ -248,7 +150,7 @@ impl Course {
         } else {
             phases.carry * phases.start.high
         };
-        let (s, c) = sin_cos_turns(One::new(winding));
+        let (s, c) = sin_cos_turns(Single::new(winding));
         let (there, back) = ([c.get(), s.get()], [c.get(), -s.get()]);
         let one = [1.0, 0.0];
         let [alpha, beta, w] = found.map(|direction| direction.unwrap_or(one));
@@ -262,7 +164,10 @@ impl Course {
             let product = times_complex([w[0], -w[1]], beta);
             (minus(times_complex(product, there)), beta)
         };
-        let w = minus(times_complex(times_complex(beta, [alpha[0], -alpha[1]]), there));
+        let w = minus(times_complex(
+            times_complex(beta, [alpha[0], -alpha[1]]),
+            there,
+        ));
         [alpha, beta, w]
     }
 
@@ -293,100 +198,14 @@ impl Course {
             self.across[row] = [mix(w[0], w[1]), mix(-w[1], w[0])];
         }
     }
-
-    /// The states at `times`.
-    pub(super) fn fill(&self, times: &[f64], states: &mut [State]) {
-        match &self.series {
-            Series::Steady(functions) => self.fill_with(functions, times, states),
-            Series::Circular(functions) => self.fill_with(functions, times, states),
-            Series::Hyperbolic(functions) => self.fill_with(functions, times, states),
-            Series::Endless(functions) => self.fill_with(functions, times, states),
-        }
-    }
-
-    fn fill_with<F: Functions>(&self, functions: &F, times: &[f64], states: &mut [State]) {
-        dispatch(Fill {
-            course: self,
-            functions,
-            times,
-            states,
-        });
-    }
-
-    /// (x, y, z, w) of the attitude and ω in B at the time `t`.
-    #[inline(always)]
-    fn state<L: Lane, F: Functions>(&self, functions: &F, t: L) -> [L; 7] {
-        let (values, extra) = functions.at(self, t);
-        let [alpha, beta, w] = [0, 1, 2].map(
-            #[inline(always)]
-            |k| {
-                let phase = turns(t, self.steady[k], DoubleDouble::default());
-                let (s, c) = sin_cos_turns(whole_off(phase + extra[k]));
-                let [re, im] = values[k];
-                [re * c - im * s, re * s + im * c]
-            },
-        );
-        let q = self.attitude.map(
-            #[inline(always)]
-            |[a, b, c, d]| {
-                L::new(a) * alpha[0]
-                    + L::new(b) * alpha[1]
-                    + (L::new(c) * beta[0] + L::new(d) * beta[1])
-            },
-        );
-        // One step of Newton's method toward length one, which it has but for rounding.
-        let square = q[0] * q[0] + q[1] * q[1] + (q[2] * q[2] + q[3] * q[3]);
-        let factor = L::new(1.5) - L::new(0.5) * square;
-        let omega = |k: usize| {
-            let [a, b] = self.across[k];
-            L::new(a) * w[0] + L::new(b) * w[1] + L::new(self.along[k])
-        };
-        [
-            q[0] * factor,
-            q[1] * factor,
-            q[2] * factor,
-            q[3] * factor,
-            omega(0),
-            omega(1),
-            omega(2),
-        ]
-    }
-}
-
-struct Fill<'a, F> {
-    course: &'a Course,
-    functions: &'a F,
-    times: &'a [f64],
-    states: &'a mut [State],
-}
-
-impl<F: Functions> Kernel for Fill<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lane>(self) {
-        let mut planes = Planes::<7>::ZERO;
-        for (times, states) in self.times.chunks(ROWS).zip(self.states.chunks_mut(ROWS)) {
-            for (row, &t) in times.iter().enumerate().take(ROWS) {
-                planes.set_lanes(row, self.course.state(self.functions, L::new(t)));
-            }
-            for (row, state) in states.iter_mut().enumerate().take(ROWS) {
-                let [x, y, z, w, w1, w2, w3] = planes.get::<7>(row, 0);
-                *state = State {
-                    attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
-                    omega: Vector3::new(w1, w2, w3),
-                };
-            }
-        }
-    }
 }
 
 /// One lane for what is done once.
-type One = Double<false>;
+type Single = Double<false>;
 
 /// What gives the functions their sizes: of α at the highest point, of β and W at the lowest.
-fn factors(sizes: &[f64; 3], upper: &Values<One>, lower: &Values<One>) -> [f64; 3] {
-    let size = |[re, im]: [One; 2]| re.get().hypot(im.get());
+fn factors(sizes: &[f64; 3], upper: &Values<Single>, lower: &Values<Single>) -> [f64; 3] {
+    let size = |[re, im]: [Single; 2]| re.get().hypot(im.get());
     [
         sizes[0] / size(upper[0]),
         sizes[1] / size(lower[1]),

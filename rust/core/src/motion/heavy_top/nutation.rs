@@ -25,7 +25,9 @@ pub enum Path {
     Loop,
     /// The precession keeps its sense.
     Wave,
-    /// The axis swings in a vertical plane.
+    /// The axis goes through the vertical in every period: the angular momentum about the vertical is that about the axis.
+    Crossing,
+    /// The axis swings or turns over in a vertical plane.
     Planar,
     /// The axis leaves the upward vertical, or comes to it, in infinite time.
     Asymptotic,
@@ -41,6 +43,7 @@ impl Path {
             Self::Cusp => "cusp",
             Self::Loop => "loop",
             Self::Wave => "wave",
+            Self::Crossing => "crossing",
             Self::Planar => "planar",
             Self::Asymptotic => "asymptotic",
         }
@@ -101,16 +104,32 @@ fn path(motion: &Reduced, points: &TurningPoints, phases: &Phases) -> Path {
     if phases.clock.high == 0.0 {
         return Path::Asymptotic;
     }
-    if points.range.high <= ROUNDING {
+    let [depth, below_top, height] =
+        [points.depth, points.below_top, motion.bottom + points.rise].map(DoubleDouble::rounded);
+    if points.range.high <= ROUNDING * depth.min(height) {
         return Path::Regular;
     }
+    let b = motion.spin.rounded();
+    let (sum, difference) = (motion.sum().rounded(), motion.difference().rounded());
+    let size = motion.lift.high.abs();
+    let vanishes = |x: f64, distance: DoubleDouble| {
+        x.abs() <= ROUNDING * (size + (motion.spin * distance).high.abs())
+    };
+    let (at_top, at_bottom) = (
+        vanishes(difference, motion.top) && points.beyond_top.high > points.below_top.high,
+        vanishes(sum, motion.bottom),
+    );
+    if at_top || at_bottom {
+        return if sum == 0.0 && difference == 0.0 {
+            Path::Planar
+        } else {
+            Path::Crossing
+        };
+    }
     // φ̇ has the sign of a − b u = (a − b) + b (1 − u).
-    let (difference, b) = (motion.difference().rounded(), motion.spin.rounded());
-    let terms = [points.depth, points.below_top].map(|distance| b * distance.rounded());
+    let terms = [depth, below_top].map(|distance| b * distance);
     let [low, high] = terms.map(|term| difference + term);
-    if low == 0.0 && high == 0.0 {
-        Path::Planar
-    } else if high.abs() <= ROUNDING * (difference.abs() + terms[1].abs()) {
+    if high.abs() <= ROUNDING * (difference.abs() + terms[1].abs()) {
         Path::Cusp
     } else if low * high < 0.0 {
         Path::Loop

@@ -152,13 +152,8 @@ fn start(motion: &Reduced, points: &TurningPoints, k_prime: f64, k: f64) -> Doub
 }
 
 /// The shifts, with their signs: `tan²` of each amplitude is `|c − u₁|/(u₂ − u₁)` for α, `(c − u₂)(u₃ − u₁)/((u₂ − u₁)(u₃ − c))`
-/// for β and W, with c = −1, 1 and u_e.
-fn shifts(
-    two_kappa: f64,
-    points: &TurningPoints,
-    k: f64,
-    signs: &[f64; 3],
-) -> [f64; 3] {
+/// for β and W, with c = −1, 1 and `u_e`.
+fn shifts(two_kappa: f64, points: &TurningPoints, k: f64, signs: &[f64; 3]) -> [f64; 3] {
     let [height, range] = [points.height, points.range].map(DoubleDouble::rounded);
     let top = amplitude(
         points.below_top.rounded() * height,

@@ -1,6 +1,6 @@
 //! Which bodies are heavy symmetric tops about a fixed point; their steady precession and the sleeping limit (part II).
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::reduced::norm;
 use crate::error::Error;
@@ -86,11 +86,7 @@ impl PivotedTop {
                 allowed: rtol,
             });
         }
-        let lateral = if top.axial == i3 && !is_spherical || is_spherical {
-            [i1, i2]
-        } else {
-            [i2, i3]
-        };
+        let lateral = if top.axial == i3 { [i1, i2] } else { [i2, i3] };
         Ok(Self {
             axis,
             axial: top.axial,
@@ -104,6 +100,32 @@ impl PivotedTop {
                 lateral,
             },
         })
+    }
+
+    /// Effective potential of the inclination: `V(θ) = (L_z − L_s cos θ)²/(2 I_t sin²θ) + m g l cos θ`.
+    ///
+    /// `I_t θ̇²/2 + V(θ)` is constant: the energy less that of the spin about the axis. `L_z`, `L_s`: the angular momenta about the upward
+    /// vertical and about the axis, both constant. `omega`: in B; `gravity`: in N; θ: of the axis (from O to C) from the upward
+    /// vertical. Without gravity the third axis of N stands for the vertical. Source: part II; Landau and Lifshitz, Mechanics, §35.
+    #[must_use]
+    pub fn effective_potential(
+        &self,
+        omega: &Vector3<f64>,
+        attitude: &UnitQuaternion<f64>,
+        gravity: &Vector3<f64>,
+        inclination: f64,
+    ) -> f64 {
+        let up = attitude
+            .inverse_transform_vector(&(-gravity).try_normalize(0.0).unwrap_or_else(Vector3::z));
+        let spin = omega.dot(&self.axis);
+        let across = omega - self.axis * spin;
+        let start = up.dot(&self.axis);
+        // L_z − L_s cos θ, where L_z = I_t ω_t·γ + L_s cos θ₀.
+        let (half_sin, half_cos) = (0.5 * inclination).sin_cos();
+        let (sine, cosine) = (2.0 * half_sin * half_cos, inclination.cos());
+        let rest = self.transverse * across.dot(&up) + self.axial * spin * (start - cosine);
+        let turning = if rest == 0.0 { 0.0 } else { rest / sine };
+        0.5 * turning * turning / self.transverse + self.mass_moment * gravity.norm() * cosine
     }
 
     /// A vector along the axis toward C, of any length.
@@ -128,16 +150,16 @@ impl PivotedTop {
             direction.map(|x| times_power_of_two(x, -e[0])),
             c.map(|x| times_power_of_two(x, -e[1])),
         );
-        let along = (n.iter().zip(c.iter()))
-            .fold(DoubleDouble::default(), |sum, (&a, &b)| sum + DoubleDouble::product(a, b));
+        let along = (n.iter().zip(c.iter())).fold(DoubleDouble::default(), |sum, (&a, &b)| {
+            sum + DoubleDouble::product(a, b)
+        });
         let arm = not_negative(along / length);
         // The larger of arm and radii of gyration is of the order of one.
         let [i1, i2] = lateral;
         let largest = exponent(axial.max(i1).max(i2)) - mass_exponent;
         let exponent = largest.max(if arm.high == 0.0 { largest } else { 2 * e[1] });
-        let moment = |i: f64| {
-            DoubleDouble::from(times_power_of_two(i, -mass_exponent - exponent)) / mass
-        };
+        let moment =
+            |i: f64| DoubleDouble::from(times_power_of_two(i, -mass_exponent - exponent)) / mass;
         let squared = arm * arm;
         let squared = DoubleDouble {
             high: times_power_of_two(squared.high, 2 * e[1] - exponent),
@@ -202,7 +224,11 @@ impl PivotedTop {
 }
 
 fn not_negative(x: DoubleDouble) -> DoubleDouble {
-    if x.high > 0.0 { x } else { DoubleDouble::default() }
+    if x.high > 0.0 {
+        x
+    } else {
+        DoubleDouble::default()
+    }
 }
 
 #[cfg(test)]

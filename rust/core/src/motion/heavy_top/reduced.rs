@@ -193,5 +193,6 @@ pub(super) fn conjugate(q: &Quaternion2) -> Quaternion2 {
 }
 
 fn sum_of_squares(q: &Quaternion2) -> DoubleDouble {
-    q.iter().fold(DoubleDouble::default(), |sum, &x| sum + x * x)
+    q.iter()
+        .fold(DoubleDouble::default(), |sum, &x| sum + x * x)
 }

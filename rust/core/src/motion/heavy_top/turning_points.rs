@@ -119,7 +119,11 @@ fn quotient(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
 }
 
 fn not_negative(x: DoubleDouble) -> DoubleDouble {
-    if x.high > 0.0 { x } else { DoubleDouble::default() }
+    if x.high > 0.0 {
+        x
+    } else {
+        DoubleDouble::default()
+    }
 }
 
 /// What f is at u = 1: `f(1 − δ) = −(a − b)² + 2 slope δ + …`
