@@ -65,7 +65,11 @@ class HeavyTop:
                 now, later = self._rate(state), self._rate(_sum(series, step))
                 if mpmath.sign(now) * mpmath.sign(later) < 0:
                     zero = mpmath.findroot(
-                        lambda h, s=series: self._rate(_sum(s, h)), (mpf(0), step), solver="anderson", tol=0, verify=False
+                        lambda h, s=series: self._rate(_sum(s, h)),
+                        (mpf(0), step),
+                        solver="anderson",
+                        tol=0,
+                        verify=False,
                     )
                     times.append(t + zero)
                 state, t = _sum(series, step), t + step
@@ -118,11 +122,19 @@ class HeavyTop:
         rate = abs(w[0]) + abs(self.w3) + mpmath.sqrt(self.kappa)
         scales = mpf(1), mpf(1), rate
         radius = min(
-            mpmath.root(scale / max(abs(row[-1]), abs(row[-2]), scale * mpf(10) ** (-4 * self.digits)), self.order)
+            mpmath.root(
+                scale / max(abs(row[-1]), abs(row[-2]), scale * mpf(10) ** (-4 * self.digits)), self.order
+            )
             for row, scale in zip((a, b, w), scales, strict=True)
         )
         return [a, b, w], min(radius * mpmath.exp(-2), 1 / rate)
 
 
 def _sum(series: list[list[mpc]], h: mpf) -> State:
-    return tuple(mpmath.polyval(row[::-1], h) for row in series)
+    values = []
+    for row in series:
+        total = mpc(0)
+        for coefficient in reversed(row):
+            total = total * h + coefficient
+        values.append(total)
+    return values[0], values[1], values[2]
