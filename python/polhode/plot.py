@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from polhode import RigidBody
-    from polhode.results import Trajectory
+    from polhode.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 

@@ -339,8 +339,9 @@ impl PyHeavyTop {
     /// >>> swing = bob.heavy_top((0, 0, 0), euler_angles.to_quaternion((0, 1, 0)), gravity=(0, 0, -9.81))
     /// >>> round(2 * swing.nutation_period, 6)
     /// 2.139138
-    /// >>> swing.at(swing.nutation_period).point("center_of_mass").round(6)
-    /// array([ 0.      ,  0.841471, -0.540302])
+    /// >>> swing.at([0.0, swing.nutation_period]).point("center_of_mass").round(6)
+    /// array([[ 0.      ,  0.841471, -0.540302],
+    ///        [ 0.      , -0.841471, -0.540302]])
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> Array<'py> {
         let times: Stack<f64> = read(t, "t")?;
         let shape = [&self.motions.shape[..], &times.shape].concat();
@@ -374,7 +375,12 @@ impl PyHeavyTop {
         fields.set_item("about", write(py, &origins)?)?;
         fields.set_item("steps", &none)?;
         fields.set_item("evaluations", &none)?;
-        py.import("polhode.results")?
+        let gravity = py
+            .import("polhode.loads")?
+            .call_method1("uniform_gravity", (self.gravity(py)?,))?;
+        fields.set_item("load", gravity)?;
+        fields.set_item("pivoted", true)?;
+        py.import("polhode.trajectory")?
             .getattr("Trajectory")?
             .call((), Some(&fields))
     }

@@ -18,8 +18,10 @@ mod environment;
 mod equimomental;
 mod errors;
 mod euler_rates;
+mod events;
 mod files;
 mod forms;
+mod free_motion;
 mod heavy_top;
 mod interrupt;
 mod kinematics;
@@ -60,13 +62,18 @@ mod _core {
         to_spatial_inertia,
     };
     #[pymodule_export]
+    use crate::free_motion::PyFreeMotion;
+    #[pymodule_export]
     use crate::heavy_top::PyHeavyTop;
     #[pymodule_export]
     use crate::kinematics::transport;
     #[pymodule_export]
     use crate::laminae::{annulus, disk, ellipse, polygon, rectangle, triangle};
     #[pymodule_export]
-    use crate::loads::{PyLoad, constant_torque, torque_callback};
+    use crate::loads::{
+        PyLoad, callback, compiled, constant_force, constant_torque, damping, feedback,
+        gravity_gradient, sampled, schedule, torque_callback, uniform_gravity,
+    };
     #[pymodule_export]
     use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};
     #[pymodule_export]

@@ -3,6 +3,7 @@
 
 use nalgebra::SVector;
 
+use super::first_step::first_step;
 use super::tableau::{DENSE, ERROR_3, ERROR_5, EXTENDED_STAGES, NODES, Row, STAGE_WEIGHTS, STAGES};
 use super::{Compensated, System};
 use crate::error::Error;
@@ -36,7 +37,7 @@ pub struct Dop853<const N: usize> {
 }
 
 impl<const N: usize> Dop853<N> {
-    /// At the state `y` at time `start`, on the way to `end`.
+    /// At the state `y` at time `start`, on the way to `end`, with `step` to try first or one of its own choice.
     ///
     /// # Errors
     /// What the equations refuse at the start; a slope there that is not finite.
@@ -45,6 +46,7 @@ impl<const N: usize> Dop853<N> {
         start: f64,
         end: f64,
         y: SVector<f64, N>,
+        step: Option<f64>,
     ) -> Result<Self, S::Error> {
         let mut state = Compensated::new(y);
         system.accept(&mut state);
@@ -64,7 +66,13 @@ impl<const N: usize> Dop853<N> {
             return Err(Error::NotFiniteMotion { time: start }.into());
         }
         stepper.slopes[STAGES] = slope;
-        stepper.step = stepper.first_step(system)?;
+        stepper.step = match step {
+            Some(step) if step != 0.0 => step.abs().min(stepper.span.abs()).copysign(stepper.span),
+            _ => {
+                stepper.evaluations += 1;
+                first_step(system, start, stepper.span, &state.value, &slope, EXPONENT)?
+            }
+        };
         Ok(stepper)
     }
 
@@ -72,6 +80,12 @@ impl<const N: usize> Dop853<N> {
     #[must_use]
     pub fn elapsed(&self) -> f64 {
         self.elapsed.0
+    }
+
+    /// The step that would be tried next.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        self.step
     }
 
     /// Whether the end is reached.
@@ -215,30 +229,6 @@ impl<const N: usize> Dop853<N> {
         }
     }
 
-    /// A first step from the sizes of state, slope and change of slope (Hairer, Nørsett & Wanner, §II.4).
-    fn first_step<S: System<N>>(&mut self, system: &mut S) -> Result<f64, S::Error> {
-        let (y, slope) = (self.state.value, self.slopes[STAGES]);
-        let (size, speed) = (
-            system.error_norm(&y, &y, &y),
-            system.error_norm(&y, &y, &slope),
-        );
-        let trial = if speed > 0.0 && speed.is_finite() {
-            0.01 * size / speed
-        } else {
-            1e-3 * self.span.abs()
-        };
-        let trial = trial.min(self.span.abs()).copysign(self.span);
-        let later = self.slope(system, trial, &(y + slope * trial))?;
-        let bend = system.error_norm(&y, &(y + slope * trial), &(later - slope)) / trial.abs();
-        let fastest = speed.max(bend);
-        let step = if fastest > 0.0 && fastest.is_finite() {
-            (0.01 / fastest).powf(EXPONENT).min(100.0 * trial.abs())
-        } else {
-            trial.abs()
-        };
-        Ok(step.min(self.span.abs()).copysign(self.span))
-    }
-
     fn stuck(&self, step: f64) -> Error {
         Error::StepTooSmall {
             time: self.start + self.elapsed.0,
@@ -295,7 +285,8 @@ mod tests {
 
     fn run(tolerance: f64, end: f64) -> (f64, f64, u64) {
         let mut system = Oscillator { tolerance };
-        let mut stepper = Dop853::new(&mut system, 3.0, 3.0 + end, Vector2::x()).expect("finite");
+        let mut stepper =
+            Dop853::new(&mut system, 3.0, 3.0 + end, Vector2::x(), None).expect("finite");
         let mut between: f64 = 0.0;
         while !stepper.is_finished() {
             let before = stepper.elapsed();
