@@ -23,9 +23,10 @@ FILES_OF_ROWS = (
     "voxels",
     "meshes",
     "free_motion",
+    "heavy_top",
     "simulate",
-    "threads",
     "callbacks",
+    "threads",
 )
 
 

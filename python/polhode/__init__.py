@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     )
     from polhode._core import (
         FreeMotion,
+        HeavyTop,
         MassAccumulator,
         RigidBody,
         __version__,
@@ -80,6 +81,7 @@ __all__ = [
     "Events",
     "FreeMotion",
     "FreePrecession",
+    "HeavyTop",
     "Invariants",
     "KineticEnergy",
     "MassAccumulator",
