@@ -86,7 +86,17 @@ class TestNames:
         modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
-        assert internal <= {"events", "results", "trajectory", "io", "plot", "molecules", "robots", "units", "cli"}
+        assert internal <= {
+            "events",
+            "results",
+            "trajectory",
+            "io",
+            "plot",
+            "molecules",
+            "robots",
+            "units",
+            "cli",
+        }
 
     @pytest.mark.parametrize("name", MODULES)
     def test_lists_are_sorted_and_complete(self, name: str) -> None:
