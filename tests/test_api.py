@@ -34,10 +34,12 @@ MODULES = [
     "polhode.euler_angles",
     "polhode.equimomental",
     "polhode.errors",
+    "polhode.events",
     "polhode.kinematics",
     "polhode.parallel_axis",
     "polhode.results",
     "polhode.tops",
+    "polhode.trajectory",
 ]
 HEAVY = ("matplotlib", "trimesh", "scipy", "rich", "cyclopts", "periodictable", "pandas", "PIL")
 
@@ -80,7 +82,7 @@ class TestNames:
         modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
-        assert internal <= {"results", "io", "plot", "molecules", "units", "cli"}
+        assert internal <= {"events", "results", "trajectory", "io", "plot", "molecules", "units", "cli"}
 
     @pytest.mark.parametrize("name", MODULES)
     def test_lists_are_sorted_and_complete(self, name: str) -> None:
@@ -103,7 +105,7 @@ class TestNames:
         """
         missing = [name for name in names.split() if not hasattr(RigidBody, name)]
         assert not missing
-        fields = "t omega quaternion position velocity body about steps evaluations"
+        fields = "t omega quaternion position velocity body about steps evaluations status events failures"
         assert set(fields.split()) <= set(polhode.Trajectory.__dataclass_fields__)
 
     def test_classes_know_where_they_live(self) -> None:

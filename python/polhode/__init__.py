@@ -16,22 +16,28 @@ from polhode import (
     validity,
 )
 from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
+from polhode.events import Event, Events
 from polhode.results import (
     AngularMomentum,
     ErrorBound,
     FreePrecession,
+    Invariants,
     KineticEnergy,
     Particles,
     PrincipalAxes,
     PrincipalDerivative,
     Provenance,
-    Trajectory,
+    State,
 )
+from polhode.trajectory import Trajectory
 
 __all__ = [
     "AngularMomentum",
     "ErrorBound",
+    "Event",
+    "Events",
     "FreePrecession",
+    "Invariants",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",
@@ -39,6 +45,7 @@ __all__ = [
     "PrincipalDerivative",
     "Provenance",
     "RigidBody",
+    "State",
     "Trajectory",
     "__version__",
     "equimomental",

@@ -16,8 +16,8 @@ from polhode.results import (
     Particles,
     PrincipalAxes,
     Provenance,
-    Trajectory,
 )
+from polhode.trajectory import Trajectory
 
 __all__ = [
     "Load",
@@ -29,24 +29,30 @@ __all__ = [
     "annulus",
     "arc",
     "box",
+    "callback",
     "canonical_axes",
     "capsule",
     "classify_tops",
+    "compiled",
     "cone",
+    "constant_force",
     "constant_torque",
     "cube",
     "cylinder",
+    "damping",
     "disk",
     "ellipse",
     "ellipsoid",
     "euler_angles_from_quaternion",
     "euler_rates",
+    "feedback",
     "free_precession",
     "from_log_cholesky",
     "from_parameters",
     "from_pseudo_inertia",
     "from_spatial_inertia",
     "frustum",
+    "gravity_gradient",
     "hemisphere",
     "hollow_sphere",
     "inertia_from_center_of_mass",
@@ -74,6 +80,8 @@ __all__ = [
     "ring",
     "rod",
     "rotate",
+    "sampled",
+    "schedule",
     "sphere",
     "steady_precession",
     "stick",
@@ -90,12 +98,14 @@ __all__ = [
     "transport",
     "triangle",
     "tube",
+    "uniform_gravity",
     "wedge",
     "within_box",
 ]
 
 _Floats: TypeAlias = NDArray[np.float64]
-_About: TypeAlias = Literal["center_of_mass", "origin"] | ArrayLike
+_Reference: TypeAlias = Literal["center_of_mass", "origin"]
+_About: TypeAlias = _Reference | ArrayLike
 _SpatialOrder: TypeAlias = Literal["angular-linear", "linear-angular"]
 _Attitude: TypeAlias = ArrayLike | SupportsQuaternion
 
@@ -274,10 +284,12 @@ class RigidBody:
         load: Load | None = None,
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
-        about: Literal["center_of_mass", "origin"] = "center_of_mass",
+        about: _Reference = "center_of_mass",
         method: Literal["auto", "dop853"] = "auto",
         rtol: float = 1e-10,
         atol: float | None = None,
+        events: Callable[..., float] | Iterable[Callable[..., float]] | None = None,
+        on_failure: Literal["raise", "keep"] = "raise",
         progress: Callable[[float], object] | None = None,
     ) -> Trajectory: ...
     @property
@@ -311,9 +323,51 @@ class MassAccumulator:
 
 @final
 class Load:
-    def torque(self, t: ArrayLike, omega: ArrayLike, quaternion: _Attitude) -> _Floats: ...
+    def torque(
+        self,
+        t: ArrayLike,
+        omega: ArrayLike,
+        quaternion: _Attitude,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        *,
+        body: RigidBody | None = None,
+        about: _Reference = "center_of_mass",
+        start: float | None = None,
+    ) -> _Floats: ...
+    def force(
+        self,
+        t: ArrayLike,
+        omega: ArrayLike,
+        quaternion: _Attitude,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        *,
+        body: RigidBody | None = None,
+        about: _Reference = "center_of_mass",
+        start: float | None = None,
+    ) -> _Floats: ...
+    def potential(
+        self,
+        body: RigidBody,
+        quaternion: _Attitude,
+        position: ArrayLike | None = None,
+        about: _Reference = "center_of_mass",
+    ) -> _Floats | None: ...
+    def keeps_momentum(self, about: _Reference = "center_of_mass") -> Literal[True] | _Floats | None: ...
+    def anchored(self, t: float) -> Load: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    def __getitem__(self, key: Any, /) -> Load: ...
     def __add__(self, other: Load, /) -> Load: ...
-    def __radd__(self, other: Load, /) -> Load: ...
+    def __radd__(self, other: int, /) -> Load: ...
+    def __sub__(self, other: Load, /) -> Load: ...
+    def __rsub__(self, other: Load, /) -> Load: ...
+    def __neg__(self) -> Load: ...
+    def __mul__(self, factor: float, /) -> Load: ...
+    def __rmul__(self, factor: float, /) -> Load: ...
+    def __copy__(self) -> Load: ...
+    def __deepcopy__(self, memo: object, /) -> Load: ...
 
 def principal_axes(inertia: ArrayLike, canonical: bool = False) -> PrincipalAxes: ...
 def principal_moments(inertia: ArrayLike) -> _Floats: ...
@@ -323,7 +377,26 @@ def principal_derivative(
 ) -> tuple[_Floats, _Floats, NDArray[np.bool_]]: ...
 def ray_kappa(moments: ArrayLike) -> Any: ...
 def constant_torque(vector: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
+def constant_force(
+    vector: ArrayLike, frame: Literal["body", "space"] = "body", point: ArrayLike | None = None
+) -> Load: ...
+def uniform_gravity(gravity: ArrayLike) -> Load: ...
+def gravity_gradient(
+    mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, epoch: float | None = None
+) -> Load: ...
+def damping(matrix: ArrayLike, quadratic: ArrayLike | None = None) -> Load: ...
+def sampled(t: ArrayLike, torque: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
+def schedule(load: Load, windows: ArrayLike) -> Load: ...
+def feedback(
+    K: ArrayLike,  # noqa: N803
+    D: ArrayLike,  # noqa: N803
+    target: _Attitude | None = None,
+) -> Load: ...
 def torque_callback(function: Callable[[float, _Floats, _Floats], ArrayLike]) -> Load: ...
+def callback(
+    function: Callable[[float, _Floats, _Floats, _Floats, _Floats], tuple[ArrayLike, ArrayLike]],
+) -> Load: ...
+def compiled(function: object, user_data: int | None = None) -> Load: ...
 def box(size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None) -> RigidBody: ...
 def cube(
     side: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None

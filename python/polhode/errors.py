@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from polhode._core import RigidBody
-    from polhode.results import Trajectory
+    from polhode.trajectory import Trajectory
 
 __all__ = [
     "FileFormatError",
@@ -41,10 +41,12 @@ class FileFormatError(PolhodeError):
 
 
 class IntegrationError(PolhodeError):
-    """An integration that could not go on.
+    """An integration that could not go on; the message tells why.
 
     Attributes
     ----------
+    row : int
+        Which body of the stack, counted through the flattened stack.
     time : float
         The time that was reached.
     state : tuple of numpy.ndarray
@@ -53,6 +55,7 @@ class IntegrationError(PolhodeError):
         What had been computed; not a number after ``time``.
     """
 
+    row: int
     time: float
     state: tuple[object, object]
     partial: Trajectory | None

@@ -1,5 +1,35 @@
-"""What acts on a body while it is simulated. Loads add: ``a + b`` acts as both."""
+"""What acts on a body while it is simulated.
 
-from polhode._core import Load, constant_torque, torque_callback
+Loads add and scale: ``a + b``, ``a - b``, ``2 * a``, ``sum(loads)``. Torques are about the reference point
+of the motion: the centre of mass of a free body, or the origin that is fixed in space.
+"""
 
-__all__ = ["Load", "constant_torque", "torque_callback"]
+from polhode._core import (
+    Load,
+    callback,
+    compiled,
+    constant_force,
+    constant_torque,
+    damping,
+    feedback,
+    gravity_gradient,
+    sampled,
+    schedule,
+    torque_callback,
+    uniform_gravity,
+)
+
+__all__ = [
+    "Load",
+    "callback",
+    "compiled",
+    "constant_force",
+    "constant_torque",
+    "damping",
+    "feedback",
+    "gravity_gradient",
+    "sampled",
+    "schedule",
+    "torque_callback",
+    "uniform_gravity",
+]

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from polhode import _core
 
 if TYPE_CHECKING:
-    from os import PathLike
-
-    from matplotlib.axes import Axes
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
-    from scipy.spatial.transform import Rotation
 
     Floats = NDArray[np.float64]
 
@@ -24,13 +19,14 @@ __all__ = [
     "BoxFit",
     "ErrorBound",
     "FreePrecession",
+    "Invariants",
     "KineticEnergy",
     "NearestValid",
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",
     "Provenance",
-    "Trajectory",
+    "State",
 ]
 
 
@@ -311,234 +307,38 @@ class FreePrecession(NamedTuple):
     nutation: Any
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Trajectory:
-    """The motion of one body or of a stack at the times asked for.
+class State(NamedTuple):
+    """A state of motion, in the words of `simulate`: ``body.simulate(t, **state._asdict())``.
 
     Attributes
     ----------
-    body : RigidBody
-        The body, or the stack of them.
-    t : numpy.ndarray, shape (T,)
-        Times, the first being the start.
-    omega : numpy.ndarray, shape (..., T, 3)
-        Angular velocity of the body relative to space, components in the body frame.
-    quaternion : numpy.ndarray, shape (..., T, 4)
-        Attitude R_NB as (x, y, z, w), continuous in time.
-    position, velocity : numpy.ndarray, shape (..., T, 3)
-        Of the point `about`, in space.
-    about : numpy.ndarray, shape (..., 3)
-        The point the motion refers to, in the body frame.
-    steps, evaluations : numpy.ndarray, shape (...)
-        Accepted steps and evaluations of the equations of motion.
-    load : Load or None
-        What acted on the body.
+    omega : numpy.ndarray, shape (..., 3)
+    attitude : numpy.ndarray, shape (..., 4)
+    position, velocity : numpy.ndarray, shape (..., 3)
     """
 
-    body: _core.RigidBody
-    t: Floats
     omega: Floats
-    quaternion: Floats
+    attitude: Floats
     position: Floats
     velocity: Floats
-    about: Floats
-    steps: NDArray[np.int64]
-    evaluations: NDArray[np.int64]
-    load: _core.Load | None = None
 
-    def __len__(self) -> int:
-        """Count the times."""
-        return len(self.t)
 
-    def __repr__(self) -> str:
-        shape = self.omega.shape[:-2]
-        bodies = f"{'x'.join(map(str, shape))} bodies, " if shape else ""
-        span = f" from {self.t[0]:.6g} to {self.t[-1]:.6g}" if len(self) else ""
-        return f"Trajectory({bodies}{len(self)} times{span})"
+class Invariants(NamedTuple):
+    """What a motion keeps, and how far the numbers have drifted from it.
 
-    @cached_property
-    def rotation(self) -> Rotation:
-        """The attitude as :class:`scipy.spatial.transform.Rotation`, shape (..., T); needs SciPy."""
-        from polhode._extras import require
+    Attributes
+    ----------
+    energy : numpy.ndarray, shape (..., T), or None
+        Kinetic and potential; None where the load has no potential.
+    angular_momentum : numpy.ndarray, shape (..., T, 3) or (..., T), or None
+        About the point `about`, in space, where no torque acts; its component along the field where the
+        torque of a uniform field acts; None where neither is kept.
+    energy_drift, angular_momentum_drift : float or numpy.ndarray, shape (...), or None
+        The largest change since the start, relative to the largest sum of the sizes of both energies, and to
+        the largest angular momentum.
+    """
 
-        transform = require("scipy.spatial.transform", extra=None, purpose="Trajectory.rotation")
-        rotation: Rotation = transform.Rotation.from_quat(self.quaternion)
-        return rotation
-
-    def kinetic_energy(self) -> KineticEnergy:
-        """Kinetic energy at every time, in parts that refer to the point `about`.
-
-        Returns
-        -------
-        KineticEnergy
-            Each part of shape (..., T).
-        """
-        return self._bodies().kinetic_energy(
-            self.omega,
-            velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
-            about=self.about[..., np.newaxis, :],
-        )
-
-    def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
-        """Angular momentum about the origin of space at every time.
-
-        Parameters
-        ----------
-        frame : {"space", "body"}
-            Whose axes the components refer to.
-
-        Returns
-        -------
-        AngularMomentum
-            Each part of shape (..., T, 3).
-        """
-        if frame not in ("space", "body"):
-            raise ValueError(f"frame: {frame!r} is not 'space' or 'body'")
-        in_body = self._bodies().angular_momentum(
-            self.omega,
-            velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
-            position=_core.rotate(self.quaternion, self.position, inverse=True),
-            about=self.about[..., np.newaxis, :],
-        )
-        if frame == "body":
-            return in_body
-        return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
-
-    def euler_angles(self, sequence: str = "ZXZ", singular: Literal["raise", "nan"] = "raise") -> Floats:
-        """Euler angles of the attitude at every time.
-
-        Parameters
-        ----------
-        sequence : str
-            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
-        singular : {"raise", "nan"}
-            What to do at an attitude at which two of the angles are not defined.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-            In radians, each within its range (no unwrapping).
-        """
-        return _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
-
-    def euler_rates(self, sequence: str = "ZXZ", singular: Literal["raise", "nan"] = "raise") -> Floats:
-        """Rates of the Euler angles at every time.
-
-        Parameters
-        ----------
-        sequence : str
-            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
-        singular : {"raise", "nan"}
-            What to do at an attitude at which the angles or their rates are not defined.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-        """
-        angles = self.euler_angles(sequence, singular)
-        return _core.euler_rates(angles, self.omega, sequence, "body", singular)
-
-    def point(self, r: Literal["center_of_mass", "origin"] | ArrayLike) -> Floats:
-        """Position in space of a point of the body at every time.
-
-        Parameters
-        ----------
-        r : {"center_of_mass", "origin"} or array_like, shape (..., 3)
-            The point in the body frame.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-        """
-        words = {"center_of_mass": self.body.center_of_mass, "origin": np.zeros(3)}
-        if isinstance(r, str) and r not in words:
-            raise ValueError(f"r: {r!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
-        place = words[r] if isinstance(r, str) else np.asarray(r, dtype=float)
-        if place.shape[-1:] != (3,):
-            raise ValueError(f"r: expected shape (..., 3), got {place.shape}")
-        arm = place - self.about
-        return self.position + _core.rotate(self.quaternion, arm[..., np.newaxis, :])
-
-    def torque(self) -> Floats:
-        """Torque of the load about the point `about` at every time, components in the body frame.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-        """
-        if self.load is None:
-            return np.zeros_like(self.omega)
-        return self.load.torque(self.t, self.omega, self.quaternion)
-
-    def angular_acceleration(self) -> Floats:
-        """Angular acceleration at every time by Euler's equations, components in the body frame.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-        """
-        return self._bodies().angular_acceleration(
-            self.omega, self.torque(), about=self.about[..., np.newaxis, :]
-        )
-
-    def pivot_reaction(
-        self, gravity: ArrayLike = (0.0, 0.0, 0.0), force: ArrayLike = (0.0, 0.0, 0.0)
-    ) -> Floats:
-        """Force with which the pivot holds a body simulated with ``about="origin"``, at every time.
-
-        Parameters
-        ----------
-        gravity : array_like, shape (..., 3)
-            g in space. The load of the simulation must have contained its torque about the pivot.
-        force : array_like, shape (..., 3)
-            The sum of all other forces in space.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-            Force on the body, components in space: m a_C − m g − force.
-
-        Raises
-        ------
-        ValueError
-            For a motion whose point `about` is not the origin of the body frame, or moves.
-        """
-        if np.any(self.about != 0.0) or np.any(self.velocity != 0.0):
-            raise ValueError('pivot_reaction: no pivot holds this body; simulate it with about="origin"')
-        return self._bodies().pivot_reaction(
-            self.omega, self.angular_acceleration(), self.quaternion, gravity=gravity, force=force
-        )
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the motion to a file, with every bit of it.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
-            (space); a stack's lines begin with the indices of the body. ``.npz``: the arrays under the names
-            of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``.
-        """
-        from polhode._files.trajectory import save_trajectory
-
-        save_trajectory(self, path)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the components of the angular velocity in the body over time; needs matplotlib.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; a new figure by default.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
-        from polhode.plot import angular_velocity
-
-        return angular_velocity(self, ax)
-
-    def _bodies(self) -> _core.RigidBody:
-        """Give the body or stack an axis for time, along which it broadcasts."""
-        return self.body[..., np.newaxis]
+    energy: Floats | None
+    angular_momentum: Floats | None
+    energy_drift: Any
+    angular_momentum_drift: Any

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode.results import Trajectory
+    from polhode.trajectory import Trajectory
 
 __all__ = ["TRAJECTORY_SUFFIXES", "save_trajectory"]
 

@@ -11,7 +11,7 @@ from polhode.plot._style import AXIS_COLORS, AXIS_DASHES, new_axes, tidy
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from polhode.results import Trajectory
+    from polhode.trajectory import Trajectory
 
 __all__ = ["angular_velocity"]
 

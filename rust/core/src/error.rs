@@ -420,6 +420,40 @@ pub enum Error {
         /// The later time.
         next: f64,
     },
+    /// A window of time that ends before it starts, or starts before the one before it has ended.
+    #[error(
+        "windows must be ascending and apart: window {index} is from {on:?} to {off:?}, and the one before it ends at \
+         {previous:?}; join windows that touch"
+    )]
+    WindowOrder {
+        /// Which window.
+        index: usize,
+        /// Its start.
+        on: f64,
+        /// Its end.
+        off: f64,
+        /// The end of the window before it.
+        previous: f64,
+    },
+    /// A sampled torque is asked for at a time at which it is not known.
+    #[error(
+        "the sampled torque is known from t = {first:?} to t = {last:?}, and needed at t = {t:?}: give it samples there, \
+         or switch it on within its samples with loads.schedule"
+    )]
+    OutsideSamples {
+        /// When it is needed.
+        t: f64,
+        /// The first time at which it is known.
+        first: f64,
+        /// The last one.
+        last: f64,
+    },
+    /// A gravity gradient on a body whose origin is fixed.
+    #[error(
+        "the gravity gradient acts on a body in orbit, whose centre of mass is free: simulate it with \
+         about=\"center_of_mass\""
+    )]
+    PivotedInOrbit,
     /// There is nothing where something is needed.
     #[error("{what} must not be empty")]
     Empty {

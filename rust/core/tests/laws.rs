@@ -13,8 +13,8 @@ use polhode::mass::realizable::nearest_valid;
 use polhode::motion::angular_momentum::angular_momentum;
 use polhode::motion::euler_equations::EulerEquations;
 use polhode::motion::kinetic_energy::kinetic_energy;
-use polhode::motion::loads::Term;
-use polhode::motion::simulate::{State, Tolerance, simulate};
+use polhode::motion::loads::Analytic;
+use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
 use proptest::prelude::*;
 use std::ops::ControlFlow;
 use strategies::{any_body, rotation, vector};
@@ -202,19 +202,17 @@ proptest! {
         body in any_body(), direction in vector(1.0), attitude in rotation(),
     ) {
         let center = body.center_of_mass();
-        let equations = EulerEquations::about(&body, &center);
         let omega = direction.try_normalize(1e-3).unwrap_or_else(Vector3::x);
-        let initial = State { attitude: UnitQuaternion::from_matrix(&attitude), omega };
+        let initial = Phase::in_place(&State { attitude: UnitQuaternion::from_matrix(&attitude), omega });
         let times: Vec<f64> = (0..20).map(|k| 0.9 * f64::from(k)).collect();
-        let mut samples = vec![State::nan(); times.len()];
-        let mut go_on = |_| ControlFlow::Continue(());
-        let no_load: &[Term] = &[];
         let tolerance = Tolerance::new(1e-12, 0.0).expect("tolerance");
-        simulate(&equations, &initial, &times, &mut { no_load }, tolerance, &mut samples, &mut go_on)
-            .expect("smooth");
+        let task = Task::free(&body, initial, &times, Method::Dop853, tolerance);
+        let mut load = Analytic::new(&[], task.subject);
+        let samples =
+            simulate(&task, &mut load, &mut NoEvents::new(), &mut |_| ControlFlow::Continue(())).samples;
         let zero = Vector3::zeros();
-        let energy = |state: &State| kinetic_energy(&body, &state.omega, &zero, &center).total();
-        let momentum = |state: &State| {
+        let energy = |state: &Phase| kinetic_energy(&body, &state.omega, &zero, &center).total();
+        let momentum = |state: &Phase| {
             state.attitude * angular_momentum(&body, &state.omega, &zero, &zero, &center).total()
         };
         for state in &samples {

@@ -18,6 +18,7 @@ mod environment;
 mod equimomental;
 mod errors;
 mod euler_rates;
+mod events;
 mod files;
 mod forms;
 mod interrupt;
@@ -63,7 +64,10 @@ mod _core {
     #[pymodule_export]
     use crate::laminae::{annulus, disk, ellipse, polygon, rectangle, triangle};
     #[pymodule_export]
-    use crate::loads::{PyLoad, constant_torque, torque_callback};
+    use crate::loads::{
+        PyLoad, callback, compiled, constant_force, constant_torque, damping, feedback,
+        gravity_gradient, sampled, schedule, torque_callback, uniform_gravity,
+    };
     #[pymodule_export]
     use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};
     #[pymodule_export]

@@ -12,6 +12,7 @@
 //! | steady spins and whether they are stable | [`stability`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
+//! | attitude, ω, position and velocity together | [`state`] |
 //! | what acts on the body | [`loads`] |
 //! | motion under a load at the times asked for | [`mod@simulate`] |
 //! | the steppers | [`integrate`] |
@@ -29,3 +30,4 @@ pub mod loads;
 pub mod pivot_reaction;
 pub mod simulate;
 pub mod stability;
+pub mod state;

@@ -8,8 +8,8 @@ use polhode::motion::euler_equations::EulerEquations;
 use polhode::motion::free_precession::free_precession;
 use polhode::motion::heavy_top::PivotedTop;
 use polhode::motion::kinematics::{Frame, transport};
-use polhode::motion::loads::Term;
-use polhode::motion::simulate::{State, Tolerance, simulate};
+use polhode::motion::loads::Analytic;
+use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
 use polhode::motion::stability::stability;
 use polhode::principal::{SymmetricTop, TOP_RTOL};
 use proptest::prelude::*;
@@ -87,16 +87,14 @@ proptest! {
         close_vectors(&Vector3::from(rates), &Vector3::new(precession, 0.0, -circling), size);
         // The quaternion's road.
         let whole = top(axial, across, &Matrix3::identity());
-        let equations = EulerEquations::about(&whole, &Vector3::zeros());
         let attitude = zxz.to_quaternion(&start).expect("finite");
-        let initial = State { attitude, omega: omega(0.0) };
-        let mut samples = [State::nan(); 2];
-        let (no_load, tolerance): (&[Term], _) = (&[], Tolerance::new(1e-12, 0.0).expect("tolerance"));
+        let initial = Phase::in_place(&State { attitude, omega: omega(0.0) });
+        let tolerance = Tolerance::new(1e-12, 0.0).expect("tolerance");
         let times = [0.0, t];
-        simulate(
-            &equations, &initial, &times, &mut { no_load }, tolerance, &mut samples,
-            &mut |_| ControlFlow::Continue(()),
-        ).expect("smooth");
+        let task = Task::free(&whole, initial, &times, Method::Dop853, tolerance);
+        let mut load = Analytic::new(&[], task.subject);
+        let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut |_| ControlFlow::Continue(()));
+        let samples = run.samples;
         let end = at(t);
         prop_assert!((samples[1].omega - omega(t)).norm() < 1e-9 * omega(t).norm());
         let expected: UnitQuaternion<f64> = zxz.to_quaternion(&end).expect("finite");

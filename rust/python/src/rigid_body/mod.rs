@@ -9,6 +9,7 @@ mod ensemble;
 mod from_shapes;
 mod matter;
 mod motion;
+mod outcome;
 mod properties;
 mod simulate;
 mod trust;

@@ -1,16 +1,17 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
-use polhode::motion::simulate::{Tolerance, check_times};
+use polhode::motion::simulate::{End, Method, Run, Tolerance, check_times};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::ensemble::{Run, Start};
-use super::{PyRigidBody, points};
+use super::PyRigidBody;
+use super::ensemble::{Ensemble, Start};
 use crate::arrays::{read, read_attitude};
 use crate::errors::to_py;
+use crate::events::Functions;
 use crate::interrupt::Interrupt;
-use crate::loads::PyLoad;
+use crate::loads::{Fault, PyLoad, is_pivot};
 use crate::stack::Stack;
 
 /// An optional argument of any array-like kind.
@@ -20,7 +21,8 @@ type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 impl PyRigidBody {
     /// The motion of the body at the times asked for.
     ///
-    /// Solves Euler's equations together with the attitude, as a unit quaternion, under a load.
+    /// Solves Euler's equations together with the attitude, as a unit quaternion, and the motion of the centre of
+    /// mass under a load.
     ///
     /// Parameters
     /// ----------
@@ -33,7 +35,7 @@ impl PyRigidBody {
     ///     SciPy's Rotation. The identity by default.
     /// load : Load, optional
     ///     What acts on the body, from :mod:`polhode.loads`; nothing by default. Its torques are about
-    ///     the point `about`.
+    ///     the point `about`; its forces move a body that is free.
     /// position, velocity : array_like, shape (..., 3), optional
     ///     Of the point `about` at the start, in space; zero by default.
     /// about : {"center_of_mass", "origin"}, optional
@@ -43,10 +45,18 @@ impl PyRigidBody {
     ///     "dop853" is the explicit Runge-Kutta method of order 8 by Dormand and Prince with a dense
     ///     output of order 7. "auto" chooses.
     /// rtol : float, optional
-    ///     Error allowed in a step, relative to the largest angular speed so far and to the unit
-    ///     quaternion; from 2.3e-15 to 0.1.
+    ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
+    ///     distance and speed so far; from 2.3e-15 to 0.1.
     /// atol : float, optional
     ///     Error of the angular velocity allowed besides; none by default.
+    /// events : callable or sequence of callables, optional
+    ///     Functions ``event(t, omega, quaternion, position, velocity)`` whose passages through zero are
+    ///     looked for. Attributes as in SciPy: ``direction`` positive or negative counts those that rise
+    ///     or fall in time alone; ``terminal`` True ends the run at the first, a number n at the n-th.
+    ///     :class:`polhode.Event` sets them.
+    /// on_failure : {"raise", "keep"}, optional
+    ///     Whether a body whose integration cannot go on raises, or keeps the other bodies of the stack;
+    ///     see ``status`` and ``failures`` of the trajectory.
     /// progress : callable, optional
     ///     Called with the fraction done, about twenty times a second and at the end.
     ///
@@ -61,8 +71,9 @@ impl PyRigidBody {
     ///
     /// Notes
     /// -----
-    /// The GIL is released unless the load calls Python; stacks run on all cores. Ctrl-C ends the run.
-    /// An exception raised by a callback comes back as it is.
+    /// The GIL is released unless load or events call Python; stacks run on all cores. Ctrl-C ends the run;
+    /// the KeyboardInterrupt has what was computed as ``partial``. An exception raised by a callback comes back
+    /// as it is.
     ///
     /// Examples
     /// --------
@@ -77,7 +88,7 @@ impl PyRigidBody {
     #[pyo3(
         signature = (
             t, omega, attitude=None, *, load=None, position=None, velocity=None, about="center_of_mass",
-            method="auto", rtol=1e-10, atol=None, progress=None
+            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None
         )
     )]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
@@ -94,14 +105,32 @@ impl PyRigidBody {
         method: &str,
         rtol: f64,
         atol: Option<f64>,
+        events: Given<'_, 'py>,
+        on_failure: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check_choices(about, method, velocity)?;
+        let pivoted = is_pivot(about)?;
+        if pivoted && velocity.is_some() {
+            return Err(PyValueError::new_err(
+                "velocity: with about=\"origin\" that point is fixed in space and has no velocity",
+            ));
+        }
+        let raises = match on_failure {
+            "raise" => true,
+            "keep" => false,
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "on_failure: expected \"raise\" or \"keep\", got \"{on_failure}\""
+                )));
+            }
+        };
         let times = read_times(py, t)?;
         let tolerance =
             Tolerance::new(rtol, atol.unwrap_or(0.0)).map_err(|error| to_py(py, &error))?;
-        let terms = match load {
-            None => PyLoad::default(),
+        let nothing = PyLoad::default();
+        let load = load.filter(|load| !load.is_none());
+        let acts = match load {
+            None => &nothing,
             Some(load) => load
                 .cast::<PyLoad>()
                 .map_err(|_| {
@@ -110,55 +139,72 @@ impl PyRigidBody {
                         "load: expected a Load from polhode.loads, got {kind}; wrap a function in loads.torque_callback"
                     ))
                 })?
-                .get()
-                .copied(py),
+                .get(),
         };
-        let bodies = &slf.get().bodies;
-        let about_word = about.into_pyobject(py)?.into_any();
         let start = Start {
-            bodies,
+            bodies: &slf.get().bodies,
             omega: read(omega, "omega")?,
             attitude: read_attitude(attitude, "attitude")?,
             position: at_start(position, "position")?,
             velocity: at_start(velocity, "velocity")?,
-            about: points(bodies, Some(&about_word), "about")?,
+            terms: acts.terms()?,
         };
-        let run = Run {
+        let events = Functions::read(events)?;
+        let ensemble = Ensemble {
             start: &start,
             grid: start.grid()?,
             times: &times,
+            pivoted,
+            method: parse_method(method)?,
             tolerance,
+            load: acts,
+            events: &events,
+            raises,
         };
-        run.check(py)?;
+        ensemble.check(py)?;
         let interrupt = Interrupt::new(progress);
-        let (motions, failure) = run.all(py, &terms, &interrupt)?;
-        interrupt.finish(py, failure.is_none())?;
-        let trajectory = run.trajectory(py, slf, load, &motions)?;
-        match failure {
-            None => Ok(trajectory),
-            Some((row, failure)) => Err(run.integration_error(py, row, failure, trajectory)),
+        let runs = ensemble.all(py, &interrupt)?;
+        let failed = |run: &Option<Run<Fault>>| {
+            matches!(
+                run,
+                Some(Run {
+                    end: End::Failed(_),
+                    ..
+                })
+            )
+        };
+        let failure = raises && runs.iter().any(failed);
+        let trajectory = ensemble.trajectory(py, slf, load, &runs)?;
+        if let Err(stop) = interrupt.finish(py, !failure) {
+            stop.value(py).setattr("partial", trajectory)?;
+            return Err(stop);
         }
+        if failure {
+            let first = trajectory.getattr("failures")?.get_item(0)?;
+            first.setattr("partial", &trajectory)?;
+            return Err(PyErr::from_value(first));
+        }
+        Ok(trajectory)
     }
 }
 
-/// The words that `about` and `method` may be, and that a pivot does not move.
-fn check_choices(about: &str, method: &str, velocity: Given<'_, '_>) -> PyResult<()> {
-    if !matches!(about, "center_of_mass" | "origin") {
-        return Err(PyValueError::new_err(format!(
-            "about: expected \"center_of_mass\" or \"origin\", got \"{about}\"; to fix another point move the body with translated()"
-        )));
-    }
-    if !matches!(method, "auto" | "dop853") {
-        return Err(PyValueError::new_err(format!(
-            "method: expected \"auto\" or \"dop853\", got \"{method}\""
-        )));
-    }
-    if about == "origin" && velocity.is_some() {
-        return Err(PyValueError::new_err(
-            "velocity: with about=\"origin\" that point is fixed in space and has no velocity",
-        ));
-    }
-    Ok(())
+/// The methods by their names.
+const METHODS: [(&str, Method); 2] = [("auto", Method::Auto), ("dop853", Method::Dop853)];
+
+fn parse_method(word: &str) -> PyResult<Method> {
+    METHODS
+        .iter()
+        .find_map(|&(name, method)| (name == word).then_some(method))
+        .ok_or_else(|| {
+            let names: Vec<_> = METHODS
+                .iter()
+                .map(|(name, _)| format!("\"{name}\""))
+                .collect();
+            PyValueError::new_err(format!(
+                "method: expected one of {}, got \"{word}\"",
+                names.join(", ")
+            ))
+        })
 }
 
 /// A vector that is zero unless given.

@@ -36,7 +36,7 @@ pub struct Dop853<const N: usize> {
 }
 
 impl<const N: usize> Dop853<N> {
-    /// At the state `y` at time `start`, on the way to `end`.
+    /// At the state `y` at time `start`, on the way to `end`, with `step` to try first or one of its own choice.
     ///
     /// # Errors
     /// What the equations refuse at the start; a slope there that is not finite.
@@ -45,6 +45,7 @@ impl<const N: usize> Dop853<N> {
         start: f64,
         end: f64,
         y: SVector<f64, N>,
+        step: Option<f64>,
     ) -> Result<Self, S::Error> {
         let mut state = Compensated::new(y);
         system.accept(&mut state);
@@ -64,7 +65,10 @@ impl<const N: usize> Dop853<N> {
             return Err(Error::NotFiniteMotion { time: start }.into());
         }
         stepper.slopes[STAGES] = slope;
-        stepper.step = stepper.first_step(system)?;
+        stepper.step = match step {
+            Some(step) if step != 0.0 => step.abs().min(stepper.span.abs()).copysign(stepper.span),
+            _ => stepper.first_step(system)?,
+        };
         Ok(stepper)
     }
 
@@ -72,6 +76,12 @@ impl<const N: usize> Dop853<N> {
     #[must_use]
     pub fn elapsed(&self) -> f64 {
         self.elapsed.0
+    }
+
+    /// The step that would be tried next.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        self.step
     }
 
     /// Whether the end is reached.
@@ -295,7 +305,8 @@ mod tests {
 
     fn run(tolerance: f64, end: f64) -> (f64, f64, u64) {
         let mut system = Oscillator { tolerance };
-        let mut stepper = Dop853::new(&mut system, 3.0, 3.0 + end, Vector2::x()).expect("finite");
+        let mut stepper =
+            Dop853::new(&mut system, 3.0, 3.0 + end, Vector2::x(), None).expect("finite");
         let mut between: f64 = 0.0;
         while !stepper.is_finished() {
             let before = stepper.elapsed();

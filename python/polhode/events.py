@@ -1,0 +1,86 @@
+"""Events of a motion: functions of time and state, and the table of their passages through zero."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Event", "Events"]
+
+
+@dataclass(frozen=True, eq=False)
+class Event:
+    """A function of the motion whose passages through zero `simulate` looks for.
+
+    Any function will do; this gives it the attributes that SciPy's ``solve_ivp`` reads too.
+
+    Attributes
+    ----------
+    function : callable
+        ``function(t, omega, quaternion, position, velocity)`` returns a number: zero at the event.
+    direction : float
+        Positive: only passages that rise in time count; negative: only those that fall; zero: all.
+    terminal : bool or int
+        True ends the run at the first passage, a number n at the n-th.
+
+    Examples
+    --------
+    The flips of a racket that spins about its intermediate axis:
+
+    >>> from polhode import Event, RigidBody
+    >>> racket = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+    >>> flip = Event(lambda t, omega, *_: omega[1], terminal=3)
+    >>> motion = racket.simulate([0, 200], omega=(1e-3, 1.0, 1e-3), events=flip)
+    >>> motion.events.t.round(4), motion.status
+    (array([ 22.8707,  62.156 , 101.4413]), 'event')
+    """
+
+    function: Callable[..., float]
+    direction: float = 0.0
+    terminal: bool | int = False
+
+    def __call__(
+        self, t: float, omega: Floats, quaternion: Floats, position: Floats, velocity: Floats
+    ) -> float:
+        """Evaluate the function."""
+        return self.function(t, omega, quaternion, position, velocity)
+
+
+class Events(NamedTuple):
+    """The events of all bodies of a stack, one after the other: a table of its columns.
+
+    Attributes
+    ----------
+    row : numpy.ndarray of int, shape (n,)
+        Which body: the index into the flattened stack, see :func:`numpy.unravel_index`.
+    event : numpy.ndarray of int, shape (n,)
+        Which of the functions.
+    t : numpy.ndarray, shape (n,)
+    omega : numpy.ndarray, shape (n, 3)
+    quaternion : numpy.ndarray, shape (n, 4)
+    position, velocity : numpy.ndarray, shape (n, 3)
+        The state then.
+    """
+
+    row: NDArray[np.int64]
+    event: NDArray[np.int64]
+    t: Floats
+    omega: Floats
+    quaternion: Floats
+    position: Floats
+    velocity: Floats
+
+    @classmethod
+    def none(cls) -> Events:
+        """Make the table of a run without events."""
+        none, vectors = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
+        return cls(none, none, np.zeros(0), vectors, np.zeros((0, 4)), vectors, vectors)

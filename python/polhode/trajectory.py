@@ -1,0 +1,444 @@
+"""The motion of a body, or of a stack of them: what `simulate` returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from polhode import _core
+from polhode.events import Events
+from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike, NDArray
+    from scipy.spatial.transform import Rotation
+
+    from polhode.errors import IntegrationError, PolhodeError
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Trajectory"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory:
+    """The motion of one body or of a stack at the times asked for.
+
+    Attributes
+    ----------
+    body : RigidBody
+        The body, or the stack of them.
+    t : numpy.ndarray, shape (T,)
+        Times, the first being the start.
+    omega : numpy.ndarray, shape (..., T, 3)
+        Angular velocity of the body relative to space, components in the body frame.
+    quaternion : numpy.ndarray, shape (..., T, 4)
+        Attitude R_NB as (x, y, z, w), continuous in time.
+    position, velocity : numpy.ndarray, shape (..., T, 3)
+        Of the point `about`, in space.
+    about : numpy.ndarray, shape (..., 3)
+        The point the motion refers to, in the body frame.
+    steps, evaluations : numpy.ndarray, shape (...)
+        Accepted steps and evaluations of the equations of motion.
+    load : Load or None
+        What acted on the body.
+    status : str or numpy.ndarray of str, shape (...)
+        How each run ended: ``"complete"``, ``"event"`` (one that is terminal), ``"failed"``, ``"stopped"``
+        (by Ctrl-C) or ``"not run"`` (as another one failed first). States after the end are not numbers.
+    events : Events
+        The passages through zero, as a table.
+    failures : tuple of PolhodeError
+        One for each row that failed, with its ``row``, ``time`` and ``state``.
+    pivoted : bool
+        Whether the point `about` is fixed in space.
+    """
+
+    body: _core.RigidBody
+    t: Floats
+    omega: Floats
+    quaternion: Floats
+    position: Floats
+    velocity: Floats
+    about: Floats
+    steps: NDArray[np.int64]
+    evaluations: NDArray[np.int64]
+    load: _core.Load | None = None
+    status: Any = "complete"
+    events: Events = field(default_factory=Events.none)
+    failures: tuple[IntegrationError | PolhodeError, ...] = ()
+    pivoted: bool = False
+
+    def __len__(self) -> int:
+        """Count the times."""
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        shape = self.omega.shape[:-2]
+        bodies = f"{'x'.join(map(str, shape))} bodies, " if shape else ""
+        span = f" from {self.t[0]:.6g} to {self.t[-1]:.6g}" if len(self) else ""
+        return f"Trajectory({bodies}{len(self)} times{span})"
+
+    @cached_property
+    def rotation(self) -> Rotation:
+        """The attitude as :class:`scipy.spatial.transform.Rotation`, shape (..., T); needs SciPy."""
+        from polhode._extras import require
+
+        transform = require("scipy.spatial.transform", extra=None, purpose="Trajectory.rotation")
+        rotation: Rotation = transform.Rotation.from_quat(self.quaternion)
+        return rotation
+
+    def kinetic_energy(self) -> KineticEnergy:
+        """Kinetic energy at every time, in parts that refer to the point `about`.
+
+        Returns
+        -------
+        KineticEnergy
+            Each part of shape (..., T).
+        """
+        return self._bodies().kinetic_energy(
+            self.omega,
+            velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
+            about=self.about[..., np.newaxis, :],
+        )
+
+    def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
+        """Angular momentum about the origin of space at every time.
+
+        Parameters
+        ----------
+        frame : {"space", "body"}
+            Whose axes the components refer to.
+
+        Returns
+        -------
+        AngularMomentum
+            Each part of shape (..., T, 3).
+        """
+        if frame not in ("space", "body"):
+            raise ValueError(f"frame: {frame!r} is not 'space' or 'body'")
+        in_body = self._bodies().angular_momentum(
+            self.omega,
+            velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
+            position=_core.rotate(self.quaternion, self.position, inverse=True),
+            about=self.about[..., np.newaxis, :],
+        )
+        if frame == "body":
+            return in_body
+        return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
+
+    def euler_angles(
+        self,
+        sequence: str = "ZXZ",
+        singular: Literal["raise", "nan"] = "raise",
+        *,
+        unwrap: bool = False,
+    ) -> Floats:
+        """Euler angles of the attitude at every time.
+
+        Parameters
+        ----------
+        sequence : str
+            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
+        singular : {"raise", "nan"}
+            What to do at an attitude at which two of the angles are not defined; ``np.isnan`` of the result
+            is the mask of those.
+        unwrap : bool
+            Let the first and the third angle run on over many turns, each by less than half a turn between
+            neighbouring times at which it is defined; else each is within its range.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+            In radians.
+        """
+        angles = _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
+        return _unwrapped(angles) if unwrap else angles
+
+    def euler_rates(self, sequence: str = "ZXZ", singular: Literal["raise", "nan"] = "raise") -> Floats:
+        """Rates of the Euler angles at every time.
+
+        Parameters
+        ----------
+        sequence : str
+            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
+        singular : {"raise", "nan"}
+            What to do at an attitude at which the angles or their rates are not defined.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        angles = self.euler_angles(sequence, singular)
+        return _core.euler_rates(angles, self.omega, sequence, "body", singular)
+
+    def point(self, r: Literal["center_of_mass", "origin"] | ArrayLike) -> Floats:
+        """Position in space of a point of the body at every time.
+
+        Parameters
+        ----------
+        r : {"center_of_mass", "origin"} or array_like, shape (..., 3)
+            The point in the body frame.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        words = {"center_of_mass": self.body.center_of_mass, "origin": np.zeros(3)}
+        if isinstance(r, str) and r not in words:
+            raise ValueError(f"r: {r!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
+        place = words[r] if isinstance(r, str) else np.asarray(r, dtype=float)
+        if place.shape[-1:] != (3,):
+            raise ValueError(f"r: expected shape (..., 3), got {place.shape}")
+        arm = place - self.about
+        return self.position + _core.rotate(self.quaternion, arm[..., np.newaxis, :])
+
+    def torque(self) -> Floats:
+        """Torque of the load about the point `about` at every time, components in the body frame.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        if self.load is None:
+            return np.zeros_like(self.omega)
+        return self._over_time(self.load).torque(*self._states(), **self._subject())
+
+    def force(self) -> Floats:
+        """Sum of the forces of the load at every time, components in space.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        if self.load is None:
+            return np.zeros_like(self.omega)
+        return self._over_time(self.load).force(*self._states(), **self._subject())
+
+    def angular_acceleration(self) -> Floats:
+        """Angular acceleration at every time by Euler's equations, components in the body frame.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+        """
+        return self._bodies().angular_acceleration(
+            self.omega, self.torque(), about=self.about[..., np.newaxis, :]
+        )
+
+    def potential_energy(self) -> Floats:
+        """Energy of position in the field of the load at every time.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T)
+            ``-m g·r_C`` in uniform gravity and so on, see :meth:`polhode.loads.Load.potential`; zero without
+            a load.
+
+        Raises
+        ------
+        ValueError
+            For a load with a part that has no potential.
+        """
+        potential = self._potential()
+        if potential is None:
+            raise ValueError(
+                "potential_energy: a part of the load has no potential; weight, forces constant in space and "
+                "feedback without damping have one"
+            )
+        return potential
+
+    def invariants(self) -> Invariants:
+        """Tell what the motion keeps and how far the numbers have drifted from it.
+
+        Returns
+        -------
+        Invariants
+
+        Examples
+        --------
+        >>> from polhode import RigidBody
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        >>> kept = body.simulate([0, 50, 100], omega=(1.0, 0.1, 1.0), rtol=1e-13).invariants()
+        >>> bool(kept.energy_drift < 1e-11), bool(kept.angular_momentum_drift < 1e-11)
+        (True, True)
+        """
+        kinetic, potential = self.kinetic_energy().total, self._potential()
+        spin = self.angular_momentum().spin
+        energy = None if potential is None else kinetic + potential
+        kept = self._kept_directions()
+        along = None if kept is None else spin if kept is True else np.einsum("...ti,...i->...t", spin, kept)
+        size = np.linalg.norm(spin, axis=-1)
+        return Invariants(
+            energy,
+            along,
+            None if potential is None else _drift(kinetic + potential, kinetic + np.abs(potential)),
+            None if along is None else _drift(along, size),
+        )
+
+    def state(self, index: int = -1) -> State:
+        """Give the state at one of the times, to go on from or to begin anew with.
+
+        Parameters
+        ----------
+        index : int
+            Which of the times; the last by default.
+
+        Returns
+        -------
+        State
+        """
+        return State(*(x[..., index, :] for x in (self.omega, self.quaternion, self.position, self.velocity)))
+
+    def resume(self, t: ArrayLike, **options: Any) -> Trajectory:
+        """Go on from the last state under the same load.
+
+        Parameters
+        ----------
+        t : array_like, shape (T,)
+            As of `simulate`; the first must be the last of this motion.
+        **options
+            Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`.
+
+        Returns
+        -------
+        Trajectory
+
+        Examples
+        --------
+        >>> from polhode import RigidBody
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        >>> first = body.simulate([0, 1], omega=(0, 0, 1))
+        >>> first.resume([1, 2]).quaternion[-1].round(6)
+        array([0.      , 0.      , 0.841471, 0.540302])
+        """
+        start = np.asarray(t, dtype=float).reshape(-1)[:1]
+        if not np.array_equal(start, self.t[-1:]):
+            raise ValueError(f"t: the motion goes on from t = {float(self.t[-1])!r}, got {start.tolist()}")
+        state = self.state()
+        if np.isnan(state.omega).any():
+            raise ValueError(
+                "resume: the last state is not known, since the run did not come to the last time"
+            )
+        options.setdefault("load", None if self.load is None else self.load.anchored(float(self.t[0])))
+        options.setdefault("about", self._about_word())
+        given = state._asdict()
+        if self.pivoted:
+            del given["velocity"]
+        return self.body.simulate(t, **given, **options)
+
+    def pivot_reaction(
+        self, gravity: ArrayLike = (0.0, 0.0, 0.0), force: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> Floats:
+        """Force with which the pivot holds a body simulated with ``about="origin"``, at every time.
+
+        Parameters
+        ----------
+        gravity : array_like, shape (..., 3)
+            g in space, where the load of the simulation held its torque but not the weight itself.
+        force : array_like, shape (..., 3)
+            The sum of forces in space that act besides those of the load.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T, 3)
+            Force on the body, components in space: m a_C less the forces of the load, m g and `force`.
+
+        Raises
+        ------
+        ValueError
+            For a motion whose point `about` is not the origin of the body frame, or moves.
+        """
+        if not self.pivoted:
+            raise ValueError('pivot_reaction: no pivot holds this body; simulate it with about="origin"')
+        return self._bodies().pivot_reaction(
+            self.omega,
+            self.angular_acceleration(),
+            self.quaternion,
+            gravity=gravity,
+            force=self.force() + np.asarray(force, dtype=float),
+        )
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the motion to a file, with every bit of it.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
+            (space); a stack's lines begin with the indices of the body. ``.npz``: the arrays under the names
+            of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``.
+        """
+        from polhode._files.trajectory import save_trajectory
+
+        save_trajectory(self, path)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the components of the angular velocity in the body over time; needs matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; a new figure by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from polhode.plot import angular_velocity
+
+        return angular_velocity(self, ax)
+
+    def _bodies(self) -> _core.RigidBody:
+        """Give the body or stack an axis for time, along which it broadcasts."""
+        return self.body[..., np.newaxis]
+
+    def _over_time(self, load: _core.Load) -> _core.Load:
+        """Give a stack of loads an axis for time, along which it broadcasts."""
+        return load[..., np.newaxis] if load.shape else load
+
+    def _states(self) -> tuple[Floats, ...]:
+        return self.t, self.omega, self.quaternion, self.position, self.velocity
+
+    def _about_word(self) -> Literal["origin", "center_of_mass"]:
+        return "origin" if self.pivoted else "center_of_mass"
+
+    def _subject(self) -> dict[str, Any]:
+        return {"body": self._bodies(), "about": self._about_word(), "start": float(self.t[0])}
+
+    def _potential(self) -> Floats | None:
+        if self.load is None:
+            return np.zeros(self.omega.shape[:-1])
+        return self._over_time(self.load).potential(
+            self._bodies(), self.quaternion, self.position, self._about_word()
+        )
+
+    def _kept_directions(self) -> Any:
+        """Tell along what the angular momentum is kept: all directions (True), unit vectors, or nothing."""
+        return True if self.load is None else self.load.keeps_momentum(self._about_word())
+
+
+def _drift(values: Floats, size: Floats) -> Any:
+    """Give the largest change of numbers or vectors since the start, relative to the largest size."""
+    change = values - values[..., :1, :] if values.ndim > size.ndim else values - values[..., :1]
+    change = np.linalg.norm(change, axis=-1) if values.ndim > size.ndim else np.abs(change)
+    largest = np.nanmax(size, axis=-1)
+    drift = np.divide(
+        np.nanmax(change, axis=-1), largest, out=np.zeros_like(largest), where=np.asarray(largest > 0)
+    )
+    return drift if drift.ndim else float(drift)
+
+
+def _unwrapped(angles: Floats) -> Floats:
+    """Unwrap angles (..., T, 3) along the times, over gaps that are not numbers."""
+    columns = np.moveaxis(angles, -2, -1)
+    series = columns.reshape(-1, columns.shape[-1]).copy()
+    for one in series:
+        known = ~np.isnan(one)
+        one[known] = np.unwrap(one[known])
+    return np.moveaxis(series.reshape(columns.shape), -1, -2)

@@ -1,0 +1,56 @@
+//! A medium that slows the body down.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::error::{Error, all_finite};
+
+/// `N = −D ω − E |ω| ω`: linear damping, as of a viscous film, and quadratic, as of a stirred fluid.
+///
+/// D and E in B; ω of B relative to N, components in B. N about the reference point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Damping {
+    /// D: torque over angular velocity.
+    pub linear: Matrix3<f64>,
+    /// E: torque over angular velocity squared.
+    pub quadratic: Matrix3<f64>,
+}
+
+impl Damping {
+    /// Checked matrices.
+    ///
+    /// # Errors
+    /// When an element is not finite.
+    pub fn new(linear: &Matrix3<f64>, quadratic: &Matrix3<f64>) -> Result<Self, Error> {
+        all_finite("matrix", linear)?;
+        all_finite("quadratic", quadratic)?;
+        Ok(Self {
+            linear: *linear,
+            quadratic: *quadratic,
+        })
+    }
+
+    /// `−D ω − E |ω| ω`.
+    #[inline]
+    #[must_use]
+    pub fn torque(&self, omega: &Vector3<f64>) -> Vector3<f64> {
+        -(self.linear * omega + self.quadratic * (omega * omega.norm()))
+    }
+
+    pub(super) fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        Self::new(&(self.linear * factor), &(self.quadratic * factor))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_laws() {
+        let damping = Damping::new(&Matrix3::from_diagonal_element(0.5), &Matrix3::identity());
+        let torque = damping
+            .expect("finite")
+            .torque(&Vector3::new(3.0, 0.0, 4.0));
+        assert_eq!(torque, Vector3::new(-16.5, 0.0, -22.0));
+    }
+}

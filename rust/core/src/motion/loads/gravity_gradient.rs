@@ -1,0 +1,95 @@
+//! The torque of an attractor's field on a body that is small beside its distance.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::Subject;
+use super::kepler::Orbit;
+use crate::error::{Error, finite};
+
+/// `N_C = 3μ/r⁵ r×(I_C r)`, r from the attractor to C, on a Kepler orbit that the body's attitude does not change.
+///
+/// All in B: `r_B = R_NBᵀ r_N`. The field is that of a point or sphere of gravitational parameter μ to first order in the
+/// size of the body over r.
+/// Source: Hughes, Spacecraft Attitude Dynamics, §8.1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GravityGradient {
+    orbit: Orbit,
+    /// When the orbit has the state it was given with; the start of the motion where there is none.
+    epoch: Option<f64>,
+    /// How many times the torque acts.
+    strength: f64,
+}
+
+impl GravityGradient {
+    /// On the orbit with C at `position` with `velocity` (from the attractor, in N) at `epoch`, or at the start.
+    ///
+    /// # Errors
+    /// As [`Orbit::new`]; an `epoch` that is not finite.
+    pub fn new(
+        mu: f64,
+        position: &Vector3<f64>,
+        velocity: &Vector3<f64>,
+        epoch: Option<f64>,
+    ) -> Result<Self, Error> {
+        epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
+        Ok(Self {
+            orbit: Orbit::new(mu, position, velocity)?,
+            epoch,
+            strength: 1.0,
+        })
+    }
+
+    /// `3μ` times how often the torque acts: `N = coefficient/r⁵ r×(I_C r)`.
+    #[must_use]
+    pub fn coefficient(&self) -> f64 {
+        3.0 * self.orbit.mu() * self.strength
+    }
+
+    /// μ.
+    #[must_use]
+    pub fn mu(&self) -> f64 {
+        self.orbit.mu()
+    }
+
+    /// Position and velocity of C from the attractor at time `t`, in N.
+    #[must_use]
+    pub fn orbit_at(&self, subject: &Subject, t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        self.orbit.at(t - self.epoch.unwrap_or(subject.start))
+    }
+
+    /// The torque in B.
+    #[must_use]
+    pub fn torque(
+        &self,
+        subject: &Subject,
+        t: f64,
+        attitude: &UnitQuaternion<f64>,
+    ) -> Vector3<f64> {
+        let (r, _) = self.orbit_at(subject, t);
+        let distance = r.norm();
+        let n = attitude.inverse_transform_vector(&(r / distance));
+        n.cross(&(subject.inertia * n)) * (self.coefficient() / distance / distance / distance)
+    }
+
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        Self {
+            strength: self.strength * factor,
+            ..*self
+        }
+    }
+
+    /// Whether its epoch is the start of the motion.
+    #[must_use]
+    pub fn needs_epoch(&self) -> bool {
+        self.epoch.is_none()
+    }
+
+    /// The same with the epoch `t` where it has none.
+    #[must_use]
+    pub fn anchored(self, t: f64) -> Self {
+        Self {
+            epoch: self.epoch.or(Some(t)),
+            ..self
+        }
+    }
+}

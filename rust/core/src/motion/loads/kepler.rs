@@ -1,0 +1,309 @@
+//! The Kepler orbit through a state, at any time.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, all_finite, finite};
+use crate::numerics::double_double::{DoubleDouble, two_product};
+
+/// 2π and what it leaves out.
+const TURN: DoubleDouble = DoubleDouble {
+    high: std::f64::consts::TAU,
+    low: 2.449_293_598_294_706_4e-16,
+};
+
+/// The motion `r̈ = −μ r/r³` from a position and a velocity: an ellipse, a parabola or a hyperbola.
+///
+/// All numbers are kept in units of length and time that are powers of two near the orbit's own, so that neither
+/// molecules nor galaxies leave the range of float64.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    mu: f64,
+    /// The units of length and time.
+    length: f64,
+    time: f64,
+    scaled_mu: f64,
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    distance: f64,
+    /// `r·v`.
+    sigma: f64,
+    /// `β = μ/a = 2μ/r − v²`, negative for a hyperbola.
+    beta: f64,
+    /// Revolutions in a unit of time; zero unless the orbit is an ellipse.
+    frequency: DoubleDouble,
+}
+
+impl Orbit {
+    /// The orbit about an attractor at the origin with the gravitational parameter μ.
+    ///
+    /// # Errors
+    /// Numbers that are not finite; μ that is not positive; a position at the attractor; a radial velocity, which leads into
+    /// it.
+    pub fn new(mu: f64, position: &Vector3<f64>, velocity: &Vector3<f64>) -> Result<Self, Error> {
+        finite("mu", mu)?;
+        all_finite("position", position)?;
+        all_finite("velocity", velocity)?;
+        let positive = |what, law, value| {
+            if value > 0.0 {
+                Ok(())
+            } else {
+                Err(Error::OutOfDomain { what, law, value })
+            }
+        };
+        positive("mu", "more than zero", mu)?;
+        let largest = position.amax();
+        positive("the distance from the attractor", "more than zero", largest)?;
+        // T² = L³/μ, by exponents so that nothing overflows on the way.
+        let l = largest.log2().round();
+        let t = (0.5 * (3.0 * l - mu.log2())).round();
+        let (length, time) = (l.exp2(), t.exp2());
+        let scaled_mu = mu * (2.0 * t - 3.0 * l).exp2();
+        let (r, v) = (position / length, velocity * time / length);
+        all_finite("position, velocity and mu, taken together,", &v)?;
+        let swept = r.cross(&v).norm();
+        let law = "more than zero: a radial orbit falls into the attractor";
+        positive("the angular momentum of the orbit", law, swept)?;
+
+        let square = |x: &Vector3<f64>| {
+            x.iter().fold(DoubleDouble::default(), |sum, &x| {
+                sum + DoubleDouble::from(x) * x.into()
+            })
+        };
+        let (distance, exact_mu) = (root(square(&r)), DoubleDouble::from(scaled_mu));
+        let beta = (exact_mu + exact_mu) / distance - square(&v);
+        let frequency = if beta.high > 0.0 {
+            root(beta * beta * beta) / exact_mu / TURN
+        } else {
+            DoubleDouble::default()
+        };
+        Ok(Self {
+            mu,
+            length,
+            time,
+            scaled_mu,
+            position: r,
+            velocity: v,
+            distance: distance.high,
+            sigma: r.dot(&v),
+            beta: beta.high,
+            frequency,
+        })
+    }
+
+    /// μ.
+    #[must_use]
+    pub fn mu(&self) -> f64 {
+        self.mu
+    }
+
+    /// Position and velocity at a time after the state the orbit was given with.
+    ///
+    /// With s from `dt = r ds` and `G_k = s^k c_k(β s²)`, `c_k(x) = Σ (−x)^j/(2j+k)!`: Kepler's equation is
+    /// `t = r₀ G₁ + σ₀ G₂ + μ G₃`, the distance `r = r₀ G₀ + σ₀ G₁ + μ G₂`. Whole revolutions are taken off in double-double
+    /// first. Source: Stumpff, Himmelsmechanik I, §41; Danby, Fundamentals of Celestial Mechanics, §6.9.
+    #[must_use]
+    pub fn at(&self, elapsed: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let t = self.reduced(elapsed / self.time);
+        let (r0, mu) = (self.distance, self.scaled_mu);
+        let functions = functions(self.beta, self.solve(t));
+        let ([_, g1, g2, _], r) = (functions, self.distance_at(&functions));
+        let (f, g) = (1.0 - mu * g2 / r0, r0 * g1 + self.sigma * g2);
+        let (f_rate, g_rate) = (-mu * g1 / (r * r0), 1.0 - mu * g2 / r);
+        (
+            (self.position * f + self.velocity * g) * self.length,
+            (self.position * f_rate + self.velocity * g_rate) * (self.length / self.time),
+        )
+    }
+
+    /// The time without whole revolutions.
+    fn reduced(&self, t: f64) -> f64 {
+        let DoubleDouble { high, low } = self.frequency;
+        if high == 0.0 {
+            return t;
+        }
+        let (product, rest) = two_product(high, t);
+        let revolutions = product.round();
+        if revolutions == 0.0 {
+            return t;
+        }
+        ((product - revolutions) + (rest + low * t)) / high
+    }
+
+    /// s at the time `t`, by Laguerre's iteration kept within a bracket.
+    fn solve(&self, t: f64) -> f64 {
+        if t == 0.0 || !t.is_finite() {
+            return t;
+        }
+        let (mut low, mut high, mut s);
+        if self.beta > 0.0 {
+            // E − M is at most the eccentricity, less than one, at both ends.
+            let root = self.beta.sqrt();
+            s = t * self.beta / self.scaled_mu;
+            (low, high) = (s - 2.0 / root, s + 2.0 / root);
+        } else {
+            s = t / self.distance;
+            (low, high) = (0.0_f64.min(s), 0.0_f64.max(s));
+            while (self.time_at(&functions(self.beta, s)) - t) * t.signum() < 0.0 {
+                s *= 2.0;
+                (low, high) = if t > 0.0 { (0.5 * s, s) } else { (s, 0.5 * s) };
+            }
+        }
+        // Laguerre's iteration takes three or four rounds; halving alone would take no more than these.
+        for _ in 0..100 {
+            let g = functions(self.beta, s);
+            let excess = self.time_at(&g) - t;
+            if excess > 0.0 {
+                high = s;
+            } else {
+                low = s;
+            }
+            let slope = self.distance_at(&g);
+            let bend = self.sigma * g[0] + (self.scaled_mu - self.beta * self.distance) * g[1];
+            let radical = (16.0 * slope * slope - 20.0 * excess * bend).abs().sqrt();
+            let next = s - 5.0 * excess / (slope + radical);
+            let next = if next > low && next < high {
+                next
+            } else {
+                0.5 * (low + high)
+            };
+            if (next - s).abs() <= f64::EPSILON * s.abs() || next == low || next == high {
+                return next;
+            }
+            s = next;
+        }
+        s
+    }
+
+    fn time_at(&self, [_, g1, g2, g3]: &[f64; 4]) -> f64 {
+        self.distance * g1 + self.sigma * g2 + self.scaled_mu * g3
+    }
+
+    fn distance_at(&self, [g0, g1, g2, _]: &[f64; 4]) -> f64 {
+        self.distance * g0 + self.sigma * g1 + self.scaled_mu * g2
+    }
+}
+
+/// `G_k(s) = s^k c_k(β s²)` for k = 0..3.
+fn functions(beta: f64, s: f64) -> [f64; 4] {
+    /// Below this the closed forms cancel, and eleven terms of the series are exact.
+    const SERIES: f64 = 2.5;
+    let x = beta * s * s;
+    let (c2, c3) = if x.abs() < SERIES {
+        let series = |k: f64| {
+            (0..11).rev().fold(0.0, |sum, j| {
+                let n = 2.0 * f64::from(j) + k;
+                (1.0 - x * sum) / (n * (n - 1.0))
+            })
+        };
+        (series(2.0), series(3.0))
+    } else if x > 0.0 {
+        let root = x.sqrt();
+        let half = (0.5 * root).sin();
+        (2.0 * half * half / x, (root - root.sin()) / (x * root))
+    } else {
+        let root = (-x).sqrt();
+        let half = (0.5 * root).sinh();
+        (2.0 * half * half / -x, (root.sinh() - root) / (-x * root))
+    };
+    [1.0 - x * c2, s * (1.0 - x * c3), s * s * c2, s * s * s * c3]
+}
+
+/// √x, by one correction of the rounded root.
+fn root(x: DoubleDouble) -> DoubleDouble {
+    let s = x.high.sqrt();
+    if s == 0.0 {
+        return DoubleDouble::default();
+    }
+    let rest = x - DoubleDouble::from(s) * s.into();
+    DoubleDouble::sum(s, 0.5 * rest.high / s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The position at a time, relative to its size.
+    fn close(orbit: &Orbit, t: f64, position: [f64; 3], allowed: f64) {
+        let (r, _) = orbit.at(t);
+        let expected = Vector3::from(position);
+        assert!(
+            (r - expected).norm() < allowed * expected.norm(),
+            "{r} {expected}"
+        );
+    }
+
+    #[test]
+    fn circle_at_any_time() {
+        let orbit = Orbit::new(1.0, &Vector3::x(), &Vector3::y()).expect("circle");
+        for t in [0.1_f64, 1.0, 3.0, -2.0, 1e3, -1e6] {
+            close(&orbit, t, [t.cos(), t.sin(), 0.0], 2e-15);
+        }
+    }
+
+    #[test]
+    fn parabola_by_barker_s_equation() {
+        // From perihelion q = ½: t = (tan(ν/2) + tan³(ν/2)/3)/2.
+        let orbit = Orbit::new(1.0, &(Vector3::x() * 0.5), &(Vector3::y() * 2.0)).expect("orbit");
+        for tangent in [0.1_f64, 1.0, 5.0, -3.0, 1e3] {
+            let t = 0.5 * (tangent + tangent.powi(3) / 3.0);
+            let place = [0.5 * (1.0 - tangent * tangent), tangent, 0.0];
+            close(&orbit, t, place, 1e-14);
+        }
+    }
+
+    #[test]
+    fn ellipse_and_hyperbola_from_perihelion() {
+        for e in [0.1_f64, 0.7, 0.99, 0.999_999] {
+            // a = 1; E − e sin E = t.
+            let speed = ((1.0 + e) / (1.0 - e)).sqrt();
+            let orbit = Orbit::new(1.0, &(Vector3::x() * (1.0 - e)), &(Vector3::y() * speed));
+            let orbit = orbit.expect("ellipse");
+            for anomaly in [0.3_f64, 1.5, 3.0, -2.0] {
+                let t = anomaly - e * anomaly.sin();
+                let place = [
+                    anomaly.cos() - e,
+                    ((1.0 - e) * (1.0 + e)).sqrt() * anomaly.sin(),
+                    0.0,
+                ];
+                // The semi-axis is known to ε/(1 − e) from the rounded speed.
+                close(&orbit, t, place, 4e-15 / (1.0 - e));
+            }
+        }
+        for e in [1.01_f64, 2.0, 30.0] {
+            let speed = ((e + 1.0) / (e - 1.0)).sqrt();
+            let orbit = Orbit::new(1.0, &(Vector3::x() * (e - 1.0)), &(Vector3::y() * speed));
+            let orbit = orbit.expect("hyperbola");
+            for anomaly in [0.2_f64, 2.0, -5.0, 20.0] {
+                let t = e * anomaly.sinh() - anomaly;
+                let place = [
+                    e - anomaly.cosh(),
+                    ((e - 1.0) * (e + 1.0)).sqrt() * anomaly.sinh(),
+                    0.0,
+                ];
+                close(&orbit, t, place, 3e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn there_and_back_at_all_scales() {
+        for (length, mu) in [(7e6_f64, 3.986_004_418e14), (1e-10, 1e-40), (1e20, 1e31)] {
+            let speed = (mu / length).sqrt();
+            let r = Vector3::new(0.6, -0.3, 0.9) * length;
+            let v = Vector3::new(0.3, 0.9, 0.2) * speed;
+            let there = Orbit::new(mu, &r, &v).expect("orbit");
+            for turns in [0.3, 17.4, -80.0] {
+                let t = turns * length / speed;
+                let (r_then, v_then) = there.at(t);
+                let energy = |r: &Vector3<f64>, v: &Vector3<f64>| 0.5 * v.dot(v) - mu / r.norm();
+                let (before, after) = (energy(&r, &v), energy(&r_then, &v_then));
+                assert!((after - before).abs() < 1e-14 * speed * speed);
+                let back = Orbit::new(mu, &r_then, &v_then).expect("orbit").at(-t).0;
+                assert!((back - r).norm() < 1e-12 * length, "{turns} {back} {r}");
+            }
+        }
+        assert!(Orbit::new(1.0, &Vector3::x(), &Vector3::x()).is_err());
+        assert!(Orbit::new(0.0, &Vector3::x(), &Vector3::y()).is_err());
+        assert!(Orbit::new(1.0, &Vector3::zeros(), &Vector3::y()).is_err());
+    }
+}

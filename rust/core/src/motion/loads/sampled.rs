@@ -1,0 +1,214 @@
+//! A torque known at some times, and a cubic spline in between.
+
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+use super::Frame;
+use crate::error::{Error, all_finite, finite};
+
+/// A torque about the reference point, given at times and interpolated by a cubic spline, smooth to the second derivative.
+///
+/// The first two pieces are one cubic, and the last two ("not a knot"); three samples make a parabola, two a straight line.
+/// Beyond the first and last time it is not known. Source: de Boor, A Practical Guide to Splines, chapter IV.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampled {
+    spline: Arc<Spline>,
+    frame: Frame,
+}
+
+#[derive(Debug, PartialEq)]
+struct Spline {
+    knots: Vec<f64>,
+    pieces: Vec<[Vector3<f64>; 4]>,
+}
+
+impl Sampled {
+    /// The spline through `values` at the ascending `times`; its components refer to `frame`.
+    ///
+    /// # Errors
+    /// Fewer than two times, times that do not ascend, numbers that are not finite.
+    ///
+    /// # Panics
+    /// When `times` and `values` differ in length.
+    pub fn new(times: &[f64], values: &[Vector3<f64>], frame: Frame) -> Result<Self, Error> {
+        assert_eq!(times.len(), values.len(), "one torque for each time");
+        if times.len() < 2 {
+            return Err(Error::OutOfDomain {
+                what: "the number of samples",
+                law: "at least 2",
+                value: times.len() as f64,
+            });
+        }
+        all_finite("t", times)?;
+        all_finite("torque", values.iter().flatten())?;
+        finite("the span of t", times[times.len() - 1] - times[0])?;
+        for (k, pair) in times.windows(2).enumerate() {
+            if pair[1] <= pair[0] {
+                return Err(Error::NotMonotone {
+                    index: k + 1,
+                    previous: pair[0],
+                    next: pair[1],
+                });
+            }
+        }
+        let pieces = pieces(times, values);
+        all_finite(
+            "the spline through torque",
+            pieces.iter().flatten().flatten(),
+        )?;
+        let knots = times.to_vec();
+        Ok(Self {
+            spline: Arc::new(Spline { knots, pieces }),
+            frame,
+        })
+    }
+
+    /// To which frame its components refer.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// The times it was given at.
+    #[must_use]
+    pub fn knots(&self) -> &[f64] {
+        &self.spline.knots
+    }
+
+    /// The cubic around time `t`, `Σ c_k (t − t₀)^k`: its t₀ and coefficients.
+    #[must_use]
+    pub fn piece(&self, t: f64) -> (f64, &[Vector3<f64>; 4]) {
+        let Spline { knots, pieces } = &*self.spline;
+        let after = knots[1..knots.len() - 1].partition_point(|&knot| knot <= t);
+        (knots[after], &pieces[after])
+    }
+
+    /// The torque at time `t`, components in its frame.
+    #[must_use]
+    pub fn at(&self, t: f64) -> Vector3<f64> {
+        let (from, [c0, c1, c2, c3]) = self.piece(t);
+        let x = t - from;
+        c0 + (c1 + (c2 + c3 * x) * x) * x
+    }
+
+    /// Checks that `t` is within its times.
+    ///
+    /// # Errors
+    /// [`Error::OutsideSamples`].
+    pub fn check(&self, t: f64) -> Result<(), Error> {
+        let (first, last) = (self.knots()[0], self.knots()[self.knots().len() - 1]);
+        if (first..=last).contains(&t) {
+            Ok(())
+        } else {
+            Err(Error::OutsideSamples { t, first, last })
+        }
+    }
+
+    pub(super) fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        let Spline { knots, pieces } = &*self.spline;
+        let pieces: Vec<_> = (pieces.iter().map(|piece| piece.map(|c| c * factor))).collect();
+        all_finite(
+            "the load times its factor",
+            pieces.iter().flatten().flatten(),
+        )?;
+        let knots = knots.clone();
+        Ok(Self {
+            spline: Arc::new(Spline { knots, pieces }),
+            frame: self.frame,
+        })
+    }
+}
+
+/// The cubics between the samples, from the slopes at them.
+fn pieces(t: &[f64], y: &[Vector3<f64>]) -> Vec<[Vector3<f64>; 4]> {
+    let steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let chords: Vec<_> = (y.windows(2).zip(&steps))
+        .map(|(pair, step)| (pair[1] - pair[0]) / *step)
+        .collect();
+    let slopes = match chords[..] {
+        [chord] => vec![chord; 2],
+        [first, second] => {
+            let bend = (second - first) / (steps[0] + steps[1]);
+            let middle = first + bend * steps[0];
+            vec![first - bend * steps[0], middle, second + bend * steps[1]]
+        }
+        _ => slopes(&steps, &chords),
+    };
+    let cubic = |k: usize| {
+        let (h, chord, s0, s1) = (steps[k], chords[k], slopes[k], slopes[k + 1]);
+        let bend = (s0 + s1 - chord * 2.0) / h;
+        [y[k], s0, (chord - s0) / h - bend, bend / h]
+    };
+    (0..steps.len()).map(cubic).collect()
+}
+
+/// The slopes that make the second derivative continuous, and the third at the second and the last but one sample:
+/// a tridiagonal system, whose pivots are positive.
+fn slopes(h: &[f64], chords: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let n = h.len();
+    let (first, last) = (h[0] + h[1], h[n - 2] + h[n - 1]);
+    // Rows as (below, diagonal, above, right-hand side).
+    let mut rows = vec![(
+        0.0,
+        h[1],
+        first,
+        (chords[0] * ((h[0] + 2.0 * first) * h[1]) + chords[1] * (h[0] * h[0])) / first,
+    )];
+    rows.extend((1..n).map(|k| {
+        let side = chords[k - 1] * h[k] + chords[k] * h[k - 1];
+        (h[k], 2.0 * (h[k - 1] + h[k]), h[k - 1], side * 3.0)
+    }));
+    rows.push((
+        last,
+        h[n - 2],
+        0.0,
+        (chords[n - 2] * (h[n - 1] * h[n - 1])
+            + chords[n - 1] * ((2.0 * last + h[n - 1]) * h[n - 2]))
+            / last,
+    ));
+    for k in 1..=n {
+        let (_, pivot, above, side) = rows[k - 1];
+        let ratio = rows[k].0 / pivot;
+        rows[k].1 -= ratio * above;
+        rows[k].3 -= side * ratio;
+    }
+    let mut next = Vector3::zeros();
+    let mut slopes: Vec<_> = (rows.iter().rev())
+        .map(|&(_, pivot, above, side)| {
+            next = (side - next * above) / pivot;
+            next
+        })
+        .collect();
+    slopes.reverse();
+    slopes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubics_come_back_as_they_are() {
+        let cubic = |t: f64| {
+            Vector3::new(
+                t * t * t - 2.0 * t,
+                3.0 - t * t,
+                0.5 * t * t * t + t * t - t,
+            )
+        };
+        let times = [-1.0, 0.0, 0.7, 1.0, 2.5, 4.0];
+        let sampled = Sampled::new(&times, &times.map(cubic), Frame::Body).expect("ascending");
+        for t in [-1.0, -0.3, 0.5, 0.99, 1.7, 3.9, 4.0] {
+            assert!((sampled.at(t) - cubic(t)).norm() < 1e-13, "{t}");
+        }
+        assert!(sampled.check(4.0).is_ok() && sampled.check(4.1).is_err());
+        let short = |times: &[f64], value: fn(f64) -> f64| {
+            let values: Vec<_> = times.iter().map(|&t| Vector3::repeat(value(t))).collect();
+            Sampled::new(times, &values, Frame::Body).expect("ascending")
+        };
+        assert!((short(&[0.0, 1.0, 3.0], |t| t * t).at(2.0).x - 4.0).abs() < 1e-15);
+        assert!((short(&[0.0, 2.0], |t| 3.0 * t).at(0.5).x - 1.5).abs() < 1e-15);
+        assert!(Sampled::new(&[0.0], &[Vector3::zeros()], Frame::Body).is_err());
+        assert!(Sampled::new(&[1.0, 1.0], &[Vector3::zeros(); 2], Frame::Body).is_err());
+    }
+}

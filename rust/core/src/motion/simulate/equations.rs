@@ -1,0 +1,186 @@
+//! The equations of motion as the steppers see them: Euler's equations in principal axes, the attitude, and where a force
+//! acts on a free body also the position.
+
+use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
+
+use super::Tolerance;
+use crate::motion::attitude::{from_axes, rate};
+use crate::motion::euler_equations::EulerEquations;
+use crate::motion::integrate::{Compensated, System};
+use crate::motion::loads::Load;
+use crate::motion::state::Phase;
+
+/// The numbers that turning takes: (x, y, z, w) of `q_NP` and ω in P, P the principal axes.
+pub(super) const TURNING: usize = 7;
+/// Those and position and velocity of C in N.
+pub(super) const MOVING: usize = 13;
+
+/// The principal axes P as seen from B.
+#[derive(Clone, Copy, Debug)]
+struct Axes {
+    q_bp: UnitQuaternion<f64>,
+    columns: Matrix3<f64>,
+}
+
+/// The largest |ω|, |r| and |v| of the states so far: what errors are relative to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Scales {
+    omega: f64,
+    position: f64,
+    velocity: f64,
+}
+
+/// `q̇ = ½ q∘ω`, `I ω̇ + ω×Iω = N`; and with N = [`MOVING`] `ṙ = v`, `m v̇ = F`.
+pub(super) struct Equations<'a, L, const N: usize> {
+    euler: EulerEquations,
+    mass: f64,
+    axes: Axes,
+    load: &'a mut L,
+    tolerance: Tolerance,
+    pub(super) scales: Scales,
+    /// When the reference point, if no force acts on it, was where; it keeps its velocity.
+    origin: (f64, Vector3<f64>, Vector3<f64>),
+}
+
+impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
+    /// From the state `phase` at the time `start`.
+    pub(super) fn new(
+        euler: &EulerEquations,
+        mass: f64,
+        start: f64,
+        phase: &Phase,
+        load: &'a mut L,
+        tolerance: Tolerance,
+        scales: Scales,
+    ) -> Self {
+        Self {
+            euler: *euler,
+            mass,
+            axes: Axes {
+                q_bp: from_axes(euler.axes()),
+                columns: *euler.axes(),
+            },
+            load,
+            tolerance,
+            scales,
+            origin: (start, phase.position, phase.velocity),
+        }
+    }
+
+    /// In principal axes.
+    pub(super) fn principal(&self, phase: &Phase) -> SVector<f64, N> {
+        let q = (phase.attitude * self.axes.q_bp).into_inner();
+        let w = self.axes.columns.tr_mul(&phase.omega);
+        let (r, v) = (phase.position, phase.velocity);
+        let numbers = [
+            q.i, q.j, q.k, q.w, w.x, w.y, w.z, r.x, r.y, r.z, v.x, v.y, v.z,
+        ];
+        SVector::from_fn(|i, _| numbers[i])
+    }
+
+    /// In body axes, at time `t`.
+    #[inline]
+    pub(super) fn phase(&self, t: f64, y: &SVector<f64, N>) -> Phase {
+        let (position, velocity) = if N == MOVING {
+            (vector(y, 7), vector(y, 10))
+        } else {
+            let (start, position, velocity) = self.origin;
+            (position + velocity * (t - start), velocity)
+        };
+        Phase {
+            attitude: UnitQuaternion::new_normalize(
+                quaternion(y) * self.axes.q_bp.conjugate().into_inner(),
+            ),
+            omega: self.axes.columns * vector(y, 4),
+            position,
+            velocity,
+        }
+    }
+}
+
+fn quaternion<const N: usize>(y: &SVector<f64, N>) -> Quaternion<f64> {
+    Quaternion::new(y[3], y[0], y[1], y[2])
+}
+
+fn vector<const N: usize>(y: &SVector<f64, N>, from: usize) -> Vector3<f64> {
+    Vector3::new(y[from], y[from + 1], y[from + 2])
+}
+
+impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
+    type Error = L::Error;
+
+    fn derivative(&mut self, t: f64, y: &SVector<f64, N>) -> Result<SVector<f64, N>, L::Error> {
+        let (q, w) = (quaternion(y), vector(y, 4));
+        let wrench = self.load.wrench(t, &self.phase(t, y))?;
+        let torque = self.axes.columns.tr_mul(&wrench.torque);
+        let turning = self.euler.principal_acceleration(&w, &torque)?;
+        let q_rate = rate(&q, &w);
+        let mut slope = SVector::zeros();
+        (slope[0], slope[1], slope[2], slope[3]) = (q_rate.i, q_rate.j, q_rate.k, q_rate.w);
+        for i in 0..3 {
+            slope[4 + i] = turning[i];
+        }
+        if N == MOVING {
+            let moving = wrench.force / self.mass;
+            for i in 0..3 {
+                slope[7 + i] = y[10 + i];
+                slope[10 + i] = moving[i];
+            }
+        }
+        Ok(slope)
+    }
+
+    /// By the norms of attitude, ω, position and velocity, since single components pass through zero every turn.
+    fn error_norm(
+        &self,
+        _: &SVector<f64, N>,
+        y_new: &SVector<f64, N>,
+        error: &SVector<f64, N>,
+    ) -> f64 {
+        let Tolerance { relative, absolute } = self.tolerance;
+        let part = |from: usize, largest: f64, absolute: f64| {
+            let size = vector(error, from).norm();
+            if size == 0.0 {
+                0.0
+            } else {
+                size / (absolute + relative * largest.max(vector(y_new, from).norm()))
+            }
+        };
+        let parts = [
+            quaternion(error).norm() / relative,
+            part(4, self.scales.omega, absolute),
+        ];
+        let moving = if N == MOVING {
+            [
+                part(7, self.scales.position, 0.0),
+                part(10, self.scales.velocity, 0.0),
+            ]
+        } else {
+            [0.0; 2]
+        };
+        let largest_or_nan = |most: f64, &part: &f64| {
+            if part.is_nan() || part > most {
+                part
+            } else {
+                most
+            }
+        };
+        parts.iter().chain(&moving).fold(0.0, largest_or_nan)
+    }
+
+    fn accept(&mut self, y: &mut Compensated<N>) {
+        self.scales.omega = self.scales.omega.max(vector(&y.value, 4).norm());
+        if N == MOVING {
+            self.scales.position = self.scales.position.max(vector(&y.value, 7).norm());
+            self.scales.velocity = self.scales.velocity.max(vector(&y.value, 10).norm());
+        }
+        // |q|² − 1 with what rounding left out, halved: the first-order correction, exact where it is small.
+        let (q, rest) = (quaternion(&y.value), quaternion(y.rest()));
+        let excess = 0.5 * ((q.norm() - 1.0) * (q.norm() + 1.0) + 2.0 * q.dot(&rest));
+        let mut correction = SVector::zeros();
+        for i in 0..4 {
+            correction[i] = -excess * y.value[i];
+        }
+        *y = y.plus(&correction);
+    }
+}

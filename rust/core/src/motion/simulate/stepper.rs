@@ -1,0 +1,140 @@
+//! What the run needs of a method, and the one place where a method is chosen.
+
+use super::equations::{Equations, MOVING, Scales, TURNING};
+use super::{Effort, Method, Task};
+use crate::motion::integrate::Dop853;
+use crate::motion::integrate::dop853::Dense;
+use crate::motion::loads::Load;
+use crate::motion::state::Phase;
+
+/// A method under way through a span of time in which the load is smooth.
+pub(super) trait Stepper {
+    /// As of the load.
+    type Error;
+
+    /// Time since the start of the span; its whole length, to the bit, when it is over.
+    fn elapsed(&self) -> f64;
+
+    /// The state now.
+    fn phase(&self) -> Phase;
+
+    /// One step toward the end.
+    fn advance(&mut self) -> Result<(), Self::Error>;
+
+    /// The state at a time since the start of the span that is within the last step.
+    fn within(&mut self, elapsed: f64) -> Result<Phase, Self::Error>;
+
+    /// What the span has taken so far.
+    fn effort(&self) -> Effort;
+
+    /// What the next span may go on with.
+    fn carry(&self) -> Carry;
+}
+
+/// What one span leaves to the next.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Carry {
+    scales: Scales,
+    /// The length of step that the method would try next.
+    step: Option<f64>,
+}
+
+/// Where a span of smooth load begins and ends, and in which state.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) phase: Phase,
+    pub(super) carry: Carry,
+}
+
+/// The method of `task` at the start of `span`.
+///
+/// A stepper more is an arm more here, and its row in [`Method`].
+pub(super) fn start<'a, L: Load>(
+    task: &Task<'_>,
+    span: &Span,
+    load: &'a mut L,
+) -> Result<Box<dyn Stepper<Error = L::Error> + 'a>, L::Error>
+where
+    L::Error: 'a,
+{
+    let moves = !task.subject.pivoted && load.exerts_force();
+    Ok(match task.method {
+        Method::Auto | Method::Dop853 if moves => {
+            Box::new(Explicit::<L, MOVING>::new(task, span, load)?)
+        }
+        Method::Auto | Method::Dop853 => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
+    })
+}
+
+/// DOP853 on the equations in principal axes.
+struct Explicit<'a, L, const N: usize> {
+    equations: Equations<'a, L, N>,
+    start: f64,
+    stepper: Dop853<N>,
+    /// Of the last step, once it is asked for.
+    dense: Option<Dense<N>>,
+}
+
+impl<'a, L: Load, const N: usize> Explicit<'a, L, N> {
+    fn new(task: &Task<'_>, span: &Span, load: &'a mut L) -> Result<Self, L::Error> {
+        let mut equations = Equations::new(
+            &task.euler,
+            task.subject.mass,
+            span.from,
+            &span.phase,
+            load,
+            task.tolerance,
+            span.carry.scales,
+        );
+        let y = equations.principal(&span.phase);
+        let stepper = Dop853::new(&mut equations, span.from, span.to, y, span.carry.step)?;
+        Ok(Self {
+            equations,
+            start: span.from,
+            stepper,
+            dense: None,
+        })
+    }
+}
+
+impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
+    type Error = L::Error;
+
+    fn elapsed(&self) -> f64 {
+        self.stepper.elapsed()
+    }
+
+    fn phase(&self) -> Phase {
+        self.equations
+            .phase(self.start + self.elapsed(), self.stepper.state())
+    }
+
+    fn advance(&mut self) -> Result<(), L::Error> {
+        self.dense = None;
+        self.stepper.advance(&mut self.equations)
+    }
+
+    fn within(&mut self, elapsed: f64) -> Result<Phase, L::Error> {
+        if self.dense.is_none() {
+            self.dense = Some(self.stepper.dense(&mut self.equations)?);
+        }
+        let y = (self.dense.as_ref()).map_or(*self.stepper.state(), |dense| dense.at(elapsed));
+        Ok(self.equations.phase(self.start + elapsed, &y))
+    }
+
+    fn effort(&self) -> Effort {
+        Effort {
+            steps: self.stepper.steps,
+            evaluations: self.stepper.evaluations,
+        }
+    }
+
+    fn carry(&self) -> Carry {
+        Carry {
+            scales: self.equations.scales,
+            step: Some(self.stepper.step()),
+        }
+    }
+}

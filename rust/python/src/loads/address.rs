@@ -1,0 +1,150 @@
+//! Loads that are compiled functions: the one place where a foreign address is called.
+#![allow(unsafe_code)]
+
+use std::ffi::c_void;
+
+use nalgebra::Vector3;
+use polhode::motion::loads::{Windows, Wrench};
+use polhode::motion::state::Phase;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyCapsule, PyCapsuleMethods, PyInt, PyTuple};
+
+use super::PyLoad;
+use super::part::{Acts, recipe};
+
+/// `void f(double t, const double state[13], double out[6], void *user_data)`.
+type Function = unsafe extern "C" fn(f64, *const f64, *mut f64, *mut c_void);
+
+/// A compiled function as a term of a load.
+pub(super) struct Compiled {
+    function: Function,
+    user_data: *mut c_void,
+    /// What the address belongs to, which must live as long.
+    owner: Py<PyAny>,
+    pub(super) factor: f64,
+    /// When it acts; always, where there are none.
+    pub(super) windows: Option<Windows>,
+}
+
+// SAFETY: whoever passes an address to `loads.compiled` states that the function may be called from several threads at once
+// with the same user data.
+unsafe impl Send for Compiled {}
+// SAFETY: as above.
+unsafe impl Sync for Compiled {}
+
+impl Compiled {
+    pub(super) fn copied(&self, py: Python<'_>) -> Self {
+        Self {
+            owner: self.owner.clone_ref(py),
+            windows: self.windows.clone(),
+            ..*self
+        }
+    }
+
+    /// What the function says at a time and a state.
+    #[inline]
+    pub(super) fn call(&self, t: f64, phase: &Phase) -> Wrench {
+        let state = phase.numbers();
+        let mut out = [0.0; 6];
+        // SAFETY: whoever passed the address to `loads.compiled` states that a function of this signature lives there, which
+        // reads 13 numbers of `state` and writes 6 to `out` and nothing else that is ours; `owner` keeps it alive.
+        unsafe { (self.function)(t, state.as_ptr(), out.as_mut_ptr(), self.user_data) };
+        let [fx, fy, fz, nx, ny, nz] = out.map(|x| x * self.factor);
+        Wrench {
+            force: Vector3::new(fx, fy, fz),
+            torque: Vector3::new(nx, ny, nz),
+        }
+    }
+}
+
+/// A force and a torque computed by a compiled function, which runs without the GIL.
+///
+/// Parameters
+/// ----------
+/// function : scipy.LowLevelCallable, int, or object with ``address``
+///     A function ``void f(double t, const double *state, double *out, void *user_data)``: a
+///     ``LowLevelCallable``, the ``cfunc`` of Numba, or the bare address. ``state`` holds 13 numbers, the quaternion
+///     x, y, z, w, the angular velocity in the body frame, position and velocity of the reference point in space;
+///     ``out`` takes 6, the force in space and the torque in the body frame. ``out`` is zero before the call.
+/// user_data : int, optional
+///     The address that the function gets as ``user_data``; that of the ``LowLevelCallable``, or 0, by default.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Notes
+/// -----
+/// The address is trusted: a function of another signature is undefined behaviour. Stacks call it from several threads
+/// at once. Such a load cannot be pickled.
+///
+/// Examples
+/// --------
+/// .. code-block:: python
+///
+///     from numba import cfunc, types
+///
+///     @cfunc(types.void(types.double, types.CPointer(types.double), types.CPointer(types.double), types.voidptr))
+///     def drag(t, state, out, user_data):
+///         for i in range(3):
+///             out[3 + i] = -0.1 * state[4 + i]
+///
+///     body.simulate([0, 10], omega=(0, 0, 1), load=loads.compiled(drag))
+#[pyfunction]
+#[pyo3(signature = (function, user_data=None))]
+pub(crate) fn compiled(function: &Bound<'_, PyAny>, user_data: Option<usize>) -> PyResult<PyLoad> {
+    let (address, own_data) = address(function)?;
+    if address == 0 {
+        return Err(PyValueError::new_err("function: the address is 0"));
+    }
+    let user_data = user_data.map_or(own_data, |data| data as *mut c_void);
+    // SAFETY: a pointer that is not null may become one to a function; that one of this signature lives there is stated by
+    // whoever passes the address.
+    let called =
+        unsafe { std::mem::transmute::<*const c_void, Function>(address as *const c_void) };
+    let compiled = Compiled {
+        function: called,
+        user_data,
+        owner: function.clone().unbind(),
+        factor: 1.0,
+        windows: None,
+    };
+    let recipe = recipe(function.py(), "_unpicklable", (function,))?;
+    Ok(PyLoad::one(Acts::Compiled(compiled), recipe))
+}
+
+/// The address of a function and its user data.
+fn address(function: &Bound<'_, PyAny>) -> PyResult<(usize, *mut c_void)> {
+    if let Ok(number) = function.cast::<PyInt>() {
+        return Ok((number.extract()?, std::ptr::null_mut()));
+    }
+    // scipy.LowLevelCallable is a tuple whose first item is a capsule with the signature for a name.
+    if let Ok(tuple) = function.cast::<PyTuple>()
+        && let Ok(first) = tuple.get_item(0)
+        && let Ok(capsule) = first.cast::<PyCapsule>()
+    {
+        let name = capsule.name()?;
+        // SAFETY: the name lives as long as the capsule, which does not change here.
+        let name = name.map(|name| unsafe { name.as_cstr() });
+        let signature = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let bare = signature.replace("const", "").replace(' ', "");
+        if bare != "void(double,double*,double*,void*)" {
+            return Err(PyValueError::new_err(format!(
+                "function: expected the signature \"void (double, double *, double *, void *)\", got \"{signature}\""
+            )));
+        }
+        let address = capsule.pointer_checked(name)?.as_ptr() as usize;
+        return Ok((address, capsule.context()?));
+    }
+    if let Some(address) = function.getattr_opt("address")?
+        && let Ok(address) = address.extract()
+    {
+        return Ok((address, std::ptr::null_mut()));
+    }
+    Err(PyTypeError::new_err(format!(
+        "function: expected a scipy.LowLevelCallable, an address or an object with one, got {}; wrap a Python function in \
+         loads.callback",
+        function.get_type()
+    )))
+}

@@ -1,0 +1,307 @@
+//! What a load exerts at a time and a state, asked for outside a run.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use numpy::PyArrayDyn;
+use polhode::RigidBody;
+use polhode::motion::attitude::from_components;
+use polhode::motion::loads::{Kept, Load, Subject, Term, Wrench};
+use polhode::motion::state::Phase;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+use super::{Acting, Fault, PyLoad, is_pivot};
+use crate::arrays::{read, read_quaternion, write, write_of};
+use crate::errors::{at_row, to_py};
+use crate::rigid_body::PyRigidBody;
+use crate::stack::{Broadcast, Stack};
+
+impl PyLoad {
+    /// Force and torque at each row of times, states and bodies.
+    #[expect(clippy::too_many_arguments, reason = "a state has many parts")]
+    fn wrenches(
+        &self,
+        py: Python<'_>,
+        t: &Bound<'_, PyAny>,
+        omega: &Bound<'_, PyAny>,
+        quaternion: &Bound<'_, PyAny>,
+        position: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        body: Option<&Bound<'_, PyRigidBody>>,
+        about: &str,
+        start: Option<f64>,
+    ) -> PyResult<Stack<Wrench>> {
+        let (terms, bodies) = (self.terms()?, self.bodies(py, body)?);
+        let pivoted = is_pivot(about)?;
+        let t: Stack<f64> = read(t, "t")?;
+        let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+        let quaternion = read_quaternion(quaternion, "quaternion")?;
+        let vector = |given: Option<&Bound<'_, PyAny>>, name| {
+            given.map_or_else(
+                || Ok(Stack::one(Vector3::zeros())),
+                |given| read::<Vector3<f64>>(given, name),
+            )
+        };
+        let (position, velocity) = (vector(position, "position")?, vector(velocity, "velocity")?);
+        let names = [
+            "load",
+            "body",
+            "t",
+            "omega",
+            "quaternion",
+            "position",
+            "velocity",
+        ];
+        let shapes = [
+            &terms.shape[..],
+            &bodies.shape,
+            &t.shape,
+            &omega.shape,
+            &quaternion.shape,
+            &position.shape,
+            &velocity.shape,
+        ];
+        let grid = Broadcast::of(names, shapes)?;
+        let rows = (grid.rows().enumerate())
+            .map(|(row, [l, b, k, w, q, r, v])| {
+                if quaternion[q].iter().any(|x| x.is_nan()) {
+                    let nan = Vector3::repeat(f64::NAN);
+                    return Ok(Wrench {
+                        force: nan,
+                        torque: nan,
+                    });
+                }
+                let start = start.unwrap_or(t[k]);
+                let subject = if pivoted {
+                    Subject::pivoted(&bodies[b], start)
+                } else {
+                    Subject::free(&bodies[b], start)
+                };
+                let mut acting = Acting::new(self, &terms[l], subject, Some(py));
+                let attitude = from_components("quaternion", &quaternion[q]);
+                (attitude.map_err(Fault::Core))
+                    .and_then(|attitude| {
+                        let phase = Phase {
+                            attitude,
+                            omega: omega[w],
+                            position: position[r],
+                            velocity: velocity[v],
+                        };
+                        acting.enter(t[k], t[k])?;
+                        acting.wrench(t[k], &phase)
+                    })
+                    .map_err(|fault| match fault {
+                        Fault::Core(error) => at_row(&grid.shape, row, &to_py(py, &error), py),
+                        Fault::Python(error) => error,
+                    })
+            })
+            .collect::<PyResult<_>>()?;
+        let shape = grid.shape;
+        Ok(Stack { shape, rows })
+    }
+
+    /// The bodies it acts on; a load that does not depend on the body acts on any.
+    fn bodies(
+        &self,
+        py: Python<'_>,
+        body: Option<&Bound<'_, PyRigidBody>>,
+    ) -> PyResult<Stack<RigidBody>> {
+        match body {
+            Some(body) => Ok(body.get().bodies.clone()),
+            None if self.terms()?.rows.iter().flatten().any(Term::needs_body) => {
+                Err(PyTypeError::new_err(
+                    "body: the weight, the point of a force and the gravity gradient depend on the body; pass body=",
+                ))
+            }
+            None => RigidBody::new(1.0, &nalgebra::Matrix3::identity(), &Vector3::zeros(), 0.0)
+                .map(Stack::one)
+                .map_err(|error| to_py(py, &error)),
+        }
+    }
+}
+
+#[pymethods]
+impl PyLoad {
+    /// Torque of the load about the reference point of the motion, at a time and a state.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, shape (...)
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity relative to space, components in the body frame.
+    /// quaternion : array_like, shape (..., 4), or rotation
+    ///     Attitude R_NB as (x, y, z, w), or anything with ``as_quat()``.
+    /// position, velocity : array_like, shape (..., 3), optional
+    ///     Of the reference point, in space; zero by default.
+    /// body : RigidBody, optional
+    ///     Needed by loads that depend on it: weight, forces at a point, gravity gradient.
+    /// about : {"center_of_mass", "origin"}, optional
+    ///     The reference point, as in `simulate`.
+    /// start : float, optional
+    ///     When the motion starts; `t` by default. Orbits without an epoch begin there.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 3)
+    ///     Components in the body frame; not a number where the quaternion is none.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import loads
+    /// >>> upside_down = (1, 0, 0, 0)
+    /// >>> loads.constant_torque((0, 2, 1), frame="space").torque(0.0, (0, 0, 0), upside_down)
+    /// array([ 0., -2., -1.])
+    #[pyo3(signature = (
+        t, omega, quaternion, position=None, velocity=None, *, body=None, about="center_of_mass", start=None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+    fn torque<'py>(
+        &self,
+        py: Python<'py>,
+        t: &Bound<'py, PyAny>,
+        omega: &Bound<'py, PyAny>,
+        quaternion: &Bound<'py, PyAny>,
+        position: Option<&Bound<'py, PyAny>>,
+        velocity: Option<&Bound<'py, PyAny>>,
+        body: Option<&Bound<'py, PyRigidBody>>,
+        about: &str,
+        start: Option<f64>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let wrenches = self.wrenches(
+            py, t, omega, quaternion, position, velocity, body, about, start,
+        )?;
+        write_of(py, &wrenches, |wrench| wrench.torque)
+    }
+
+    /// Sum of the forces of the load, at a time and a state; arguments as of `torque`.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 3)
+    ///     Components in space; not a number where the quaternion is none.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import loads, solids
+    /// >>> weight = loads.uniform_gravity((0, 0, -10))
+    /// >>> weight.force(0.0, (0, 0, 0), (0, 0, 0, 1), body=solids.cube(1.0, mass=2.0))
+    /// array([  0.,   0., -20.])
+    #[pyo3(signature = (
+        t, omega, quaternion, position=None, velocity=None, *, body=None, about="center_of_mass", start=None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+    fn force<'py>(
+        &self,
+        py: Python<'py>,
+        t: &Bound<'py, PyAny>,
+        omega: &Bound<'py, PyAny>,
+        quaternion: &Bound<'py, PyAny>,
+        position: Option<&Bound<'py, PyAny>>,
+        velocity: Option<&Bound<'py, PyAny>>,
+        body: Option<&Bound<'py, PyRigidBody>>,
+        about: &str,
+        start: Option<f64>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let wrenches = self.wrenches(
+            py, t, omega, quaternion, position, velocity, body, about, start,
+        )?;
+        write_of(py, &wrenches, |wrench| wrench.force)
+    }
+
+    /// Energy of position in the field of the load, which is conservative: forces and torques are what it loses.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : RigidBody
+    /// quaternion : array_like, shape (..., 4), or rotation
+    /// position : array_like, shape (..., 3), optional
+    ///     Of the reference point, in space; zero by default.
+    /// about : {"center_of_mass", "origin"}, optional
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (...), or None
+    ///     ``-m g·r_C`` in uniform gravity, ``-F·r`` of a force constant in space, ``2 k (1 - |w|)`` of feedback with
+    ///     the gain k alone. None for a load with a part that has no potential.
+    #[pyo3(signature = (body, quaternion, position=None, about="center_of_mass"))]
+    fn potential<'py>(
+        &self,
+        py: Python<'py>,
+        body: &Bound<'py, PyRigidBody>,
+        quaternion: &Bound<'py, PyAny>,
+        position: Option<&Bound<'py, PyAny>>,
+        about: &str,
+    ) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
+        if self.calls_python() || self.compiled().next().is_some() {
+            return Ok(None);
+        }
+        let (terms, bodies, pivoted) = (self.terms()?, &body.get().bodies, is_pivot(about)?);
+        let quaternion = read_quaternion(quaternion, "quaternion")?;
+        let position = position.map_or_else(
+            || Ok(Stack::one(Vector3::zeros())),
+            |given| read(given, "position"),
+        )?;
+        let shapes = [
+            &terms.shape[..],
+            &bodies.shape,
+            &quaternion.shape,
+            &position.shape,
+        ];
+        let grid = Broadcast::of(["load", "body", "quaternion", "position"], shapes)?;
+        let energies = grid.rows().map(|[l, b, q, r]| {
+            let [x, y, z, w] = quaternion[q];
+            let phase = Phase {
+                attitude: UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z)),
+                position: position[r],
+                ..Phase::nan()
+            };
+            let subject = if pivoted {
+                Subject::pivoted(&bodies[b], 0.0)
+            } else {
+                Subject::free(&bodies[b], 0.0)
+            };
+            (terms[l].iter())
+                .map(|term| term.potential(&subject, &phase))
+                .sum::<Option<f64>>()
+        });
+        let rows: Option<Vec<f64>> = energies.collect();
+        let shape = grid.shape.clone();
+        rows.map(|rows| write(py, &Stack { shape, rows }))
+            .transpose()
+    }
+
+    /// What of the angular momentum about the reference point the load leaves as it is.
+    ///
+    /// Parameters
+    /// ----------
+    /// about : {"center_of_mass", "origin"}, optional
+    ///
+    /// Returns
+    /// -------
+    /// True, numpy.ndarray of shape (..., 3), or None
+    ///     True for all of it, unit vectors in space along which its component is kept, or None.
+    #[pyo3(signature = (about="center_of_mass"))]
+    fn keeps_momentum<'py>(
+        &self,
+        py: Python<'py>,
+        about: &str,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let pivoted = is_pivot(about)?;
+        if self.calls_python() || self.compiled().next().is_some() {
+            return Ok(None);
+        }
+        let kept = (self.terms()?).map(|terms| {
+            (terms.iter()).fold(Kept::All, |kept, term| kept.and(term.keeps(pivoted)))
+        });
+        if kept.rows.iter().all(|kept| *kept == Kept::All) {
+            return Ok(Some(true.into_pyobject(py)?.to_owned().into_any()));
+        }
+        if kept.rows.contains(&Kept::Nothing) {
+            return Ok(None);
+        }
+        let axes = write_of(py, &kept, |kept| match kept {
+            Kept::Along(axis) => *axis,
+            _ => Vector3::z(), // one as good as another
+        })?;
+        Ok(Some(axes.into_any()))
+    }
+}

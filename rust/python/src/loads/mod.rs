@@ -1,0 +1,268 @@
+//! The class `Load`: sums of analytic terms, of Python functions and of compiled ones.
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `terms` | the functions that make analytic terms |
+//! | `called` | Python functions |
+//! | `address` | functions at an address |
+//! | `part` | one term, scaled, scheduled, picked, pickled |
+//! | `evaluate` | what a load exerts at a time and a state |
+//! | `acting` | a load at work on a body |
+
+mod acting;
+mod address;
+mod called;
+mod evaluate;
+mod part;
+mod terms;
+
+use polhode::motion::loads::Term;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyInt, PyNotImplemented, PyTuple};
+
+pub(crate) use self::acting::{Acting, Fault};
+use self::address::Compiled;
+pub(crate) use self::address::compiled;
+use self::called::Callback;
+pub(crate) use self::called::{callback, torque_callback};
+use self::part::{Acts, Part, made, recipe};
+pub(crate) use self::terms::{
+    constant_force, constant_torque, damping, feedback, gravity_gradient, sampled, schedule,
+    uniform_gravity,
+};
+use crate::stack::{Broadcast, Stack};
+
+/// What acts on a body: a sum of terms. Made by the functions of :mod:`polhode.loads`.
+///
+/// Loads add and scale: ``a + b``, ``a - b``, ``2 * a``, ``-a``, ``sum(loads)``. Arguments with leading axes make a stack of
+/// loads, which broadcasts against bodies and states.
+///
+/// Examples
+/// --------
+/// >>> from polhode import loads
+/// >>> loads.constant_torque((0, 0, 1)) + 2 * loads.constant_torque((0, 2, 0), frame="space")
+/// <Load of 2 terms>
+#[pyclass(name = "Load", module = "polhode.loads", frozen)]
+#[derive(Default)]
+pub(crate) struct PyLoad {
+    parts: Vec<Part>,
+}
+
+impl PyLoad {
+    fn one(acts: Acts, recipe: Py<PyTuple>) -> Self {
+        Self {
+            parts: vec![Part { acts, recipe }],
+        }
+    }
+
+    pub(crate) fn copied(&self, py: Python<'_>) -> Self {
+        Self {
+            parts: self.parts.iter().map(|part| part.copied(py)).collect(),
+        }
+    }
+
+    fn plus(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
+        let mut sum = self.copied(py);
+        sum.parts
+            .extend(other.parts.iter().map(|part| part.copied(py)));
+        sum.stack_shape()?;
+        Ok(sum)
+    }
+
+    fn map(&self, f: impl Fn(&Part) -> PyResult<Part>) -> PyResult<Self> {
+        let parts = self.parts.iter().map(f).collect::<PyResult<_>>()?;
+        Ok(Self { parts })
+    }
+
+    /// The shape to which the terms broadcast.
+    fn stack_shape(&self) -> PyResult<Vec<usize>> {
+        self.parts.iter().try_fold(Vec::new(), |shape, part| {
+            Ok(Broadcast::of(["load", "load"], [&shape, part.shape()])?.shape)
+        })
+    }
+
+    /// The analytic terms of each row.
+    pub(crate) fn terms(&self) -> PyResult<Stack<Vec<Term>>> {
+        let shape = self.stack_shape()?;
+        let count = shape.iter().product();
+        let mut rows = vec![Vec::new(); count];
+        for part in &self.parts {
+            if let Acts::Term(terms) = &part.acts {
+                let grid = Broadcast::of(["load", "load"], [&shape, &terms.shape])?;
+                for (row, [_, own]) in rows.iter_mut().zip(grid.rows()) {
+                    row.push(terms[own].clone());
+                }
+            }
+        }
+        Ok(Stack { shape, rows })
+    }
+
+    fn callbacks(&self) -> impl Iterator<Item = &Callback> {
+        self.parts.iter().filter_map(|part| match &part.acts {
+            Acts::Callback(callback) => Some(callback),
+            _ => None,
+        })
+    }
+
+    fn compiled(&self) -> impl Iterator<Item = &Compiled> {
+        self.parts.iter().filter_map(|part| match &part.acts {
+            Acts::Compiled(compiled) => Some(compiled),
+            _ => None,
+        })
+    }
+
+    /// Whether it calls Python.
+    pub(crate) fn calls_python(&self) -> bool {
+        self.callbacks().next().is_some()
+    }
+}
+
+/// Whether the word `about` fixes the origin.
+pub(crate) fn is_pivot(about: &str) -> PyResult<bool> {
+    match about {
+        "origin" => Ok(true),
+        "center_of_mass" => Ok(false),
+        _ => Err(PyValueError::new_err(format!(
+            "about: expected \"center_of_mass\" or \"origin\", got \"{about}\"; to fix another point move the body with translated()"
+        ))),
+    }
+}
+
+#[pymethods]
+impl PyLoad {
+    fn __getitem__(&self, py: Python<'_>, key: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let shape = self.stack_shape()?;
+        self.map(|part| part.picked(py, &shape, key))
+    }
+
+    /// Shape of the stack of loads; empty for one.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.stack_shape()?)
+    }
+
+    /// The load with orbits that have no epoch beginning at `t`: for the rest of a motion that started then.
+    fn anchored(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
+        self.map(|part| {
+            let mut part = part.copied(py);
+            if let Acts::Term(terms) = &part.acts
+                && terms.rows.iter().any(Term::needs_epoch)
+            {
+                part.recipe = recipe(py, "_anchored", (&part.recipe, t))?;
+                part.acts = Acts::Term(terms.map(|term| term.clone().anchored(t)));
+            }
+            Ok(part)
+        })
+    }
+
+    fn __add__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        Ok(self.plus(py, other.get())?.into_pyobject(py)?.into_any())
+    }
+
+    /// `sum(loads)` starts from the number 0.
+    fn __radd__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if other.is_exact_instance_of::<PyInt>()
+            && other.extract::<i64>().is_ok_and(|zero| zero == 0)
+        {
+            return Ok(self.copied(py).into_pyobject(py)?.into_any());
+        }
+        Ok(PyNotImplemented::get(py).to_owned().into_any())
+    }
+
+    fn __sub__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        let negative = other.get().__neg__(py)?;
+        Ok(self.plus(py, &negative)?.into_pyobject(py)?.into_any())
+    }
+
+    fn __neg__(&self, py: Python<'_>) -> PyResult<Self> {
+        self.map(|part| part.scaled(py, -1.0))
+    }
+
+    fn __mul__<'py>(
+        &self,
+        py: Python<'py>,
+        factor: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let is_number = factor.is_instance_of::<PyFloat>() || factor.is_instance_of::<PyInt>();
+        if !is_number {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        }
+        let factor = factor.extract()?;
+        let scaled = self.map(|part| part.scaled(py, factor))?;
+        Ok(scaled.into_pyobject(py)?.into_any())
+    }
+
+    fn __rmul__<'py>(
+        &self,
+        py: Python<'py>,
+        factor: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.__mul__(py, factor)
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        self.copied(py)
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copied(py)
+    }
+
+    /// The terms as the functions that make them, with their arguments; for pickle.
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        if self.compiled().next().is_some() {
+            return Err(pyo3::exceptions::PyTypeError::new_err(
+                "a load with a compiled function cannot be pickled: its address holds in this process alone",
+            ));
+        }
+        let restore = py.get_type::<Self>().getattr("_from_parts")?;
+        let parts: Vec<_> = self.parts.iter().map(|part| part.recipe.bind(py)).collect();
+        Ok((restore, PyTuple::new(py, [parts])?))
+    }
+
+    /// The load that `__reduce__` took apart.
+    #[staticmethod]
+    fn _from_parts(py: Python<'_>, parts: Vec<(String, Bound<'_, PyTuple>)>) -> PyResult<Self> {
+        let mut sum = Self::default();
+        for (name, arguments) in parts {
+            sum.parts.extend(made(py, &name, &arguments)?.parts);
+        }
+        Ok(sum)
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        let shape = self.stack_shape()?;
+        let stack = if shape.is_empty() {
+            String::new()
+        } else {
+            let lengths: Vec<_> = shape.iter().map(ToString::to_string).collect();
+            format!("{} stack of ", lengths.join("x"))
+        };
+        Ok(match self.parts.len() {
+            1 => format!("<{stack}Load of 1 term>"),
+            count => format!("<{stack}Load of {count} terms>"),
+        })
+    }
+}

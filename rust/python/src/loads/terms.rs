@@ -1,0 +1,387 @@
+//! The functions of `polhode.loads` that make analytic terms.
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::Error;
+use polhode::motion::loads::{Damping, Feedback, GravityGradient, Sampled, Term};
+use pyo3::prelude::*;
+
+use super::PyLoad;
+use super::part::{Acts, recipe, schedule_load};
+use crate::arrays::{as_array, list_floats, read, read_attitude, try_rows, write};
+use crate::errors::to_py;
+use crate::kinematics::parse_frame;
+use crate::stack::{Broadcast, Stack};
+
+/// A torque that stays constant, about the reference point of the motion.
+///
+/// Parameters
+/// ----------
+/// vector : array_like, shape (..., 3)
+/// frame : {"body", "space"}, optional
+///     Whose axes the components refer to: a torque constant in the body turns with it, one constant
+///     in space keeps its direction.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// >>> from polhode import loads, solids
+/// >>> flywheel = solids.cylinder(radius=1.0, height=0.2, mass=4.0)
+/// >>> flywheel.simulate([0, 5], omega=(0, 0, 0), load=loads.constant_torque((0, 0, 2))).omega[-1].round(9)
+/// array([0., 0., 5.])
+#[pyfunction]
+#[pyo3(signature = (vector, frame="body"))]
+pub(crate) fn constant_torque(
+    py: Python<'_>,
+    vector: &Bound<'_, PyAny>,
+    frame: &str,
+) -> PyResult<PyLoad> {
+    let axes = parse_frame(frame)?;
+    let vector: Stack<Vector3<f64>> = read(vector, "vector")?;
+    let terms = try_rows(py, &vector, |vector| Term::constant_torque(vector, axes))?;
+    let recipe = recipe(py, "constant_torque", (write(py, &vector)?, frame))?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// A force that stays constant, at a point of the body.
+///
+/// Parameters
+/// ----------
+/// vector : array_like, shape (..., 3)
+/// frame : {"body", "space"}, optional
+///     Whose axes the components refer to: the thrust of a nozzle turns with the body, a steady wind
+///     does not.
+/// point : array_like, shape (..., 3), optional
+///     Where it acts, in the body frame; at the centre of mass by default.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// A push at the centre of mass moves a body without turning it:
+///
+/// >>> from polhode import loads, solids
+/// >>> cube = solids.cube(1.0, mass=2.0)
+/// >>> push = loads.constant_force((4, 0, 0), frame="space")
+/// >>> motion = cube.simulate([0, 3], omega=(0, 0, 1), load=push)
+/// >>> motion.position[-1].round(9), motion.omega[-1]
+/// (array([9., 0., 0.]), array([0., 0., 1.]))
+#[pyfunction]
+#[pyo3(signature = (vector, frame="body", point=None))]
+pub(crate) fn constant_force(
+    py: Python<'_>,
+    vector: &Bound<'_, PyAny>,
+    frame: &str,
+    point: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyLoad> {
+    let axes = parse_frame(frame)?;
+    let vector: Stack<Vector3<f64>> = read(vector, "vector")?;
+    let point = point
+        .map(|point| read::<Vector3<f64>>(point, "point"))
+        .transpose()?;
+    let shape = point.as_ref().map_or(&[][..], |point| &point.shape);
+    let grid = Broadcast::of(["vector", "point"], [&vector.shape, shape])?;
+    let terms = grid.try_map(py, |[f, p]| {
+        Term::constant_force(&vector[f], axes, point.as_ref().map(|point| &point[p]))
+    })?;
+    let point = point.map(|point| write(py, &point)).transpose()?;
+    let recipe = recipe(py, "constant_force", (write(py, &vector)?, frame, point))?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// The weight of a body in a uniform field: a force m g at its centre of mass.
+///
+/// A free body falls; a body simulated with ``about="origin"`` is a pendulum or a top.
+///
+/// Parameters
+/// ----------
+/// gravity : array_like, shape (..., 3)
+///     g in space.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// >>> from polhode import loads, solids
+/// >>> stone = solids.sphere(0.1, mass=1.0)
+/// >>> stone.simulate([0, 2], omega=(0, 0, 0), load=loads.uniform_gravity((0, 0, -9.81))).velocity[-1].round(9)
+/// array([  0.  ,   0.  , -19.62])
+#[pyfunction]
+pub(crate) fn uniform_gravity(py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyResult<PyLoad> {
+    let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
+    let terms = try_rows(py, &gravity, Term::uniform_gravity)?;
+    let recipe = recipe(py, "uniform_gravity", (write(py, &gravity)?,))?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// The torque of an attractor's field on a body in a Kepler orbit.
+///
+/// ``N = 3 mu/r**5 r_B × (I_C r_B)`` with r from the attractor to the centre of mass. The orbit is an ellipse, a parabola or
+/// a hyperbola, solved exactly; it is not changed by the body's attitude, nor are `position` and `velocity` of the trajectory
+/// by it.
+///
+/// Parameters
+/// ----------
+/// mu : array_like, shape (...)
+///     Gravitational parameter of the attractor.
+/// position, velocity : array_like, shape (..., 3)
+///     Of the centre of mass relative to the attractor, in space, at the epoch.
+/// epoch : float, optional
+///     When the orbit has that state; the first time of a simulation by default.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// A stick across the vertical is turned toward it:
+///
+/// >>> from polhode import loads, rods
+/// >>> pull = loads.gravity_gradient(1.0, (2.0, 0.0, 0.0), (0.0, 0.5, 0.0))
+/// >>> stick = rods.rod(length=0.12, mass=1000.0).rotated((0.0, 0.9238795325112867, 0.0, 0.3826834323650898))
+/// >>> pull.torque(0.0, (0, 0, 0), (0, 0, 0, 1), body=stick).round(6)
+/// array([ 0.   , -0.225,  0.   ])
+#[pyfunction]
+#[pyo3(signature = (mu, position, velocity, epoch=None))]
+pub(crate) fn gravity_gradient(
+    py: Python<'_>,
+    mu: &Bound<'_, PyAny>,
+    position: &Bound<'_, PyAny>,
+    velocity: &Bound<'_, PyAny>,
+    epoch: Option<f64>,
+) -> PyResult<PyLoad> {
+    let mu: Stack<f64> = read(mu, "mu")?;
+    let position: Stack<Vector3<f64>> = read(position, "position")?;
+    let velocity: Stack<Vector3<f64>> = read(velocity, "velocity")?;
+    let shapes = [&mu.shape[..], &position.shape, &velocity.shape];
+    let grid = Broadcast::of(["mu", "position", "velocity"], shapes)?;
+    let terms = grid.try_map(py, |[m, r, v]| {
+        GravityGradient::new(mu[m], &position[r], &velocity[v], epoch).map(Term::GravityGradient)
+    })?;
+    let arguments = (
+        write(py, &mu)?,
+        write(py, &position)?,
+        write(py, &velocity)?,
+        epoch,
+    );
+    let recipe = recipe(py, "gravity_gradient", arguments)?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// A torque against the angular velocity, ``-D ω - E |ω| ω``.
+///
+/// Parameters
+/// ----------
+/// matrix : array_like, shape (..., 3, 3), or a number
+///     D in the body frame; a number stands for that times the identity.
+/// quadratic : array_like, shape (..., 3, 3), or a number, optional
+///     E in the body frame; none by default.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// >>> from polhode import loads, solids
+/// >>> ball = solids.sphere(1.0, mass=2.5)
+/// >>> ball.simulate([0, 10], omega=(0, 0, 1), load=loads.damping(0.1)).omega[-1].round(6)
+/// array([0.      , 0.      , 0.367879])
+#[pyfunction]
+#[pyo3(signature = (matrix, quadratic=None))]
+pub(crate) fn damping(
+    py: Python<'_>,
+    matrix: &Bound<'_, PyAny>,
+    quadratic: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyLoad> {
+    let linear = matrices(matrix, "matrix")?;
+    let quadratic = quadratic.map_or_else(
+        || Ok(Stack::one(Matrix3::zeros())),
+        |quadratic| matrices(quadratic, "quadratic"),
+    )?;
+    let grid = Broadcast::of(["matrix", "quadratic"], [&linear.shape, &quadratic.shape])?;
+    let terms = grid.try_map(py, |[d, e]| {
+        Damping::new(&linear[d], &quadratic[e]).map(Term::Damping)
+    })?;
+    let recipe = recipe(py, "damping", (write(py, &linear)?, write(py, &quadratic)?))?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// A torque known at some times, with a cubic spline in between.
+///
+/// The spline is that of :class:`scipy.interpolate.CubicSpline` ("not-a-knot"). A simulation ends a step at each of the
+/// times, where the spline is not smooth.
+///
+/// Parameters
+/// ----------
+/// t : array_like, shape (n,)
+///     Ascending, at least two.
+/// torque : array_like, shape (..., n, 3)
+///     About the reference point of the motion.
+/// frame : {"body", "space"}, optional
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Raises
+/// ------
+/// ValueError
+///     In a simulation that needs the torque before the first or after the last of the times.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> from polhode import RigidBody, loads
+/// >>> t = np.linspace(0, 10, 201)
+/// >>> torque = np.column_stack([0 * t, 0 * t, np.cos(t)])
+/// >>> body = RigidBody.from_principal(1.0, (1, 2, 2.5))
+/// >>> motion = body.simulate([0, np.pi / 2], omega=(0, 0, 0), load=loads.sampled(t, torque))
+/// >>> motion.omega[-1].round(5)
+/// array([0. , 0. , 0.4])
+#[pyfunction]
+#[pyo3(signature = (t, torque, frame="body"))]
+pub(crate) fn sampled(
+    py: Python<'_>,
+    t: &Bound<'_, PyAny>,
+    torque: &Bound<'_, PyAny>,
+    frame: &str,
+) -> PyResult<PyLoad> {
+    let axes = parse_frame(frame)?;
+    let times: Vec<f64> = list_floats(t, "t", "n", &[])?.as_slice()?.to_vec();
+    let values: Stack<Vector3<f64>> = crate::arrays::read_list(torque, "torque", "..., n")?;
+    let (count, leading) = match values.shape.split_last() {
+        Some((&count, leading)) => (count, leading.to_vec()),
+        None => (0, Vec::new()),
+    };
+    if count != times.len() {
+        return Err(pyo3::exceptions::PyValueError::new_err(format!(
+            "torque: expected one for each of the {} times, got {count}",
+            times.len()
+        )));
+    }
+    let series = Stack {
+        shape: leading,
+        rows: values.rows.chunks(count.max(1)).collect(),
+    };
+    let terms = try_rows(py, &series, |series| {
+        Sampled::new(&times, series, axes).map(Term::Sampled)
+    })?;
+    let arguments = (
+        numpy::PyArray1::from_vec(py, times),
+        write(py, &values)?,
+        frame,
+    );
+    let recipe = recipe(py, "sampled", arguments)?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// A load that is switched on and off.
+///
+/// A simulation ends a step at each switch.
+///
+/// Parameters
+/// ----------
+/// load : Load
+/// windows : array_like, shape (n, 2)
+///     When it is switched on and off, ascending and apart; the last may end at infinity.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// A wheel driven for two seconds of ten:
+///
+/// >>> from polhode import loads, solids
+/// >>> wheel = solids.cylinder(radius=1.0, height=0.2, mass=4.0)
+/// >>> pulse = loads.schedule(loads.constant_torque((0, 0, 2)), [(1, 2), (5, 6)])
+/// >>> wheel.simulate([0, 10], omega=(0, 0, 0), load=pulse).omega[-1].round(9)
+/// array([0., 0., 2.])
+#[pyfunction]
+pub(crate) fn schedule(
+    py: Python<'_>,
+    load: &Bound<'_, PyLoad>,
+    windows: &Bound<'_, PyAny>,
+) -> PyResult<PyLoad> {
+    schedule_load(py, load.get(), windows)
+}
+
+/// A controller that turns the body toward an attitude and damps it: ``-K sign(w) vec(e) - D ω``.
+///
+/// ``e = target⁻¹ ∘ q`` is the quaternion of what is left to turn, w its scalar part; for a small angle vec(e) is half of it
+/// about its axis. The sign takes the shorter way round.
+///
+/// Parameters
+/// ----------
+/// K, D : array_like, shape (..., 3, 3), or a number
+///     Gains in the body frame; a number stands for that times the identity.
+/// target : array_like, shape (..., 4), or rotation, optional
+///     R_NB to reach as (x, y, z, w), or anything with ``as_quat()``; the identity by default.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> from polhode import RigidBody, loads
+/// >>> body = RigidBody.from_principal(1.0, (1, 2, 2.5))
+/// >>> control = loads.feedback(K=8.0, D=4.0, target=(0, 0, 1, 0))
+/// >>> motion = body.simulate([0, 40], omega=(0, 0, 0), attitude=(0.6, 0, 0, 0.8), load=control)
+/// >>> np.abs(motion.quaternion[-1]).round(6)
+/// array([0., 0., 1., 0.])
+#[pyfunction]
+#[pyo3(signature = (K, D, target=None))]
+#[expect(non_snake_case, reason = "the letters of the formula")]
+pub(crate) fn feedback(
+    py: Python<'_>,
+    K: &Bound<'_, PyAny>,
+    D: &Bound<'_, PyAny>,
+    target: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyLoad> {
+    let (stiffness, rates) = (matrices(K, "K")?, matrices(D, "D")?);
+    let attitude = read_attitude(target, "target")?;
+    let shapes = [&stiffness.shape[..], &rates.shape, &attitude.shape];
+    let grid = Broadcast::of(["K", "D", "target"], shapes)?;
+    let terms = grid.try_map(py, |[k, d, q]| {
+        Feedback::new(&stiffness[k], &rates[d], &attitude[q]).map(Term::Feedback)
+    })?;
+    let attitude = attitude.map(polhode::motion::attitude::components);
+    let arguments = (
+        write(py, &stiffness)?,
+        write(py, &rates)?,
+        write(py, &attitude)?,
+    );
+    let recipe = recipe(py, "feedback", arguments)?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// Matrices (..., 3, 3), or a number times the identity.
+fn matrices(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Stack<Matrix3<f64>>> {
+    let is_number = as_array(object, name)?
+        .getattr("ndim")?
+        .extract::<usize>()?
+        == 0;
+    if !is_number {
+        return read(object, name);
+    }
+    let number: Stack<f64> = read(object, name)?;
+    if !number[0].is_finite() {
+        let error = Error::NonFinite {
+            what: name,
+            value: number[0],
+        };
+        return Err(to_py(object.py(), &error));
+    }
+    Ok(number.map(|&x| Matrix3::from_diagonal_element(x)))
+}
