@@ -24,7 +24,7 @@ def rows() -> Iterator[Row]:
     yield Row(
         name="import in a fresh interpreter",
         peer="import numpy",
-        ours=lambda: run("import polhode"),
+        ours=lambda: run("from polhode import RigidBody"),
         theirs=lambda: run("import numpy"),
         compare=same,
         at_most=1.3,

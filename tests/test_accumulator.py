@@ -149,7 +149,7 @@ def test_it_pickles_with_every_bit(cloud: Any) -> None:
         each.add(masses[9000:], positions[9000:])
     assert copy.finish() == particles.finish() == summed(cloud)
     with pytest.raises(ValueError, match="MassAccumulator"):
-        MassAccumulator._from_bytes(b"anything else")
+        MassAccumulator._from_bytes(b"anything else")  # type: ignore[attr-defined]
 
 
 def test_several_threads_may_add(cloud: Any) -> None:

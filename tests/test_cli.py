@@ -17,7 +17,7 @@ from command_line import one_line, run, write_obj
 from oracles.meshes import box, cube
 from polhode import RigidBody
 from polhode.cli import main
-from polhode.cli.report import LengthUnit
+from polhode.cli.options import LengthUnit
 from polhode.units import METRES
 
 if TYPE_CHECKING:
@@ -333,7 +333,7 @@ def test_interruption_isone_line(slab: Path, monkeypatch: pytest.MonkeyPatch) ->
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("polhode.cli.app.file_report", interrupt)
+    monkeypatch.setattr("polhode.cli.report.file_report", interrupt)
     assert run("report", slab) == (130, "", "polhode: interrupted\n")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -69,9 +70,10 @@ class TestSmallestSet:
         body = solids.ellipsoid((1.0, 2.0, 3.0), mass=2.0).translated((0.5, 0.0, 1.0))
         twin = RigidBody.from_particles(*body.equimomental_particles())
         t, omega = np.linspace(0, 10, 11), (0.3, 1.0, -0.2)
-        for about in ("center_of_mass", "origin"):
-            one = body.simulate(t, omega, about=about, rtol=1e-12)  # type: ignore[arg-type]
-            two = twin.simulate(t, omega, about=about, rtol=1e-12)  # type: ignore[arg-type]
+        points: tuple[Literal["center_of_mass", "origin"], ...] = ("center_of_mass", "origin")
+        for about in points:
+            one = body.simulate(t, omega, about=about, rtol=1e-12)
+            two = twin.simulate(t, omega, about=about, rtol=1e-12)
             assert np.abs(one.omega - two.omega).max() < 1e-10
 
     def test_stacks_of_one_kind(self) -> None:

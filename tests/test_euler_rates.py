@@ -69,8 +69,8 @@ class TestEverySequence:
         angles, rates = rng.uniform(-6, 6, (400, 3)), rng.normal(size=(400, 3))
         size = (np.abs(rates).sum(axis=1) / divisor(angles, sequence))[:, None]
         for frame in ("body", "space"):
-            omega = euler_angles.angular_velocity(angles, rates, sequence, frame)  # type: ignore[arg-type]
-            back = euler_angles.rates(angles, omega, sequence, frame)  # type: ignore[arg-type]
+            omega = euler_angles.angular_velocity(angles, rates, sequence, frame)
+            back = euler_angles.rates(angles, omega, sequence, frame)
             assert (np.abs(back - rates) / size).max() < 2e-15
 
     def test_near_the_pole_they_solve_the_equation(self, sequence: str) -> None:
@@ -147,7 +147,7 @@ class TestTextbook:
         assert divisor(found, sequence).min() > 0.05, "the motion must stay away from the singularity"
         assert np.abs(route.omega - omega(t)).max() < 1e-11
 
-        def rates(t: float, y: np.ndarray) -> np.ndarray:
+        def rates(t: Any, y: np.ndarray) -> np.ndarray:
             return euler_angles.rates(y, omega(t), sequence)
 
         steps = solve_ivp(rates, (0.0, 4.0), angles, "DOP853", t, rtol=1e-13, atol=1e-13)

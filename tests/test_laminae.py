@@ -146,7 +146,7 @@ class TestPolygons:
 
 def polygon_area(corners: Any) -> float:
     (a, b), (c, d), (e, f) = corners
-    return ((c - a) * (f - b) - (e - a) * (d - b)) / 2
+    return float(((c - a) * (f - b) - (e - a) * (d - b)) / 2)
 
 
 def smallest_moment(second: Any) -> float:

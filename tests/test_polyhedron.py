@@ -231,6 +231,115 @@ class TestOrient:
             RigidBody.from_mesh(vertices, faces[:-1], density=1.0, orient=True)
 
 
+def _parts(*parts: tuple[float, tuple[float, float, float], bool]) -> Mesh:
+    """Cubes: side, centre, whether wound outward."""
+    moved = [(_moved(cube(side), center), outward) for side, center, outward in parts]
+    return merge(*(mesh if outward else _reversed(mesh) for mesh, outward in moved))
+
+
+class TestCavities:
+    """A surface wound inward is a cavity inside another one, and inside out anywhere else."""
+
+    O, BESIDE = (0.0, 0.0, 0.0), (5.0, 0.1, 0.2)
+
+    def test_beside_the_others_it_is_refused_and_named(self) -> None:
+        mesh = _parts((2.0, self.O, True), (1.0, self.BESIDE, False))
+        with pytest.raises(
+            MeshError, match=r"12 connected faces with faces\[12\].*-(1\.0|0\.9).*orient=True"
+        ):
+            RigidBody.from_mesh(*mesh, density=1.0)
+        soup = mesh[0][mesh[1]].reshape(-1, 3), np.arange(72).reshape(24, 3)
+        with pytest.raises(MeshError, match=r"12 connected faces with faces\[12\]"):
+            RigidBody.from_mesh(*soup, density=1.0)
+        both = _parts((2.0, self.O, True), (1.0, self.BESIDE, True))
+        for wrong in (mesh, soup, _reversed(mesh)):
+            body = RigidBody.from_mesh(*wrong, density=1.0, orient=True)
+            assert bool(body.isclose(RigidBody.from_mesh(*both, density=1.0), rtol=1e-15, atol=1e-15))
+            assert body.provenance.checked.endswith("cavities")
+
+    def test_two_that_cancel_are_not_taken_for_nothing(self) -> None:
+        mesh = _parts((1.0, self.O, True), (1.0, self.BESIDE, False))
+        with pytest.raises(MeshError, match="inside out"):
+            RigidBody.from_mesh(*mesh, density=1.0)
+        assert RigidBody.from_mesh(*mesh, density=1.0, orient=True).mass == 2.0
+
+    @pytest.mark.parametrize(
+        ("parts", "volume"),
+        [
+            ([(3.0, O, True), (1.0, O, False)], 26.0),
+            ([(4.0, O, True), (3.0, O, False), (2.0, O, True), (1.0, O, False)], 64 - 27 + 8 - 1),
+            ([(3.0, O, True), (1.0, O, False), (3.0, BESIDE, True), (1.0, BESIDE, False)], 52.0),
+        ],
+    )
+    def test_inside_they_are_taken_out(
+        self, parts: list[tuple[float, tuple[float, float, float], bool]], volume: float
+    ) -> None:
+        assert RigidBody.from_mesh(*_parts(*parts), density=1.0).mass == pytest.approx(volume, rel=1e-14)
+        turned = [(side, center, not outward) for side, center, outward in parts]
+        with pytest.raises(MeshError, match="inverted"):
+            RigidBody.from_mesh(*_parts(*turned), density=1.0)
+        body = RigidBody.from_mesh(*_parts(*turned), density=1.0, orient=True)
+        assert body.mass == pytest.approx(volume, rel=1e-14)
+
+    @given(attitude=attitudes(), shift=vectors(100.0), data=st.data())
+    def test_a_foam(self, attitude: np.ndarray, shift: np.ndarray, data: st.DataObject) -> None:
+        """Bubbles on a grid are cavities; one that was moved out is named."""
+        outward = [True] + [False] * 27
+        centers = [(0.0, 0.0, 0.0)] + [(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)]
+        sides = [3.0] + [0.7] * 27
+
+        def foam(out: int | None) -> Mesh:
+            places = [(7.0, -0.3, 0.1) if number == out else place for number, place in enumerate(centers)]
+            vertices, faces = _parts(*zip(sides, places, outward, strict=True))
+            return vertices @ matrix(attitude).T + shift, faces
+
+        body = RigidBody.from_mesh(*foam(None), density=1.0)
+        assert body.mass == pytest.approx(27 - 27 * 0.343, rel=1e-12)
+        out = data.draw(st.integers(1, 27))
+        with pytest.raises(MeshError, match=rf"faces with faces\[{12 * out}\]"):
+            RigidBody.from_mesh(*foam(out), density=1.0)
+
+    def test_the_check_may_be_left_out(self) -> None:
+        mesh = _parts((2.0, self.O, True), (1.0, self.BESIDE, False))
+        assert RigidBody.from_mesh(*mesh, density=1.0, check=False).mass == pytest.approx(7.0, rel=1e-15)
+
+
+class TestBesideTrimesh:
+    """The same numbers as trimesh, where trimesh has digits: no far coordinates, no thin bodies."""
+
+    @pytest.mark.parametrize("name", ["cube", "tetrahedron", "sphere", "two parts", "cavity"])
+    @pytest.mark.parametrize("density", [1.0, 7850.0])
+    def test_mass_properties(self, name: str, density: float) -> None:
+        trimesh = pytest.importorskip("trimesh")
+        vertices, faces = CLOSED[name]()
+        turn = np.linalg.qr(np.array([[1.0, 2, 3], [0, 1, 4], [5, 6, 0]]))[0]
+        turn *= np.sign(np.linalg.det(turn))
+        vertices = vertices @ turn.T + [0.3, -0.2, 0.7]
+        theirs = trimesh.Trimesh(vertices, faces, process=False)
+        theirs.density = density
+        body = RigidBody.from_mesh(vertices, faces, density=density)
+        assert body.mass == pytest.approx(theirs.mass, rel=1e-13)
+        assert body.center_of_mass == pytest.approx(theirs.center_mass, abs=1e-13)
+        assert np.abs(body.inertia - theirs.moment_inertia).max() < 1e-12 * body.inertia.max()
+        moments = np.sort(theirs.principal_inertia_components)
+        assert body.principal_moments == pytest.approx(moments, rel=1e-12)
+
+    @pytest.mark.parametrize("damage", ["open", "turned", "none"])
+    def test_they_agree_on_what_is_closed(self, damage: str) -> None:
+        trimesh = pytest.importorskip("trimesh")
+        vertices, faces = icosphere(2)
+        if damage == "open":
+            faces = faces[:-1]
+        if damage == "turned":
+            faces[7] = faces[7][::-1]
+        theirs = trimesh.Trimesh(vertices, faces, process=False)
+        if theirs.is_watertight and theirs.is_winding_consistent:
+            assert RigidBody.from_mesh(vertices, faces, density=1.0).mass == pytest.approx(theirs.volume)
+        else:
+            with pytest.raises(MeshError):
+                RigidBody.from_mesh(vertices, faces, density=1.0)
+
+
 class TestLaws:
     def test_corners_stored_several_times_are_one_vertex(self) -> None:
         """Triangle soup, as STL stores it: bit-equal corners are the same point (and −0 is +0)."""

@@ -47,7 +47,9 @@ def test_adversarial_matrices(name: str) -> None:
         assert worst.relative <= RELATIVE
 
 
-@pytest.mark.skipif(np.finfo(np.longdouble).eps > 1e-18, reason="no extended precision on this platform")
+@pytest.mark.skipif(
+    bool(np.finfo(np.longdouble).eps > 1e-18), reason="no extended precision on this platform"
+)
 def test_a_million_random_matrices_are_as_accurate(million: np.ndarray) -> None:
     found = principal_axes(million)
     for start in range(0, MILLION, 100_000):

@@ -6,19 +6,25 @@ import pickle
 from fractions import Fraction
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from oracles import errors
 from oracles.bodies import matrix
 from oracles.exact_particles import Particles
 from oracles.exact_polyhedron import polyhedron
+from oracles.exact_shapes import polygon, tetrahedra
 from oracles.exact_simplices import shell, wire
 from oracles.meshes import box, cube, icosphere, merge, tetrahedron
 from polhode import MassAccumulator, RigidBody, laminae, regions, rods, solids
 from polhode.errors import MeshError
 
 TURN = matrix(np.array([0.2, -0.5, 0.4, 0.7]) / np.linalg.norm([0.2, -0.5, 0.4, 0.7]))
-CHECKED = "indices, finite, closed, winding, orientation, volume, duplicates"
+CHECKED = "indices, finite, closed, winding, orientation, volume, duplicates, cavities"
+with mpmath.workdps(60):
+    PI = Fraction(mpmath.nstr(mpmath.pi, 55))
 LINE = np.array([[-1.0], [0.5], [2.0]]) * np.array([1.0, 2.0, -0.5])
 
 
@@ -177,6 +183,84 @@ class TestErrorBound:
         )
         exact = polyhedron(*merge(*parts))
         self.holds(body, exact.volume, exact.centroid, exact.inertia)
+
+    @pytest.mark.parametrize(("size", "shift"), MOVES)
+    @pytest.mark.parametrize("kind", ["uniform", "cells", "nodes"])
+    def test_of_tetrahedra(self, kind: str, size: float, shift: float, rng: np.random.Generator) -> None:
+        nodes = size * rng.normal(size=(12, 3)) + shift
+        cells = rng.permuted(np.tile(np.arange(12), (20, 1)), axis=1)[:, :4]
+        rho: Any = {"uniform": 2.5, "cells": rng.uniform(0, 3, 20), "nodes": rng.uniform(0, 3, 12)}[kind]
+        corners = np.asarray(rho)[cells] if kind == "nodes" else np.broadcast_to(rho, (4, 20)).T
+        exact = tetrahedra(nodes, cells, corners)
+        body = RigidBody.from_tetrahedra(nodes, cells, density=rho)
+        self.holds(body, exact.mass, exact.center, exact.inertia)
+
+    @pytest.mark.parametrize(("size", "shift"), MOVES[:3])
+    def test_of_polygons(self, size: float, shift: float) -> None:
+        star = [(np.cos(k * np.pi / 5) * (1 + k % 2), np.sin(k * np.pi / 5) * (1 + k % 2)) for k in range(10)]
+        for corners in (star, star[:3], [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)]):
+            placed = size * np.array(corners) + shift * np.array([1.0, -0.7])
+            exact = polygon(placed)
+            body = laminae.polygon(placed, density=1.0)
+            self.holds(body, exact.mass, exact.center, exact.inertia)
+
+    @given(
+        size=st.tuples(*[st.floats(1e-6, 1e6)] * 3), density=st.floats(1e-3, 1e3), mass=st.floats(1e-3, 1e3)
+    )
+    def test_of_solids(self, size: tuple[float, float, float], density: float, mass: float) -> None:
+        a, b, c = (Fraction(x) for x in size)
+
+        def diagonal(m: Fraction, second: list[Fraction]) -> list[list[Fraction]]:
+            moments = [m * (sum(second) - x) for x in second]
+            return [[moments[i] if i == j else Fraction(0) for j in range(3)] for i in range(3)]
+
+        volumes = {"box": a * b * c, "ellipsoid": 4 * PI * a * b * c / 3, "cylinder": PI * a * a * b}
+        seconds = {
+            "box": [x * x / 12 for x in (a, b, c)],
+            "ellipsoid": [x * x / 5 for x in (a, b, c)],
+            "cylinder": [a * a / 4, a * a / 4, b * b / 12],
+        }
+        for name, volume in volumes.items():
+            for amount in ({"mass": mass}, {"density": density}):
+                body = {
+                    "box": lambda amount: solids.box(size, **amount),
+                    "ellipsoid": lambda amount: solids.ellipsoid(size, **amount),
+                    "cylinder": lambda amount: solids.cylinder(size[0], size[1], **amount),
+                }[name](amount)
+                m = Fraction(mass) if "mass" in amount else Fraction(density) * volume
+                self.holds(body, m, [Fraction(0)] * 3, diagonal(m, seconds[name]))
+
+    def test_of_bodies_moved_turned_and_put_together(self, rng: np.random.Generator) -> None:
+        """Boxes of dyadic sizes, turned by right angles: where their corners are is exact."""
+        turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+        for _ in range(20):
+            bodies, parts = [], []
+            for _ in range(3):
+                x, y, z = (float(n) / 4 for n in rng.integers(1, 9, 3))
+                shift = rng.integers(-99, 99, 3) / 8.0
+                vertices, faces = box((x, y, z))
+                bodies.append(
+                    RigidBody.from_mesh(vertices, faces, density=1.0).rotated(turn).translated(shift)
+                )
+                parts.append((vertices @ turn.T + shift, faces))
+            exact = polyhedron(*merge(*parts))
+            whole = bodies[0] + bodies[1] + bodies[2]
+            self.holds(whole, exact.volume, exact.centroid, exact.inertia)
+            self.holds(RigidBody.stack(bodies).combined(0), exact.volume, exact.centroid, exact.inertia)
+            rest = polyhedron(*merge(*parts[:2]))
+            self.holds(whole - bodies[2], rest.volume, rest.centroid, rest.inertia)
+
+    @pytest.mark.parametrize("name", MESHES)
+    def test_of_principal_moments(self, name: str) -> None:
+        """By Weyl each is off by at most three times the bound of the elements, and its own rounding."""
+        vertices, faces = MESHES[name][0] @ TURN.T, MESHES[name][1]
+        body = RigidBody.from_mesh(vertices, faces, density=1.0)
+        with mpmath.workdps(50):
+            exact = polyhedron(vertices, faces).inertia
+            rows = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in exact]
+            wanted = sorted(mpmath.eigsy(mpmath.matrix(rows), eigvals_only=True))
+            worst = max(abs(a - b) for a, b in zip(body.principal_moments.tolist(), wanted, strict=True))
+        assert worst <= 3 * body.error_bound.inertia + 16 * 2**-52 * np.trace(body.inertia)
 
     def test_what_is_given_is_exact(self) -> None:
         given = RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), (1, 2, 3)).error_bound

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -63,12 +64,13 @@ def test_rod() -> None:
 
 @pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
 def test_what_is_no_length_is_named(value: float) -> None:
-    for make, name in (
+    makers: list[tuple[Callable[[], object], str]] = [
         (lambda: rods.rod(value, mass=1.0), "length"),
         (lambda: rods.ring(value, mass=1.0), "radius"),
         (lambda: rods.arc(value, 1.0, mass=1.0), "radius"),
         (lambda: rods.arc(1.0, value, mass=1.0), "angle"),
-    ):
+    ]
+    for make, name in makers:
         with pytest.raises(ValueError, match=name):
             make()
     with pytest.raises(ValueError, match=r"angle.*2π.*7"):
@@ -76,11 +78,12 @@ def test_what_is_no_length_is_named(value: float) -> None:
 
 
 def test_without_length_a_density_gives_no_mass() -> None:
-    for make in (
+    makers: list[Callable[[], object]] = [
         lambda: rods.rod(0.0, density=1.0),
         lambda: rods.ring(0.0, density=1.0),
         lambda: rods.arc(1.0, 0.0, density=1.0),
-    ):
+    ]
+    for make in makers:
         with pytest.raises(ValueError, match=r"length.*mass="):
             make()
 

@@ -117,8 +117,11 @@ class TestClosedForms:
     @given(inner=st.floats(1e-3, 0.999), radius=lengths, height=lengths)
     def test_tube_is_a_cylinder_without_a_cylinder(self, inner: float, radius: float, height: float) -> None:
         tube = solids.tube(inner * radius, radius, height, density=0.5)
-        outer, hole = (slices(lambda z, r=r: (r + 0 * z, r + 0 * z), -height / 2, height / 2) for r in
-                       (radius, inner * radius))  # fmt: skip
+
+        def disks(r: float) -> Any:
+            return slices(lambda z: (r + 0 * z, r + 0 * z), -height / 2, height / 2)
+
+        outer, hole = disks(radius), disks(inner * radius)
         scale = 1 / (1 - inner**2)  # what the difference of the slices loses
         assert_diagonal(tube, (outer[0] - hole[0]) / 2, (outer[1] - hole[1]) / 2, rel=1e-14 * scale)
 
@@ -184,7 +187,7 @@ class TestClosedForms:
 
     @given(side=lengths)
     def test_tetrahedron(self, side: float) -> None:
-        corners = [(0, 0, 6**0.5 / 4), (3**-0.5, 0, -(24**-0.5))]
+        corners = [(0.0, 0.0, 6**0.5 / 4), (3**-0.5, 0.0, -(24**-0.5))]
         corners += [(-(12**-0.5), y, -(24**-0.5)) for y in (-0.5, 0.5)]
         assert_mesh(solids.tetrahedron(side, density=1.0), side * np.array(corners), rounded=True)
 

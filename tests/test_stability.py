@@ -72,4 +72,4 @@ def test_stacks_broadcast_and_a_nan_stays_in_its_row() -> None:
     assert np.isfinite(got[[0, 2]]).all()
     assert (got[2] == 4 * got[0]).all()
     with pytest.raises(TypeError, match="rate"):
-        stack.stability("fast")  # type: ignore[arg-type]
+        stack.stability("fast")

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from mesh_files import binary_ply
 from oracles.exact_polyhedron import polyhedron
-from oracles.meshes import box, icosphere
+from oracles.meshes import box, icosphere, merge
 from polhode import RigidBody
 from polhode.errors import FileFormatError, MeshError
 from polhode.io import read_mesh, solid_from_file
@@ -155,6 +155,22 @@ class TestFaults:
             assert len(read_mesh(path).faces) == 12
 
 
+class TestCavities:
+    def test_a_part_that_is_inside_out_is_told_and_turned(self, tmp_path: Path) -> None:
+        (ball, faces), (vertices, sides) = icosphere(2), box((1.0, 1.0, 1.0))
+        for center, volume in ((3.0, 4.05 + 0.125), (0.0, 4.05 - 0.125)):
+            mesh = merge((ball, faces), (vertices / 2 + center, sides[:, ::-1]))
+            path = tmp_path / "two.stl"
+            path.write_bytes(stl(*mesh))
+            if center:
+                with pytest.raises(MeshError, match=r"two\.stl: .*12 connected faces with faces\[320\]"):
+                    RigidBody.from_file(path, density=1.0)
+            found = solid_from_file(path, density=1.0, orient=True)
+            assert found.volume == pytest.approx(volume, rel=1e-2)
+            assert found.body.mass == found.volume
+            assert "cavities" in found.body.provenance.checked
+
+
 class TestLargeFiles:
     def test_little_memory_is_needed(self, many: Path) -> None:
         program = f"""
@@ -163,6 +179,7 @@ from polhode import RigidBody
 used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 body = RigidBody.from_file({str(many)!r}, density=1.0)
 assert body.provenance.elements == 195 * 5120
+assert body.provenance.checked.endswith("duplicates")  # that parts lie in parts is checked of fewer
 grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - used
 assert grown < 30_000, grown  # kilobytes: eight bytes a triangle, a block and some sums
 """

@@ -37,7 +37,7 @@ class TestExact:
     def test_random_density_anywhere(self, kind: str, distance: float, rng: np.random.Generator) -> None:
         nodes, cells = grid(2, (1.0, 2.0, 0.5))
         nodes = nodes + 0.05 * rng.normal(size=nodes.shape) + distance * np.array([0.6, -0.8, 0.1])
-        rho = {
+        rho: Any = {
             "uniform": 2.5,
             "cells": rng.uniform(0, 3, len(cells)),
             "nodes": rng.uniform(0, 3, len(nodes)),

@@ -46,7 +46,7 @@ def assert_exact(body: RigidBody, exact: Cells, bar: float = 4e-15) -> None:
 def test_a_random_grid_has_its_exact_inertia(
     dtype: type, shape: tuple[int, int, int], rng: np.random.Generator
 ) -> None:
-    density = rng.uniform(0, 3, shape).astype(dtype)
+    density: np.ndarray = rng.uniform(0, 3, shape).astype(dtype)
     spacing, origin = (0.1, 0.25, 0.3), (1.0, -20.0, 0.7)
     body = RigidBody.from_voxels(density, spacing, origin)
     assert_exact(body, Cells(density, spacing, origin))

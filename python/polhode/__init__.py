@@ -1,41 +1,75 @@
 """One body in: an inertia you can trust, and exactly how it will spin."""
 
-from polhode import (
-    equimomental,
-    errors,
-    euler_angles,
-    forms,
-    kinematics,
-    laminae,
-    loads,
-    parallel_axis,
-    regions,
-    rods,
-    solids,
-    tops,
-    validity,
-)
-from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
-from polhode.events import Event, Events
-from polhode.results import (
-    AngularMomentum,
-    ErrorBound,
-    FreePrecession,
-    Invariants,
-    KineticEnergy,
-    Particles,
-    PrincipalAxes,
-    PrincipalDerivative,
-    Provenance,
-    State,
-)
-from polhode.trajectory import Trajectory
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from polhode import (
+        equimomental,
+        errors,
+        euler_angles,
+        forms,
+        kinematics,
+        laminae,
+        loads,
+        parallel_axis,
+        regions,
+        rods,
+        solids,
+        tops,
+        validity,
+    )
+    from polhode._core import (
+        FreeMotion,
+        MassAccumulator,
+        RigidBody,
+        __version__,
+        principal_axes,
+        principal_moments,
+    )
+    from polhode.events import Event, Events
+    from polhode.results import (
+        AngularMomentum,
+        ErrorBound,
+        FreePrecession,
+        Invariants,
+        KineticEnergy,
+        Particles,
+        PrincipalAxes,
+        PrincipalDerivative,
+        Provenance,
+        State,
+    )
+    from polhode.trajectory import Trajectory
+else:
+
+    def __getattr__(name):
+        """Load what is asked for when it is asked for: the help of the command line needs none of it."""
+        from importlib import import_module
+
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        for home in _HOMES:
+            value = getattr(import_module(home), name, None)
+            if value is not None:
+                break
+        else:
+            value = import_module(f"polhode.{name}")
+        globals()[name] = value
+        return value
+
+    def __dir__():
+        return __all__
+
+
+_HOMES = ("polhode._core", "polhode.results", "polhode.trajectory", "polhode.events")
+"""Modules whose names are public here; the other names are modules."""
 
 __all__ = [
     "AngularMomentum",
     "ErrorBound",
     "Event",
     "Events",
+    "FreeMotion",
     "FreePrecession",
     "Invariants",
     "KineticEnergy",

@@ -20,6 +20,7 @@ from polhode.results import (
 from polhode.trajectory import Trajectory
 
 __all__ = [
+    "FreeMotion",
     "Load",
     "MassAccumulator",
     "Region",
@@ -112,6 +113,22 @@ _Attitude: TypeAlias = ArrayLike | SupportsQuaternion
 __version__: str
 
 @final
+class FreeMotion:
+    @property
+    def body(self) -> RigidBody: ...
+    @property
+    def omega(self) -> _Floats: ...
+    @property
+    def quaternion(self) -> _Floats: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    def at(self, t: ArrayLike) -> Trajectory: ...
+    @staticmethod
+    def _from_start(body: RigidBody, omega: ArrayLike, quaternion: ArrayLike) -> FreeMotion: ...
+    def __copy__(self) -> FreeMotion: ...
+    def __deepcopy__(self, memo: object, /) -> FreeMotion: ...
+
+@final
 class RigidBody:
     __array_ufunc__: None
     def __new__(
@@ -190,7 +207,9 @@ class RigidBody:
         faces: ArrayLike,
         *,
         areal_density: float | None = None,
+        density: float | None = None,
         mass: float | None = None,
+        thickness: float | None = None,
     ) -> RigidBody: ...
     @staticmethod
     def from_curve(
@@ -275,6 +294,7 @@ class RigidBody:
     ) -> _Floats: ...
     def stability(self, rate: ArrayLike, about: _About = "center_of_mass") -> _Floats: ...
     def equimomental_particles(self) -> Particles: ...
+    def free_motion(self, omega: ArrayLike, attitude: _Attitude | None = None) -> FreeMotion: ...
     def simulate(
         self,
         t: ArrayLike,
@@ -285,7 +305,7 @@ class RigidBody:
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         about: _Reference = "center_of_mass",
-        method: Literal["auto", "dop853"] = "auto",
+        method: Literal["auto", "dop853", "radau", "splitting"] = "auto",
         rtol: float = 1e-10,
         atol: float | None = None,
         events: Callable[..., float] | Iterable[Callable[..., float]] | None = None,

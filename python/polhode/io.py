@@ -16,9 +16,10 @@ import numpy as np
 from polhode import _core
 from polhode._files import mesh as meshes
 from polhode._files.ascii_stl import read_ascii_stl
-from polhode._files.content import content_format
+from polhode._files.content import EXPECTED_CONTENT, MOLECULE_SUFFIX, checked_format
 from polhode._files.mesh import Mesh
 from polhode._files.scene import read_scene
+from polhode._files.xyz import Molecule, read_xyz
 from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, isotopes
 from polhode.units import metres_per
@@ -26,7 +27,6 @@ from polhode.units import metres_per
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
 
 __all__ = [
     "MOLECULE_SUFFIX",
@@ -40,36 +40,7 @@ __all__ = [
     "solid_from_file",
 ]
 
-MOLECULE_SUFFIX = ".xyz"
 _SMALL_FILE = 1 << 28
-_EXPECTED = {
-    ".stl": ("binary STL", "ASCII STL"),
-    ".obj": ("v/f text",),
-    ".tab": ("v/f text",),
-    ".txt": ("v/f text",),
-    ".ply": ("PLY",),
-    ".off": ("OFF",),
-    ".glb": ("GLB",),
-    MOLECULE_SUFFIX: ("XYZ",),
-}
-
-
-class Molecule(NamedTuple):
-    """Atoms as an XYZ file holds them.
-
-    Attributes
-    ----------
-    labels : tuple of str
-        Element symbols, isotopes or atomic numbers, as :func:`polhode.molecules.isotopes` reads them.
-    positions : numpy.ndarray, shape (n, 3)
-        In the unit of the file: angstrom by the format's custom.
-    comment : str
-        The second line of the file.
-    """
-
-    labels: tuple[str, ...]
-    positions: NDArray[np.float64]
-    comment: str
 
 
 class MeshSolid(NamedTuple):
@@ -184,59 +155,10 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
         raise FileFormatError(f"{file}: an XYZ file holds atoms, not a mesh; read it with read_xyz")
     if index_base not in (0, 1):
         raise ValueError(f"index_base: expected 0 or 1, got {index_base!r}")
-    if index_base != 1 and "v/f text" not in _EXPECTED.get(suffix, ()):
+    if index_base != 1 and "v/f text" not in EXPECTED_CONTENT.get(suffix, ()):
         raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
     mesh = _read(file, suffix, index_base)
     return meshes.weld_within(mesh, weld) if weld != 0.0 else mesh
-
-
-def read_xyz(path: str | os.PathLike[str]) -> Molecule:
-    """Read a molecule: a count, a comment, then one ``symbol x y z`` per atom.
-
-    Parameters
-    ----------
-    path : str or os.PathLike
-        One frame. Columns after the fourth (charges, velocities) are not read.
-
-    Returns
-    -------
-    Molecule
-
-    Raises
-    ------
-    FileFormatError
-        With the number of the line that is wrong.
-    OSError
-        If the file cannot be read.
-    """
-    file = Path(path)
-    _checked_format(file)
-    try:
-        lines = file.read_text(encoding="utf-8").splitlines()
-    except UnicodeDecodeError:
-        raise FileFormatError(f"{file}: not a text file, so not an XYZ file") from None
-    count_text = lines[0].strip()
-    if not count_text.isdecimal() or int(count_text) == 0:
-        raise FileFormatError(
-            f"{file}: line 1 of an XYZ file is the number of atoms, not {count_text[:40]!r}"
-        )
-    count = int(count_text)
-    comment = lines[1].strip() if len(lines) > 1 else ""
-    columns = comment.partition("Properties=")[2]
-    if columns and not columns.startswith(("species:S:1:pos:R:3", '"species:S:1:pos:R:3')):
-        raise FileFormatError(f"{file}: line 2 declares other columns than symbol x y z first; reorder them")
-    rows = lines[2 : 2 + count]
-    if len(rows) < count:
-        raise FileFormatError(
-            f"{file}: line 1 promises {count} atoms, but the file holds {len(rows)}; is it cut short?"
-        )
-    if any(line.strip() for line in lines[2 + count :]):
-        raise FileFormatError(
-            f"{file}: text after atom {count}, the last by line 1; correct the count or keep one frame a file"
-        )
-    atoms = [_atom(file, number, row) for number, row in enumerate(rows, start=3)]
-    labels, positions = zip(*atoms, strict=True)
-    return Molecule(labels, np.array(positions), comment)
 
 
 def solid_from_file(
@@ -252,8 +174,11 @@ def solid_from_file(
 ) -> MeshSolid:
     """Make the solid that the mesh in a file bounds, naming the file in what is wrong with it.
 
-    Binary STL and PLY go through memory block by block, whatever their size; other formats, and files whose
-    corners are to be welded within a length, are read whole.
+    Binary STL and PLY go through memory block by block, whatever their size, but for the vertices of a
+    PLY, which its faces name in any order; other formats, and files whose corners are to be welded within
+    a length, are read whole. A stream is gone through again for every eight million triangles, to look for
+    faces that stand twice; that components wound inward are cavities, inside others, is checked of a
+    quarter of a million triangles at most. `provenance` lists what was checked.
 
     Parameters
     ----------
@@ -336,19 +261,8 @@ def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[
         raise FileFormatError(f"{os.fspath(path)}: {error}") from None
 
 
-def _atom(file: Path, number: int, row: str) -> tuple[str, list[float]]:
-    words = row.split()
-    try:
-        position = [float(word) for word in words[1:4]]
-    except ValueError:
-        position = []
-    if len(position) != 3 or not np.isfinite(position).all():
-        raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
-    return words[0], position
-
-
 def _read(file: Path, suffix: str, index_base: int) -> Mesh:
-    actual = _checked_format(file)
+    actual = checked_format(file)
     if actual == "ASCII STL":
         corners = read_ascii_stl(file)
         return meshes.weld(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3), actual)
@@ -357,7 +271,7 @@ def _read(file: Path, suffix: str, index_base: int) -> Mesh:
         return Mesh(*_core.read_stl(str(file)), "binary STL")
     if suffix in (".obj", ".tab", ".txt"):
         return Mesh(*_core.read_plates(str(file), index_base), "v/f text")
-    return read_scene(file, readable=tuple(known for known in _EXPECTED if known != MOLECULE_SUFFIX))
+    return read_scene(file, readable=tuple(known for known in EXPECTED_CONTENT if known != MOLECULE_SUFFIX))
 
 
 def _stream_format(file: Path) -> str | None:
@@ -365,7 +279,7 @@ def _stream_format(file: Path) -> str | None:
     suffix = file.suffix.lower()
     if suffix not in (".stl", ".ply"):
         return None
-    actual = _checked_format(file)
+    actual = checked_format(file)
     if suffix == ".stl":
         # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
         return "binary STL" if actual != "ASCII STL" else None
@@ -376,7 +290,8 @@ def _stream_format(file: Path) -> str | None:
 def _weld_hint(mesh: Mesh) -> str:
     """Tell of a bad mesh if some of its corners differ by less than 32-bit coordinates resolve."""
     size = float(np.abs(mesh.vertices).max(initial=0.0))
-    if not (np.isfinite(size) and size > 0.0):
+    in_range = not mesh.faces.size or (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices))
+    if not (np.isfinite(size) and size > 0.0 and in_range):
         return ""
     resolution = float(f"{size * 2.0**-23:.0e}")
     try:
@@ -390,28 +305,3 @@ def _weld_hint(mesh: Mesh) -> str:
 
 def _is_molecule(path: str | os.PathLike[str]) -> bool:
     return Path(path).suffix.lower() == MOLECULE_SUFFIX
-
-
-def _checked_format(file: Path) -> str | None:
-    """Tell the format of the content where that can be; an error where it is not the suffix's."""
-    if file.is_dir():
-        raise FileFormatError(f"{file}: is a directory; name a file in it")
-    with file.open("rb") as stream:
-        head = stream.read(4096)
-        size = os.fstat(stream.fileno()).st_size
-    if not head:
-        raise FileFormatError(f"{file}: the file is empty")
-    suffix = file.suffix.lower()
-    actual, is_text = content_format(head, size)
-    expected = _EXPECTED.get(suffix)
-    if expected is None or actual in expected:
-        return actual
-    if actual is not None:
-        raise FileFormatError(f"{file}: named {suffix}, but its content is {actual}; rename it")
-    if is_text and suffix == ".stl":
-        raise FileFormatError(
-            f"{file}: named .stl, but it is text without an STL's words 'solid' and 'facet'; check the file"
-        )
-    if not is_text and expected == ("v/f text",):
-        raise FileFormatError(f"{file}: named {suffix}, but it is not text; check the file")
-    return None

@@ -26,7 +26,9 @@ __all__ = [
     "PLANCK_CONSTANT",
     "SPEED_OF_LIGHT",
     "Isotope",
+    "inertial_defect",
     "isotopes",
+    "planar_moments",
     "ray_kappa",
     "rotational_constants",
 ]
@@ -147,9 +149,7 @@ def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MH
         scale = 1e-2 / SPEED_OF_LIGHT
     else:
         raise ValueError(f"unit: {unit!r} is not 'MHz' or 'cm^-1'")
-    inertia = np.asarray(moments, dtype=np.float64)
-    if inertia.shape[-1:] != (3,):
-        raise ValueError(f"moments: expected shape (..., 3), got {inertia.shape}")
+    inertia = np.moveaxis(_components(moments), 0, -1)
     numerator = scale * PLANCK_CONSTANT / (8.0 * np.pi**2 * ATOMIC_MASS_CONSTANT * _ANGSTROM**2)
     with np.errstate(divide="ignore"):
         constants: Floats = np.divide(numerator, inertia)
@@ -179,3 +179,61 @@ def ray_kappa(constants: ArrayLike) -> Any:
     a, b, c = np.moveaxis(np.asarray(constants, dtype=np.float64), -1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         return ((b - c) - (a - b)) / (a - c)
+
+
+def inertial_defect(moments: ArrayLike) -> Any:
+    r"""Inertial defect of principal moments, zero for matter in a plane.
+
+    .. math:: \Delta = I_c - I_a - I_b = -2 \sum_i m_i c_i^2
+
+    Parameters
+    ----------
+    moments : array_like, shape (..., 3)
+        Principal moments about the centre of mass, ascending, in any unit.
+
+    Returns
+    -------
+    float or numpy.ndarray, shape (...)
+        In the same unit; never positive for a rigid body. That of a vibrating planar molecule is.
+
+    Examples
+    --------
+    >>> from polhode.molecules import inertial_defect
+    >>> float(inertial_defect([1.0, 2.0, 2.5]))
+    -0.5
+    """
+    a, b, c = _components(moments)
+    return (c - b) - a
+
+
+def planar_moments(moments: ArrayLike) -> Floats:
+    r"""Planar moments of principal moments: the spread of matter along each axis.
+
+    .. math:: P_{aa} = \tfrac12 (I_b + I_c - I_a) = \sum_i m_i a_i^2,\ \ldots
+
+    Parameters
+    ----------
+    moments : array_like, shape (..., 3)
+        Principal moments about the centre of mass, ascending, in any unit.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 3)
+        :math:`P_{aa} \ge P_{bb} \ge P_{cc} \ge 0` in the same unit; the last is half of minus the inertial
+        defect.
+
+    Examples
+    --------
+    >>> from polhode.molecules import planar_moments
+    >>> planar_moments([1.0, 2.0, 2.5])
+    array([1.75, 0.75, 0.25])
+    """
+    a, b, c = _components(moments)
+    return np.stack([(c - a) + b, (c - b) + a, a - (c - b)], axis=-1) / 2.0
+
+
+def _components(moments: ArrayLike) -> Any:
+    inertia = np.asarray(moments, dtype=np.float64)
+    if inertia.shape[-1:] != (3,):
+        raise ValueError(f"moments: expected shape (..., 3), got {inertia.shape}")
+    return np.moveaxis(inertia, -1, 0)

@@ -3,9 +3,28 @@
 from __future__ import annotations
 
 import codecs
+import os
 import struct
+from typing import TYPE_CHECKING, Final
 
-__all__ = ["content_format"]
+from polhode.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["EXPECTED_CONTENT", "MOLECULE_SUFFIX", "checked_format", "content_format"]
+
+MOLECULE_SUFFIX: Final = ".xyz"
+EXPECTED_CONTENT: Final = {
+    ".stl": ("binary STL", "ASCII STL"),
+    ".obj": ("v/f text",),
+    ".tab": ("v/f text",),
+    ".txt": ("v/f text",),
+    ".ply": ("PLY",),
+    ".off": ("OFF",),
+    ".glb": ("GLB",),
+    MOLECULE_SUFFIX: ("XYZ",),
+}
 
 _STL_HEADER = 84
 _STL_TRIANGLE = 50
@@ -46,6 +65,31 @@ def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
     if text is None:
         return None, False
     return _text_format(text), True
+
+
+def checked_format(file: Path) -> str | None:
+    """Tell the format of the content where that can be; an error where it is not the suffix's."""
+    if file.is_dir():
+        raise FileFormatError(f"{file}: is a directory; name a file in it")
+    with file.open("rb") as stream:
+        head = stream.read(4096)
+        size = os.fstat(stream.fileno()).st_size
+    if not head:
+        raise FileFormatError(f"{file}: the file is empty")
+    suffix = file.suffix.lower()
+    actual, is_text = content_format(head, size)
+    expected = EXPECTED_CONTENT.get(suffix)
+    if expected is None or actual in expected:
+        return actual
+    if actual is not None:
+        raise FileFormatError(f"{file}: named {suffix}, but its content is {actual}; rename it")
+    if is_text and suffix == ".stl":
+        raise FileFormatError(
+            f"{file}: named .stl, but it is text without an STL's words 'solid' and 'facet'; check the file"
+        )
+    if not is_text and expected == ("v/f text",):
+        raise FileFormatError(f"{file}: named {suffix}, but it is not text; check the file")
+    return None
 
 
 def _as_text(head: bytes, *, whole: bool) -> str | None:

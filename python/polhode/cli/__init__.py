@@ -21,6 +21,8 @@ def main(arguments: list[str] | None = None) -> int:
         Exit code: 0 good, 1 the verdict is bad, 2 bad input.
     """
     try:
+        import rich  # noqa: F401  (the commands import it when they print)
+
         from polhode.cli.app import run
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("cyclopts", "rich"):

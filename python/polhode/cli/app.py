@@ -1,76 +1,158 @@
-"""The commands and the way they end: an exit code, and for an error one line on stderr."""
+"""The commands and the way they end: an exit code, and for an error one line on stderr.
+
+What a command does is imported when it runs, so that the help appears without NumPy.
+"""
 
 from __future__ import annotations
 
 import os
+import re
 import sys
 from functools import partial
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Final
 
 from cyclopts import App, CycloptsError, Parameter
-from rich.console import Console
 
-from polhode import __version__
-from polhode.cli import demo as demonstration
-from polhode.cli.layout import printable
-from polhode.cli.report import BodyOptions, file_report
-from polhode.cli.spin import SpinOptions, spin_report
+from polhode.cli.options import (
+    BodyOptions,
+    CheckOptions,
+    MoleculeOptions,
+    OutputOptions,
+    ReportOptions,
+    SpinOptions,
+)
+from polhode.cli.text import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from rich.console import Console
 
     from polhode.cli.layout import Report
 
 __all__ = ["app", "run"]
 
-BAD_INPUT = 2
-INTERRUPTED = 130
+COMMANDS: Final = ("report", "check", "molecule", "spin", "demo")
+GOOD: Final = 0
+BAD_VERDICT: Final = 1
+BAD_INPUT: Final = 2
+INTERRUPTED: Final = 130
+
+
+def _version() -> str:
+    from polhode import __version__
+
+    return f"polhode {__version__}"
+
 
 app = App(
     name="polhode",
     help="One body in: an inertia you can trust, and exactly how it will spin.",
-    version=f"polhode {__version__}",
+    version=_version,
     help_format="plaintext",
     suppress_keyboard_interrupt=False,
 )
 
-Form = Annotated[Literal["table", "json"], Parameter(name="--format")]
+File = Annotated[Path, Parameter(allow_leading_hyphen=True)]
 Body = Annotated[BodyOptions, Parameter(name="*")]
+Output = Annotated[OutputOptions, Parameter(name="*")]
 AS_STORED = BodyOptions()
-Spin = Annotated[SpinOptions, Parameter(name="*")]
+SHOWN = OutputOptions()
 
 
 @app.command
-def report(file: Path, /, *, body: Body = AS_STORED, form: Form = "table") -> int:
+def report(
+    file: File,
+    /,
+    *,
+    body: Body = AS_STORED,
+    extra: Annotated[ReportOptions, Parameter(name="*")] = ReportOptions(),  # noqa: B008
+    output: Output = SHOWN,
+) -> int:
     """Print mass, centre, inertia and principal axes of the body in a file.
 
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file) or a molecule (XYZ).
-    form
-        A table for people or the same fields as JSON, where an infinite number is the string "Infinity"
-        and an undefined one is null.
+        A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file), a molecule (XYZ), or - for standard input.
     """
-    _show(file_report(file, body), form)
-    return 0
+    from polhode.cli.report import file_report
+
+    told = file_report(file, body, extra)
+    differing = []
+    if extra.expect is not None:
+        from polhode.cli.compare import held_against
+
+        differing = held_against(told, extra.expect, extra.rtol)
+    _show(told, output)
+    return BAD_VERDICT if differing else GOOD
 
 
 @app.command
-def spin(file: Path, /, *, spin: Spin, body: Body = AS_STORED, form: Form = "table") -> int:
+def check(
+    file: File,
+    /,
+    *,
+    check: Annotated[CheckOptions, Parameter(name="*")] = CheckOptions(),  # noqa: B008
+    output: Output = SHOWN,
+) -> int:
+    """Judge the inertia of every link of a robot: which law fails, by how much, and what its shape says.
+
+    Parameters
+    ----------
+    file
+        A robot or model (URDF, SDF, MJCF), or - for standard input.
+    """
+    from polhode.cli.check import check_report
+
+    told, is_good = check_report(file, check)
+    _show(told, output)
+    return GOOD if is_good else BAD_VERDICT
+
+
+@app.command
+def molecule(
+    file: File,
+    /,
+    *,
+    molecule: Annotated[MoleculeOptions, Parameter(name="*")] = MoleculeOptions(),  # noqa: B008
+    output: Output = SHOWN,
+) -> int:
+    """Print rotational constants, class of top, inertial defect, planar moments and isotopologues.
+
+    Parameters
+    ----------
+    file
+        A molecule (XYZ), or - for standard input.
+    """
+    from polhode.cli.molecule import molecule_report
+
+    _show(molecule_report(file, molecule), output)
+    return GOOD
+
+
+@app.command
+def spin(
+    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
+    /,
+    *,
+    spin: Annotated[SpinOptions, Parameter(name="*")] = SpinOptions(),  # noqa: B008
+    body: Body = AS_STORED,
+    output: Output = SHOWN,
+) -> int:
     """Let the body in a file spin freely and print how it ends.
 
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file) or a molecule (XYZ).
-    form
-        A table for people or the same fields as JSON, where an undefined number is null.
+        A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file), a molecule (XYZ), or - for standard input.
     """
-    _show(spin_report(file, spin, body), form)
-    return 0
+    from polhode.cli.spin import spin_report
+
+    _show(spin_report(file, spin, body), output)
+    return GOOD
 
 
 @app.command
@@ -82,17 +164,39 @@ def demo(*, output_dir: Path = Path("polhode-demo")) -> int:
     output_dir
         Where the mesh and the picture are written.
     """
+    from rich.console import Console
+
+    from polhode.cli import demo as demonstration
+
     return demonstration.run(output_dir, Console(highlight=False))
+
+
+def overview() -> str:
+    """Tell the commands, each by the first line of its docstring; at once, without drawing a table."""
+    lines = ["Usage: polhode COMMAND", "", app.help, "", "Commands:"]
+    for name in COMMANDS:
+        document = app[name].default_command.__doc__ or ""
+        lines.append(f"  {name:<12}{document.partition(chr(10))[0]}")
+    lines += ["", "polhode COMMAND --help tells what a command takes; polhode --version the version."]
+    lines += ["Exit codes: 0 good, 1 the verdict is bad, 2 bad input."]
+    return "\n".join(lines)
 
 
 def run(arguments: list[str]) -> int:
     """Run one command and turn every foreseen error into one line and an exit code."""
+    if arguments in ([], ["--help"], ["-h"]):
+        print(overview())
+        return GOOD
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(
             errors="backslashreplace"
         )  # a file may be named beyond the terminal's encoding
     command: Callable[[], object] = partial(
-        app, arguments, exit_on_error=False, print_error=False, result_action="return_value"
+        app,
+        [_as_value(argument) for argument in arguments],
+        exit_on_error=False,
+        print_error=False,
+        result_action="return_value",
     )
     try:
         code = command()
@@ -113,13 +217,31 @@ def run(arguments: list[str]) -> int:
     return code if isinstance(code, int) else 0
 
 
+def _as_value(argument: str) -> str:
+    """Keep ``"-1 0 0 deg/s"`` from being taken for an option: a number may have blanks before it."""
+    return f" {argument}" if re.match(r"-\.?\d", argument) else argument
+
+
 def _fail(message: str, code: int = BAD_INPUT) -> int:
     print("polhode:", printable(" ".join(message.split())), file=sys.stderr)
     return code
 
 
-def _show(report: Report, form: str) -> None:
-    if form == "json":
-        print(report.as_json())
+def _show(report: Report, options: OutputOptions) -> None:
+    from rich.console import Console
+
+    path = options.output
+    by_name = "json" if path is not None and path.suffix.lower() == ".json" else "table"
+    form = options.form or by_name
+    if path is None:
+        _write(report, form, Console(highlight=False))
     else:
-        report.print(Console(highlight=False))
+        with path.open("w", encoding="utf-8") as stream:
+            _write(report, form, Console(file=stream, highlight=False, color_system=None))
+
+
+def _write(report: Report, form: str, console: Console) -> None:
+    if form == "json":
+        print(report.as_json(), file=console.file)
+    else:
+        report.print(console)

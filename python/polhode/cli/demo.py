@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode.cli import brick
-from polhode.cli.layout import write
-from polhode.cli.report import BodyOptions, file_report, load_body
+from polhode.cli.loading import load_body
+from polhode.cli.options import BodyOptions
+from polhode.cli.report import file_report
 from polhode.cli.t_handle import t_handle, write_stl
+from polhode.cli.text import write
 from polhode.errors import PolhodeError
 from polhode.io import read_mesh
 from polhode.units import metres_per
@@ -28,7 +30,7 @@ __all__ = ["run"]
 SPIN = (0.01, 2.0 * np.pi, 0.0)
 DURATION = 20.0
 SAMPLES = 2001
-STEEL = 7850.0
+STEEL = "7850"
 
 GOOD, BAD = 0, 1
 

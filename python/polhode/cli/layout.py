@@ -8,15 +8,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from rich.text import Text
+
+from polhode.cli.text import printable, write
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
     from rich.console import Console
 
-__all__ = ["Field", "Report", "number", "printable", "write"]
+__all__ = ["Column", "Field", "Report", "Table", "number"]
 
 DIGITS: Final = 7
 LABEL_WIDTH: Final = 20
@@ -56,14 +57,44 @@ class Field:
     scale: float = 0.0
 
 
+@dataclass(frozen=True)
+class Column:
+    """One column of a table: the key of its values in JSON, its heading and its unit."""
+
+    key: str
+    heading: str
+    unit: str = ""
+    decimals: int | None = None
+
+
+@dataclass(frozen=True)
+class Table:
+    """Several things of one kind, a row each.
+
+    Attributes
+    ----------
+    key : str
+        Its name in JSON, where it is a list of objects.
+    columns : sequence of Column
+        The last one may be long.
+    rows : sequence of mapping
+        Values by the keys of the columns: text, numbers, lists of numbers; absent or None where there is
+        none. Other keys are for JSON alone.
+    """
+
+    key: str
+    columns: Sequence[Column]
+    rows: Sequence[Mapping[str, Any]]
+
+
 @dataclass
 class Report:
-    """Titled sections of fields, and notes that belong to no single field."""
+    """Titled sections of fields, tables, and notes that belong to no single field."""
 
-    sections: list[tuple[str, list[Field]]] = field(default_factory=list)
+    sections: list[tuple[str, list[Field | Table]]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
-    def section(self, title: str, *fields: Field) -> None:
+    def section(self, title: str, *fields: Field | Table) -> None:
         """Add a section; one without a title continues the section above."""
         self.sections.append((title, list(fields)))
 
@@ -73,6 +104,12 @@ class Report:
         units: dict[str, Any] = {}
         for _, fields in self.sections:
             for item in fields:
+                if isinstance(item, Table):
+                    _put(values, item.key, [{k: _plain(v) for k, v in row.items()} for row in item.rows])
+                    for column in item.columns:
+                        if column.unit:
+                            _put(units, f"{item.key}.{column.key}", column.unit)
+                    continue
                 _put(values, item.key, _plain(item.value))
                 if item.unit:
                     _put(units, item.key, item.unit)
@@ -89,22 +126,12 @@ class Report:
                 write(console)
                 write(console, title, style="bold cyan")
             for item in fields:
-                for line in _lines(item):
+                for line in _table_lines(item) if isinstance(item, Table) else _lines(item):
                     write(console, line)
         if self.notes:
             write(console)
         for note in self.notes:
             write(console, f"  note: {note}", style="yellow")
-
-
-def printable(text: str) -> str:
-    """Escape control characters, so that text from a file is safe to show in a terminal."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
-
-
-def write(console: Console, line: str = "", style: str = "") -> None:
-    """Print one line as it is: no markup, no breaking to a guessed width."""
-    console.print(Text(line, style=style), soft_wrap=True)
 
 
 def number(value: float, decimals: int | None = None) -> str:
@@ -127,6 +154,25 @@ def _lines(item: Field) -> Iterator[str]:
         label, unit = " " * LABEL_WIDTH, ""
 
 
+def _table_lines(table: Table) -> Iterator[str]:
+    headings = [f"{c.heading}, {c.unit}" if c.unit else c.heading for c in table.columns]
+    texts = [[_cell(row.get(c.key), c.decimals) for c in table.columns] for row in table.rows]
+    widths = [max(len(line[i]) for line in [headings, *texts]) for i in range(len(headings))]
+    for line in [headings, *texts]:
+        yield "  " + "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+
+
+def _cell(value: Any, decimals: int | None) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, str):
+        return printable(value)
+    if isinstance(value, int):
+        return str(value)
+    short = np.asarray(value, dtype=np.float64).reshape(-1)
+    return " ".join(f"{x + 0.0:.4g}" if decimals is None else number(x, decimals) for x in short.tolist())
+
+
 def _rows(item: Field) -> Iterator[list[str]]:
     array: NDArray[Any] = np.asarray(item.value)
     matrix = array.reshape((-1, array.shape[-1]) if array.ndim else (1, 1))
@@ -138,8 +184,10 @@ def _rows(item: Field) -> Iterator[list[str]]:
 
 
 def _plain(value: object) -> Any:
-    if isinstance(value, str):
+    if value is None or isinstance(value, str | bool):
         return value
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
     return _finite(np.asarray(value).tolist())
 
 

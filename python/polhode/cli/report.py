@@ -2,274 +2,134 @@
 
 from __future__ import annotations
 
-import sys
-from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
-from cyclopts import Parameter
 
-from polhode import RigidBody
-from polhode.cli.layout import Field, Report, printable
+from polhode.cli.layout import Field, Report
+from polhode.cli.loading import in_file_unit, load_body
+from polhode.cli.options import ReportOptions
+from polhode.cli.quantities import quantity, split_vector
+from polhode.cli.source import shown
 from polhode.errors import PolhodeError
-from polhode.io import MOLECULE_SUFFIX, MeshSolid, molecule_isotopes, read_xyz, solid_from_file
-from polhode.molecules import Isotope, ray_kappa, rotational_constants
-from polhode.units import METRES, metres_per
+from polhode.io import MeshSolid
+from polhode.units import metres_per
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike
 
-__all__ = ["BodyOptions", "LoadedBody", "body_fields", "file_report", "load_body"]
+    from polhode.cli.loading import LoadedBody
+    from polhode.cli.options import BodyOptions
 
-LengthUnit = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]
+__all__ = ["FileUnits", "body_fields", "file_report", "tensor_fields", "trust_fields"]
+
 UNKNOWN = "unit unknown"
-_LARGE_FILE = 1 << 26
-
-
-@dataclass(frozen=True, kw_only=True)
-class BodyOptions:
-    """How to read the file.
-
-    Attributes
-    ----------
-    density
-        Density: kg/m^3 if the length unit is given.
-    mass
-        Mass instead of density: kg if the length unit is given.
-    length_unit
-        Unit of the file's coordinates; results are then in SI units.
-    weld
-        Make corners at most this far apart one, in the unit of the file; without it only equal ones are.
-    orient
-        Turn triangles that face inward; without it they are an error.
-    index_base
-        What the faces of an OBJ or plate file count vertices from: 1 (OBJ) or 0.
-    """
-
-    density: Annotated[float | None, Parameter(name="--density")] = None
-    mass: Annotated[float | None, Parameter(name="--mass")] = None
-    length_unit: Annotated[LengthUnit | None, Parameter(name="--length-unit")] = None
-    weld: Annotated[float, Parameter(name="--weld")] = 0.0
-    orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
-    index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
+PLAIN = ReportOptions()
 
 
 @dataclass(frozen=True)
-class LoadedBody:
-    """A body with what its file and the options say about it.
+class FileUnits:
+    """The units that results are also given in: the file's length, and the mass that was asked for."""
 
-    Attributes
-    ----------
-    body : RigidBody
-        In kg and m, in u and angstrom (molecules), or in the file's own units.
-    source : MeshSolid or list of Isotope
-        What was read: a mesh or the nuclides of a molecule.
-    comment : str
-        A molecule's comment.
-    mass_unit, length : str
-        Names of the units of `body`.
-    density : float
-        Of a mesh; not a number for a molecule.
-    volume : float
-        Of a mesh; not a number for a molecule.
-    assumed : bool
-        Whether neither density nor mass was given, and density 1 was taken.
-    notes : tuple of str
-        What was done to the mesh on request.
-    """
+    length: str | None = None
+    mass: str | None = None
 
-    body: RigidBody
-    source: MeshSolid | list[Isotope]
-    mass_unit: str
-    length: str
-    comment: str = ""
-    density: float = float("nan")
-    volume: float = float("nan")
-    assumed: bool = False
-    notes: tuple[str, ...] = ()
+    def fields(
+        self,
+        key: str,
+        label: str,
+        value: ArrayLike,
+        unit: str,
+        *,
+        length: int = 0,
+        mass: int = 0,
+        scale: float = 0.0,
+    ) -> list[Field]:
+        """Give powers of length and mass, and where the file has other units also in those.
 
-    @property
-    def moment_unit(self) -> str:
-        """Unit of a moment of inertia."""
-        return f"{self.mass_unit} {self.length}^2"
-
-    @property
-    def extent(self) -> float:
-        """A length of the body's own: its distance from the origin and its largest radius of gyration."""
-        return float(np.linalg.norm(self.body.center_of_mass) + self.body.radii_of_gyration.max())
+        Parameters
+        ----------
+        key, label, value, unit, scale
+            See `Field`; the value in kg and m.
+        length, mass : int
+            The powers.
+        """
+        fields = [Field(key, label, value, unit, scale=scale)]
+        if self.length is None or (self.mass is None if mass else self.length == "m"):
+            return fields
+        one = metres_per(self.length) ** length
+        name = self.length + (f"^{length}" if length > 1 else "") if length else ""
+        if mass and self.mass is not None:
+            one *= quantity(f"1 {self.mass}", "kg", "--mass-unit") ** mass
+            name = f"{self.mass} {name}".strip()
+        fields.append(Field(f"in_file_unit.{key}", "", np.divide(value, one), name, scale=scale / one))
+        return fields
 
 
-def load_body(file: Path, options: BodyOptions) -> LoadedBody:
-    """Read the body in a file."""
-    if file.suffix.lower() == MOLECULE_SUFFIX:
-        return _load_molecule(file, options)
-    if options.density is not None and options.mass is not None:
-        raise PolhodeError(
-            "--density and --mass: give one of the two, since the other follows from the volume"
-        )
-    scale = 1.0 if options.length_unit is None else metres_per(options.length_unit)
-    assumed = options.density is None and options.mass is None
-    density = 1.0 if assumed else options.density
-    solid = solid_from_file(
-        file,
-        density=density,
-        mass=options.mass,
-        scale=scale,
-        weld=options.weld,
-        orient=options.orient,
-        index_base=options.index_base,
-        progress=_progress(file),
-    )
-    notes: tuple[str, ...] = ()
-    if options.weld != 0.0:
-        notes = (f"{solid.welded} corners were joined to others within {options.weld:g} (--weld)",)
-    return LoadedBody(
-        body=solid.body,
-        source=solid,
-        mass_unit="kg" if options.length_unit is not None else "mass",
-        length="m" if options.length_unit is not None else "unit",
-        density=float(solid.body.mass) / solid.volume if density is None else density,
-        volume=solid.volume,
-        assumed=assumed,
-        notes=notes,
-    )
-
-
-def _progress(file: Path) -> Callable[[float], object] | None:
-    """Tell a terminal how much of a large file is done."""
-    if not sys.stderr.isatty() or not file.is_file() or file.stat().st_size < _LARGE_FILE:
-        return None
-
-    def tell(fraction: float) -> None:
-        line = f"\rreading {printable(file.name)}: {fraction:4.0%}" if fraction < 1.0 else "\r\x1b[K"
-        print(line, end="", file=sys.stderr, flush=True)
-
-    return tell
-
-
-def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
-    if options.density is not None or options.mass is not None:
-        given = "--density" if options.density is not None else "--mass"
-        raise PolhodeError(f"{given}: {file} is a molecule, whose atoms have their own masses; leave it out")
-    for given, is_given in (
-        ("--weld", options.weld != 0.0),
-        ("--orient", options.orient),
-        ("--index-base", options.index_base != 1),
-    ):
-        if is_given:
-            raise PolhodeError(f"{given}: {file} is a molecule, not a mesh; leave it out")
-    molecule = read_xyz(file)
-    atoms = molecule_isotopes(file, molecule)
-    in_angstrom = metres_per(options.length_unit or "angstrom") / METRES["angstrom"]
-    body = RigidBody.from_particles([atom.mass for atom in atoms], molecule.positions * in_angstrom)
-    return LoadedBody(body=body, source=atoms, mass_unit="u", length="angstrom", comment=molecule.comment)
-
-
-def file_report(file: Path, options: BodyOptions) -> Report:
+def file_report(file: Path, options: BodyOptions, extra: ReportOptions = PLAIN) -> Report:
     """Report on the body in a file."""
+    if extra.mass_unit is not None:
+        if options.length_unit is None:
+            raise PolhodeError("--mass-unit: the length of the file has no unit; state --length-unit too")
+        quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
     loaded = load_body(file, options)
-    report = Report()
+    units = FileUnits(options.length_unit, extra.mass_unit)
+    about = _point(loaded, options, extra)
     if isinstance(loaded.source, MeshSolid):
-        _mesh_sections(report, file, loaded, loaded.source, options)
-    else:
-        _molecule_sections(report, file, loaded, loaded.source)
-    return report
+        return _mesh_report(file, loaded, loaded.source, units, about)
+    if extra.mass_unit is not None:
+        raise PolhodeError(f"--mass-unit: {shown(file)} is a molecule, in u and angstrom; leave it out")
+    from polhode.cli.molecule import atoms_report
+
+    return atoms_report(file, loaded, loaded.source, about)
 
 
-def _mesh_sections(
-    report: Report, file: Path, loaded: LoadedBody, mesh: MeshSolid, options: BodyOptions
-) -> None:
-    unit, body = options.length_unit, loaded.body
-    report.section(
-        "",
-        Field("file", "file", str(file)),
-        Field("format", "format", mesh.format),
-        Field(
-            "length_unit",
-            "length unit",
-            unit or UNKNOWN,
-            hint="" if unit else "(state it with --length-unit)",
-        ),
-    )
-    vertices = [] if mesh.vertices is None else [Field("vertices", "vertices", mesh.vertices)]
-    shape = [
-        *vertices,
-        Field("faces", "faces", mesh.faces),
-        *_with_file_unit("volume", "volume", loaded.volume, 3, loaded=loaded, unit=unit),
-        *_with_file_unit("area", "surface area", mesh.area, 2, loaded=loaded, unit=unit),
-    ]
-    report.section("shape", *shape)
-    report.section(
-        "mass",
-        Field("density", "density", loaded.density, f"{loaded.mass_unit}/{loaded.length}^3"),
-        Field("mass", "mass", body.mass, loaded.mass_unit),
-        *_with_file_unit(
-            "center_of_mass", "centre of mass", body.center_of_mass, 1, loaded=loaded, unit=unit
-        ),
-    )
-    report.section("inertia, file axes", *_tensor_fields(loaded))
-    report.section("principal axes", *body_fields(loaded, unit))
-    report.section("trust", *_trust_fields(loaded))
-    report.notes += loaded.notes
-    if loaded.assumed:
-        report.notes.append(
-            "neither density nor mass was given: density 1 was used (state --density or --mass)"
-        )
-    if unit is None:
-        report.notes.append("unit unknown: all results are in the file's own unit of length")
-
-
-def _molecule_sections(report: Report, file: Path, loaded: LoadedBody, atoms: list[Isotope]) -> None:
+def tensor_fields(
+    loaded: LoadedBody, units: FileUnits, about: tuple[float, float, float] | None
+) -> list[Field]:
+    """Inertia tensors about C, about O and about a point that was asked for."""
     body = loaded.body
-    counts = Counter(atoms)
-    report.section(
-        "",
-        Field("file", "file", str(file)),
-        Field("comment", "comment", loaded.comment),
-        Field("isotopes", "isotopes", ", ".join(f"{n} {atom.name}" for atom, n in counts.items())),
-    )
-    report.section(
-        "mass",
-        Field("atoms", "atoms", len(atoms)),
-        *(
-            Field(f"isotope_masses.{atom.name}", f"mass of {atom.name}", atom.mass, "u", decimals=9)
-            for atom in counts
-        ),
-        Field("mass", "mass", body.mass, "u", decimals=9),
-        Field("center_of_mass", "centre of mass", body.center_of_mass, "angstrom", scale=loaded.extent),
-    )
-    report.section("inertia, file axes", *_tensor_fields(loaded))
-    report.section("principal axes", *body_fields(loaded, None))
-    moments = body.principal_moments
-    top = body.principal.top
-    if top == "linear":
-        # What the last digit of the coordinates leaves of the first moment is no property of the molecule.
-        moments = np.array([0.0, *moments[1:]])
-    frequencies = rotational_constants(moments, "MHz")
+    tensors = [
+        ("center_of_mass", "about C", body.inertia),
+        ("origin", "about O", body.inertia_about("origin")),
+    ]
+    if about is not None:
+        tensors.append(("point", "about the point", body.inertia_about(about)))
     fields = [
-        Field("rotational_constants_MHz", "A  B  C", frequencies, "MHz", decimals=3),
-        Field("rotational_constants_cm^-1", "", rotational_constants(moments, "cm^-1"), "cm^-1", decimals=6),
+        field
+        for name, label, tensor in tensors
+        for field in units.fields(
+            f"inertia_about_{name}", label, tensor, loaded.moment_unit, length=2, mass=1, scale=tensor.max()
+        )
     ]
-    if top == "asymmetric":
-        fields.append(Field("ray_kappa", "Ray's kappa", ray_kappa(frequencies)))
-    report.section("rotational constants", *fields)
-    report.section("trust", *_trust_fields(loaded))
+    if about is not None:
+        point = np.array(about)
+        fields += units.fields("point", "  the point", point, loaded.length, length=1, scale=loaded.extent)
+    return fields
 
 
-def _tensor_fields(loaded: LoadedBody) -> list[Field]:
-    body, unit = loaded.body, loaded.moment_unit
-    about_origin = body.inertia_about("origin")
+def body_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
+    """Principal moments, axes and class of a body."""
+    body = loaded.body
+    principal = body.principal
+    per_mass = principal.moments / body.mass
+    square, radius = f"{loaded.length}^2", np.sqrt(per_mass)
     return [
-        Field("inertia_about_center_of_mass", "about C", body.inertia, unit, scale=body.inertia.max()),
-        Field("inertia_about_origin", "about O", about_origin, unit, scale=about_origin.max()),
+        *units.fields(
+            "principal_moments", "I1 I2 I3", principal.moments, loaded.moment_unit, length=2, mass=1
+        ),
+        *units.fields("moments_per_mass", "I1 I2 I3 / mass", per_mass, square, length=2),
+        *units.fields("radii_of_gyration", "radii of gyration", radius, loaded.length, length=1),
+        Field("axes", "e1 e2 e3", principal.axes, hint="columns", scale=1.0),
+        Field("gaps", "gaps 2-1, 3-2", principal.gaps, hint="of I3"),
+        Field("top", "top", str(principal.top)),
     ]
 
 
-def _trust_fields(loaded: LoadedBody) -> list[Field]:
+def trust_fields(loaded: LoadedBody) -> list[Field]:
     """Where the numbers come from and what rounding can have done to them."""
     provenance, bound = loaded.body.provenance, loaded.body.error_bound
     return [
@@ -280,37 +140,59 @@ def _trust_fields(loaded: LoadedBody) -> list[Field]:
     ]
 
 
-def body_fields(loaded: LoadedBody, unit: str | None) -> list[Field]:
-    """Principal moments, axes and class of a body; lengths also in the file's `unit`."""
-    body = loaded.body
-    principal = body.principal
-    per_mass = principal.moments / body.mass
-    return [
-        Field("principal_moments", "I1 I2 I3", principal.moments, loaded.moment_unit),
-        *_with_file_unit("moments_per_mass", "I1 I2 I3 / mass", per_mass, 2, loaded=loaded, unit=unit),
-        *_with_file_unit(
-            "radii_of_gyration", "radii of gyration", np.sqrt(per_mass), 1, loaded=loaded, unit=unit
-        ),
-        Field("axes", "e1 e2 e3", principal.axes, hint="columns", scale=1.0),
-        Field("gaps", "gaps 2-1, 3-2", principal.gaps, hint="of I3"),
-        Field("top", "top", str(principal.top)),
-    ]
+def _point(
+    loaded: LoadedBody, options: BodyOptions, extra: ReportOptions
+) -> tuple[float, float, float] | None:
+    """Where --about is, in the unit of the body."""
+    if not extra.about:
+        return None
+    is_molecule = loaded.length == "angstrom"
+    unit = options.length_unit or ("angstrom" if is_molecule else None)
+    of_body = 1.0 if unit is None else metres_per(unit) / (metres_per("angstrom") if is_molecule else 1.0)
+    x, y, z = (
+        in_file_unit(part, "--about", unit) * of_body for part in split_vector(extra.about, "m", "--about")
+    )
+    return x, y, z
 
 
-def _with_file_unit(
-    key: str,
-    label: str,
-    value: float | NDArray[np.float64],
-    power: int,
-    *,
+def _mesh_report(
+    file: Path,
     loaded: LoadedBody,
-    unit: str | None,
-) -> list[Field]:
-    """Give a length to some power, and where the file has another unit also in that."""
-    suffix = f"^{power}" if power > 1 else ""
-    scale = loaded.extent if key == "center_of_mass" else 0.0
-    fields = [Field(key, label, value, loaded.length + suffix, scale=scale)]
-    if unit not in (None, "m"):
-        metres = metres_per(unit) ** power
-        fields.append(Field(f"in_file_unit.{key}", "", value / metres, unit + suffix, scale=scale / metres))
-    return fields
+    mesh: MeshSolid,
+    units: FileUnits,
+    about: tuple[float, float, float] | None,
+) -> Report:
+    report, body, unit = Report(), loaded.body, units.length
+    hint = "" if unit else "(state it with --length-unit)"
+    report.section(
+        "",
+        Field("file", "file", shown(file)),
+        Field("format", "format", mesh.format),
+        Field("length_unit", "length unit", unit or UNKNOWN, hint=hint),
+    )
+    volume, area = f"{loaded.length}^3", f"{loaded.length}^2"
+    report.section(
+        "shape",
+        *([] if mesh.vertices is None else [Field("vertices", "vertices", mesh.vertices)]),
+        Field("faces", "faces", mesh.faces),
+        *units.fields("volume", "volume", loaded.volume, volume, length=3),
+        *units.fields("area", "surface area", mesh.area, area, length=2),
+    )
+    center, extent = body.center_of_mass, loaded.extent
+    report.section(
+        "mass",
+        Field("density", "density", loaded.density, f"{loaded.mass_unit}/{volume}"),
+        *units.fields("mass", "mass", body.mass, loaded.mass_unit, mass=1),
+        *units.fields("center_of_mass", "centre of mass", center, loaded.length, length=1, scale=extent),
+    )
+    report.section("inertia, file axes", *tensor_fields(loaded, units, about))
+    report.section("principal axes", *body_fields(loaded, units))
+    report.section("trust", *trust_fields(loaded))
+    report.notes += loaded.notes
+    if loaded.assumed:
+        report.notes.append(
+            "neither density nor mass was given: density 1 was used (state --density or --mass)"
+        )
+    if unit is None:
+        report.notes.append("unit unknown: all results are in the file's own unit of length")
+    return report

@@ -448,6 +448,16 @@ pub enum Error {
         /// The last one.
         last: f64,
     },
+    /// A method of integration that is not made for a run.
+    #[error("method=\"{method}\" needs {needs}; method=\"{instead}\" can serve this run")]
+    MethodCannotServe {
+        /// The method asked for.
+        method: &'static str,
+        /// What it needs.
+        needs: &'static str,
+        /// A method that can.
+        instead: &'static str,
+    },
     /// A gravity gradient on a body whose origin is fixed.
     #[error(
         "the gravity gradient acts on a body in orbit, whose centre of mass is free: simulate it with \

@@ -21,6 +21,7 @@ mod euler_rates;
 mod events;
 mod files;
 mod forms;
+mod free_motion;
 mod interrupt;
 mod kinematics;
 mod laminae;
@@ -59,6 +60,8 @@ mod _core {
         to_log_cholesky, to_parameters, to_positive_products, to_pseudo_inertia,
         to_spatial_inertia,
     };
+    #[pymodule_export]
+    use crate::free_motion::PyFreeMotion;
     #[pymodule_export]
     use crate::kinematics::transport;
     #[pymodule_export]

@@ -25,6 +25,7 @@
 //! | closed triangle mesh: divergence theorem | [`polyhedron`] |
 //! | simplices: what segments, triangles and tetrahedra add up to | `simplex` |
 //! | thin shells | [`surface`] |
+//! | shells of finite thickness | [`thick_shell`] |
 //! | thin wires | [`curve`] |
 //! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 
@@ -51,6 +52,7 @@ mod simplex;
 pub mod solids;
 pub mod surface;
 pub mod tetrahedra;
+pub mod thick_shell;
 pub mod validity;
 pub mod voxels;
 

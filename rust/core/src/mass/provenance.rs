@@ -151,8 +151,10 @@ impl Checks {
     pub const MASSES: Self = Self(1 << 8);
     /// A tensor is symmetric, has no negative moment and obeys the triangle inequality.
     pub const TENSOR: Self = Self(1 << 9);
+    /// Components of a mesh that are wound inward lie in others.
+    pub const CAVITIES: Self = Self(1 << 10);
 
-    const NAMES: [&'static str; 10] = [
+    const NAMES: [&'static str; 11] = [
         "unchecked",
         "indices",
         "finite",
@@ -163,6 +165,7 @@ impl Checks {
         "duplicates",
         "masses",
         "tensor",
+        "cavities",
     ];
 
     /// Both sets together.

@@ -67,8 +67,9 @@ fn tree<const K: usize>(from: usize, to: usize, block: &impl Fn(usize) -> [f64; 
     add(tree(from, from + half, block), tree(from + half, to, block))
 }
 
+/// The terms `from..to` of one block, in its lanes.
 #[inline(always)]
-fn block_sum<const K: usize>(
+pub(crate) fn block_sum<const K: usize>(
     from: usize,
     to: usize,
     term: &impl Fn(usize) -> [f64; K],

@@ -78,6 +78,12 @@ impl Load for Acting<'_, '_> {
             || self.load.compiled().next().is_some()
     }
 
+    fn depends_on_rates(&self) -> bool {
+        self.analytic.depends_on_rates()
+            || self.load.callbacks().next().is_some()
+            || self.load.compiled().next().is_some()
+    }
+
     fn breaks(&self) -> Vec<f64> {
         let windows = (self.load.callbacks().map(|callback| &callback.windows))
             .chain(self.load.compiled().map(|compiled| &compiled.windows));

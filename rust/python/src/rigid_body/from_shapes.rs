@@ -3,7 +3,7 @@
 use numpy::{PyArrayDyn, PyArrayMethods};
 use polhode::RigidBody;
 use polhode::mass::polyhedron::{Options, closure, polyhedron_watched};
-use polhode::mass::{Amount, curve, surface};
+use polhode::mass::{Amount, curve, surface, thick_shell};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -21,7 +21,8 @@ impl PyRigidBody {
     /// The mesh is checked before any number is computed: indices in range, coordinates finite, every
     /// edge shared by two faces that run along it in opposite directions, no face twice, normals
     /// outward, a volume beyond rounding. Corners with the same coordinates count as one vertex.
-    /// Several components and cavities (inner surfaces wound inward) are counted as they are.
+    /// Several components and cavities are counted as they are; a component wound inward that lies in
+    /// no other is no cavity but inside out, and an error.
     /// Coordinates far from the origin cost no accuracy, nor does a thin shape its smallest moment.
     ///
     /// Parameters
@@ -36,7 +37,7 @@ impl PyRigidBody {
     ///     triangles to the mean of the ends of its edges (the flat cap, where it is flat), ``"hull"`` takes the
     ///     convex hull instead (needs SciPy). `provenance` tells the volume it changed.
     /// orient : bool, optional
-    ///     Accept a mesh whose normals all point inward.
+    ///     Turn a mesh whose normals all point inward, and components that are inside out.
     /// check : bool, optional
     ///     False leaves out whether the mesh is closed, consistently wound and without duplicate faces:
     ///     an open mesh then gives numbers that mean nothing, and `provenance` says "unchecked".
@@ -108,15 +109,26 @@ impl PyRigidBody {
         Ok(Stack::one(finish(py, interrupt, outcome)?).into())
     }
 
-    /// Thin shell of uniform mass per area: a triangle mesh, open or closed, however wound.
+    /// Shell, thin or of finite thickness, around a triangle mesh, open or closed.
+    ///
+    /// A thin one has a uniform mass per area, and the faces may be wound as they like. With `thickness` it is the solid
+    /// between two offsets of the mesh, half the thickness to each side, with walls along an open rim; faces must then be
+    /// consistently wound, outward or inward, with at most two at an edge. Edges and corners are mitred: where at most
+    /// three planes meet at a vertex, every face moves by exactly half the thickness; elsewhere the vertex goes where the
+    /// planes, weighted by the angles of their faces there, are met best, which on a mesh of a curved surface is good to
+    /// the second order in the size of its triangles. A shell that folds over itself at a face is an error; parts far
+    /// apart along the surface that come to overlap are not looked for and count twice.
     ///
     /// Parameters
     /// ----------
     /// vertices : array_like, shape (n, 3)
     /// faces : array_like of int, shape (m, 3)
     ///     Vertices of each triangle, counted from zero.
-    /// areal_density, mass : float
-    ///     Mass per area, or the mass in all: exactly one of the two.
+    /// areal_density, density, mass : float
+    ///     Mass per area of a thin shell, mass per volume of one with `thickness`, or the mass in all:
+    ///     exactly one of them.
+    /// thickness : float, optional
+    ///     From face to face; without it the shell is thin.
     ///
     /// Returns
     /// -------
@@ -125,32 +137,54 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// MeshError
-    ///     Naming the face or vertex that is none, or when there is no area.
+    ///     Naming the face or vertex that is none, or the face at which the shell folds over itself and
+    ///     the thickness that is possible there; when there is no area.
     ///
     /// Examples
     /// --------
-    /// A sheet in the x-y plane:
+    /// A sheet in the x-y plane, thin and as a plate:
     ///
     /// >>> from polhode import RigidBody
     /// >>> corners = [(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)]
     /// >>> sheet = RigidBody.from_surface(corners, [(0, 1, 2), (0, 2, 3)], areal_density=6.0)
     /// >>> sheet.mass, sheet.principal_moments
     /// (12.0, array([ 1.,  4.,  5.]))
+    /// >>> plate = RigidBody.from_surface(corners, [(0, 1, 2), (0, 2, 3)], density=6.0, thickness=1.0)
+    /// >>> plate.mass, plate.principal_moments
+    /// (12.0, array([ 2.,  5.,  5.]))
     #[staticmethod]
-    #[pyo3(signature = (vertices, faces, *, areal_density=None, mass=None))]
+    #[pyo3(signature = (vertices, faces, *, areal_density=None, density=None, mass=None, thickness=None))]
     fn from_surface(
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
         areal_density: Option<f64>,
+        density: Option<f64>,
         mass: Option<f64>,
+        thickness: Option<f64>,
     ) -> PyResult<Self> {
-        let amount = amount_per("areal_density", mass, areal_density)?;
+        let amount = match (thickness, areal_density, density) {
+            (None, _, None) => amount_per("areal_density", mass, areal_density)?,
+            (None, _, Some(_)) => {
+                return Err(PyTypeError::new_err(
+                    "density= needs thickness=: a thin shell has a mass= or an areal_density=",
+                ));
+            }
+            (Some(_), None, _) => amount(mass, density)?,
+            (Some(_), Some(_), _) => {
+                return Err(PyTypeError::new_err(
+                    "areal_density= is of a thin shell: with thickness= give mass= or density=",
+                ));
+            }
+        };
         let mesh = read_mesh(vertices, faces)?;
         let interrupt = Interrupt::new(None);
         let watch = &mut |_| interrupt.poll(None);
         let outcome = with_mesh!(mesh, |vertices, faces| {
-            py.detach(|| surface::surface(vertices, faces, amount, watch))
+            py.detach(|| match thickness {
+                None => surface::surface(vertices, faces, amount, watch),
+                Some(t) => thick_shell::thick_shell(vertices, faces, t, amount, watch),
+            })
         });
         Ok(Stack::one(finish(py, interrupt, outcome)?).into())
     }

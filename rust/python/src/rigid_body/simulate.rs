@@ -41,9 +41,13 @@ impl PyRigidBody {
     /// about : {"center_of_mass", "origin"}, optional
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.
-    /// method : {"auto", "dop853"}, optional
+    /// method : {"auto", "dop853", "radau", "splitting"}, optional
     ///     "dop853" is the explicit Runge-Kutta method of order 8 by Dormand and Prince with a dense
-    ///     output of order 7. "auto" chooses.
+    ///     output of order 7: any load. "radau" is the implicit Runge-Kutta method Radau IIA of order 5:
+    ///     any load, for those that are stiff, such as strong damping. "splitting" kicks the body between
+    ///     exact free motions at equal steps, as long as `rtol` allows at the start: loads that depend on
+    ///     time, attitude and position alone, for long times, since the energy does not drift.
+    ///     "auto" chooses.
     /// rtol : float, optional
     ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
     ///     distance and speed so far; from 2.3e-15 to 0.1.
@@ -189,7 +193,12 @@ impl PyRigidBody {
 }
 
 /// The methods by their names.
-const METHODS: [(&str, Method); 2] = [("auto", Method::Auto), ("dop853", Method::Dop853)];
+const METHODS: [(&str, Method); 4] = [
+    ("auto", Method::Auto),
+    ("dop853", Method::Dop853),
+    ("radau", Method::Radau),
+    ("splitting", Method::Splitting),
+];
 
 fn parse_method(word: &str) -> PyResult<Method> {
     METHODS

@@ -22,10 +22,10 @@ static KEY: LazyLock<[u64; 12]> = LazyLock::new(|| {
 });
 
 /// A corner as bits; equal numbers have equal bits (−0 is +0).
-type Bits = [u64; 3];
+pub(super) type Bits = [u64; 3];
 
 #[inline(always)]
-fn bits(corner: &[f64; 3]) -> Bits {
+pub(super) fn bits(corner: &[f64; 3]) -> Bits {
     corner.map(|x| (x + 0.0).to_bits())
 }
 
@@ -62,6 +62,16 @@ fn areas(key: &[u64; 12], triangle: &Triangle) -> [u64; 2] {
         );
         sub(e[0].wrapping_mul(f[1]), e[1].wrapping_mul(f[0]))
     })
+}
+
+/// The mark of a triangle that [`Boundary::of`] gives.
+pub(super) fn mark(triangle: &Triangle) -> u64 {
+    areas(&KEY, triangle)[0]
+}
+
+/// The mark of a corner: equal corners have the same.
+pub(super) fn mark_of(corner: &[f64; 3]) -> u64 {
+    place(&KEY, bits(corner))[0][0]
 }
 
 /// The sum of the areas of some triangles.
@@ -104,40 +114,8 @@ pub(super) trait Replay {
     type Error;
     /// Once through.
     fn each(&mut self, visit: &mut dyn FnMut(usize, &Triangle)) -> Result<(), Self::Error>;
-}
-
-/// The first of the faces that repeat an earlier one, that one, and how many there are; `marks` may come in any order.
-pub(super) fn find_duplicates<R: Replay>(
-    triangles: &mut R,
-    marks: &mut [u64],
-) -> Result<Option<(usize, usize, usize)>, R::Error> {
-    marks.sort_unstable();
-    let mut repeated: Vec<u64> = marks
-        .windows(2)
-        .filter(|pair| pair[0] == pair[1] && pair[0] != 0)
-        .map(|pair| pair[0])
-        .collect();
-    repeated.dedup();
-    if repeated.is_empty() {
-        return Ok(None);
-    }
-    let key = &*KEY;
-    let mut suspects: Vec<([Bits; 3], usize)> = Vec::new();
-    triangles.each(&mut |face, triangle| {
-        if repeated.binary_search(&areas(key, triangle)[0]).is_ok() {
-            let mut corners = [0, 1, 2].map(|k| bits(&triangle[k]));
-            let lowest = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
-            corners.rotate_left(lowest);
-            suspects.push((corners, face));
-        }
-    })?;
-    suspects.sort_unstable();
-    let pairs = suspects.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-    let count = pairs.clone().count();
-    Ok(pairs
-        .map(|pair| (pair[1].1, pair[0].1))
-        .min()
-        .map(|(second, first)| (first, second, count)))
+    /// [`repeated`](super::duplicates::repeated), watched as everything else is.
+    fn repeated(&mut self, marks: &mut [u64]) -> Result<Vec<u64>, Self::Error>;
 }
 
 /// An edge that is run along more often one way than the other.
@@ -277,6 +255,10 @@ mod tests {
             self.0.iter().enumerate().for_each(|(i, t)| visit(i, t));
             Ok(())
         }
+
+        fn repeated(&mut self, _: &mut [u64]) -> Result<Vec<u64>, ()> {
+            Ok(Vec::new())
+        }
     }
 
     #[test]
@@ -304,16 +286,5 @@ mod tests {
         assert_eq!(fault.ends, [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
         let mut whole = List(TETRAHEDRON.to_vec());
         assert!(find_unbalanced(&mut whole).expect("list").is_none());
-    }
-
-    #[test]
-    fn duplicates_are_found_whichever_corner_comes_first() {
-        let mut list = TETRAHEDRON.to_vec();
-        list.push([2, 0, 1].map(|k| TETRAHEDRON[1][k]));
-        list.push([1, 0, 2].map(|k| TETRAHEDRON[2][k]));
-        let mut marks = Vec::new();
-        let _ = Boundary::of(list.iter().copied(), |mark| marks.push(mark));
-        let found = find_duplicates(&mut List(list), &mut marks).expect("list");
-        assert_eq!(found, Some((1, 4, 1)));
     }
 }

@@ -85,7 +85,7 @@ pub enum MeshFault {
         /// The other face.
         second: usize,
         /// How many faces repeat an earlier one.
-        count: usize,
+        count: Count,
     },
     /// An edge with a face on one side only.
     #[error(
@@ -134,6 +134,20 @@ pub enum MeshFault {
         /// The signed volume.
         volume: f64,
     },
+    /// A component wound like a cavity, but in nothing.
+    #[error(
+        "a component of the mesh is inside out: the {faces} connected faces with faces[{face}] are wound the other way \
+         than the rest, signed volume {volume:?}, and are no cavity, as no other component has them inside; \
+         pass orient=True to turn them"
+    )]
+    InsideOut {
+        /// Its first face.
+        face: usize,
+        /// How many faces it has.
+        faces: usize,
+        /// Its signed volume.
+        volume: f64,
+    },
     /// The mesh encloses nothing.
     #[error(
         "the mesh encloses no volume: {volume:?} with edges up to {size:?}; model a sheet as a thin shell instead"
@@ -143,6 +157,40 @@ pub enum MeshFault {
         volume: f64,
         /// The largest extent.
         size: f64,
+    },
+    /// A shell that folds over itself.
+    #[error(
+        "thickness {thickness:?} folds the shell over itself at faces[{face}], where at most {limit:?} is possible: the \
+         surface bends too sharply there for triangles of that size; make the shell thinner or the triangles larger"
+    )]
+    TooThick {
+        /// The face that turns over first.
+        face: usize,
+        /// What was asked for.
+        thickness: f64,
+        /// The thickness at which it turns over.
+        limit: f64,
+    },
+    /// A face without a normal, where one is needed.
+    #[error(
+        "faces[{face}] has no normal: its corners lie on a line; remove the face for a shell of finite thickness"
+    )]
+    NoNormal {
+        /// The face.
+        face: usize,
+    },
+    /// An edge at which a surface branches.
+    #[error(
+        "{faces} faces meet in the edge from {from} to {to}: a shell of finite thickness needs one or two at each edge; \
+         make a body of each sheet and add them"
+    )]
+    Branching {
+        /// One end of the edge.
+        from: Corner,
+        /// The other end.
+        to: Corner,
+        /// How many faces.
+        faces: usize,
     },
     /// Triangles without area.
     #[error(

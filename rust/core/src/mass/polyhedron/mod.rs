@@ -7,6 +7,8 @@
 //! | what | file |
 //! |---|---|
 //! | whether the mesh is closed, and the edge at which it is not | `boundary` |
+//! | faces that stand twice | `duplicates` |
+//! | which components lie in which | `nesting` |
 //! | what is told of a mesh that bounds no solid | [`fault`] |
 //! | meshes in memory | `triangles` |
 //! | meshes larger than memory | [`streamed`] |
@@ -14,7 +16,9 @@
 
 mod boundary;
 pub mod closure;
+mod duplicates;
 pub mod fault;
+mod nesting;
 pub mod streamed;
 mod triangles;
 
@@ -29,7 +33,8 @@ use super::solids::Amount;
 use crate::error::Error;
 use crate::numerics::threads::{Halt, Watch};
 use crate::principal::principal_axes;
-use boundary::{Boundary, Replay, find_duplicates, find_unbalanced};
+use boundary::{Boundary, Replay, find_unbalanced};
+use duplicates::Marks;
 use fault::Corner;
 pub use fault::MeshFault;
 use triangles::Faces;
@@ -58,8 +63,8 @@ impl Default for Options {
 /// A solid of uniform density bounded by a closed, consistently wound triangle mesh.
 ///
 /// `faces` count vertices from zero, counter-clockwise seen from outside. Vertices with the same coordinates are one
-/// vertex. With `orient` an inverted mesh is turned, else it is an error. Several components and cavities (inner
-/// surfaces wound inward) are counted as they are.
+/// vertex. With `orient` an inverted mesh is turned, and so is a component that is wound like a cavity but lies in no other;
+/// else it is an error. Several components and cavities (inner surfaces wound inward) are counted as they are.
 ///
 /// # Errors
 /// [`MeshFault`] names the face, edge or vertex that keeps the mesh from bounding a solid.
@@ -88,8 +93,26 @@ pub fn polyhedron_watched<I: Index>(
     options: Options,
     watch: &mut Watch<'_>,
 ) -> Result<RigidBody, Halt<Error>> {
-    let (body, _) = solid(&mut Faces::new(vertices, faces, watch), amount, options)?;
-    Ok(body)
+    solid_of_faces(vertices, faces, amount, options, watch).map(|(body, _)| body)
+}
+
+/// The solid inside triangles in memory, components turned where that is asked for, and its volume.
+fn solid_of_faces<I: Index>(
+    vertices: &[[f64; 3]],
+    faces: &[[I; 3]],
+    amount: Amount,
+    options: Options,
+    watch: &mut Watch<'_>,
+) -> Result<(RigidBody, f64), Halt<Error>> {
+    let mut mesh = Faces::new(vertices, faces, watch);
+    let outcome = solid(&mut mesh, amount, options);
+    match mesh.inside_out {
+        Some(found) if options.orient => {
+            let faces = found.turned(faces);
+            solid(&mut Faces::new(vertices, &faces, watch), amount, options)
+        }
+        _ => outcome,
+    }
 }
 
 /// What a solid is summed from, as often as its accuracy needs.
@@ -103,19 +126,22 @@ trait Triangles: Replay<Error: From<Error>> {
         &mut self,
         frame: &Frame,
         check: bool,
-    ) -> Result<(Sums, Option<Marks>), Self::Error>;
+    ) -> Result<(Sums, Option<Checked>), Self::Error>;
     /// The triangles as a shell.
     fn shell_sums(&mut self, frame: &Frame) -> Result<Sums, Self::Error>;
     /// The first index or coordinate that is none.
     fn find_unusable(&mut self) -> Result<Option<MeshFault>, Self::Error>;
+    /// The component that is wound the wrong way, as far as can be told, and what has then been checked; with `sign` −1
+    /// the whole is turned over.
+    fn find_inside_out(&mut self, sign: f64) -> Result<(Option<MeshFault>, Checks), Self::Error>;
     /// A corner of a face as the user knows it.
     fn corner(&self, face: usize, position: &[f64; 3]) -> Corner;
 }
 
-/// The boundary of the triangles, and a mark of each where they were collected.
-struct Marks {
+/// The boundary of the triangles, and their marks.
+struct Checked {
     boundary: Boundary,
-    marks: Option<Vec<u64>>,
+    marks: Marks,
 }
 
 /// The sums again in the body's own axes are repeated at most this often; each time multiplies the accuracy of the axes.
@@ -128,7 +154,7 @@ fn solid<T: Triangles>(
     options: Options,
 ) -> Result<(RigidBody, f64), T::Error> {
     let frame = triangles.first_frame()?;
-    let (mut sums, marks) = triangles.solid_sums(&frame, options.check)?;
+    let (mut sums, checked) = triangles.solid_sums(&frame, options.check)?;
     let mut checks = Checks::INDICES
         .and(Checks::FINITE)
         .and(Checks::ORIENTATION)
@@ -141,9 +167,17 @@ fn solid<T: Triangles>(
     {
         return Err(failed(fault));
     }
-    match marks {
+    match checked {
         None => checks = checks.and(Checks::UNCHECKED),
-        Some(marks) => checks = checks.and(check_boundary(triangles, marks)?),
+        Some(checked) => {
+            checks = checks.and(check_boundary(triangles, checked)?);
+            let sign = if sums.content < 0.0 { -1.0 } else { 1.0 };
+            let (inside_out, nesting) = triangles.find_inside_out(sign)?;
+            if let Some(fault) = inside_out {
+                return Err(failed(fault));
+            }
+            checks = checks.and(nesting);
+        }
     }
     let mut moments = MomentsFrom::SecondMoment;
     if !is_ordinary(&sums) {
@@ -163,19 +197,12 @@ fn failed<E: From<Error>>(fault: MeshFault) -> E {
 }
 
 /// Duplicates are told first: what stands twice is not balanced either.
-fn check_boundary<T: Triangles>(triangles: &mut T, marks: Marks) -> Result<Checks, T::Error> {
-    let mut checks = Checks::CLOSED.and(Checks::WINDING);
-    if let Some(mut marks) = marks.marks {
-        checks = checks.and(Checks::DUPLICATES);
-        if let Some((first, second, count)) = find_duplicates(triangles, &mut marks)? {
-            return Err(failed(MeshFault::DuplicateFaces {
-                first,
-                second,
-                count,
-            }));
-        }
+fn check_boundary<T: Triangles>(triangles: &mut T, checked: Checked) -> Result<Checks, T::Error> {
+    let checks = Checks::CLOSED.and(Checks::WINDING).and(Checks::DUPLICATES);
+    if let Some(fault) = checked.marks.find_duplicates(triangles)? {
+        return Err(failed(fault));
     }
-    if marks.boundary.is_closed() {
+    if checked.boundary.is_closed() {
         return Ok(checks);
     }
     let Some(fault) = find_unbalanced(triangles)? else {

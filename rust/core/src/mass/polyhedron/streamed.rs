@@ -5,18 +5,20 @@ use std::ops::ControlFlow;
 use nalgebra::Vector3;
 
 use super::boundary::{Boundary, Replay, Triangle};
+use super::duplicates::{Marks, ROOM, repeated};
 use super::fault::{Corner, MeshFault};
-use super::triangles::widen;
-use super::{Marks, Options, Triangles, solid};
+use super::nesting::{InsideOut, find_inside_out};
+use super::triangles::{View, widen};
+use super::{Checked, Options, Triangles, solid, solid_of_faces};
 use crate::io::{StreamError, TriangleStream};
 use crate::mass::body::RigidBody;
+use crate::mass::provenance::Checks;
 use crate::mass::simplex::{Corners, Frame, Kind, Partial, Shell, Solid, Sums, block_sum, merge};
 use crate::mass::solids::Amount;
-use crate::numerics::threads::Watch;
+use crate::numerics::threads::{Halt, Watch};
 
-/// Faces that stand twice are looked for among so many triangles at most, eight bytes each; beyond, the provenance does not
-/// list that check.
-const MARKS: usize = 1 << 23;
+/// So many triangles are kept, to be looked at as a mesh in memory.
+pub const KEPT: usize = 1 << 18;
 
 /// A solid from a stream, and what only going through the triangles can tell.
 #[derive(Clone, Copy, Debug)]
@@ -33,8 +35,9 @@ pub struct StreamedSolid {
 
 /// The solid of uniform density bounded by the triangles of a stream, whose coordinates are multiplied by `scale`.
 ///
-/// Once through the file for an ordinary body, again for a thin one or to find what is wrong. Corners with the same
-/// coordinates are one vertex.
+/// Once through the file for an ordinary body, again for a thin one or to find what is wrong, and once more for every eight
+/// million triangles or so, to look for faces that stand twice. Corners with the same coordinates are one vertex. That
+/// components wound inward lie in others is checked of [`KEPT`] triangles and fewer; of more the provenance does not list it.
 ///
 /// # Errors
 /// As [`polyhedron`](super::polyhedron), and when the file cannot be read.
@@ -51,8 +54,15 @@ pub fn streamed(
         watch,
         farthest: 0.0,
         seen: None,
+        kept: None,
+        is_inside_out: false,
     };
-    let (body, volume) = solid(&mut source, amount, options)?;
+    let outcome = solid(&mut source, amount, options);
+    let (body, volume) = if source.is_inside_out && options.orient {
+        source.oriented(amount)?
+    } else {
+        outcome?
+    };
     let (triangles, area) = source.seen.map_or((0, 0.0), |seen| (seen.count, seen.area));
     Ok(StreamedSolid {
         body,
@@ -70,6 +80,10 @@ struct Stream<'a> {
     /// The largest fraction that was told to `watch`.
     farthest: f64,
     seen: Option<Seen>,
+    /// The corners of all triangles, where they are few.
+    kept: Option<Vec<[f64; 3]>>,
+    /// Whether a component is wound the wrong way.
+    is_inside_out: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -100,10 +114,33 @@ struct Pass {
     solid: Vec<Partial>,
     shell: Vec<Partial>,
     boundary: Boundary,
-    marks: Option<Vec<u64>>,
+}
+
+/// Triangles that share no vertex.
+fn apart(corners: &[[f64; 3]]) -> Vec<[usize; 3]> {
+    (0..corners.len() / 3)
+        .map(|face| [0, 1, 2].map(|k| 3 * face + k))
+        .collect()
 }
 
 impl Stream<'_> {
+    /// The solid of the triangles that were kept, each component wound as it should be.
+    fn oriented(&mut self, amount: Amount) -> Result<(RigidBody, f64), StreamError> {
+        let corners = self.kept.take().unwrap_or_default();
+        let options = Options {
+            orient: true,
+            check: true,
+        };
+        let (farthest, watch) = (self.farthest, &mut self.watch);
+        let watch = &mut |_| watch(farthest);
+        solid_of_faces(&corners, &apart(&corners), amount, options, watch).map_err(
+            |halt| match halt {
+                Halt::Stopped => StreamError::Stopped,
+                Halt::Failed(error) => error.into(),
+            },
+        )
+    }
+
     /// Once through, as far as `visit` goes on.
     fn blocks(
         &mut self,
@@ -157,6 +194,11 @@ impl Replay for Stream<'_> {
             ControlFlow::Continue(())
         })
     }
+
+    fn repeated(&mut self, marks: &mut [u64]) -> Result<Vec<u64>, StreamError> {
+        let (farthest, watch) = (self.farthest, &mut self.watch);
+        repeated(marks, &mut |_| watch(farthest)).map_err(|_| StreamError::Stopped)
+    }
 }
 
 impl Triangles for Stream<'_> {
@@ -184,14 +226,14 @@ impl Triangles for Stream<'_> {
         &mut self,
         frame: &Frame,
         check: bool,
-    ) -> Result<(Sums, Option<Marks>), StreamError> {
+    ) -> Result<(Sums, Option<Checked>), StreamError> {
         if self.seen.is_some() {
             return Ok((self.sums::<Solid>(frame)?, None));
         }
-        let mut pass = Pass {
-            marks: check.then(Vec::new),
-            ..Pass::default()
-        };
+        let mut pass = Pass::default();
+        let mut marks = Marks::beyond(0, ROOM);
+        self.kept = None;
+        let mut kept = check.then(Vec::new);
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         self.blocks(&mut |block| {
             let size = block.len();
@@ -204,32 +246,31 @@ impl Triangles for Stream<'_> {
             pass.shell
                 .push(block_sum::<_, Shell, 3>(&corners, 0, size, frame));
             pass.count += size;
+            if pass.count > KEPT {
+                kept = None;
+            }
+            if let Some(corners) = &mut kept {
+                corners.extend_from_slice(block.as_flattened());
+            }
             if check {
-                if pass.count > MARKS {
-                    pass.marks = None;
-                }
-                let marks = &mut pass.marks;
-                let boundary = Boundary::of(block.iter().copied(), |mark| {
-                    if let Some(marks) = marks {
-                        marks.push(mark);
-                    }
-                });
+                let boundary = Boundary::of(block.iter().copied(), |mark| marks.push(mark));
                 pass.boundary = pass.boundary.and(boundary);
             }
             ControlFlow::Continue(())
         })?;
+        self.kept = kept;
         let shell = Sums::new::<Shell, 3>(&merge(&pass.shell), pass.count, frame);
         self.seen = Some(Seen {
             count: pass.count,
             area: shell.content * frame.unit * frame.unit,
             frame: Frame::of_box(&Vector3::from(low), &Vector3::from(high)),
         });
-        let marks = check.then_some(Marks {
+        let checked = check.then_some(Checked {
             boundary: pass.boundary,
-            marks: pass.marks,
+            marks,
         });
         let sums = Sums::new::<Solid, 3>(&merge(&pass.solid), pass.count, frame);
-        Ok((sums, marks))
+        Ok((sums, checked))
     }
 
     fn shell_sums(&mut self, frame: &Frame) -> Result<Sums, StreamError> {
@@ -248,6 +289,23 @@ impl Triangles for Stream<'_> {
             }
         })?;
         Ok(found)
+    }
+
+    fn find_inside_out(&mut self, sign: f64) -> Result<(Option<MeshFault>, Checks), StreamError> {
+        let Some(corners) = &self.kept else {
+            return Ok((None, Checks::default()));
+        };
+        let faces = apart(corners);
+        let mesh = View {
+            vertices: corners,
+            faces: &faces,
+        };
+        let (farthest, watch) = (self.farthest, &mut self.watch);
+        let found = find_inside_out(&mesh, sign, &mut |_| watch(farthest));
+        let found = found.map_err(|_| StreamError::Stopped)?;
+        self.is_inside_out = found.is_some();
+        let fault = found.as_ref().and_then(InsideOut::fault);
+        Ok((fault, Checks::CAVITIES))
     }
 
     fn corner(&self, _: usize, position: &[f64; 3]) -> Corner {

@@ -5,9 +5,12 @@ use std::convert::Infallible;
 use nalgebra::Vector3;
 
 use super::boundary::{Boundary, Replay, Triangle};
+use super::duplicates::{Marks, repeated};
 use super::fault::{Corner, MeshFault};
-use super::{Marks, Triangles};
+use super::nesting::{InsideOut, find_inside_out};
+use super::{Checked, Triangles};
 use crate::error::Error;
+use crate::mass::provenance::Checks;
 use crate::mass::simplex::{Corners, Frame, Partial, Shell, Solid, Sums, block_sum, merge, sums};
 use crate::numerics::reduce::BLOCK;
 use crate::numerics::threads::{Halt, Watch, fill_blocks};
@@ -40,6 +43,8 @@ index!(i32 u32 i64 u64 usize);
 pub(super) struct Faces<'a, I> {
     mesh: View<'a, I>,
     watch: &'a mut Watch<'a>,
+    /// The components that were found to be wound the wrong way.
+    pub(super) inside_out: Option<InsideOut>,
 }
 
 /// What several threads share.
@@ -120,6 +125,7 @@ impl<'a, I: Index> Faces<'a, I> {
         Self {
             mesh: View { vertices, faces },
             watch,
+            inside_out: None,
         }
     }
 }
@@ -136,6 +142,10 @@ impl<I: Index> Replay for Faces<'_, I> {
             visit(face, &self.mesh.corners(face));
         }
         Ok(())
+    }
+
+    fn repeated(&mut self, marks: &mut [u64]) -> Result<Vec<u64>, Halt<Error>> {
+        repeated(marks, self.watch).map_err(|_| Halt::Stopped)
     }
 }
 
@@ -159,7 +169,7 @@ impl<I: Index> Triangles for Faces<'_, I> {
         &mut self,
         frame: &Frame,
         check: bool,
-    ) -> Result<(Sums, Option<Marks>), Halt<Error>> {
+    ) -> Result<(Sums, Option<Checked>), Halt<Error>> {
         let mesh = self.mesh;
         if !check {
             let sums = sums::<_, Solid, 3>(&mesh, frame, self.watch);
@@ -194,12 +204,12 @@ impl<I: Index> Triangles for Faces<'_, I> {
             .iter()
             .fold(Boundary::default(), |sum, part| sum.and(part.boundary));
         drop(parts);
-        let marks = Marks {
+        let checked = Checked {
             boundary,
-            marks: Some(marks),
+            marks: Marks::all(marks),
         };
         let sums = Sums::new::<Solid, 3>(&merge(&partials), count, frame);
-        Ok((sums, Some(marks)))
+        Ok((sums, Some(checked)))
     }
 
     fn shell_sums(&mut self, frame: &Frame) -> Result<Sums, Halt<Error>> {
@@ -208,6 +218,13 @@ impl<I: Index> Triangles for Faces<'_, I> {
 
     fn find_unusable(&mut self) -> Result<Option<MeshFault>, Halt<Error>> {
         Ok(self.mesh.find_unusable())
+    }
+
+    fn find_inside_out(&mut self, sign: f64) -> Result<(Option<MeshFault>, Checks), Halt<Error>> {
+        let found = find_inside_out(&self.mesh, sign, self.watch).map_err(|_| Halt::Stopped)?;
+        self.inside_out = found;
+        let fault = self.inside_out.as_ref().and_then(InsideOut::fault);
+        Ok((fault, Checks::CAVITIES))
     }
 
     fn corner(&self, face: usize, position: &[f64; 3]) -> Corner {

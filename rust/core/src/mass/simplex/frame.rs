@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::dot;
-use crate::numerics::lane::Lane;
+use crate::numerics::lane::{Double, Lane};
 
 /// Where coordinates are taken from: `Vᵀ (r − reference)/unit`.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +25,16 @@ impl Frame {
             unit: if power.is_normal() { power } else { 1.0 },
             axes: None,
         }
+    }
+
+    /// One point in it.
+    pub(in crate::mass) fn place(&self, point: &[f64; 3]) -> Vector3<f64> {
+        let r = point.map(Double::<false>::new);
+        let placed = match &self.axes {
+            None => Shifted::of(self).place(r),
+            Some(axes) => Turned::of(self, axes).place(r),
+        };
+        Vector3::from(placed.map(Lane::get))
     }
 }
 
@@ -127,7 +137,6 @@ fn split<L: Lane>(a: L) -> (L, L) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::lane::Double;
 
     #[test]
     fn a_turned_coordinate_keeps_what_large_terms_leave() {

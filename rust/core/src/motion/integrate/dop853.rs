@@ -3,6 +3,7 @@
 
 use nalgebra::SVector;
 
+use super::first_step::first_step;
 use super::tableau::{DENSE, ERROR_3, ERROR_5, EXTENDED_STAGES, NODES, Row, STAGE_WEIGHTS, STAGES};
 use super::{Compensated, System};
 use crate::error::Error;
@@ -67,7 +68,10 @@ impl<const N: usize> Dop853<N> {
         stepper.slopes[STAGES] = slope;
         stepper.step = match step {
             Some(step) if step != 0.0 => step.abs().min(stepper.span.abs()).copysign(stepper.span),
-            _ => stepper.first_step(system)?,
+            _ => {
+                stepper.evaluations += 1;
+                first_step(system, start, stepper.span, &state.value, &slope, EXPONENT)?
+            }
         };
         Ok(stepper)
     }
@@ -223,30 +227,6 @@ impl<const N: usize> Dop853<N> {
         } else {
             fifth * (fifth / fifth.hypot(0.1 * third))
         }
-    }
-
-    /// A first step from the sizes of state, slope and change of slope (Hairer, Nørsett & Wanner, §II.4).
-    fn first_step<S: System<N>>(&mut self, system: &mut S) -> Result<f64, S::Error> {
-        let (y, slope) = (self.state.value, self.slopes[STAGES]);
-        let (size, speed) = (
-            system.error_norm(&y, &y, &y),
-            system.error_norm(&y, &y, &slope),
-        );
-        let trial = if speed > 0.0 && speed.is_finite() {
-            0.01 * size / speed
-        } else {
-            1e-3 * self.span.abs()
-        };
-        let trial = trial.min(self.span.abs()).copysign(self.span);
-        let later = self.slope(system, trial, &(y + slope * trial))?;
-        let bend = system.error_norm(&y, &(y + slope * trial), &(later - slope)) / trial.abs();
-        let fastest = speed.max(bend);
-        let step = if fastest > 0.0 && fastest.is_finite() {
-            (0.01 / fastest).powf(EXPONENT).min(100.0 * trial.abs())
-        } else {
-            trial.abs()
-        };
-        Ok(step.min(self.span.abs()).copysign(self.span))
     }
 
     fn stuck(&self, step: f64) -> Error {

@@ -3,11 +3,18 @@
 //! | method | file | for |
 //! |---|---|---|
 //! | DOP853 | [`dop853`] | loads that are smooth but not analytic to us: callbacks |
+//! | Radau IIA | [`radau`] | stiff loads: strong damping, stiff control |
+//! | splitting | [`splitting`] | loads without damping over long times: the energy does not drift |
 
 pub mod dop853;
+mod first_step;
+pub mod radau;
+pub mod splitting;
 mod tableau;
 
 pub use dop853::Dop853;
+pub use radau::Radau;
+pub use splitting::Splitting;
 
 use nalgebra::SVector;
 

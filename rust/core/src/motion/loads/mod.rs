@@ -153,6 +153,10 @@ pub trait Load {
     /// Whether it may push, so that a free body's position depends on it.
     fn exerts_force(&self) -> bool;
 
+    /// Whether it may depend on ω or on the velocity: whether it can do else than exchange the energy of motion for that of
+    /// position.
+    fn depends_on_rates(&self) -> bool;
+
     /// The times at which it is not smooth, where a step must end; in any order.
     fn breaks(&self) -> Vec<f64>;
 
@@ -206,6 +210,10 @@ impl Load for Analytic<'_> {
 
     fn exerts_force(&self) -> bool {
         self.terms.iter().any(Term::exerts_force)
+    }
+
+    fn depends_on_rates(&self) -> bool {
+        self.terms.iter().any(Term::depends_on_rates)
     }
 
     fn breaks(&self) -> Vec<f64> {

@@ -154,6 +154,17 @@ impl Term {
         }
     }
 
+    /// Whether it depends on ω or on the velocity.
+    #[must_use]
+    pub fn depends_on_rates(&self) -> bool {
+        match self {
+            Self::Damping(_) => true,
+            Self::Feedback(feedback) => feedback.damping.iter().any(|&x| x != 0.0),
+            Self::Scheduled { term, .. } => term.depends_on_rates(),
+            _ => false,
+        }
+    }
+
     /// Whether it depends on the body it acts on.
     #[must_use]
     pub fn needs_body(&self) -> bool {

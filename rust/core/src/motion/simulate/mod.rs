@@ -5,6 +5,8 @@
 
 mod equations;
 pub mod events;
+mod implicit;
+mod kicked;
 mod stepper;
 
 use std::ops::ControlFlow;
@@ -66,6 +68,10 @@ pub enum Method {
     Auto,
     /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
     Dop853,
+    /// The implicit Runge-Kutta method Radau IIA of order 5: every load, for those that are stiff.
+    Radau,
+    /// Kicks between exact free motions at equal steps: loads that do not depend on rates, for long times.
+    Splitting,
 }
 
 /// What is to be simulated: a body from a state through times, and how.

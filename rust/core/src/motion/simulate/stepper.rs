@@ -1,9 +1,12 @@
 //! What the run needs of a method, and the one place where a method is chosen.
 
 use super::equations::{Equations, MOVING, Scales, TURNING};
+use super::implicit::Implicit;
+use super::kicked::Kicked;
 use super::{Effort, Method, Task};
 use crate::motion::integrate::Dop853;
 use crate::motion::integrate::dop853::Dense;
+use crate::motion::integrate::splitting::Scheme;
 use crate::motion::loads::Load;
 use crate::motion::state::Phase;
 
@@ -34,9 +37,11 @@ pub(super) trait Stepper {
 /// What one span leaves to the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Carry {
-    scales: Scales,
+    pub(super) scales: Scales,
     /// The length of step that the method would try next.
-    step: Option<f64>,
+    pub(super) step: Option<f64>,
+    /// Of a splitting.
+    pub(super) scheme: Option<Scheme>,
 }
 
 /// Where a span of smooth load begins and ends, and in which state.
@@ -65,6 +70,9 @@ where
             Box::new(Explicit::<L, MOVING>::new(task, span, load)?)
         }
         Method::Auto | Method::Dop853 => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
+        Method::Radau if moves => Box::new(Implicit::<L, MOVING>::new(task, span, load)?),
+        Method::Radau => Box::new(Implicit::<L, TURNING>::new(task, span, load)?),
+        Method::Splitting => Box::new(Kicked::new(task, span, load)?),
     })
 }
 
@@ -135,6 +143,7 @@ impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
         Carry {
             scales: self.equations.scales,
             step: Some(self.stepper.step()),
+            scheme: None,
         }
     }
 }

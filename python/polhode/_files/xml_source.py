@@ -1,0 +1,185 @@
+"""XML as a tree that knows where in its source each element stands, so that an edit leaves the rest as it is.
+
+Read with expat alone: a document that declares entities or a document type is refused, so nothing can be
+expanded or fetched.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final, NamedTuple
+from xml.parsers import expat
+
+from polhode.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+__all__ = ["Edit", "Element", "edited", "parse_xml", "remove_attribute", "set_attribute", "set_text"]
+
+_START_TAG: Final = re.compile(rb"<[^\"'<>]*(?:\"[^\"]*\"[^\"'<>]*|'[^']*'[^\"'<>]*)*>")
+_TOO_DEEP: Final = 200
+
+
+@dataclass(eq=False)
+class Element:
+    """One element.
+
+    Attributes
+    ----------
+    tag : str
+    attributes : dict
+    line : int
+        Of its start tag, counted from 1.
+    start, inside, outside, end : int
+        Bytes of the source at which the start tag begins and ends, and the end tag begins and ends; the last
+        three are the same for ``<tag/>``.
+    text : str
+        Its own characters, those of its children left out.
+    """
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    start: int
+    inside: int
+    outside: int = 0
+    end: int = 0
+    text: str = ""
+    children: list[Element] = field(default_factory=list)
+
+    def find(self, tag: str) -> Element | None:
+        """Find the first child of that name."""
+        return next(self.all(tag), None)
+
+    def all(self, tag: str) -> Iterator[Element]:
+        """Give the children of that name."""
+        return (child for child in self.children if child.tag == tag)
+
+    def descendants(self, tag: str) -> Iterator[Element]:
+        """Give the elements of that name at any depth, in the order of the document."""
+        for child in self.children:
+            if child.tag == tag:
+                yield child
+            yield from child.descendants(tag)
+
+
+class Edit(NamedTuple):
+    """Bytes of the source to be replaced."""
+
+    start: int
+    end: int
+    text: str
+
+
+def parse_xml(source: bytes, name: str) -> Element:
+    """Parse a document.
+
+    Parameters
+    ----------
+    source : bytes
+        In UTF-8, so that the elements' places are those of the text.
+    name : str
+        Of the file, for what is wrong with it.
+
+    Returns
+    -------
+    Element
+        The root.
+
+    Raises
+    ------
+    FileFormatError
+        If it is no well-formed XML, declares entities or a document type, or is nested beyond reason.
+    """
+    if source.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise FileFormatError(f"{name}: is in UTF-16; save it as UTF-8")
+    parser = expat.ParserCreate()
+    root: list[Element] = []
+    stack: list[Element] = []
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        at = parser.CurrentByteIndex
+        match = _START_TAG.match(source, at)
+        inside = match.end() if match else at
+        element = Element(tag, attributes, parser.CurrentLineNumber, at, inside)
+        (stack[-1].children if stack else root).append(element)
+        stack.append(element)
+        if len(stack) > _TOO_DEEP:
+            raise FileFormatError(
+                f"{name}: line {element.line}: elements are nested more than {_TOO_DEEP} deep"
+            )
+
+    def end(_: str) -> None:
+        element = stack.pop()
+        if source[element.inside - 2 : element.inside] == b"/>":
+            element.outside = element.end = element.inside
+        else:
+            element.outside = parser.CurrentByteIndex
+            element.end = source.index(b">", element.outside) + 1
+
+    def characters(text: str) -> None:
+        if stack:
+            stack[-1].text += text
+
+    def refuse(*_: object) -> None:
+        raise FileFormatError(
+            f"{name}: line {parser.CurrentLineNumber}: declares a document type or entities, which are not "
+            "read; remove the declaration"
+        )
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
+    parser.CharacterDataHandler = characters
+    parser.StartDoctypeDeclHandler = refuse
+    parser.EntityDeclHandler = refuse
+    try:
+        parser.Parse(source, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
+        raise FileFormatError(f"{name}: line {error.lineno}: not well-formed XML: {reason}") from None
+    return root[0]
+
+
+def edited(source: bytes, edits: Iterable[Edit]) -> bytes:
+    """Apply edits that do not overlap."""
+    for edit in sorted(edits, reverse=True):
+        source = source[: edit.start] + edit.text.encode() + source[edit.end :]
+    return source
+
+
+def set_attribute(source: bytes, element: Element, name: str, value: str) -> Edit:
+    """Edit an attribute's value, or add the attribute."""
+    found = _attribute(source, element, name)
+    if found is not None:
+        quote = source[found.end() - 1 : found.end()].decode()
+        return Edit(found.start(2), found.end(), f"{quote}{value}{quote}")
+    at = element.inside - (2 if source[element.inside - 2 : element.inside] == b"/>" else 1)
+    while source[at - 1 : at].isspace():
+        at -= 1
+    return Edit(at, at, f' {name}="{value}"')
+
+
+def remove_attribute(source: bytes, element: Element, name: str) -> Edit | None:
+    """Edit an attribute away, with the blanks before it."""
+    found = _attribute(source, element, name)
+    return Edit(found.start(), found.end(), "") if found is not None else None
+
+
+def set_text(element: Element, value: str) -> Edit:
+    """Edit what stands between the tags."""
+    if element.outside == element.inside == element.end:
+        return Edit(element.start, element.end, f"<{element.tag}>{value}</{element.tag}>")
+    return Edit(element.inside, element.outside, value)
+
+
+def _attribute(source: bytes, element: Element, name: str) -> re.Match[bytes] | None:
+    # Values are stepped over, so that a name inside one is not taken for an attribute.
+    pattern = re.compile(rb"\s+([^\s=\"'<>/]+)\s*=\s*(\"[^\"]*\"|'[^']*')")
+    at = element.start + 1 + len(element.tag.encode())
+    while (match := pattern.match(source, at, element.inside)) is not None:
+        if match[1] == name.encode():
+            return match
+        at = match.end()
+    return None

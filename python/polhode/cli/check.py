@@ -1,0 +1,147 @@
+"""``polhode check``: a verdict on the inertia of every link of a robot, and a file with better values."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from polhode import robots
+from polhode.cli.layout import Column, Field, Report, Table
+from polhode.cli.source import STDIN, shown
+from polhode.errors import FileFormatError, PolhodeError
+
+if TYPE_CHECKING:
+    from polhode.cli.options import CheckOptions
+
+__all__ = ["check_report"]
+
+_UNIT = "kg m^2"
+_COLUMNS = (
+    Column("link", "link"),
+    Column("mass", "mass", "kg"),
+    Column("moments", "declared", _UNIT),
+    Column("shape_moments", "from its shape", _UNIT),
+    Column("verdict", "verdict"),
+    Column("reason", "reason"),
+)
+
+
+def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
+    """Judge a robot and fix it as asked for.
+
+    Returns
+    -------
+    report : Report
+    is_good : bool
+        Whether no link fails; of the fixed file where one is written.
+    """
+    _check_options(file, options)
+    robot = _read(file)
+    failing = robots.FAILURES | ({"suspect"} if options.strict else frozenset())
+    verdicts = robots.check(robot, options.packages)
+    report = Report()
+    report.section(
+        "",
+        Field("file", "file", shown(file)),
+        Field("format", "format", robot.format),
+        Field("robot", "robot", robot.name or "(without a name)"),
+    )
+    report.section("links", Table("links", _COLUMNS, [_row(verdict) for verdict in verdicts]))
+    bad = [verdict for verdict in verdicts if verdict.verdict in failing]
+    counts = {word: sum(v.verdict == word for v in verdicts) for word in ("good", "suspect")}
+    report.section(
+        "verdict",
+        Field("verdict", "verdict", "bad" if bad else "good"),
+        Field("count.links", "links", len(verdicts)),
+        Field("count.failing", "failing", len(bad)),
+        *(Field(f"count.{word}", word, count) for word, count in counts.items()),
+    )
+    notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
+    report.notes += [*robot.notes, *notes]
+    if options.fix is None:
+        if any(verdict.better is not None for verdict in bad):
+            report.notes.append("--fix FILE writes better values into a copy")
+        return report, not bad
+    return report, _fix(report, robot, verdicts, failing, options)
+
+
+def _check_options(file: Path, options: CheckOptions) -> None:
+    for folder in options.packages:
+        if not folder.is_dir():
+            raise PolhodeError(f"--packages: there is no folder {folder}; name one that holds the packages")
+    if options.fix is None:
+        return
+    if not options.fix.parent.is_dir():
+        raise PolhodeError(f"--fix: there is no directory {options.fix.parent}; create it first")
+    if options.fix.exists() and file.exists() and options.fix.samefile(file):
+        raise PolhodeError(f"--fix: {options.fix} is the file that is read; write to another one")
+
+
+def _read(file: Path) -> robots.Robot:
+    if file != STDIN:
+        return robots.read_robot(file)
+    source = sys.stdin.buffer.read()
+    if not source:
+        raise FileFormatError("-: nothing came on standard input; send a file into it")
+    return robots.parse_robot(source, name=shown(file), folder=Path.cwd())
+
+
+def _row(verdict: robots.Verdict) -> dict[str, Any]:
+    return {
+        "link": verdict.name,
+        "line": verdict.line,
+        "mass": verdict.mass,
+        "moments": verdict.moments,
+        "shape_moments": verdict.shape_moments,
+        "factor": verdict.factor,
+        "shapes": verdict.shapes,
+        "verdict": verdict.verdict,
+        "reason": verdict.reason,
+    }
+
+
+def _fix(
+    report: Report,
+    robot: robots.Robot,
+    verdicts: list[robots.Verdict],
+    failing: frozenset[str],
+    options: CheckOptions,
+) -> bool:
+    """Write the fixed file, tell what changed, and whether all its links are good."""
+    path = options.fix
+    if path is None:
+        return False
+    source = robots.fixed(robot, verdicts, failing)
+    path.write_bytes(source)
+    rows, left = [], []
+    for link, verdict in zip(robot.links, verdicts, strict=True):
+        if verdict.verdict not in failing:
+            continue
+        if verdict.better is None or link.inertial is None:
+            left.append(verdict.name)
+            continue
+        rows.append(
+            {
+                "link": verdict.name,
+                "center_of_mass_before": link.inertial.center_of_mass,
+                "center_of_mass": verdict.better.center_of_mass,
+                "inertia_before": link.inertial.inertia,
+                "inertia": verdict.better.inertia,
+                "from": f"its {verdict.shapes} shape" if verdict.shapes else "the nearest tensor of a body",
+                "diagonal": verdict.better.inertia.diagonal(),
+            }
+        )
+    columns = (
+        Column("link", "link"),
+        Column("center_of_mass_before", "C before", "m"),
+        Column("center_of_mass", "C", "m"),
+        Column("diagonal", "Ixx Iyy Izz", _UNIT),
+        Column("from", "from"),
+    )
+    report.section("changed", Table("changed", columns, rows))
+    report.notes.append(f"wrote {path}: {len(rows)} links changed, everything else as it stands")
+    if left:
+        report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(left)}")
+    again = robots.check(robots.parse_robot(source, name=str(path), folder=robot.folder), options.packages)
+    return not any(verdict.verdict in failing for verdict in again)

@@ -1,0 +1,158 @@
+"""The body in a file, with what the options say about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode import RigidBody
+from polhode.cli.progress import reading_progress
+from polhode.cli.quantities import has_unit, quantity
+from polhode.cli.source import as_file
+from polhode.errors import PolhodeError
+from polhode.io import MOLECULE_SUFFIX, MeshSolid, molecule_isotopes, read_xyz, solid_from_file
+from polhode.units import METRES, metres_per
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from polhode.cli.options import BodyOptions
+    from polhode.molecules import Isotope
+
+__all__ = ["LoadedBody", "in_file_unit", "load_body"]
+
+
+@dataclass(frozen=True)
+class LoadedBody:
+    """A body with what its file and the options say about it.
+
+    Attributes
+    ----------
+    body : RigidBody
+        In kg and m, in u and angstrom (molecules), or in the file's own units.
+    source : MeshSolid or list of Isotope
+        What was read: a mesh or the nuclides of a molecule.
+    comment : str
+        A molecule's comment.
+    mass_unit, length : str
+        Names of the units of `body`.
+    density : float
+        Of a mesh; not a number for a molecule.
+    volume : float
+        Of a mesh; not a number for a molecule.
+    assumed : bool
+        Whether neither density nor mass was given, and density 1 was taken.
+    notes : tuple of str
+        What was done to the mesh on request.
+    """
+
+    body: RigidBody
+    source: MeshSolid | list[Isotope]
+    mass_unit: str
+    length: str
+    comment: str = ""
+    density: float = float("nan")
+    volume: float = float("nan")
+    assumed: bool = False
+    notes: tuple[str, ...] = ()
+
+    @property
+    def moment_unit(self) -> str:
+        """Unit of a moment of inertia."""
+        return f"{self.mass_unit} {self.length}^2"
+
+    @property
+    def extent(self) -> float:
+        """A length of the body's own: its distance from the origin and its largest radius of gyration."""
+        return float(np.linalg.norm(self.body.center_of_mass) + self.body.radii_of_gyration.max())
+
+
+def load_body(file: Path, options: BodyOptions) -> LoadedBody:
+    """Read the body in a file; ``-`` is standard input."""
+    with as_file(file) as path:
+        if path.suffix.lower() == MOLECULE_SUFFIX:
+            return _load_molecule(path, options)
+        return _load_mesh(path, options)
+
+
+def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
+    if options.density is not None and options.mass is not None:
+        raise PolhodeError(
+            "--density and --mass: give one of the two, since the other follows from the volume"
+        )
+    unit = options.length_unit
+    scale = 1.0 if unit is None else metres_per(unit)
+    assumed = options.density is None and options.mass is None
+    density = 1.0 if assumed else _amount(options.density, "kg/m^3", "--density", unit)
+    mass = _amount(options.mass, "kg", "--mass", unit)
+    weld = 0.0
+    if options.weld is not None:
+        weld = in_file_unit(options.weld, "--weld", unit)
+        if not weld > 0.0:
+            raise PolhodeError(
+                f"--weld: {weld:g} is not a positive length; leave it out to join equal corners"
+            )
+    with reading_progress(file) as tell:
+        solid = solid_from_file(
+            file,
+            density=density,
+            mass=mass,
+            scale=scale,
+            weld=weld,
+            orient=options.orient,
+            index_base=options.index_base,
+            progress=tell,
+        )
+    notes: tuple[str, ...] = ()
+    if weld != 0.0:
+        notes = (f"{solid.welded} corners were joined to others within {weld:g} (--weld)",)
+    return LoadedBody(
+        body=solid.body,
+        source=solid,
+        mass_unit="kg" if unit is not None else "mass",
+        length="m" if unit is not None else "unit",
+        density=float(solid.body.mass) / solid.volume if density is None else density,
+        volume=solid.volume,
+        assumed=assumed,
+        notes=notes,
+    )
+
+
+def in_file_unit(text: str, option: str, unit: str | None) -> float:
+    """Read a length that is compared with the file's coordinates: bare numbers are in their unit."""
+    if not has_unit(text):
+        return quantity(text, "m", option)
+    if unit is None:
+        raise PolhodeError(
+            f"{option}: {text!r} has a unit, but the file's coordinates have none; state --length-unit too"
+        )
+    return quantity(text, "m", option) / metres_per(unit)
+
+
+def _amount(text: str | None, si: str, option: str, unit: str | None) -> float | None:
+    if text is None:
+        return None
+    if unit is None and has_unit(text):
+        raise PolhodeError(
+            f"{option}: {text!r} has a unit, but the file's coordinates have none; state --length-unit too"
+        )
+    return quantity(text, si, option)
+
+
+def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
+    for given, is_given, reason in (
+        ("--density", options.density is not None, "whose atoms have their own masses"),
+        ("--mass", options.mass is not None, "whose atoms have their own masses"),
+        ("--weld", options.weld is not None, "not a mesh"),
+        ("--orient", options.orient, "not a mesh"),
+        ("--index-base", options.index_base != 1, "not a mesh"),
+    ):
+        if is_given:
+            raise PolhodeError(f"{given}: {file} is a molecule, {reason}; leave it out")
+    molecule = read_xyz(file)
+    atoms = molecule_isotopes(file, molecule)
+    in_angstrom = metres_per(options.length_unit or "angstrom") / METRES["angstrom"]
+    body = RigidBody.from_particles([atom.mass for atom in atoms], molecule.positions * in_angstrom)
+    return LoadedBody(body=body, source=atoms, mass_unit="u", length="angstrom", comment=molecule.comment)

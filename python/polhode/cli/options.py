@@ -1,0 +1,169 @@
+"""What the commands take; the help reads it, so nothing heavy is imported here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, TypeAlias
+
+from cyclopts import Parameter
+
+__all__ = [
+    "BodyOptions",
+    "CheckOptions",
+    "LengthUnit",
+    "MoleculeOptions",
+    "OutputOptions",
+    "ReportOptions",
+    "SpinOptions",
+]
+
+LengthUnit: TypeAlias = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]
+Words: TypeAlias = tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputOptions:
+    """Where the report goes and in which form.
+
+    Attributes
+    ----------
+    form
+        A table for people or the same fields as JSON, where an infinite number is the string "Infinity" and
+        an undefined one is null; JSON by default where --output ends in .json.
+    output
+        Write the report to this file instead of the terminal.
+    """
+
+    form: Annotated[Literal["table", "json"] | None, Parameter(name="--format")] = None
+    output: Annotated[Path | None, Parameter(name="--output")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyOptions:
+    """How to read the file.
+
+    Attributes
+    ----------
+    density
+        Density, as in "2.7 g/cm^3"; a bare number is kg/m^3.
+    mass
+        Mass instead of density, as in "0.3 lb"; a bare number is kg.
+    length_unit
+        Unit of the file's coordinates; results are then in SI units. Without it all is in the file's own
+        unit, and numbers on the command line are bare.
+    weld
+        Make corners at most this far apart one; a bare number is in the unit of the file. Without it only
+        equal ones are.
+    orient
+        Turn triangles that face inward; without it they are an error.
+    index_base
+        What the faces of an OBJ or plate file count vertices from: 1 (OBJ) or 0.
+    """
+
+    density: Annotated[str | None, Parameter(name="--density")] = None
+    mass: Annotated[str | None, Parameter(name="--mass")] = None
+    length_unit: Annotated[LengthUnit | None, Parameter(name="--length-unit")] = None
+    weld: Annotated[str | None, Parameter(name="--weld")] = None
+    orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
+    index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportOptions:
+    """What the report tells beyond the usual, and what it is held against.
+
+    Attributes
+    ----------
+    about
+        A point to give the inertia tensor about, as in 0 0 10 (in the unit of the file) or "0, 0, 1 cm".
+    mass_unit
+        Give masses and moments also in this unit, with the file's unit of length: g, lb, ...
+    expect
+        A report saved with --format json, or any of its fields: numbers that differ end with exit code 1.
+    rtol
+        How far they may differ, relative to the largest component.
+    """
+
+    about: Annotated[Words, Parameter(name="--about", negative="", consume_multiple=True)] = ()
+    mass_unit: Annotated[str | None, Parameter(name="--mass-unit")] = None
+    expect: Annotated[Path | None, Parameter(name="--expect")] = None
+    rtol: Annotated[float, Parameter(name="--rtol")] = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckOptions:
+    """How a robot's links are judged.
+
+    Attributes
+    ----------
+    packages
+        A folder that holds the packages of package:// and model:// addresses. May be repeated; folders above
+        the file, ROS_PACKAGE_PATH and GZ_SIM_RESOURCE_PATH are searched too.
+    strict
+        Let links that are only suspect fail as well.
+    fix
+        Write the file to this one with right values where links fail, everything else as it stands.
+    """
+
+    packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="")] = ()
+    strict: Annotated[bool, Parameter(name="--strict", negative="")] = False
+    fix: Annotated[Path | None, Parameter(name="--fix")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoleculeOptions:
+    """Which nuclides a molecule is made of.
+
+    Attributes
+    ----------
+    isotopes
+        Nuclides to put in: for an element (18O: all its atoms) or for one atom by its number in the file
+        (2=13C). May be repeated: each option is one isotopologue, in which several are separated by commas.
+    length_unit
+        Unit of the file's coordinates.
+    """
+
+    isotopes: Annotated[Words, Parameter(name="--isotopes", negative="")] = ()
+    length_unit: Annotated[LengthUnit, Parameter(name="--length-unit")] = "angstrom"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpinOptions:
+    """How the body spins and what is kept of it.
+
+    Attributes
+    ----------
+    moments
+        Three principal moments instead of a file, as in "1 3 3.2" or "2 4 5 g cm^2"; a bare number is kg m^2.
+    center
+        Where the centre of mass stands on those axes, from the fixed point; a bare number is in m.
+    omega
+        Angular velocity at the start, its components in the body, as in 0 6 0.01 or "10 20 30 deg/s"; a bare
+        number is rad/s.
+    attitude
+        Euler angles phi theta psi (ZXZ) at the start, as in "0 30 0 deg"; a bare number is in radians.
+    until
+        Time of the end, as in 20 or "30 d"; a bare number is in s. The start is 0.
+    degrees
+        Print angular velocity in deg/s, and take it so where no unit stands with it.
+    axes
+        Axes of the components: the file's, or the principal axes (ascending moments).
+    samples
+        Number of times, start and end included.
+    rtol
+        Relative tolerance where the motion is integrated.
+    save
+        Where to write the motion: a picture (.png, .pdf, .svg) or its numbers (.csv, .npz). May be repeated.
+    """
+
+    moments: Annotated[Words, Parameter(name="--moments", negative="", consume_multiple=True)] = ()
+    center: Annotated[Words, Parameter(name="--center", negative="", consume_multiple=True)] = ()
+    omega: Annotated[Words, Parameter(name="--omega", negative="", consume_multiple=True)] = ()
+    attitude: Annotated[Words, Parameter(name="--attitude", negative="", consume_multiple=True)] = ()
+    until: Annotated[str | None, Parameter(name="--until")] = None
+    degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False
+    axes: Annotated[Literal["file", "principal"], Parameter(name="--axes")] = "file"
+    samples: Annotated[int, Parameter(name="--samples")] = 1001
+    rtol: Annotated[float, Parameter(name="--rtol")] = 1e-10
+    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="")] = ()

@@ -1,0 +1,71 @@
+"""Files as arguments: by their path, or ``-`` for what comes on standard input."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Final
+
+from polhode._files.content import content_format
+from polhode.errors import FileFormatError, PolhodeError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["STDIN", "as_file", "shown"]
+
+STDIN: Final = Path("-")
+_SUFFIXES: Final = {
+    "binary STL": ".stl",
+    "ASCII STL": ".stl",
+    "PLY": ".ply",
+    "OFF": ".off",
+    "GLB": ".glb",
+    "v/f text": ".obj",
+    "XYZ": ".xyz",
+}
+
+
+def shown(file: Path) -> str:
+    """Name a file as a report does."""
+    return "standard input" if file == STDIN else str(file)
+
+
+@contextmanager
+def as_file(file: Path) -> Iterator[Path]:
+    """Give the file itself; standard input as a file whose suffix tells its content.
+
+    Parameters
+    ----------
+    file : pathlib.Path
+        ``-`` is standard input.
+
+    Raises
+    ------
+    FileFormatError
+        If nothing comes on standard input, or its content does not tell what it is.
+    """
+    if file != STDIN:
+        yield file
+        return
+    with TemporaryDirectory() as folder:
+        raw = Path(folder, "stdin")
+        with raw.open("wb") as copy:
+            shutil.copyfileobj(sys.stdin.buffer, copy)
+        with raw.open("rb") as stream:
+            head = stream.read(4096)
+        if not head:
+            raise FileFormatError("-: nothing came on standard input; send a file into it")
+        suffix = _SUFFIXES.get(content_format(head, raw.stat().st_size)[0] or "")
+        if suffix is None:
+            raise FileFormatError(
+                "-: the content does not tell its format; save it in a file with the format's suffix"
+            )
+        named = raw.rename(raw.with_suffix(suffix))
+        try:
+            yield named
+        except PolhodeError as error:
+            raise type(error)(str(error).replace(str(named), shown(file))) from None

@@ -1,0 +1,184 @@
+"""Robots from URDF, SDF and MJCF: whether each link's inertia can be trusted, and a better one.
+
+The simulators take what a file says. :func:`check` holds every link against the laws that each body obeys,
+against the size of its own geometry, and against that geometry filled evenly; :func:`fixed` writes better
+values and leaves every other byte of the file as it is.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from polhode._files.xml_source import Edit, Element, edited, parse_xml
+from polhode.errors import FileFormatError
+from polhode.robots import mjcf, sdf, urdf
+from polhode.robots.geometry import GeometryReader
+from polhode.robots.model import Inertial, Link, Place, Robot, Shape
+from polhode.robots.verdict import FAILURES, Verdict, judge
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+__all__ = [
+    "FAILURES",
+    "Inertial",
+    "Link",
+    "Place",
+    "Robot",
+    "Shape",
+    "Verdict",
+    "check",
+    "fixed",
+    "parse_robot",
+    "read_robot",
+]
+
+_FORMATS = {"robot": ("URDF", urdf), "sdf": ("SDF", sdf), "mujoco": ("MJCF", mjcf)}
+
+
+def read_robot(path: str | os.PathLike[str]) -> Robot:
+    """Read a robot file.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        URDF, SDF or MJCF; its root element tells which. Declarations of entities and document types are
+        refused.
+
+    Returns
+    -------
+    Robot
+
+    Raises
+    ------
+    FileFormatError
+        If it is none of these, or damaged.
+    OSError
+        If the file cannot be read.
+    """
+    file = Path(path)
+    if file.is_dir():
+        raise FileFormatError(f"{file}: is a directory; name a file in it")
+    return parse_robot(file.read_bytes(), name=str(file), folder=file.absolute().parent)
+
+
+def parse_robot(source: bytes, *, name: str, folder: str | os.PathLike[str]) -> Robot:
+    """Read a robot from the bytes of its file.
+
+    Parameters
+    ----------
+    source : bytes
+        XML in UTF-8.
+    name : str
+        For what is wrong with it.
+    folder : str or os.PathLike
+        Where relative addresses of meshes start.
+
+    Returns
+    -------
+    Robot
+
+    Examples
+    --------
+    >>> from polhode import robots
+    >>> text = b'''<robot name="one"><link name="arm"><inertial><mass value="2"/>
+    ... <inertia ixx="1" iyy="1" izz="3" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'''
+    >>> robot = robots.parse_robot(text, name="one.urdf", folder=".")
+    >>> [(link.name, link.inertial.mass) for link in robot.links]
+    [('arm', 2.0)]
+    """
+    if not source.strip():
+        raise FileFormatError(f"{name}: the file is empty")
+    root = parse_xml(source, name)
+    if root.tag not in _FORMATS:
+        raise FileFormatError(
+            f"{name}: its root is <{root.tag}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); check the file"
+        )
+    format_name, reader = _FORMATS[root.tag]
+    unexpanded = next((e for e in _walk(root) if e.startswith("xacro:")), None)
+    if unexpanded is not None:
+        raise FileFormatError(f"{name}: holds <{unexpanded}>; expand it first: xacro {name} > out.urdf")
+    try:
+        links = tuple(reader.links(root))
+    except ValueError as error:
+        raise FileFormatError(f"{name}: {error}") from None
+    if not links:
+        raise FileFormatError(f"{name}: holds no link; check the file")
+    included = sum(1 for tag in _walk(root) if tag in ("include", "attach", "replicate"))
+    notes = (f"{included} included or attached parts are not followed",) if included else ()
+    model = root if format_name != "SDF" else next(root.descendants("model"), root)
+    title = model.attributes.get("name", model.attributes.get("model", ""))
+    return Robot(format_name, title, links, Path(folder), source, notes)
+
+
+def check(robot: Robot, packages: Sequence[str | os.PathLike[str]] = ()) -> list[Verdict]:
+    """Judge the inertia of every link.
+
+    Parameters
+    ----------
+    robot : Robot
+        From :func:`read_robot`.
+    packages : sequence of str or os.PathLike
+        Folders that hold the packages of ``package://`` and ``model://`` addresses; folders above the file,
+        ``ROS_PACKAGE_PATH`` and ``GZ_SIM_RESOURCE_PATH`` are searched too.
+
+    Returns
+    -------
+    list of Verdict
+        One for each link.
+
+    Examples
+    --------
+    >>> from polhode import robots
+    >>> text = b'''<robot name="one"><link name="arm"><inertial><mass value="2"/>
+    ... <inertia ixx="1" iyy="1" izz="3" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'''
+    >>> (verdict,) = robots.check(robots.parse_robot(text, name="one.urdf", folder="."))
+    >>> verdict.verdict
+    'impossible'
+    """
+    return judge(robot.links, GeometryReader(robot.folder, [Path(package) for package in packages]))
+
+
+def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
+    """Write better values into the links that fail.
+
+    Parameters
+    ----------
+    robot : Robot
+    verdicts : sequence of Verdict
+        From :func:`check`.
+    words : collection of str
+        The verdicts that are put right.
+
+    Returns
+    -------
+    bytes
+        The file; everything but the numbers of those links stands as it did.
+
+    Examples
+    --------
+    >>> from polhode import robots
+    >>> text = b'''<robot name="one"><link name="ball"><inertial><mass value="5"/>
+    ... <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    ... <visual><geometry><sphere radius="0.1"/></geometry></visual></link></robot>'''
+    >>> robot = robots.parse_robot(text, name="one.urdf", folder=".")
+    >>> print(robots.fixed(robot, robots.check(robot)).decode().splitlines()[1])
+    <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0.0" ixz="0.0" iyz="0.0"/></inertial>
+    """
+    edits: list[Edit] = []
+    for link, verdict in zip(robot.links, verdicts, strict=True):
+        if verdict.verdict in words and verdict.better is not None and link.rewrite is not None:
+            edits += link.rewrite(robot.source, verdict.better)
+    return edited(robot.source, edits)
+
+
+def _walk(element: Element) -> list[str]:
+    """Give every tag of a document."""
+    waiting, tags = [element], []
+    while waiting:
+        item = waiting.pop()
+        tags.append(item.tag)
+        waiting += item.children
+    return tags

@@ -1,0 +1,206 @@
+"""MJCF, MuJoCo's format: ``<mujoco>`` with nested ``<body>`` elements and default classes.
+
+Sizes are half lengths. Angles are degrees unless the compiler says radians; the letters of ``eulerseq`` are
+axes of the turning frame in lower case, fixed ones in upper case, the other way round than here.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import euler_angles
+from polhode._core import rotate
+from polhode._files.xml_source import Edit, Element, remove_attribute, set_attribute
+from polhode.errors import FileFormatError
+from polhode.robots.model import Inertial, Link, Place, Shape, numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["links"]
+
+_ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
+_HALF_LENGTHS = {"sphere": 1, "ellipsoid": 3, "box": 3, "cylinder": 2, "capsule": 2}
+_WATER = "1000"
+
+
+def links(root: Element) -> Iterator[Link]:
+    """Read every body below the world."""
+    reader = _Reader(root)
+    for world in root.all("worldbody"):
+        for body, _, inherited in reader.members(world, "body", Place.here(), None):
+            yield from reader.bodies(body, inherited)
+
+
+class _Reader:
+    """A document's compiler settings, default classes and meshes."""
+
+    def __init__(self, root: Element) -> None:
+        settings = {k: v for compiler in root.all("compiler") for k, v in compiler.attributes.items()}
+        self.in_radians = settings.get("angle", "degree") == "radian"
+        self.sequence = settings.get("eulerseq", "xyz").swapcase()
+        self.infers_always = settings.get("inertiafromgeom", "auto") == "true"
+        self.folder = settings.get("meshdir", settings.get("assetdir", ""))
+        self.geoms: dict[str, dict[str, str]] = {"main": {}}
+        for default in root.all("default"):
+            self._add_class(default, {}, default.attributes.get("class", "main"))
+        self.meshes: dict[str, Element] = {}
+        for asset in root.all("asset"):
+            for mesh in asset.all("mesh"):
+                file = mesh.attributes.get("file", "")
+                name = mesh.attributes.get("name", file.rpartition("/")[2].rpartition(".")[0])
+                self.meshes[name] = mesh
+
+    def bodies(self, body: Element, inherited: str | None) -> Iterator[Link]:
+        """Read a body and those that hang on it."""
+        inherited = body.attributes.get("childclass", inherited)
+        inertial, problem = None, ""
+        declared = body.find("inertial")
+        if declared is not None and not self.infers_always:
+            try:
+                inertial = self._inertial(declared)
+            except FileFormatError as error:
+                problem = str(error)
+        yield Link(
+            name=body.attributes.get("name", f"(body of line {body.line})"),
+            line=body.line,
+            inertial=inertial,
+            problem=problem,
+            shapes=tuple(
+                self._shape(geom, place, name)
+                for geom, place, name in self.members(body, "geom", Place.here(), inherited)
+            ),
+            inferred=declared is None or self.infers_always,
+            rewrite=partial(_rewrite, declared) if declared is not None else None,
+        )
+        for child, _, name in self.members(body, "body", Place.here(), inherited):
+            yield from self.bodies(child, name)
+
+    def members(
+        self, parent: Element, tag: str, place: Place, inherited: str | None
+    ) -> Iterator[tuple[Element, Place, str | None]]:
+        """Give the elements of a body or the world, those in frames too, with the frame and its class."""
+        for child in parent.children:
+            if child.tag == tag:
+                yield child, place, inherited
+            elif child.tag == "frame":
+                inside = place.then(self._place(child, child.attributes))
+                yield from self.members(child, tag, inside, child.attributes.get("childclass", inherited))
+
+    def _add_class(self, default: Element, inherited: dict[str, str], name: str) -> None:
+        own = dict(inherited)
+        for geom in default.all("geom"):
+            own |= geom.attributes
+        self.geoms[name] = own
+        for child in default.all("default"):
+            self._add_class(child, own, child.attributes.get("class", ""))
+
+    def _place(self, element: Element, attributes: dict[str, str]) -> Place:
+        position = numbers(element, attributes.get("pos", "0 0 0"), 3, "pos")
+        return Place(self._rotation(element, attributes), position)
+
+    def _rotation(self, element: Element, attributes: dict[str, str]) -> Any:
+        to_radians = 1.0 if self.in_radians else np.pi / 180.0
+        if "quat" in attributes:
+            w, x, y, z = numbers(element, attributes["quat"], 4, "quat")
+            return _matrix(_unit(element, np.array([x, y, z, w])))
+        if "euler" in attributes:
+            angles = numbers(element, attributes["euler"], 3, "euler") * to_radians
+            return _matrix(euler_angles.to_quaternion(angles, self.sequence))
+        if "axisangle" in attributes:
+            *axis, angle = numbers(element, attributes["axisangle"], 4, "axisangle")
+            half = angle * to_radians / 2.0
+            return _matrix(np.append(np.sin(half) * _unit(element, np.array(axis)), np.cos(half)))
+        if "xyaxes" in attributes:
+            values = numbers(element, attributes["xyaxes"], 6, "xyaxes")
+            x_axis = _unit(element, values[:3])
+            y_axis = _unit(element, values[3:] - values[3:] @ x_axis * x_axis)
+            return np.stack([x_axis, y_axis, np.cross(x_axis, y_axis)], axis=-1)
+        if "zaxis" in attributes:
+            return _turning_z_to(_unit(element, numbers(element, attributes["zaxis"], 3, "zaxis")))
+        return np.eye(3)
+
+    def _inertial(self, element: Element) -> Inertial:
+        attributes = element.attributes
+        place = self._place(element, attributes)
+        (mass,) = numbers(element, attributes.get("mass"), 1, "mass")
+        if "fullinertia" in attributes:
+            xx, yy, zz, xy, xz, yz = numbers(element, attributes["fullinertia"], 6, "fullinertia")
+            tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        else:
+            tensor = np.diag(numbers(element, attributes.get("diaginertia"), 3, "diaginertia"))
+        return Inertial(float(mass), place.position, place.rotation @ tensor @ place.rotation.T)
+
+    def _shape(self, geom: Element, frame: Place, inherited: str | None) -> Shape:
+        name = geom.attributes.get("class", inherited) or "main"
+        attributes = {**self.geoms.get(name, {}), **geom.attributes}
+        kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
+        density = float(numbers(geom, attributes.get("density", _WATER), 1, "density")[0])
+        mass = float(numbers(geom, attributes["mass"], 1, "mass")[0]) if "mass" in attributes else None
+        if kind == "mesh":
+            mesh = self.meshes.get(attributes.get("mesh", ""))
+            place = frame.then(self._place(geom, attributes))
+            if mesh is None:
+                return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass)
+            scale = tuple(numbers(mesh, mesh.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
+            file = mesh.attributes.get("file", "")
+            address = f"{self.folder.rstrip('/')}/{file}" if self.folder and file else file
+            return Shape("mesh", scale, place, "collision", address, density, mass)
+        place, size = self._sized(geom, attributes, kind)
+        return Shape(kind, size, frame.then(place), "collision", "", density, mass)
+
+    def _sized(self, geom: Element, attributes: dict[str, str], kind: str) -> tuple[Place, tuple[float, ...]]:
+        """Full lengths and the place; ``fromto`` gives the length and place of what is long."""
+        place = self._place(geom, attributes)
+        if kind not in _HALF_LENGTHS:
+            return place, ()
+        size = numbers(geom, attributes.get("size", ""), None, "size").tolist()
+        needed = _HALF_LENGTHS[kind]
+        if "fromto" in attributes and kind != "sphere":
+            ends = numbers(geom, attributes["fromto"], 6, "fromto")
+            along = ends[3:] - ends[:3]
+            place = Place(_turning_z_to(_unit(geom, along)), (ends[:3] + ends[3:]) / 2.0)
+            half = float(np.linalg.norm(along)) / 2.0
+            size = [size[0], half] if needed == 2 else [size[0], size[min(1, len(size) - 1)], half]
+        if len(size) < needed:
+            raise FileFormatError(f"line {geom.line}: a geom of type {kind} needs {needed} numbers of size")
+        if kind == "box":
+            return place, tuple(2.0 * x for x in size[:3])
+        if kind in ("cylinder", "capsule"):
+            return place, (size[0], 2.0 * size[1])
+        return place, tuple(size[:needed])
+
+
+def _matrix(quaternion: Any) -> Any:
+    return np.stack([rotate(quaternion, axis) for axis in np.eye(3)], axis=-1)
+
+
+def _unit(element: Element, vector: Any) -> Any:
+    length = np.linalg.norm(vector)
+    if not length > 0.0:
+        raise FileFormatError(f"line {element.line}: a direction of length zero; give one")
+    return vector / length
+
+
+def _turning_z_to(axis: Any) -> Any:
+    """Turn z to an axis by the shortest rotation."""
+    if axis[2] < -1.0 + 1e-12:
+        return np.diag([1.0, -1.0, -1.0])
+    return _matrix(np.array([-axis[1], axis[0], 0.0, 1.0 + axis[2]]) / np.sqrt(2.0 * (1.0 + axis[2])))
+
+
+def _rewrite(declared: Element, source: bytes, new: Inertial) -> list[Edit]:
+    """Write mass properties with the axes of the body."""
+    tensor = new.inertia
+    elements = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
+    is_diagonal = not any(elements[3:])
+    name, values = ("diaginertia", elements[:3]) if is_diagonal else ("fullinertia", elements)
+    gone = {"diaginertia", "fullinertia", *_ORIENTATIONS} - {name}
+    edits = [remove_attribute(source, declared, attribute) for attribute in sorted(gone)]
+    edits.append(set_attribute(source, declared, name, " ".join(repr(float(x) + 0.0) for x in values)))
+    position = " ".join(repr(float(x) + 0.0) for x in new.center_of_mass)
+    edits.append(set_attribute(source, declared, "pos", position))
+    return [edit for edit in edits if edit is not None]

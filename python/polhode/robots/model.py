@@ -1,0 +1,161 @@
+"""What robot files say about each link, whatever their format."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from polhode.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from polhode._files.xml_source import Edit, Element
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Inertial", "Link", "Place", "Robot", "Shape", "numbers"]
+
+
+class Place(NamedTuple):
+    """Where something is in another frame: v_frame = rotation @ v + position."""
+
+    rotation: Floats
+    position: Floats
+
+    @classmethod
+    def here(cls) -> Place:
+        """Give the frame itself."""
+        return cls(np.eye(3), np.zeros(3))
+
+    def then(self, inner: Place) -> Place:
+        """Place something that is placed in this place."""
+        return Place(self.rotation @ inner.rotation, self.rotation @ inner.position + self.position)
+
+
+class Inertial(NamedTuple):
+    """Declared mass properties, in the axes and from the origin of the link.
+
+    Attributes
+    ----------
+    mass : float
+    center_of_mass : numpy.ndarray, shape (3,)
+    inertia : numpy.ndarray, shape (3, 3)
+        About the centre of mass.
+    """
+
+    mass: float
+    center_of_mass: Floats
+    inertia: Floats
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One piece of a link's geometry.
+
+    Attributes
+    ----------
+    kind : str
+        ``"box"``, ``"sphere"``, ``"cylinder"``, ``"capsule"``, ``"ellipsoid"``, ``"mesh"``; any other has no
+        volume that could be told.
+    size : tuple of float
+        Sides; radius; radius and length; radius and length of the straight part; semi-axes; scale.
+    place : Place
+        In the link.
+    role : {"collision", "visual"}
+    mesh : str
+        Address of a mesh, as the file has it.
+    density : float
+        Weighs it against the other shapes of the link.
+    mass : float, optional
+        Its own mass, where the file gives one.
+    """
+
+    kind: str
+    size: tuple[float, ...]
+    place: Place
+    role: Literal["collision", "visual"]
+    mesh: str = ""
+    density: float = 1.0
+    mass: float | None = None
+
+
+@dataclass(frozen=True)
+class Link:
+    """One link.
+
+    Attributes
+    ----------
+    name : str
+    line : int
+        Of its element in the file.
+    inertial : Inertial or None
+        What the file declares.
+    problem : str
+        Why the declaration cannot be read; "" if it can.
+    shapes : tuple of Shape
+    inferred : bool
+        Whether a simulator takes the inertia from the geometry (MJCF without any, SDF where it says so).
+    rewrite : callable, optional
+        Given the source and other mass properties, the edits that write them.
+    """
+
+    name: str
+    line: int
+    inertial: Inertial | None
+    problem: str = ""
+    shapes: tuple[Shape, ...] = ()
+    inferred: bool = False
+    rewrite: Callable[[bytes, Inertial], list[Edit]] | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot file.
+
+    Attributes
+    ----------
+    format : {"URDF", "SDF", "MJCF"}
+    name : str
+        Of the robot, model or world.
+    links : tuple of Link
+    folder : pathlib.Path
+        Where relative addresses start.
+    source : bytes
+        The file.
+    notes : tuple of str
+        What of the file is not judged.
+    """
+
+    format: str
+    name: str
+    links: tuple[Link, ...]
+    folder: Path
+    source: bytes
+    notes: tuple[str, ...] = ()
+
+
+def numbers(element: Element, text: str | None, count: int | None, what: str) -> Floats:
+    """Read the numbers of an attribute or a text.
+
+    Raises
+    ------
+    FileFormatError
+        With the line, unless there are `count` finite numbers (any number of them for None).
+    """
+    words = (text or "").split()
+    try:
+        values = np.array([float(word) for word in words])
+    except ValueError:
+        values = np.array([np.nan])
+    if not np.isfinite(values).all() or (count is not None and len(values) != count):
+        wanted = (
+            "a finite number" if count == 1 else f"{count or ''} finite numbers".replace("  ", " ").strip()
+        )
+        raise FileFormatError(f"line {element.line}: {what} is {text!r} where {wanted} has to stand")
+    return values

@@ -1,0 +1,131 @@
+"""URDF: ``<robot>`` with ``<link>`` elements; angles are roll, pitch, yaw about fixed axes."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode import euler_angles
+from polhode._core import rotate
+from polhode._files.xml_source import Edit, Element, set_attribute
+from polhode.errors import FileFormatError
+from polhode.robots.model import Inertial, Link, Place, Shape, numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Literal
+
+    from numpy.typing import NDArray
+
+__all__ = ["links", "roll_pitch_yaw", "tensor_text"]
+
+_MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+
+
+def links(root: Element) -> Iterator[Link]:
+    """Read the links of a robot."""
+    for element in root.all("link"):
+        inertial, problem = None, ""
+        declared = element.find("inertial")
+        if declared is not None:
+            try:
+                inertial = _inertial(declared)
+            except FileFormatError as error:
+                problem = str(error)
+        yield Link(
+            name=element.attributes.get("name", "(without a name)"),
+            line=element.line,
+            inertial=inertial,
+            problem=problem,
+            shapes=tuple(_shapes(element)),
+            rewrite=partial(_rewrite, declared) if declared is not None else None,
+        )
+
+
+def roll_pitch_yaw(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotation matrix of turns about the fixed axes x, then y, then z."""
+    quaternion = euler_angles.to_quaternion(angles, "xyz")
+    matrix: NDArray[np.float64] = np.stack([rotate(quaternion, axis) for axis in np.eye(3)], axis=-1)
+    return matrix
+
+
+def tensor_text(tensor: NDArray[np.float64]) -> dict[str, str]:
+    """Write the six elements of a tensor by their names."""
+    places = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "ixz": (0, 2), "iyz": (1, 2)}
+    return {name: repr(float(tensor[place]) + 0.0) for name, place in places.items()}
+
+
+def _place(element: Element | None) -> Place:
+    if element is None:
+        return Place.here()
+    attributes = element.attributes
+    position = numbers(element, attributes.get("xyz", "0 0 0"), 3, "xyz")
+    angles = numbers(element, attributes.get("rpy", "0 0 0"), 3, "rpy")
+    return Place(roll_pitch_yaw(angles), position)
+
+
+def _inertial(element: Element) -> Inertial:
+    place = _place(element.find("origin"))
+    mass, inertia = element.find("mass"), element.find("inertia")
+    if mass is None or inertia is None:
+        missing = "mass" if mass is None else "inertia"
+        raise FileFormatError(f"line {element.line}: <inertial> without <{missing}>; add it")
+    (value,) = numbers(mass, mass.attributes.get("value"), 1, "mass value")
+    xx, yy, zz, xy, xz, yz = (numbers(inertia, inertia.attributes.get(name), 1, name)[0] for name in _MOMENTS)
+    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return Inertial(float(value), place.position, place.rotation @ tensor @ place.rotation.T)
+
+
+def _shapes(link: Element) -> Iterator[Shape]:
+    roles: tuple[Literal["collision", "visual"], ...] = ("collision", "visual")
+    for role in roles:
+        for element in link.all(role):
+            geometry = element.find("geometry")
+            if geometry is None or not geometry.children:
+                continue
+            place = _place(element.find("origin"))
+            form = geometry.children[0]
+            read = partial(_size, form)
+            if form.tag == "box":
+                yield Shape("box", read("size", 3), place, role)
+            elif form.tag == "sphere":
+                yield Shape("sphere", read("radius"), place, role)
+            elif form.tag in ("cylinder", "capsule"):
+                yield Shape(form.tag, (*read("radius"), *read("length")), place, role)
+            elif form.tag == "mesh":
+                scale = tuple(numbers(form, form.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
+                yield Shape("mesh", scale, place, role, mesh=form.attributes.get("filename", ""))
+            else:
+                yield Shape(form.tag, (), place, role)
+
+
+def _size(form: Element, name: str, count: int = 1) -> tuple[float, ...]:
+    size: tuple[float, ...] = tuple(
+        numbers(form, form.attributes.get(name), count, f"{form.tag} {name}").tolist()
+    )
+    return size
+
+
+def _rewrite(declared: Element, source: bytes, new: Inertial) -> list[Edit]:
+    """Write mass properties with the axes of the link."""
+    position = " ".join(repr(float(x) + 0.0) for x in new.center_of_mass)
+    edits = []
+    origin = declared.find("origin")
+    if origin is not None:
+        edits.append(set_attribute(source, origin, "xyz", position))
+        if "rpy" in origin.attributes:
+            edits.append(set_attribute(source, origin, "rpy", "0 0 0"))
+    elif np.any(new.center_of_mass):
+        # Before the first child, behind the same indentation.
+        first = declared.children[0].start if declared.children else declared.inside
+        blanks = source[declared.inside : first].decode()
+        edits.append(
+            Edit(first, first, f'<origin xyz="{position}" rpy="0 0 0"/>{blanks if blanks.isspace() else ""}')
+        )
+    for inertia in declared.all("inertia"):
+        edits += [
+            set_attribute(source, inertia, name, text) for name, text in tensor_text(new.inertia).items()
+        ]
+    return edits

@@ -1,0 +1,316 @@
+//! Where a vertex of a mid-surface goes when its faces are moved along their normals, and how far they may be moved.
+
+use std::collections::HashMap;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::mass::error_bound::UNIT;
+use crate::mass::polyhedron::fault::{Corner, Count, MeshFault};
+use crate::mass::polyhedron::{Index, View};
+use crate::principal::{PrincipalAxes, principal_axes};
+
+/// Directions in which the normals at a vertex spread by less than the root of this leave it where it is: they are one
+/// plane.
+const FLAT: f64 = 1e-12;
+
+/// A surface whose vertices know their way.
+pub(super) struct Offset {
+    /// Three different corners each; corners with equal coordinates have one number.
+    pub(super) faces: Vec<[usize; 3]>,
+    /// Which face of the mesh each of them is.
+    pub(super) numbers: Vec<usize>,
+    /// d of each vertex: it goes to `v + s d` when its faces are moved by s.
+    pub(super) directions: Vec<Vector3<f64>>,
+    /// What rounding can have done to the length of each d.
+    pub(super) errors: Vec<f64>,
+}
+
+/// The directions of a surface that is consistently wound and has at most two faces at an edge; lengths are divided by
+/// `unit`, a power of two.
+///
+/// With unit normals n of the faces at a vertex, weighted by their angles w there, d makes `Σ w (n·d − 1)²` least and is
+/// the shortest that does: where at most three planes meet, or all of them touch one cone, each face moves by exactly s.
+/// On a finer and finer mesh of a smooth surface they do so to the second order in the size of the triangles.
+pub(super) fn offset<I: Index>(mesh: &View<'_, I>, unit: f64) -> Result<Offset, MeshFault> {
+    if let Some(fault) = mesh.find_unusable() {
+        return Err(fault);
+    }
+    let same = same_corners(mesh.vertices);
+    let mut faces = Vec::with_capacity(mesh.faces.len());
+    let mut numbers = Vec::with_capacity(mesh.faces.len());
+    for (number, face) in mesh.faces.iter().enumerate() {
+        let corners = face.map(|k| same[k.position()]);
+        if corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0] {
+            faces.push(corners);
+            numbers.push(number);
+        }
+    }
+    check_edges(&faces, &numbers)?;
+
+    let mut around = vec![Around::default(); mesh.vertices.len()];
+    let mut normals = Vec::with_capacity(faces.len());
+    for (corners, &face) in faces.iter().zip(&numbers) {
+        let [a, b, c] = corners.map(|k| Vector3::from(mesh.vertices[k]));
+        let (e, f) = ((b - a) / unit, (c - a) / unit);
+        let area = e.cross(&f);
+        let size = area.norm();
+        if size <= 4.0 * UNIT * e.norm() * f.norm() {
+            return Err(MeshFault::NoNormal { face });
+        }
+        let normal = area / size;
+        let roundings = 8.0 * UNIT * e.norm() * f.norm() / size;
+        for (place, &corner) in corners.iter().enumerate() {
+            let angle = match place {
+                0 => size.atan2(e.dot(&f)),
+                1 => size.atan2(e.dot(&(e - f))),
+                _ => size.atan2(f.dot(&(f - e))),
+            };
+            around[corner].add(&normal, angle, roundings);
+        }
+        normals.push(normal);
+    }
+    for at in &mut around {
+        at.middle = at.sum.try_normalize(FLAT * at.weight).unwrap_or_default();
+    }
+    for (corners, normal) in faces.iter().zip(&normals) {
+        for &corner in corners {
+            let at = &mut around[corner];
+            at.cosine = at.cosine.min(at.middle.dot(normal));
+        }
+    }
+    let (directions, errors) = around.iter().map(Around::direction).unzip();
+    Ok(Offset {
+        faces,
+        numbers,
+        directions,
+        errors,
+    })
+}
+
+/// The number of the first vertex with the same coordinates (−0 is +0), for each vertex.
+fn same_corners(vertices: &[[f64; 3]]) -> Vec<usize> {
+    let mut numbers: HashMap<[u64; 3], usize> = HashMap::with_capacity(vertices.len());
+    let numbered = vertices.iter().enumerate();
+    numbered
+        .map(|(number, vertex)| {
+            let bits = vertex.map(|x| (x + 0.0).to_bits());
+            *numbers.entry(bits).or_insert(number)
+        })
+        .collect()
+}
+
+/// Every edge has one face, or two that run along it in opposite directions.
+fn check_edges(faces: &[[usize; 3]], numbers: &[usize]) -> Result<(), MeshFault> {
+    let mut runs: Vec<(usize, usize, bool, usize)> = faces
+        .iter()
+        .zip(numbers)
+        .flat_map(|(&[a, b, c], &face)| {
+            [(a, b), (b, c), (c, a)].map(|(from, to)| (from.min(to), from.max(to), from < to, face))
+        })
+        .collect();
+    runs.sort_unstable();
+    for group in runs.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)) {
+        match *group {
+            [(low, high, p, first), (_, _, q, second)] if p == q => {
+                let (from, to) = if p { (low, high) } else { (high, low) };
+                return Err(MeshFault::InconsistentWinding {
+                    from: Corner::Vertex(from),
+                    to: Corner::Vertex(to),
+                    first,
+                    second,
+                    count: Count {
+                        seen: 1,
+                        is_least: true,
+                    },
+                });
+            }
+            [] | [_] | [_, _] => {}
+            [(low, high, ..), ..] => {
+                return Err(MeshFault::Branching {
+                    from: Corner::Vertex(low),
+                    to: Corner::Vertex(high),
+                    faces: group.len(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The faces around a vertex.
+#[derive(Clone, Copy)]
+struct Around {
+    /// `Σ w`.
+    weight: f64,
+    /// `Σ w n`.
+    sum: Vector3<f64>,
+    /// `Σ w n nᵀ`.
+    square: Matrix3<f64>,
+    /// What a normal may be off by.
+    roundings: f64,
+    /// The direction of the sum.
+    middle: Vector3<f64>,
+    /// Of the angle between it and the normal that is farthest from it.
+    cosine: f64,
+}
+
+impl Default for Around {
+    fn default() -> Self {
+        Self {
+            weight: 0.0,
+            sum: Vector3::zeros(),
+            square: Matrix3::zeros(),
+            roundings: 0.0,
+            middle: Vector3::zeros(),
+            cosine: 1.0,
+        }
+    }
+}
+
+impl Around {
+    fn add(&mut self, normal: &Vector3<f64>, angle: f64, roundings: f64) {
+        self.weight += angle;
+        self.sum += normal * angle;
+        self.square += normal * normal.transpose() * angle;
+        self.roundings = self.roundings.max(roundings);
+    }
+
+    /// d, and what rounding can have done to it.
+    ///
+    /// Planes that nearly are one, or nearly share a line, may meet far away: a vertex that would go aside by more than
+    /// twice the angle over which the normals spread goes the way of the fewer planes that they nearly are.
+    fn direction(&self) -> (Vector3<f64>, f64) {
+        if self.weight <= 0.0 {
+            return (Vector3::zeros(), 0.0);
+        }
+        let PrincipalAxes {
+            moments: values,
+            axes,
+        } = principal_axes(&(self.square / self.weight));
+        let mean = self.sum / self.weight;
+        let within = if self.cosine > 0.0 {
+            2.0 * self.cosine * self.cosine - 1.0
+        } else {
+            -1.0
+        };
+        let error = |d: &Vector3<f64>, least: f64| {
+            16.0 * (self.roundings + 8.0 * UNIT) * (1.0 + d.norm()) / least
+        };
+        for unused in 0..2 {
+            if values[unused] <= FLAT {
+                continue;
+            }
+            let d: Vector3<f64> = (unused..3)
+                .map(|k| {
+                    let axis = axes.column(k).into_owned();
+                    axis * (axis.dot(&mean) / values[k])
+                })
+                .sum();
+            if d.dot(&self.middle) >= within * d.norm() {
+                return (d, error(&d, values[unused]));
+            }
+        }
+        // One plane: Σ w (n·m α − 1)² is least at this α.
+        let m = self.middle;
+        let square = m.dot(&(self.square * m)) / self.weight;
+        let d = m * (m.dot(&mean) / square.max(f64::MIN_POSITIVE));
+        (d, error(&d, 1.0))
+    }
+}
+
+/// The first thickness at which a face turns over, and the face.
+pub(super) struct Limit {
+    pub(super) face: usize,
+    pub(super) thickness: f64,
+}
+
+impl Offset {
+    /// How thick the shell may be: up to there `J_i(s) = d_i · ((e + s e′) × (f + s f′))` is positive at each corner i of
+    /// each face, for |s| up to half the thickness, with e, f the edges and e′, f′ those between the d.
+    ///
+    /// J is the volume that the surface sweeps for each ds, and linear between the corners.
+    pub(super) fn limit(&self, vertices: &[[f64; 3]], unit: f64) -> Limit {
+        let mut limit = Limit {
+            face: 0,
+            thickness: f64::INFINITY,
+        };
+        for (face, corners) in self.faces.iter().enumerate() {
+            let [a, b, c] = corners.map(|k| Vector3::from(vertices[k]));
+            let d = corners.map(|k| self.directions[k]);
+            let ((e, f), (de, df)) = (((b - a) / unit, (c - a) / unit), (d[1] - d[0], d[2] - d[0]));
+            let (still, linear, square) = (e.cross(&f), de.cross(&f) + e.cross(&df), de.cross(&df));
+            for d in d {
+                let root = first_root(d.dot(&still), d.dot(&linear), d.dot(&square));
+                if 2.0 * root * unit < limit.thickness {
+                    limit = Limit {
+                        face,
+                        thickness: 2.0 * root * unit,
+                    };
+                }
+            }
+        }
+        limit
+    }
+}
+
+/// The least |s| with `a + b s + c s² = 0`; zero where a is not positive.
+fn first_root(a: f64, b: f64, c: f64) -> f64 {
+    if a <= 0.0 {
+        return 0.0;
+    }
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    // 2a/(b + √…): the smaller root, where nothing cancels.
+    2.0 * a / (b.abs() + discriminant.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roots() {
+        assert_eq!(first_root(2.0, -3.0, 1.0), 1.0);
+        assert_eq!(first_root(2.0, 3.0, 1.0), 1.0);
+        assert_eq!(first_root(1.0, 0.0, 1.0), f64::INFINITY);
+        assert_eq!(first_root(1.0, 0.0, -4.0), 0.5);
+        assert_eq!(first_root(1.0, 0.0, 0.0), f64::INFINITY);
+        assert_eq!(first_root(-1.0, 0.0, 0.0), 0.0);
+    }
+
+    fn direction(normals: &[[f64; 3]]) -> Vector3<f64> {
+        let mut around = Around::default();
+        let normals = normals.iter().map(|&n| Vector3::from(n).normalize());
+        for normal in normals.clone() {
+            around.add(&normal, 1.0, UNIT);
+        }
+        around.middle = around.sum.normalize();
+        for normal in normals {
+            around.cosine = around.cosine.min(around.middle.dot(&normal));
+        }
+        around.direction().0
+    }
+
+    #[test]
+    fn up_to_three_planes_are_met_exactly() {
+        let n = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, 0.2, 1.0]];
+        let d = direction(&n);
+        for n in n {
+            assert!((d.dot(&Vector3::from(n).normalize()) - 1.0).abs() < 1e-15);
+        }
+        let edge = direction(&[n[0], n[1], n[1]]);
+        assert!((edge - Vector3::new(1.0, 1.0, 0.0)).norm() < 1e-15);
+        assert_eq!(direction(&[n[0]; 4]), Vector3::new(1.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn planes_that_nearly_share_a_line_do_not_send_the_vertex_away() {
+        // Three faces of a cylinder about z; rounding has tilted one of them.
+        let n = [[0.1, 1.0, 0.0], [0.0, 1.0, 1e-5], [-0.1, 1.0, 0.0]];
+        let d = direction(&n);
+        assert!(d.z.abs() < 1e-4, "{d}");
+        assert!((d.y - 1.0).abs() < 1e-2, "{d}");
+    }
+}

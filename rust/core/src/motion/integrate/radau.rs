@@ -1,0 +1,585 @@
+//! Radau IIA: the implicit Runge-Kutta method of order 5 that collocates at three points, the last of them the end of the
+//! step. It damps what decays fast whatever the length of the step (L-stable), so that a stiff load does not
+//! dictate the steps (Hairer & Wanner, Solving ODEs II, §IV.8).
+
+use nalgebra::{Complex, DMatrix, DVector, Dyn, LU, SVector};
+
+use super::first_step::first_step;
+use super::{Compensated, System};
+use crate::error::Error;
+use crate::numerics::double_double::fast_two_sum;
+
+const ROOT_6: f64 = 2.449_489_742_783_178;
+/// The points of collocation, in steps.
+const NODES: [f64; 3] = [(4.0 - ROOT_6) / 10.0, (4.0 + ROOT_6) / 10.0, 1.0];
+/// The inverse of the method's matrix is `T Λ T⁻¹` with Λ of a real block γ and the block of α ± iβ.
+const REAL: f64 = 3.637_834_252_744_496;
+const COMPLEX: Complex<f64> = Complex::new(2.681_082_873_627_752, -3.050_430_199_247_410_5);
+const T: [[f64; 3]; 3] = [
+    [
+        0.094_438_762_488_975_24,
+        -0.141_255_295_020_954_2,
+        0.030_029_194_105_147_42,
+    ],
+    [
+        0.250_213_122_965_333_3,
+        0.204_129_352_293_799_94,
+        -0.382_942_112_757_261_9,
+    ],
+    [1.0, 1.0, 0.0],
+];
+const T_INVERSE: [[f64; 3]; 3] = [
+    [
+        4.178_718_591_551_904,
+        0.327_682_820_761_062_4,
+        0.523_376_445_499_449_5,
+    ],
+    [
+        -4.178_718_591_551_904,
+        -0.327_682_820_761_062_4,
+        0.476_623_554_500_550_45,
+    ],
+    [
+        0.502_872_634_945_786_8,
+        -2.571_926_949_855_605,
+        0.596_039_204_828_224_9,
+    ],
+];
+/// The weights of the stages in the estimate of the error, of order 3.
+const ERROR: [f64; 3] = [
+    (-13.0 - 7.0 * ROOT_6) / 3.0,
+    (-13.0 + 7.0 * ROOT_6) / 3.0,
+    -1.0 / 3.0,
+];
+/// The stages as the polynomial through them: rows of coefficients of x, x², x³, x in steps.
+const POLYNOMIAL: [[f64; 3]; 3] = [
+    [
+        (13.0 + 7.0 * ROOT_6) / 3.0,
+        (-23.0 - 22.0 * ROOT_6) / 3.0,
+        (10.0 + 15.0 * ROOT_6) / 3.0,
+    ],
+    [
+        (13.0 - 7.0 * ROOT_6) / 3.0,
+        (-23.0 + 22.0 * ROOT_6) / 3.0,
+        (10.0 - 15.0 * ROOT_6) / 3.0,
+    ],
+    [1.0 / 3.0, -8.0 / 3.0, 10.0 / 3.0],
+];
+
+/// Newton's iterations before the step is shortened.
+const ITERATIONS: i32 = 7;
+/// The error of the stages that is left, in units of what a step may err.
+const STAGE_TOLERANCE: f64 = 1e-3;
+const SHRINK: f64 = 0.2;
+const GROW: f64 = 8.0;
+/// One over the order of the error that the estimate controls.
+const EXPONENT: f64 = 0.25;
+
+/// The increments of the three stages over the state at the start of the step.
+type Stages<const N: usize> = [SVector<f64, N>; 3];
+
+/// An integration under way.
+#[derive(Clone, Debug)]
+pub struct Radau<const N: usize> {
+    start: f64,
+    span: f64,
+    /// Time since the start, and what rounding has left out of it.
+    elapsed: (f64, f64),
+    state: Compensated<N>,
+    /// The slope at the state.
+    slope: SVector<f64, N>,
+    /// The step to try next.
+    step: f64,
+    jacobian: DMatrix<f64>,
+    /// Whether the Jacobian is that of the present state.
+    is_current: bool,
+    factors: Option<Factors>,
+    /// The last accepted step, and the error it was accepted with.
+    last: Option<(Dense<N>, f64)>,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Evaluations of the equations, those for Jacobians included.
+    pub evaluations: u64,
+}
+
+/// `γ/h − J` and `(α + iβ)/h − J`, factored.
+#[derive(Clone, Debug)]
+struct Factors {
+    step: f64,
+    real: LU<f64, Dyn, Dyn>,
+    complex: LU<Complex<f64>, Dyn, Dyn>,
+}
+
+impl Factors {
+    fn of(jacobian: &DMatrix<f64>, step: f64) -> Self {
+        let n = jacobian.nrows();
+        let real = DMatrix::from_diagonal_element(n, n, REAL / step) - jacobian;
+        let complex = DMatrix::from_diagonal_element(n, n, COMPLEX / step)
+            - jacobian.map(|x| Complex::new(x, 0.0));
+        Self {
+            step,
+            real: real.lu(),
+            complex: complex.lu(),
+        }
+    }
+
+    /// Not numbers where the matrix is singular or none.
+    fn solve_real<const N: usize>(&self, right: &SVector<f64, N>) -> SVector<f64, N> {
+        let right = DVector::from_column_slice(right.as_slice());
+        let solution = self.real.solve(&right);
+        SVector::from_fn(|i, _| solution.as_ref().map_or(f64::NAN, |x| x[i]))
+    }
+
+    fn solve_complex<const N: usize>(
+        &self,
+        right: &SVector<Complex<f64>, N>,
+    ) -> SVector<Complex<f64>, N> {
+        let right = DVector::from_column_slice(right.as_slice());
+        let solution = self.complex.solve(&right);
+        let none = Complex::new(f64::NAN, f64::NAN);
+        SVector::from_fn(|i, _| solution.as_ref().map_or(none, |x| x[i]))
+    }
+}
+
+impl<const N: usize> Radau<N> {
+    /// At the state `y` at time `start`, on the way to `end`, with `step` to try first or one of its own choice.
+    ///
+    /// # Errors
+    /// What the equations refuse at the start; a slope there that is not finite.
+    pub fn new<S: System<N>>(
+        system: &mut S,
+        start: f64,
+        end: f64,
+        y: SVector<f64, N>,
+        step: Option<f64>,
+    ) -> Result<Self, S::Error> {
+        let mut state = Compensated::new(y);
+        system.accept(&mut state);
+        let span = end - start;
+        let slope = system.derivative(start, &state.value)?;
+        if !slope.iter().all(|x| x.is_finite()) {
+            return Err(Error::NotFiniteMotion { time: start }.into());
+        }
+        let (step, evaluations) = match step {
+            Some(step) if step != 0.0 => (step.abs().min(span.abs()).copysign(span), 1),
+            _ => (
+                first_step(system, start, span, &state.value, &slope, EXPONENT)?,
+                2,
+            ),
+        };
+        let mut stepper = Self {
+            start,
+            span,
+            elapsed: (0.0, 0.0),
+            state,
+            slope,
+            step,
+            jacobian: DMatrix::zeros(N, N),
+            is_current: false,
+            factors: None,
+            last: None,
+            steps: 0,
+            evaluations,
+        };
+        stepper.linearize(system)?;
+        Ok(stepper)
+    }
+
+    /// Time since the start.
+    #[must_use]
+    pub fn elapsed(&self) -> f64 {
+        self.elapsed.0
+    }
+
+    /// The step that would be tried next.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Whether the end is reached.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.elapsed.0 == self.span
+    }
+
+    /// The state now.
+    #[must_use]
+    pub fn state(&self) -> &SVector<f64, N> {
+        &self.state.value
+    }
+
+    /// The states during the last accepted step as the polynomial of its collocation; `None` before the first step.
+    #[must_use]
+    pub fn dense(&self) -> Option<&Dense<N>> {
+        self.last.as_ref().map(|(dense, _)| dense)
+    }
+
+    /// One accepted step toward the end.
+    ///
+    /// # Errors
+    /// What the equations refuse; a step too small to advance the time.
+    pub fn advance<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
+        let mut rejected = false;
+        loop {
+            let remaining = (self.span - self.elapsed.0) - self.elapsed.1;
+            let is_last = 1.01 * self.step.abs() >= remaining.abs();
+            let h = if is_last { remaining } else { self.step };
+            if self.elapsed.0 + h == self.elapsed.0 && !is_last {
+                return Err(self.stuck(h).into());
+            }
+            let factors = match self.factors.take() {
+                Some(factors) if factors.step == h => factors,
+                _ => Factors::of(&self.jacobian, h),
+            };
+            let Some((stages, iterations, rate)) = self.collocate(system, &factors, h)? else {
+                if self.is_current {
+                    self.step = 0.5 * h;
+                    rejected = true;
+                } else {
+                    self.linearize(system)?;
+                }
+                continue;
+            };
+            let error = self.error(system, &factors, &stages, h, rejected)?;
+            let safety =
+                0.9 * f64::from(2 * ITERATIONS + 1) / f64::from(2 * ITERATIONS + iterations);
+            let factor = safety * error.powf(-EXPONENT);
+            if error <= 1.0 {
+                let factor = factor.min(self.predicted(h, error, safety));
+                let growth = factor.clamp(SHRINK, if rejected { 1.0 } else { GROW });
+                self.accept(system, &stages, h, error, is_last)?;
+                if iterations > 2 && rate > 1e-3 {
+                    self.linearize(system)?;
+                    self.step = h * growth;
+                } else if (1.0..1.2).contains(&growth) {
+                    self.step = h; // a little more would cost new factors
+                    self.factors = Some(factors);
+                } else {
+                    self.step = h * growth;
+                }
+                return Ok(());
+            }
+            self.step = h * if factor.is_nan() {
+                SHRINK
+            } else {
+                factor.clamp(SHRINK, 1.0)
+            };
+            rejected = true;
+            if self.elapsed.0 + self.step == self.elapsed.0 {
+                let time = self.start + self.elapsed.0;
+                return Err(if error.is_nan() {
+                    Error::NotFiniteMotion { time }
+                } else {
+                    self.stuck(self.step)
+                }
+                .into());
+            }
+        }
+    }
+
+    fn accept<S: System<N>>(
+        &mut self,
+        system: &mut S,
+        stages: &Stages<N>,
+        h: f64,
+        error: f64,
+        is_last: bool,
+    ) -> Result<(), S::Error> {
+        let dense = Dense::new(self.elapsed.0, h, &self.state.value, stages);
+        self.state = self.state.plus(&stages[2]);
+        system.accept(&mut self.state);
+        self.elapsed = if is_last {
+            (self.span, 0.0)
+        } else {
+            fast_two_sum(self.elapsed.0, h + self.elapsed.1)
+        };
+        self.last = Some((dense, error));
+        self.steps += 1;
+        self.is_current = false;
+        self.slope = self.at(system, self.elapsed.0, &self.state.value.clone())?;
+        Ok(())
+    }
+
+    /// The factor by the errors of this step and the one before (Gustafsson).
+    fn predicted(&self, h: f64, error: f64, safety: f64) -> f64 {
+        match &self.last {
+            Some((last, before)) if error > 0.0 && *before > 0.0 => {
+                safety * (h / last.step) * (before / error).powf(EXPONENT) * error.powf(-EXPONENT)
+            }
+            _ => f64::INFINITY,
+        }
+    }
+
+    fn at<S: System<N>>(
+        &mut self,
+        system: &mut S,
+        elapsed: f64,
+        y: &SVector<f64, N>,
+    ) -> Result<SVector<f64, N>, S::Error> {
+        self.evaluations += 1;
+        system.derivative(self.start + elapsed, y)
+    }
+
+    /// `∂f/∂y` by differences: Newton's iteration needs its size and direction, not its digits.
+    fn linearize<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
+        let (y, slope) = (self.state.value, self.slope);
+        let size = system.error_norm(&y, &y, &y);
+        for j in 0..N {
+            let mut unit = SVector::<f64, N>::zeros();
+            unit[j] = 1.0;
+            // The largest value of the group that the component belongs to, as the norm weighs it.
+            let group = size / system.error_norm(&y, &y, &unit);
+            let scale = [group, (slope[j] * self.step).abs()]
+                .into_iter()
+                .filter(|x| x.is_finite())
+                .fold(y[j].abs(), f64::max);
+            let scale = if scale > 0.0 { scale } else { 1.0 };
+            let mut moved = y;
+            moved[j] += f64::EPSILON.sqrt() * scale;
+            let change = self.at(system, self.elapsed.0, &moved)? - slope;
+            let by = moved[j] - y[j];
+            for i in 0..N {
+                self.jacobian[(i, j)] = change[i] / by;
+            }
+        }
+        self.is_current = true;
+        self.factors = None;
+        Ok(())
+    }
+
+    /// The stages of a step of length h by Newton's iteration with the Jacobian at hand, the number of iterations and how fast they
+    /// converged; `None` when they do not.
+    fn collocate<S: System<N>>(
+        &mut self,
+        system: &mut S,
+        factors: &Factors,
+        h: f64,
+    ) -> Result<Option<(Stages<N>, i32, f64)>, S::Error> {
+        let y = self.state.value;
+        let mut stages = match &self.last {
+            Some((last, _)) => NODES.map(|node| last.at(self.elapsed.0 + node * h) - y),
+            None => [SVector::zeros(); 3],
+        };
+        let mut transformed = combined(&T_INVERSE, &stages);
+        // Below this the iterates differ by rounding alone.
+        let enough = STAGE_TOLERANCE.max(10.0 * f64::EPSILON * system.error_norm(&y, &y, &y));
+        let mut before = f64::NAN;
+        for iteration in 1..=ITERATIONS {
+            let mut slopes = [SVector::zeros(); 3];
+            for (slope, (stage, node)) in slopes.iter_mut().zip(stages.iter().zip(NODES)) {
+                *slope = self.at(system, self.elapsed.0 + node * h, &(y + stage))?;
+            }
+            let right = combined(&T_INVERSE, &slopes);
+            let real = factors.solve_real(&(right[0] - transformed[0] * (REAL / h)));
+            let pair = |a: &SVector<f64, N>, b: &SVector<f64, N>| {
+                SVector::<Complex<f64>, N>::from_fn(|i, _| Complex::new(a[i], b[i]))
+            };
+            let complex = factors.solve_complex(
+                &(pair(&right[1], &right[2])
+                    - pair(&transformed[1], &transformed[2]) * (COMPLEX / h)),
+            );
+            let change = [real, complex.map(|x| x.re), complex.map(|x| x.im)];
+            let norm = (change.iter())
+                .map(|part| system.error_norm(&y, &y, part))
+                .fold(
+                    0.0,
+                    |most: f64, x| if x > most || x.is_nan() { x } else { most },
+                );
+            let rate = norm / before;
+            let left = f64::from(ITERATIONS - iteration);
+            if norm.is_nan()
+                || norm > enough && (rate >= 1.0 || rate.powf(left) / (1.0 - rate) * norm > enough)
+            {
+                return Ok(None);
+            }
+            for (total, change) in transformed.iter_mut().zip(&change) {
+                *total += change;
+            }
+            stages = combined(&T, &transformed);
+            if norm <= enough || rate / (1.0 - rate) * norm < enough {
+                return Ok(Some((
+                    stages,
+                    iteration,
+                    if rate.is_nan() { 0.0 } else { rate },
+                )));
+            }
+            before = norm;
+        }
+        Ok(None)
+    }
+
+    /// The estimate of the error in units of what is allowed; where a step was rejected, filtered once more, since the raw
+    /// estimate is far too large for what decays fast.
+    fn error<S: System<N>>(
+        &mut self,
+        system: &mut S,
+        factors: &Factors,
+        stages: &Stages<N>,
+        h: f64,
+        rejected: bool,
+    ) -> Result<f64, S::Error> {
+        let y = self.state.value;
+        let y_new = y + stages[2];
+        let weighted = combine(&ERROR, stages) / h;
+        let error = factors.solve_real(&(self.slope + weighted));
+        let norm = system.error_norm(&y, &y_new, &error);
+        if norm <= 1.0 || !(rejected || self.last.is_none()) {
+            return Ok(norm);
+        }
+        let slope = self.at(system, self.elapsed.0, &(y + error))?;
+        let error = factors.solve_real(&(slope + weighted));
+        Ok(system.error_norm(&y, &y_new, &error))
+    }
+
+    fn stuck(&self, step: f64) -> Error {
+        Error::StepTooSmall {
+            time: self.start + self.elapsed.0,
+            step,
+        }
+    }
+}
+
+fn combine<const N: usize>(weights: &[f64; 3], stages: &Stages<N>) -> SVector<f64, N> {
+    stages[0] * weights[0] + stages[1] * weights[1] + stages[2] * weights[2]
+}
+
+fn combined<const N: usize>(matrix: &[[f64; 3]; 3], stages: &Stages<N>) -> Stages<N> {
+    matrix.each_ref().map(|row| combine(row, stages))
+}
+
+/// The states during one step as a polynomial of degree 3 in time.
+#[derive(Clone, Debug)]
+pub struct Dense<const N: usize> {
+    start: f64,
+    step: f64,
+    y: SVector<f64, N>,
+    coefficients: Stages<N>,
+}
+
+impl<const N: usize> Dense<N> {
+    fn new(start: f64, step: f64, y: &SVector<f64, N>, stages: &Stages<N>) -> Self {
+        let column = |k: usize| combine(&POLYNOMIAL.map(|row| row[k]), stages);
+        Self {
+            start,
+            step,
+            y: *y,
+            coefficients: [column(0), column(1), column(2)],
+        }
+    }
+
+    /// The state at `elapsed` since the start of the integration.
+    #[must_use]
+    pub fn at(&self, elapsed: f64) -> SVector<f64, N> {
+        let x = (elapsed - self.start) / self.step;
+        let [first, second, third] = &self.coefficients;
+        self.y + (first + (second + third * x) * x) * x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Vector2};
+
+    #[test]
+    fn constants_are_those_of_the_method() {
+        // Collocation: the row i of A integrates the Lagrange polynomials through the nodes from 0 to node i.
+        let powers = |x: f64| [x, x * x / 2.0, x * x * x / 3.0];
+        let vandermonde = Matrix3::from_fn(|j, k| NODES[j].powi(i32::try_from(k).expect("small")));
+        let integrals = Matrix3::from_fn(|i, k| powers(NODES[i])[k]);
+        let method = integrals * vandermonde.try_inverse().expect("distinct nodes");
+        let matrix = |rows: &[[f64; 3]; 3]| Matrix3::from_fn(|i, j| rows[i][j]);
+        let blocks = Matrix3::new(
+            REAL,
+            0.0,
+            0.0,
+            0.0,
+            COMPLEX.re,
+            -COMPLEX.im,
+            0.0,
+            COMPLEX.im,
+            COMPLEX.re,
+        );
+        let eigen = |sign: f64| {
+            let mut blocks = blocks;
+            blocks[(1, 2)] *= sign;
+            blocks[(2, 1)] *= sign;
+            matrix(&T) * blocks * matrix(&T_INVERSE) - method.try_inverse().expect("regular")
+        };
+        assert!((matrix(&T) * matrix(&T_INVERSE) - Matrix3::identity()).norm() < 1e-14);
+        assert!(eigen(1.0).norm() < 1e-13, "{}", eigen(1.0));
+        // The dense output passes through the stages.
+        for (i, node) in NODES.into_iter().enumerate() {
+            for (j, row) in POLYNOMIAL.iter().enumerate() {
+                let value = node * (row[0] + node * (row[1] + node * row[2]));
+                assert!((value - if i == j { 1.0 } else { 0.0 }).abs() < 1e-14);
+            }
+        }
+    }
+
+    /// ẏ = −λ (y − cos t) − sin t beside ẍ = −x: the solution from y(0) = 1 + departure is cos t + departure e^(−λ t).
+    struct Stiff {
+        rate: f64,
+        tolerance: f64,
+    }
+
+    impl System<3> for Stiff {
+        type Error = Error;
+
+        fn derivative(&mut self, t: f64, y: &SVector<f64, 3>) -> Result<SVector<f64, 3>, Error> {
+            let pull = -self.rate * (y[0] - t.cos()) - t.sin();
+            Ok(SVector::from([pull, y[2], -y[1]]))
+        }
+
+        fn error_norm(
+            &self,
+            _: &SVector<f64, 3>,
+            _: &SVector<f64, 3>,
+            error: &SVector<f64, 3>,
+        ) -> f64 {
+            error.norm() / self.tolerance
+        }
+
+        fn accept(&mut self, _: &mut Compensated<3>) {}
+    }
+
+    fn run(rate: f64, tolerance: f64, departure: f64, end: f64) -> (f64, f64, u64) {
+        let mut system = Stiff { rate, tolerance };
+        let y = SVector::from([1.0 + departure, 1.0, 0.0]);
+        let mut stepper = Radau::new(&mut system, 0.0, end, y, None).expect("finite");
+        let mut between: f64 = 0.0;
+        while !stepper.is_finished() {
+            let before = stepper.elapsed();
+            stepper.advance(&mut system).expect("smooth");
+            let dense = stepper.dense().expect("a step was taken");
+            for part in [0.0, 0.3, 0.8, 1.0] {
+                let t = before + part * (stepper.elapsed() - before);
+                let exact = Vector2::new(t.cos(), -t.sin());
+                between = between.max((dense.at(t).fixed_rows::<2>(1) - exact).norm());
+            }
+        }
+        let exact = SVector::from([end.cos(), end.cos(), -end.sin()]);
+        ((stepper.state() - exact).norm(), between, stepper.steps)
+    }
+
+    #[test]
+    fn error_follows_the_tolerance() {
+        for tolerance in [1e-4, 1e-7, 1e-10] {
+            let (error, between, _) = run(50.0, tolerance, 0.0, 10.0);
+            assert!(error < 30.0 * tolerance, "{error:e}");
+            assert!(between < 100.0 * tolerance, "{between:e}");
+        }
+        assert!(run(0.0, 1e-8, 0.0, -7.0).0 > 0.0);
+    }
+
+    #[test]
+    fn steps_do_not_depend_on_the_stiffness() {
+        let mild = run(1e3, 1e-8, 0.5, 10.0);
+        for rate in [1e5, 1e7, 1e9] {
+            let (error, _, steps) = run(rate, 1e-8, 0.5, 10.0);
+            assert!(error < 1e-6, "{error:e}");
+            assert!(steps < mild.2 + mild.2 / 4, "{steps} for {}", mild.2);
+        }
+    }
+}

@@ -1,0 +1,178 @@
+"""Committed cases of motion: exact inputs, and states to forty digits at given times.
+
+Tables are written by ``python -m oracles.free_cases``, ``oracles.top_cases`` and ``oracles.load_cases`` in
+the folder ``tests``. Inputs and times are doubles, taken at their exact binary values; the attitude is made a
+unit quaternion before anything else.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple, TypeAlias
+
+import mpmath
+from mpmath import mp, mpf
+
+from oracles.rotation import conjugate
+from oracles.rotation import times as product
+
+__all__ = [
+    "MotionCase",
+    "State",
+    "angle",
+    "apart",
+    "generate",
+    "load_table",
+    "relative_error",
+    "unit_floats",
+    "write_table",
+]
+
+TABLES = Path(__file__).parent / "tables"
+DIGITS = 40
+"""Digits that a table holds, and that its generator proves."""
+
+Floats: TypeAlias = tuple[float, ...]
+
+
+class State(NamedTuple):
+    """A state: rates in the body, the attitude, and, where the body goes somewhere, its path in space."""
+
+    omega: Sequence[Any]
+    quaternion: Sequence[Any]
+    position: Sequence[Any] = ()
+    velocity: Sequence[Any] = ()
+
+
+class MotionCase(NamedTuple):
+    """What is simulated, and what comes of it.
+
+    Attributes
+    ----------
+    name, kind : str
+        A name of its own; the regime it stands for.
+    body : dict
+        Arguments of ``RigidBody.from_principal`` where "moments" is among them, else of ``RigidBody``.
+    omega, attitude : tuple of float
+        The start.
+    times : tuple of float
+        When, from 0 at the start.
+    expected : tuple of State
+        One state for each time.
+    load : tuple of dict
+        Each acts: ``{"kind": name in polhode.loads, argument: value, …}``. "sinusoidal_torque" is the
+        torque vector·sin(rate·t + phase) in the body.
+    about : str
+        "center_of_mass", or "origin" where that point is held.
+    kappa : tuple of float
+        For each time ‖∂(attitude, ω/|ω₀|)(t)/∂(attitude, ω/|ω₀|)(0)‖₂; empty where nobody asked.
+    gravity : tuple of float
+        Of a heavy top, in space; else empty.
+    position, velocity : tuple of float
+        The path's start; empty where the body goes nowhere.
+    """
+
+    name: str
+    kind: str
+    body: dict[str, Any]
+    omega: Floats
+    attitude: Floats
+    times: Floats
+    expected: tuple[State, ...] = ()
+    load: tuple[dict[str, Any], ...] = ()
+    about: str = "center_of_mass"
+    kappa: Floats = ()
+    gravity: Floats = ()
+    position: Floats = ()
+    velocity: Floats = ()
+
+
+@cache
+def load_table(name: str) -> tuple[MotionCase, ...]:
+    """The cases of one table, their expected states as mpmath numbers."""
+    with mp.workdps(DIGITS + 10):
+        return tuple(_case(entry) for entry in json.loads((TABLES / f"{name}.json").read_text("utf-8")))
+
+
+def generate(name: str, cases: Iterable[MotionCase], proven: Callable[[MotionCase], MotionCase]) -> None:
+    """Compute the cases and write their table; words on the command line pick cases, the others stay."""
+    words = sys.argv[1:]
+    kept = {case.name: case for case in load_table(name)} if words else {}
+    done = []
+    for case in cases:
+        if words and not any(word in case.name for word in words):
+            done.append(kept[case.name])
+            continue
+        began = time.perf_counter()
+        done.append(proven(case))
+        print(f"{time.perf_counter() - began:6.1f} s  {case.name}", file=sys.stderr)
+    write_table(name, done)
+
+
+def write_table(name: str, cases: Iterable[MotionCase]) -> None:
+    """A table, one line for each state."""
+    entries = []
+    for case in cases:
+        fields = {
+            key: value
+            for key, value in case._asdict().items()
+            if key != "expected" and (value or key in ("omega", "times"))
+        }
+        lines = [f'  "{key}": {json.dumps(value)}' for key, value in fields.items()]
+        states = [
+            json.dumps([[_digits(x) for x in part] for part in state if len(part)]) for state in case.expected
+        ]
+        lines.append('  "expected": [\n    ' + ",\n    ".join(states) + "\n  ]")
+        entries.append("{\n" + ",\n".join(lines) + "\n}")
+    TABLES.mkdir(exist_ok=True)
+    (TABLES / f"{name}.json").write_text("[\n" + ",\n".join(entries) + "\n]\n", encoding="utf-8")
+
+
+def _digits(x: Any) -> str:
+    return str(mpmath.nstr(x, DIGITS, strip_zeros=True))
+
+
+def _case(entry: dict[str, Any]) -> MotionCase:
+    states = tuple(State(*(tuple(mpf(x) for x in part) for part in state)) for state in entry.pop("expected"))
+    lists = {key: tuple(value) for key, value in entry.items() if isinstance(value, list)}
+    return MotionCase(**{**entry, **lists}, expected=states)
+
+
+def apart(a: State, b: State) -> Any:
+    """How far two exact states are from each other: attitudes up to sign, vectors over their lengths."""
+    with mp.workdps(60):
+        vector = product(conjugate(a.quaternion), b.quaternion)[:3]
+        differences = [2 * mpmath.norm(vector)]
+        for x, y in ((a.omega, b.omega), (a.position, b.position), (a.velocity, b.velocity)):
+            differences.append(mpmath.norm(_minus(x, y)) / (mpmath.norm(y) or 1))
+        return max(differences)
+
+
+def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
+    return [mpf(x) - y for x, y in zip(a, b, strict=True)]
+
+
+def unit_floats(*components: float) -> Floats:
+    """A vector over its length, rounded: as near to a unit quaternion as floats come."""
+    length = math.hypot(*components)
+    return tuple(x / length for x in components)
+
+
+def angle(computed: Any, exact: Sequence[Any]) -> float:
+    """Angle between a computed attitude and the exact one, in rad; small ones to full relative accuracy."""
+    with mp.workdps(DIGITS + 10):
+        *vector, scalar = product(conjugate(exact), [mpf(float(x)) for x in computed])
+        return float(2 * mpmath.atan2(mpmath.sqrt(mpmath.fdot(vector, vector)), abs(scalar)))
+
+
+def relative_error(computed: Any, exact: Sequence[Any], at_least: float = 0.0) -> float:
+    """Length of the error of a vector over that of the exact one, or over `at_least` where that is more."""
+    with mp.workdps(DIGITS + 10):
+        error = mpmath.norm(_minus([float(x) for x in computed], exact))
+        return float(error / max(mpmath.norm(exact), at_least)) if error else 0.0

@@ -1,0 +1,74 @@
+"""``polhode check``: what it prints, writes and returns."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from typing import TYPE_CHECKING
+
+import numpy as np
+from command_line import run
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pytest
+
+ROBOT = """<robot name="r">
+  <link name="frame"/>
+  <link name="ball"><inertial><mass value="5"/>
+    <inertia ixx="{0}" iyy="{0}" izz="{0}" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+</robot>
+"""
+
+
+def test_good_robot(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(ROBOT.format(0.02))
+    code, out, err = run("check", tmp_path / "r.urdf", "--format", "json")
+    assert (code, err) == (0, "")
+    report = json.loads(out)
+    assert report["verdict"] == "good"
+    frame, ball = report["links"]
+    assert (frame["verdict"], frame["moments"]) == ("none", None)
+    assert (ball["link"], ball["line"], ball["verdict"], ball["mass"]) == ("ball", 3, "good", 5.0)
+    np.testing.assert_allclose(ball["shape_moments"], 0.02, rtol=1e-14)
+    assert report["units"]["links"]["moments"] == "kg m^2"
+
+
+def test_suspect_fails_only_when_strict(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(ROBOT.format(0.001))
+    code, out, _ = run("check", tmp_path / "r.urdf")
+    assert code == 0
+    assert "0.05 times its collision shape's" in out
+    assert run("check", tmp_path / "r.urdf", "--strict")[0] == 1
+    assert run("check", tmp_path / "r.urdf", "--strict", "--fix", tmp_path / "better.urdf")[0] == 0
+    assert (tmp_path / "better.urdf").read_text() == ROBOT.format(0.02).replace('"0"', '"0.0"')
+
+
+def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
+    for moment, want in ((0.02, 0), (1, 1)):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(ROBOT.format(moment).encode())))
+        assert run("check", "-")[0] == want
+
+
+def test_tutorial_robot(shared_data: Path, tmp_path: Path) -> None:
+    path = shared_data / "urdf" / "07-physics.urdf"
+    code, out, _ = run("check", path)
+    assert code == 1
+    rows = [line for line in out.splitlines() if "placeholder" in line]
+    assert len(rows) == 16
+    assert "400000 times its collision shape's" in next(row for row in rows if "gripper_pole" in row)
+    code, out, _ = run("check", path, "--fix", tmp_path / "fixed.urdf", "--format", "json")
+    assert code == 1  # four links have meshes that are not there
+    report = json.loads(out)
+    assert len(report["changed"]) == 12
+    assert any("left_tip" in note and "left as they are" in note for note in report["notes"])
+    again = json.loads(run("check", tmp_path / "fixed.urdf", "--format", "json")[1])
+    assert again["count"]["good"] == 12
+    before, after = (p.read_text().splitlines() for p in (path, tmp_path / "fixed.urdf"))
+    added = [line for line in after if line.strip().startswith("<origin") and line not in before]
+    assert len(added) == len(after) - len(before) == 3
+    kept = [line for line in after if line not in added]
+    assert sum(old != new for old, new in zip(before, kept, strict=True)) == 12

@@ -1,0 +1,405 @@
+"""Robots: what is read, judged and put right, against closed forms and the same robot in three formats."""
+
+from __future__ import annotations
+
+import contextlib
+import doctest
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
+from mesh_files import obj
+from oracles.meshes import box, cube
+from polhode import RigidBody, robots, solids
+from polhode.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+# An L of a box and a ball that stands askew, 3 kg; the numbers of its inertial block are filled in.
+URDF = """<?xml version="1.0"?>
+<!-- kept -->
+<robot name="l">
+  <link name="arm">
+    <inertial>
+      <origin xyz="{center}" rpy="0.1 -0.2 0.3"/>
+      <mass value='3'/>  <!-- from a scale -->
+      <inertia ixx="{ixx}" iyy="{iyy}" izz="{izz}"
+               ixy="{ixy}" ixz="{ixz}" iyz="{iyz}"/>
+    </inertial>
+    <collision>
+      <origin xyz="0.1 0 0" rpy="0.4 0.5 -0.6"/><geometry><box size="0.2 0.3 0.4"/></geometry>
+    </collision>
+    <collision><origin xyz="0 0.3 0"/><geometry><sphere radius="0.1"/></geometry></collision>
+  </link>
+</robot>
+"""
+SDF = """<sdf version="1.9"><model name="l"><link name="arm">
+  <inertial><pose degrees="true">{center} {degrees}</pose><mass>3</mass>
+    <inertia><ixx>{ixx}</ixx><iyy>{iyy}</iyy><izz>{izz}</izz>
+      <ixy>{ixy}</ixy><ixz>{ixz}</ixz><iyz>{iyz}</iyz></inertia>
+  </inertial>
+  <collision name="a"><pose>0.1 0 0 0.4 0.5 -0.6</pose>
+    <geometry><box><size>0.2 0.3 0.4</size></box></geometry></collision>
+  <collision name="b"><pose>0 0.3 0 0 0 0</pose>
+    <geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
+</link></model></sdf>
+"""
+MJCF = """<mujoco model="l"><compiler angle="radian" eulerseq="XYZ"/>
+  <default><geom type="box"/><default class="ball"><geom type="sphere" size="0.1"/></default></default>
+  <worldbody><body name="arm">
+    <inertial mass="3" pos="{center}" euler="0.1 -0.2 0.3" fullinertia="{ixx} {iyy} {izz} {ixy} {ixz} {iyz}"/>
+    <geom pos="0.1 0 0" euler="0.4 0.5 -0.6" size="0.1 0.15 0.2"/>
+    <geom class="ball" pos="0 0.3 0"/>
+  </body></worldbody></mujoco>
+"""
+PLAIN = dict.fromkeys(("ixx", "iyy", "izz"), "0.1") | dict.fromkeys(("ixy", "ixz", "iyz"), "0")
+PLAIN |= {"center": "0 0 0.1", "degrees": "0 0 30"}
+FORMATS = {"URDF": URDF, "SDF": SDF, "MJCF": MJCF}
+
+
+def fixed_axes(roll: float, pitch: float, yaw: float) -> np.ndarray:
+    """Turns about x, then y, then z of the fixed frame, written out."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
+    about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+    about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
+    return about_z @ about_y @ about_x
+
+
+def true_l() -> tuple[np.ndarray, np.ndarray]:
+    """Centre and tensor about it of the L, from the volumes and the closed forms of its two parts."""
+    volumes = np.array([0.2 * 0.3 * 0.4, 4 / 3 * np.pi * 0.1**3])
+    masses = 3.0 * volumes / volumes.sum()
+    turn = fixed_axes(0.4, 0.5, -0.6)
+    own = [
+        turn @ np.diag([0.3**2 + 0.4**2, 0.2**2 + 0.4**2, 0.2**2 + 0.3**2]) @ turn.T / 12,
+        0.4 * 0.1**2 * np.eye(3),
+    ]
+    places = np.array([[0.1, 0, 0], [0, 0.3, 0]])
+    center = masses @ places / 3.0
+    tensor = np.zeros((3, 3))
+    for m, part, d in zip(masses, own, places - center, strict=True):
+        tensor += m * (part + d @ d * np.eye(3) - np.outer(d, d))
+    return center, tensor
+
+
+def written(format_name: str, center: Any, tensor: np.ndarray) -> robots.Robot:
+    """The L with such a tensor in the axes of its inertial block."""
+    names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+    places = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    values = {name: repr(float(tensor[place])) for name, place in zip(names, places, strict=True)}
+    values |= {
+        "center": " ".join(repr(float(x)) for x in center),
+        "degrees": " ".join(repr(float(x)) for x in np.rad2deg([0.1, -0.2, 0.3])),
+    }
+    source = FORMATS[format_name].format(**values).encode()
+    return robots.parse_robot(source, name="l", folder=".")
+
+
+@pytest.mark.parametrize("format_name", FORMATS)
+class TestThreeFormats:
+    def test_right_values_are_good(self, format_name: str) -> None:
+        center, tensor = true_l()
+        turn = fixed_axes(0.1, -0.2, 0.3)
+        robot = written(format_name, center, turn.T @ tensor @ turn)
+        (link,), (verdict,) = robot.links, robots.check(robot)
+        assert (robot.format, robot.name, link.name) == (format_name, "l", "arm")
+        np.testing.assert_allclose(link.inertial.inertia, tensor, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(link.inertial.center_of_mass, center, rtol=0, atol=1e-16)
+        assert verdict.verdict == "good"
+        assert verdict.factor == pytest.approx(1.0, rel=1e-12)
+        np.testing.assert_allclose(verdict.shape_moments, np.linalg.eigvalsh(tensor), rtol=1e-12)
+
+    def test_wrong_values_are_put_right(self, format_name: str) -> None:
+        center, tensor = true_l()
+        robot = written(format_name, (0, 0, 0), np.diag([1.0, 1.0, 1.0]))
+        (verdict,) = robots.check(robot)
+        assert verdict.verdict == "placeholder"
+        better = robots.fixed(robot, [verdict])
+        again = robots.parse_robot(better, name="better", folder=".")
+        np.testing.assert_allclose(again.links[0].inertial.inertia, tensor, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(again.links[0].inertial.center_of_mass, center, rtol=0, atol=1e-9)
+        (verdict,) = robots.check(again)
+        assert verdict.verdict == "good"
+
+    def test_what_no_body_has(self, format_name: str) -> None:
+        (verdict,) = robots.check(written(format_name, (0, 0.05, 0), np.diag([0.1, 0.1, 0.3])))
+        assert verdict.verdict == "impossible"
+        assert "I1 + I2" in verdict.reason or "triangle" in verdict.reason
+        np.testing.assert_allclose(verdict.moments, [0.1, 0.1, 0.3], rtol=1e-13)
+
+    def test_what_no_body_of_its_size_has(self, format_name: str) -> None:
+        (verdict,) = robots.check(written(format_name, (0.1, 0, 0), np.diag([0.9, 0.8, 0.7])))
+        assert verdict.verdict == "impossible"
+        assert "room for" in verdict.reason
+        (verdict,) = robots.check(written(format_name, (3, 0, 0), true_l()[1]))
+        assert verdict.verdict == "impossible"
+        assert "x = 3 m, lies outside" in verdict.reason
+
+    def test_far_from_its_shape(self, format_name: str) -> None:
+        robot = written(format_name, (0.1, 0, 0), np.diag([4e-4, 4e-4, 4e-4 + 1e-5]))
+        (verdict,) = robots.check(robot)
+        assert verdict.verdict == "suspect"
+        assert robots.fixed(robot, [verdict]) == robot.source
+        assert robots.fixed(robot, [verdict], {"suspect"}) != robot.source
+
+
+class TestFix:
+    def test_every_other_byte_stays(self) -> None:
+        robot = written("URDF", (0, 0, 0), np.diag([1.0, 1.0, 1.0]))
+        fixed = robots.fixed(robot, robots.check(robot)).decode()
+        before = robot.source.decode().splitlines()
+        after = fixed.splitlines()
+        assert len(before) == len(after)
+        changed = [i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b]
+        assert changed == [5, 7, 8]
+        assert after[5].startswith('      <origin xyz="')
+        assert after[5].endswith(' rpy="0 0 0"/>')
+        assert after[8].startswith('               ixy="')
+        assert after[6] == "      <mass value='3'/>  <!-- from a scale -->"
+
+    def test_a_tensor_rounded_too_far_goes_to_the_nearest_of_a_body(self) -> None:
+        """The TALOS gripper, whose link tells no shape (Gepetto/example-robot-data#130)."""
+        text = """<robot name="r"><link name="g"><inertial><mass value="0.1"/>
+            <inertia ixx="1.15e-4" ixy="5.2e-5" ixz="2.5e-5" iyy="1.53e-4" iyz="3.4e-5" izz="1.9e-4"/>
+            </inertial></link></robot>"""
+        robot = robots.parse_robot(text.encode(), name="r", folder=".")
+        (verdict,) = robots.check(robot)
+        assert verdict.verdict == "impossible"
+        np.testing.assert_allclose(verdict.moments, [7.8627e-5, 1.47497e-4, 2.31876e-4], rtol=1e-5)
+        again = robots.parse_robot(robots.fixed(robot, [verdict]), name="r", folder=".")
+        (better,) = robots.check(again)
+        assert better.verdict == "good"
+        deficit = 2.31876e-4 - 7.8627e-5 - 1.47497e-4
+        distance = np.linalg.norm(again.links[0].inertial.inertia - robot.links[0].inertial.inertia)
+        assert distance == pytest.approx(deficit / np.sqrt(3), rel=1e-3)
+
+    def test_elements_that_are_absent_are_added(self) -> None:
+        text = b"""<sdf version="1.9"><model name="m"><link name="a"><inertial><mass>6</mass></inertial>
+            <collision name="c"><pose>0 0 1 0 0 0</pose><geometry><box><size>1 1 2</size></box></geometry>
+            </collision></link></model></sdf>"""
+        robot = robots.parse_robot(text, name="r", folder=".")
+        (verdict,) = robots.check(robot)
+        assert verdict.verdict == "placeholder"  # what the format takes where nothing stands
+        again = robots.parse_robot(robots.fixed(robot, [verdict]), name="r", folder=".").links[0].inertial
+        np.testing.assert_allclose(again.inertia, np.diag([2.5, 2.5, 1.0]), rtol=1e-9)
+        np.testing.assert_allclose(again.center_of_mass, [0, 0, 1], rtol=1e-12)
+
+
+class TestTutorial:
+    """The official tutorial robot, whose 16 links all carry 1 1 1 (known_values.md, 7)."""
+
+    def test_all_placeholders_are_told(self, shared_data: Path) -> None:
+        robot = robots.read_robot(shared_data / "urdf" / "07-physics.urdf")
+        verdicts = robots.check(robot)
+        assert len(verdicts) == 16
+        assert {verdict.verdict for verdict in verdicts} == {"placeholder"}
+        with_shape = {v.name: v for v in verdicts if v.shape_moments is not None}
+        assert len(with_shape) == 12
+        assert all("has room for" in verdict.reason for verdict in with_shape.values())
+        wheel = with_shape["left_front_wheel"]
+        height, radius = Fraction("0.1"), Fraction("0.035")
+        across, along = (3 * radius**2 + height**2) / 12, radius**2 / 2
+        np.testing.assert_allclose(
+            wheel.shape_moments, [float(along), float(across), float(across)], rtol=1e-12
+        )
+        assert wheel.factor == pytest.approx(1632.65, abs=0.01)
+        assert with_shape["gripper_pole"].factor == pytest.approx(400_000, rel=1e-9)
+        assert with_shape["base_link"].factor == pytest.approx(5, rel=1e-12)
+        missing = [v for v in verdicts if v.shape_moments is None]
+        assert all("was not found" in v.notes[0] for v in missing)
+
+    def test_fixed_links_are_good(self, shared_data: Path) -> None:
+        robot = robots.read_robot(shared_data / "urdf" / "07-physics.urdf")
+        better = robots.fixed(robot, robots.check(robot))
+        verdicts = robots.check(robots.parse_robot(better, name="better", folder="."))
+        assert [v.verdict for v in verdicts].count("good") == 12
+
+
+class TestMeshes:
+    TEXT = """<robot name="r"><link name="a"><inertial><mass value="2"/><inertia ixx="{0}" iyy="{0}" izz="{0}"
+        ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><mesh filename="{1}" scale="{2}"/></geometry>
+        </collision></link></robot>"""
+
+    @pytest.mark.parametrize(
+        "address",
+        ["part.obj", "meshes/../part.obj", "package://arm/part.obj", "model://arm/part.obj", "file://{0}"],
+    )
+    def test_addresses(self, address: str, tmp_path: Path) -> None:
+        folder = tmp_path / "arm"
+        (folder / "meshes").mkdir(parents=True)
+        vertices, faces = cube(2.0)
+        (folder / "part.obj").write_bytes(obj(vertices, faces))
+        text = self.TEXT.format(0.5, address.format(folder / "part.obj"), "0.5 0.5 0.5")
+        (folder / "r.urdf").write_text(text)
+        (verdict,) = robots.check(robots.read_robot(folder / "r.urdf"))
+        np.testing.assert_allclose(verdict.shape_moments, [1 / 3, 1 / 3, 1 / 3], rtol=1e-14)
+        assert verdict.verdict == "good"
+
+    def test_packages_elsewhere(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        (tmp_path / "ws" / "arm").mkdir(parents=True)
+        (tmp_path / "ws" / "arm" / "part.obj").write_bytes(obj(*cube(1.0)))
+        (tmp_path / "home").mkdir()
+        path = tmp_path / "home" / "r.urdf"
+        path.write_text(self.TEXT.format(1 / 3, "package://arm/part.obj", "1 1 1"))
+        robot = robots.read_robot(path)
+        assert robots.check(robot)[0].shape_moments is None
+        assert robots.check(robot, [tmp_path / "ws"])[0].verdict == "good"
+        monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "ws"))
+        assert robots.check(robot)[0].verdict == "good"
+
+    def test_mirrored_and_open_meshes(self, tmp_path: Path) -> None:
+        vertices, faces = box((1.0, 2.0, 3.0))
+        (tmp_path / "closed.obj").write_bytes(obj(vertices, faces))
+        (tmp_path / "open.obj").write_bytes(obj(vertices, faces[:-1]))
+        want = trimesh.Trimesh(vertices, faces).moment_inertia
+        want = np.sort(np.diag(want)) * 2.0 / 6.0
+        for name, scale, note in (
+            ("closed.obj", "-1 1 1", None),
+            ("open.obj", "1 1 1", "its convex hull was taken"),
+        ):
+            text = self.TEXT.format(1.0, name, scale).encode()
+            (verdict,) = robots.check(robots.parse_robot(text, name="r", folder=tmp_path))
+            np.testing.assert_allclose(verdict.shape_moments, want, rtol=1e-13)
+            assert (note is None) == (not verdict.notes)
+            if note is not None:
+                assert note in verdict.notes[0]
+
+    def test_damaged_mesh_is_told(self, tmp_path: Path) -> None:
+        (tmp_path / "part.stl").write_bytes(b"no mesh")
+        text = self.TEXT.format(0.5, "part.stl", "1 1 1").encode()
+        (verdict,) = robots.check(robots.parse_robot(text, name="r", folder=tmp_path))
+        assert "part.stl" in verdict.notes[0]
+
+
+class TestMuJoCo:
+    def read(self, geom: str, compiler: str = "") -> robots.Verdict:
+        text = f"""<mujoco><compiler {compiler}/><worldbody><body name="b">
+            <inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>{geom}</body></worldbody></mujoco>"""
+        (verdict,) = robots.check(robots.parse_robot(text.encode(), name="m", folder="."))
+        return verdict
+
+    def test_lengths_are_halves(self) -> None:
+        np.testing.assert_allclose(
+            self.read('<geom type="cylinder" size="0.5 1"/>').shape_moments,
+            solids.cylinder(0.5, 2.0, mass=1.0).principal_moments,
+            rtol=1e-14,
+        )
+        capsule = solids.capsule(0.5, 3.0, mass=1.0)
+        for geom in (
+            '<geom type="capsule" size="0.5 1.5"/>',
+            '<geom type="capsule" size="0.5" fromto="0 1 0 0 4 0"/>',
+            '<geom type="capsule" size="0.5" fromto="0 0 4 0 0 1"/>',
+            '<geom type="capsule" size="0.5 1.5" zaxis="1 2 3"/>',
+            '<geom type="capsule" size="0.5 1.5" axisangle="0 1 0 30"/>',
+            '<geom type="capsule" size="0.5 1.5" xyaxes="0 1 0 1 1 0"/>',
+            '<geom type="capsule" size="0.5 1.5" quat="2 1 0 0"/>',
+        ):
+            np.testing.assert_allclose(self.read(geom).shape_moments, capsule.principal_moments, rtol=1e-13)
+
+    def test_masses_and_densities_weigh(self) -> None:
+        two = '<geom size="0.1" mass="{}"/><geom size="0.2" pos="1 0 0" {}/>'
+        light = 1000 * 4 / 3 * np.pi * 0.2**3
+        for second, share in (('mass="3"', 3.0), ("", light), ('density="500"', light / 2)):
+            verdict = self.read(two.format(1.0, second))
+            total = 1.0 + share
+            along = (0.4 * 0.01 * 1 + 0.4 * 0.04 * share) / total
+            np.testing.assert_allclose(verdict.shape_moments[0], along, rtol=1e-13)
+            np.testing.assert_allclose(verdict.shape_moments[2], along + share / total**2, rtol=1e-13)
+
+    def test_default_angles_are_degrees_of_the_turning_frame(self) -> None:
+        text = b"""<mujoco><worldbody><body name="b"><inertial mass="1" pos="0 0 0" euler="10 20 30"
+            diaginertia="1 2 2.5"/></body></worldbody></mujoco>"""
+        (link,) = robots.parse_robot(text, name="m", folder=".").links
+        x, y, z = (fixed_axes(*row) for row in np.diag(np.deg2rad([10, 20, 30])))
+        turn = x @ y @ z
+        np.testing.assert_allclose(
+            link.inertial.inertia, turn @ np.diag([1, 2, 2.5]) @ turn.T, rtol=0, atol=1e-14
+        )
+
+    def test_frames_and_classes(self) -> None:
+        text = b"""<mujoco><default><default class="big"><geom size="0.5"/></default></default><worldbody>
+            <frame><body name="b"><inertial mass="1" pos="0 0 0" diaginertia="1 2 2.5"/>
+            <geom size="0.5"/><frame pos="0 0 1" euler="90 0 0" childclass="big"><geom pos="0 3 0"/></frame>
+            </body></frame></worldbody></mujoco>"""
+        robot = robots.parse_robot(text, name="m", folder=".")
+        assert [shape.size for shape in robot.links[0].shapes] == [(0.5,), (0.5,)]
+        np.testing.assert_allclose(robot.links[0].shapes[1].place.position, [0, 0, 4], atol=1e-15)
+        (verdict,) = robots.check(robot)
+        np.testing.assert_allclose(verdict.shape_moments, [0.1, 4.1, 4.1], rtol=1e-14)
+
+    def test_nothing_declared_is_inferred(self) -> None:
+        text = b'<mujoco><worldbody><body name="b"><geom size="1"/><body/></body></worldbody></mujoco>'
+        verdicts = robots.check(robots.parse_robot(text, name="m", folder="."))
+        assert [verdict.verdict for verdict in verdicts] == ["inferred", "none"]
+        text = b"""<sdf><model><link name="a"><inertial auto="true"/>
+            <collision><geometry><sphere><radius>1</radius></sphere></geometry></collision></link></model></sdf>"""
+        (verdict,) = robots.check(robots.parse_robot(text, name="s", folder="."))
+        assert verdict.verdict == "inferred"
+
+
+class TestSafety:
+    BOMB = b"""<?xml version="1.0"?><!DOCTYPE robot [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;">
+        <!ENTITY c "&b;&b;&b;&b;">]><robot name="&c;"><link name="a"/></robot>"""
+
+    @pytest.mark.parametrize(
+        "text",
+        [
+            BOMB,
+            b'<!DOCTYPE robot SYSTEM "http://localhost/robot.dtd"><robot name="r"><link name="a"/></robot>',
+            b'<!DOCTYPE r [<!ENTITY f SYSTEM "file:///etc/hostname">]><robot><link name="&f;"/></robot>',
+        ],
+    )
+    def test_entities_are_refused(self, text: bytes) -> None:
+        with pytest.raises(FileFormatError, match="remove the declaration"):
+            robots.parse_robot(text, name="r", folder=".")
+
+    def test_depth_is_bounded(self) -> None:
+        text = b"<robot>" + b"<link>" * 100_000
+        with pytest.raises(FileFormatError, match="nested"):
+            robots.parse_robot(text, name="r", folder=".")
+
+    @given(st.binary(max_size=300))
+    def test_any_bytes_are_read_or_refused(self, data: bytes) -> None:
+        for source in (data, b"<robot><link>" + data + b"</link></robot>"):
+            with contextlib.suppress(FileFormatError):
+                robots.check(robots.parse_robot(source, name="r", folder="."))
+
+    @given(st.data())
+    def test_a_damaged_robot_is_read_or_refused(self, data: st.DataObject) -> None:
+        """Any byte of a right file may be any other."""
+        source = bytearray(data.draw(st.sampled_from(sorted(FORMATS.values()))).format_map(PLAIN).encode())
+        for _ in range(data.draw(st.integers(1, 4))):
+            source[data.draw(st.integers(0, len(source) - 1))] = data.draw(st.integers(32, 126))
+        with contextlib.suppress(FileFormatError):
+            robot = robots.parse_robot(bytes(source), name="r", folder=".")
+            robots.fixed(robot, robots.check(robot))
+
+
+@given(
+    moments=st.lists(st.floats(1e-6, 1e6), min_size=3, max_size=3),
+    size=st.lists(st.floats(1e-3, 1e3), min_size=3, max_size=3),
+)
+def test_what_is_put_right_is_a_body(moments: list[float], size: list[float]) -> None:
+    text = f"""<robot name="r"><link name="a"><inertial><mass value="2"/><inertia ixx="{moments[0]!r}"
+        iyy="{moments[1]!r}" izz="{moments[2]!r}" ixy="0" ixz="0" iyz="0"/></inertial>
+        <visual><origin rpy="1 2 3" xyz="1 1 1"/><geometry><box size="{size[0]!r} {size[1]!r} {size[2]!r}"/>
+        </geometry></visual></link></robot>"""
+    robot = robots.parse_robot(text.encode(), name="r", folder=".")
+    verdicts = robots.check(robot)
+    again = robots.parse_robot(robots.fixed(robot, verdicts), name="r", folder=".")
+    (verdict,) = robots.check(again)
+    assert verdict.verdict in {"good", "suspect"}
+    inertial = again.links[0].inertial
+    RigidBody(inertial.mass, inertial.inertia, inertial.center_of_mass)
+
+
+def test_docstring_examples() -> None:
+    result = doctest.testmod(robots)
+    assert result.attempted > 0
+    assert result.failed == 0
