@@ -18,7 +18,14 @@ if TYPE_CHECKING:
         tops,
         validity,
     )
-    from polhode._core import MassAccumulator, RigidBody, __version__, principal_axes, principal_moments
+    from polhode._core import (
+        FreeMotion,
+        MassAccumulator,
+        RigidBody,
+        __version__,
+        principal_axes,
+        principal_moments,
+    )
     from polhode.results import (
         AngularMomentum,
         ErrorBound,
@@ -54,6 +61,7 @@ else:
 __all__ = [
     "AngularMomentum",
     "ErrorBound",
+    "FreeMotion",
     "FreePrecession",
     "KineticEnergy",
     "MassAccumulator",

@@ -20,6 +20,7 @@ mod errors;
 mod euler_rates;
 mod files;
 mod forms;
+mod free_motion;
 mod interrupt;
 mod kinematics;
 mod laminae;
@@ -58,6 +59,8 @@ mod _core {
         to_log_cholesky, to_parameters, to_positive_products, to_pseudo_inertia,
         to_spatial_inertia,
     };
+    #[pymodule_export]
+    use crate::free_motion::PyFreeMotion;
     #[pymodule_export]
     use crate::kinematics::transport;
     #[pymodule_export]

@@ -10,6 +10,7 @@
 //! | Euler's equations, forward and inverse (mln27) | [`euler_equations`] |
 //! | the force in a pivot (mln24) | [`mod@pivot_reaction`] |
 //! | steady spins and whether they are stable | [`stability`] |
+//! | free motion of any body, exact at any time | [`free`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | what acts on the body | [`loads`] |
@@ -20,6 +21,7 @@ pub mod angular_momentum;
 pub mod attitude;
 pub mod euler_angles;
 pub mod euler_equations;
+pub mod free;
 pub mod free_precession;
 pub mod heavy_top;
 pub mod integrate;

@@ -55,19 +55,67 @@ pub struct DoubleDouble {
 
 impl DoubleDouble {
     /// The sum of any two doubles, exactly.
+    #[inline]
     #[must_use]
     pub fn sum(a: f64, b: f64) -> Self {
         let (high, low) = two_sum(a, b);
         Self { high, low }
     }
 
+    /// π.
+    pub const PI: Self = Self {
+        high: std::f64::consts::PI,
+        low: 1.224_646_799_147_353_2e-16,
+    };
+
+    /// The product of two doubles, exactly within the range that [`two_product`] states.
+    #[inline]
+    #[must_use]
+    pub fn product(a: f64, b: f64) -> Self {
+        let (high, low) = two_product(a, b);
+        Self { high, low }
+    }
+
     /// The nearest double.
+    #[inline]
     #[must_use]
     pub fn rounded(self) -> f64 {
         self.high
     }
 
+    /// Square root; zero of zero, NaN of what is negative.
+    #[inline]
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        if self.high == 0.0 {
+            return Self::default();
+        }
+        // One step of Newton's method from the reciprocal root (Karp).
+        let reciprocal = 1.0 / self.high.sqrt();
+        let root = self.high * reciprocal;
+        let rest = (self - Self::product(root, root)).high;
+        Self::sum(root, rest * (0.5 * reciprocal))
+    }
+
+    /// Magnitude.
+    #[inline]
+    #[must_use]
+    pub fn abs(self) -> Self {
+        if self.high < 0.0 { -self } else { self }
+    }
+
+    /// The number times a power of two, exactly while nothing leaves the range of float64.
+    #[inline]
+    #[must_use]
+    pub fn scaled(self, power_of_two: f64) -> Self {
+        Self {
+            high: self.high * power_of_two,
+            low: self.low * power_of_two,
+        }
+    }
+
     /// From a double and a rest that is smaller.
+    #[inline]
     fn renormalized(high: f64, low: f64) -> Self {
         let (high, low) = fast_two_sum(high, low);
         Self { high, low }
@@ -75,6 +123,7 @@ impl DoubleDouble {
 }
 
 impl From<f64> for DoubleDouble {
+    #[inline]
     fn from(high: f64) -> Self {
         Self { high, low: 0.0 }
     }
@@ -83,6 +132,7 @@ impl From<f64> for DoubleDouble {
 impl Neg for DoubleDouble {
     type Output = Self;
 
+    #[inline]
     fn neg(self) -> Self {
         Self {
             high: -self.high,
@@ -94,6 +144,7 @@ impl Neg for DoubleDouble {
 impl Add for DoubleDouble {
     type Output = Self;
 
+    #[inline]
     fn add(self, other: Self) -> Self {
         let (s, e) = two_sum(self.high, other.high);
         let (t, f) = two_sum(self.low, other.low);
@@ -105,6 +156,7 @@ impl Add for DoubleDouble {
 impl Sub for DoubleDouble {
     type Output = Self;
 
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self + -other
     }
@@ -113,6 +165,7 @@ impl Sub for DoubleDouble {
 impl Mul for DoubleDouble {
     type Output = Self;
 
+    #[inline]
     fn mul(self, other: Self) -> Self {
         let (p, e) = two_product(self.high, other.high);
         Self::renormalized(p, e + (self.high * other.low + self.low * other.high))
@@ -123,6 +176,7 @@ impl Div for DoubleDouble {
     type Output = Self;
 
     /// Long division, a double at a time.
+    #[inline]
     #[expect(
         clippy::suspicious_arithmetic_impl,
         reason = "division is made of products and differences"
@@ -152,6 +206,18 @@ mod tests {
         assert_eq!((small * small - 1.0.into()).high, 2.0_f64.powi(-79));
         assert_eq!((small - small).high, 0.0);
         assert!(((small * third) / third - small).high.abs() <= 2.0_f64.powi(-103));
+    }
+
+    #[test]
+    fn roots_have_twice_the_digits() {
+        for x in [2.0, 3.0, 1e-150, 7e140, 0.1] {
+            let x = DoubleDouble::product(x, x * (1.0 + f64::EPSILON));
+            let root = x.sqrt();
+            let rest = (root * root - x).high / x.high;
+            assert!(rest.abs() < 2.0_f64.powi(-102), "{x:?} {rest:e}");
+        }
+        assert_eq!(DoubleDouble::default().sqrt(), DoubleDouble::default());
+        assert!(DoubleDouble::from(-1.0).sqrt().high.is_nan());
     }
 
     #[test]

@@ -46,6 +46,12 @@ pub trait Lane:
     /// The magnitude of `self` with the sign bit of `sign`.
     #[must_use]
     fn copysign(self, sign: Self) -> Self;
+    /// The nearest integer, the even one of two; a number past 2⁵² is one.
+    #[must_use]
+    fn round(self) -> Self;
+    /// 2 to the power of `self`, an integer from −1022 to 1023.
+    #[must_use]
+    fn power_of_two(self) -> Self;
     /// The larger; `other` where either is not a number.
     #[must_use]
     fn max(self, other: Self) -> Self;
@@ -91,6 +97,10 @@ impl<const FMA: bool> Neg for Double<FMA> {
 
 const MANTISSA_WIDTH: u32 = 52;
 const EXPONENT_FIELD: u64 = 0x7ff;
+/// 1.5·2⁵²: from here to 2⁵³ the doubles are the integers.
+const INTEGERS: f64 = 6_755_399_441_055_744.0;
+/// The bits of 1.0.
+const ONE_BITS: u64 = 0x3ff0_0000_0000_0000;
 /// The exponent fields of s and 1/s add up to this.
 const RECIPROCAL_FIELDS: u64 = 2046;
 
@@ -140,6 +150,20 @@ impl<const FMA: bool> Lane for Double<FMA> {
         Self(self.0.copysign(sign.0))
     }
 
+    #[inline(always)]
+    fn round(self) -> Self {
+        Self(self.0.round_ties_even())
+    }
+
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        // The sum has the integer in its lowest bits, in two's complement: they become the exponent.
+        let bits = (self.0 + INTEGERS).to_bits();
+        Self(f64::from_bits(
+            (bits << MANTISSA_WIDTH).wrapping_add(ONE_BITS),
+        ))
+    }
+
     // The comparisons as the processor has them: `f64::max` would treat NaN with more care, in three instructions.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
@@ -174,6 +198,16 @@ mod tests {
         for x in [0.0, 5e-324, 1e308, f64::INFINITY, f64::NAN] {
             let (s, inverse) = Double::<false>(x).power_of_two_scale();
             assert!(s.0.is_normal() && s.0 * inverse.0 == 1.0);
+        }
+    }
+
+    #[test]
+    fn integers_and_their_powers_of_two() {
+        let round = |x: f64| Double::<true>(x).round().get();
+        assert_eq!((round(2.5), round(-3.5), round(1e300)), (2.0, -4.0, 1e300));
+        for n in [-1022, -53, -1, 0, 1, 52, 1023] {
+            let power = Double::<true>(f64::from(n)).power_of_two().get();
+            assert_eq!(power, 2.0_f64.powi(n));
         }
     }
 

@@ -8,6 +8,9 @@
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
 //! | [`split_vector`] | differences, scalar products and determinants that survive cancellation |
+//! | [`elliptic`] | elliptic integrals by means and duplication |
+//! | [`theta`] | Jacobi's functions and the phase of Θ |
+//! | [`turns`] | phases without their whole turns, sines, exponentials in lanes |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
 //! | [`eigen3`] | eigenvalues and eigenvectors of symmetric 3×3 matrices |
@@ -18,9 +21,12 @@
 pub mod dispatch;
 pub mod double_double;
 pub mod eigen3;
+pub mod elliptic;
 pub mod lane;
 pub mod planes;
 pub mod quadrature;
 pub mod reduce;
 pub mod split_vector;
+pub mod theta;
 pub mod threads;
+pub mod turns;

@@ -1,0 +1,249 @@
+//! Free motion, exact at any time: Euler's problem by theta functions.
+//!
+//! With L along the third axis of the frame M at rest, and in the body the axes P = (x, y, z), z the principal axis that L
+//! circles, the attitude is `q_MP = (Im β, −Re β, Im α, Re α)`, where the Cayley–Klein parameters
+//! `α = √(½(1 + L_z/L)) e^{i(μ−χ)/2}` and `β = √(½(1 − L_z/L)) e^{i(μ+χ)/2}` (μ the angle of precession, χ that of L about
+//! z, seen from P) are each one theta function of u = λt + u₀ times a steadily turning phase. A state costs the same at any
+//! t. Only two constants multiply t, the rate of that phase and 1/4K of the period; they are known to twice the
+//! precision, and whole turns are taken off exactly.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `mode.rs` | the six ways to move |
+//! | `refined.rs` | principal moments and ω to twice the precision |
+//! | `tumbling.rs` | long- and short-axis mode and the separatrix: from a start to the constants of the theta functions |
+//! | `circling.rs` | steady spin and the symmetric body: the limits in which they are sines |
+//! | `propagator.rs` | from the constants to the states, in lanes |
+
+mod circling;
+pub mod mode;
+mod propagator;
+pub mod refined;
+mod tumbling;
+
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use crate::error::{Error, all_finite};
+use crate::mass::RigidBody;
+use crate::motion::simulate::State;
+use crate::numerics::dispatch::dispatch;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::threads::{Halt, fill_blocks};
+pub use mode::Mode;
+use propagator::{At, Propagator, Sample};
+pub use refined::RefinedPrincipal;
+use tumbling::Tumbling;
+
+/// The motion of a body on which no torque acts about its centre of mass, from its state at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(alias = "Euler top")]
+pub struct FreeMotion {
+    /// How the body moves.
+    pub mode: Mode,
+    /// The state at t = 0.
+    pub initial: State,
+    /// Principal moments, ascending, to twice the precision.
+    pub moments: [DoubleDouble; 3],
+    /// ω at t = 0 along the principal axes.
+    pub principal_omega: [DoubleDouble; 3],
+    /// The constants of the theta functions.
+    pub secular: Secular,
+    propagator: Propagator,
+}
+
+/// What grows with time, and the modulus; in units of the input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Secular {
+    /// The time after which ω has the opposite signs across the axis circled: half of the period 4K/λ of ω in the body.
+    /// Infinite where ω circles nothing.
+    pub half_period: DoubleDouble,
+    /// Mean rate in radians at which the body precesses about L, `μ̇` over a period; of a spin |ω|.
+    pub mean_precession: DoubleDouble,
+    /// The modulus k of Jacobi's functions.
+    pub modulus: f64,
+    /// `k′ = √(1 − k²)`, with all its digits near the separatrix.
+    pub complementary_modulus: f64,
+}
+
+impl FreeMotion {
+    /// From ω (of B relative to N, components in B) and attitude at t = 0, about the centre of mass.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`] when `omega` is not finite.
+    pub fn of(
+        body: &RigidBody,
+        omega: &Vector3<f64>,
+        attitude: &UnitQuaternion<f64>,
+    ) -> Result<Self, Error> {
+        Self::refined(&RefinedPrincipal::of(body), omega, attitude)
+    }
+
+    /// As [`Self::of`], for principal moments and axes already refined: many states of one body.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`] when `omega` is not finite.
+    pub fn refined(
+        principal: &RefinedPrincipal,
+        omega: &Vector3<f64>,
+        attitude: &UnitQuaternion<f64>,
+    ) -> Result<Self, Error> {
+        all_finite("omega", omega)?;
+        let initial = State {
+            attitude: *attitude,
+            omega: *omega,
+        };
+        let axes = principal.rounded_axes();
+        // Products of ratios alone: powers of two bring the largest moment and rate near one.
+        let inertia_unit = power_of_two(principal.moments[2].high);
+        let rate_unit = power_of_two(omega.amax());
+        let moments = (principal.moments).map(|moment| moment.scaled(1.0 / inertia_unit));
+        let scaled_omega = omega / rate_unit;
+        let w = principal.components(&scaled_omega);
+
+        let [i1, i2, i3] = moments;
+        let still = w.iter().filter(|rate| rate.high == 0.0).count();
+        let (mode, (propagator, secular)) = if i1 == i3 {
+            (Mode::Spherical, circling::spin(&scaled_omega, attitude))
+        } else if i1 == i2 || i2 == i3 || i1.high == 0.0 {
+            let motion = circling::symmetric(&moments, &w, &axes, attitude);
+            (Mode::Symmetric, motion)
+        } else if still >= 2 {
+            (Mode::Steady, circling::spin(&scaled_omega, attitude))
+        } else {
+            let tumbling = Tumbling::of(&moments, &w);
+            (tumbling.mode, tumbling.motion(&axes, attitude))
+        };
+        Ok(Self {
+            mode,
+            initial,
+            moments: principal.moments,
+            principal_omega: w.map(|rate| rate.scaled(rate_unit)),
+            secular: secular.in_units_of(rate_unit),
+            propagator: propagator.in_units_of(rate_unit),
+        })
+    }
+
+    /// Attitude and ω at the time t; NaN for a t that is not finite.
+    ///
+    /// The attitude is continuous in t as a quaternion, not only as a rotation.
+    #[must_use]
+    pub fn at(&self, t: f64) -> State {
+        let [x, y, z, w, p, q, r] = dispatch(At {
+            propagator: &self.propagator,
+            time: t,
+        });
+        State {
+            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
+            omega: Vector3::new(p, q, r),
+        }
+    }
+
+    /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
+    ///
+    /// # Panics
+    /// If the lengths differ.
+    pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        assert_eq!(times.len(), attitudes.len(), "an attitude for each time");
+        assert_eq!(
+            times.len(),
+            omegas.len(),
+            "an angular velocity for each time"
+        );
+        if times.len() < FEW {
+            for ((&time, attitude), omega) in times.iter().zip(attitudes).zip(omegas) {
+                let propagator = &self.propagator;
+                let [x, y, z, w, p, q, r] = dispatch(At { propagator, time });
+                *attitude = [x, y, z, w];
+                *omega = [p, q, r];
+            }
+            return;
+        }
+        dispatch(Sample {
+            propagator: &self.propagator,
+            times,
+            attitudes,
+            omegas,
+        });
+    }
+}
+
+/// The states of many motions at many times, all times of the first motion first, on several threads when there are many;
+/// quaternions as (x, y, z, w). Each state has the bits of [`FreeMotion::at`].
+///
+/// About every 20 ms `watch` gets the fraction done; [`ControlFlow::Break`] ends the job.
+///
+/// # Errors
+/// [`Halt::Stopped`] if `watch` said so; the states are then unspecified.
+///
+/// # Panics
+/// If the number of attitudes or of angular velocities is not that of motions times that of times.
+pub fn sample_many(
+    motions: &[FreeMotion],
+    times: &[f64],
+    attitudes: &mut [[f64; 4]],
+    omegas: &mut [[f64; 3]],
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<(), Halt<Infallible>> {
+    let count = motions.len() * times.len();
+    assert_eq!(
+        attitudes.len(),
+        count,
+        "an attitude for each motion and time"
+    );
+    assert_eq!(
+        omegas.len(),
+        count,
+        "an angular velocity for each motion and time"
+    );
+    let mut blocks: Vec<_> = attitudes
+        .chunks_mut(BLOCK)
+        .zip(omegas.chunks_mut(BLOCK))
+        .collect();
+    fill_blocks(&mut blocks, 1, watch, |block, states| {
+        for (attitudes, omegas) in states {
+            let (mut at, mut done) = (block * BLOCK, 0);
+            while done < attitudes.len() {
+                let (row, first) = (at / times.len(), at % times.len());
+                let span = (times.len() - first).min(attitudes.len() - done);
+                motions[row].sample(
+                    &times[first..first + span],
+                    &mut attitudes[done..done + span],
+                    &mut omegas[done..done + span],
+                );
+                at += span;
+                done += span;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// States that one thread computes at a time.
+const BLOCK: usize = 4096;
+/// Fewer times than this are done one by one.
+const FEW: usize = 8;
+
+impl Secular {
+    fn in_units_of(self, rate_unit: f64) -> Self {
+        Self {
+            half_period: self.half_period.scaled(1.0 / rate_unit),
+            mean_precession: self.mean_precession.scaled(rate_unit),
+            ..self
+        }
+    }
+}
+
+/// The power of two at or below a positive number; one for zero.
+fn power_of_two(x: f64) -> f64 {
+    use crate::numerics::lane::{Double, Lane};
+    if x == 0.0 {
+        return 1.0;
+    }
+    Double::<false>::new(x).power_of_two_scale().1.get()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,255 @@
+//! The class `FreeMotion`: exact motions of free bodies.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use numpy::{PyArray1, PyArrayMethods};
+use polhode::RigidBody;
+use polhode::motion::attitude::components;
+use polhode::motion::free::{FreeMotion, RefinedPrincipal, sample_many};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::{numpy, read, read_attitude, write, write_of};
+use crate::interrupt::Interrupt;
+use crate::rigid_body::PyRigidBody;
+use crate::stack::{Broadcast, Stack, tuple};
+
+/// The motion of a body, or of a stack of bodies, on which no torque acts about its centre of mass.
+///
+/// Made by `RigidBody.free_motion`. Exact at any time, by theta functions: a state a million rotations away costs
+/// as much as one close by, and is as accurate. Values never change.
+///
+/// Attributes
+/// ----------
+/// body : RigidBody
+///     The body, or the stack of them.
+/// omega : numpy.ndarray, shape (..., 3)
+///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
+/// quaternion : numpy.ndarray, shape (..., 4)
+///     R_NB at t = 0 as (x, y, z, w).
+/// shape : tuple of int
+///     Of the stack of motions: bodies, angular velocities and attitudes broadcast together.
+///
+/// Examples
+/// --------
+/// A racket spun about its middle axis, almost, soon turns over:
+///
+/// >>> from polhode import RigidBody
+/// >>> racket = RigidBody.from_principal(0.3, (0.0012, 0.0164, 0.0176))
+/// >>> motion = racket.free_motion(omega=(0.001, 10.0, 0.0))
+/// >>> motion.at([0.0, 0.5, 1.0, 1.25, 1.5]).omega[:, 1].round(3)
+/// array([10.   , 10.   ,  8.626, -7.698, -9.975])
+#[pyclass(name = "FreeMotion", module = "polhode", frozen)]
+pub(crate) struct PyFreeMotion {
+    #[pyo3(get)]
+    body: Py<PyRigidBody>,
+    pub(crate) motions: Stack<FreeMotion>,
+}
+
+impl PyFreeMotion {
+    fn new(
+        py: Python<'_>,
+        body: Py<PyRigidBody>,
+        omega: &Stack<Vector3<f64>>,
+        attitude: &Stack<UnitQuaternion<f64>>,
+    ) -> PyResult<Self> {
+        let bodies = &body.get().bodies;
+        let refined = Broadcast::of(["body"], [&bodies.shape])?
+            .try_map(py, |[b]| Ok(RefinedPrincipal::of(&bodies[b])))?;
+        let shapes = [&bodies.shape[..], &omega.shape, &attitude.shape];
+        let motions = Broadcast::of(["body", "omega", "attitude"], shapes)?
+            .try_map(py, |[b, w, q]| {
+                FreeMotion::refined(&refined[b], &omega[w], &attitude[q])
+            })?;
+        Ok(Self { body, motions })
+    }
+
+    fn centers(&self) -> Stack<Vector3<f64>> {
+        self.body.get().bodies.map(RigidBody::center_of_mass)
+    }
+}
+
+#[pymethods]
+impl PyRigidBody {
+    /// The motion of the body when no torque acts about its centre of mass: Euler's problem, exact at any time.
+    ///
+    /// Parameters
+    /// ----------
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
+    /// attitude : array_like, shape (..., 4), or rotation, optional
+    ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as SciPy's
+    ///     Rotation. The identity by default.
+    ///
+    /// Returns
+    /// -------
+    /// FreeMotion
+    ///     Bodies, angular velocities and attitudes broadcast together.
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     When `omega` is not finite or `attitude` is not a rotation.
+    ///
+    /// Notes
+    /// -----
+    /// What defines the body is taken as exact, its principal moments or its tensor, and carried on in
+    /// twice the precision. A body without moment about an axis keeps its angular velocity along it.
+    ///
+    /// Examples
+    /// --------
+    /// NASA's tumbling brick (NASA/TM-2015-218675, check case 2) after 30 seconds, in degrees a second:
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody
+    /// >>> brick = RigidBody.from_principal(0.155404754, (0.001894220, 0.006211019, 0.007194665))
+    /// >>> motion = brick.free_motion(omega=np.radians([10, 20, 30]))
+    /// >>> np.degrees(motion.at(30.0).omega).round(6)
+    /// array([ 12.618391, -17.397475,  31.119589])
+    #[pyo3(signature = (omega, attitude=None))]
+    fn free_motion(
+        slf: Py<Self>,
+        py: Python<'_>,
+        omega: &Bound<'_, PyAny>,
+        attitude: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyFreeMotion> {
+        let (omega, attitude) = (read(omega, "omega")?, read_attitude(attitude, "attitude")?);
+        PyFreeMotion::new(py, slf, &omega, &attitude)
+    }
+}
+
+#[pymethods]
+impl PyFreeMotion {
+    /// Angular velocity at t = 0.
+    #[getter]
+    fn omega<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let omegas = write_of(py, &self.motions, |motion| motion.initial.omega)?;
+        Ok(omegas.into_any())
+    }
+
+    /// Attitude at t = 0.
+    #[getter]
+    fn quaternion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let attitude = |motion: &FreeMotion| components(&motion.initial.attitude);
+        Ok(write_of(py, &self.motions, attitude)?.into_any())
+    }
+
+    /// The shape of the stack of motions.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.motions.shape)
+    }
+
+    /// Attitude and angular velocity at the times asked for.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like
+    ///     Times of any shape and in any order, negative ones too; every motion is asked at each.
+    ///
+    /// Returns
+    /// -------
+    /// Trajectory
+    ///     Its ``omega`` and ``quaternion`` have the shape of the stack, then that of `t`, then their
+    ///     components. The quaternion is continuous in time. A time that is not finite gives NaN.
+    ///
+    /// Notes
+    /// -----
+    /// The GIL is released, many states run on all cores, and Ctrl-C ends the run. A state has the
+    /// same bits alone and among others.
+    ///
+    /// Examples
+    /// --------
+    /// In a flat disk the angular velocity circles once while it spins once:
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import laminae
+    /// >>> motion = laminae.disk(radius=0.01, mass=0.005).free_motion(omega=(0.1, 0.0, 10.0))
+    /// >>> spin = 2 * np.pi / 10.0
+    /// >>> motion.at([0.0, spin / 4, spin / 2]).omega.round(3)
+    /// array([[ 0.1,  0. , 10. ],
+    ///        [ 0. ,  0.1, 10. ],
+    ///        [-0.1,  0. , 10. ]])
+    fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let times: Stack<f64> = read(t, "t")?;
+        let shape = [&self.motions.shape[..], &times.shape].concat();
+        let count = self.motions.rows.len() * times.rows.len();
+        let (mut attitudes, mut omegas) = (vec![0.0; 4 * count], vec![0.0; 3 * count]);
+        let interrupt = Interrupt::new(None);
+        let outcome = py.detach(|| {
+            sample_many(
+                &self.motions.rows,
+                &times.rows,
+                attitudes.as_chunks_mut().0,
+                omegas.as_chunks_mut().0,
+                &mut |_| interrupt.poll(None),
+            )
+        });
+        interrupt.finish(py, outcome.is_ok())?;
+        let array = |numbers: Vec<f64>, components: usize| {
+            PyArray1::from_vec(py, numbers).reshape([&shape[..], &[components]].concat())
+        };
+        let np = numpy(py)?;
+        let still = np.call_method1("zeros", ([&shape[..], &[3]].concat(),))?;
+        let none = np.call_method1("zeros", (self.motions.shape.clone(), "int64"))?;
+        let fields = PyDict::new(py);
+        fields.set_item("body", &self.body)?;
+        fields.set_item("t", write(py, &times)?)?;
+        fields.set_item("omega", array(omegas, 3)?)?;
+        fields.set_item("quaternion", array(attitudes, 4)?)?;
+        fields.set_item("position", &still)?;
+        fields.set_item("velocity", &still)?;
+        fields.set_item("about", write(py, &self.centers())?)?;
+        fields.set_item("steps", &none)?;
+        fields.set_item("evaluations", &none)?;
+        py.import("polhode.results")?
+            .getattr("Trajectory")?
+            .call((), Some(&fields))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restore = py.get_type::<Self>().getattr("_from_start")?;
+        let body = self.body.bind(py).clone().into_any();
+        let parts = [body, self.omega(py)?, self.quaternion(py)?];
+        Ok((restore, PyTuple::new(py, parts)?))
+    }
+
+    /// The motions that `__reduce__` took apart; for pickle.
+    #[staticmethod]
+    fn _from_start(
+        py: Python<'_>,
+        body: Py<PyRigidBody>,
+        omega: &Bound<'_, PyAny>,
+        quaternion: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
+        let attitude = quaternion.map(|&[x, y, z, w]| {
+            UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
+        });
+        Self::new(py, body, &read(omega, "omega")?, &attitude)
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    /// One motion by its start; a stack by its shape.
+    fn __repr__(&self) -> String {
+        if !self.motions.shape.is_empty() {
+            let count = self.motions.rows.len();
+            return format!(
+                "<FreeMotion stack of shape {}: {count} motions>",
+                tuple(&self.motions.shape)
+            );
+        }
+        let motion = &self.motions[0];
+        let [p, q, r]: [f64; 3] = motion.initial.omega.into();
+        format!("<FreeMotion: {}, omega=[{p:?}, {q:?}, {r:?}]>", motion.mode)
+    }
+}
