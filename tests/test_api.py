@@ -37,6 +37,7 @@ MODULES = [
     "polhode.kinematics",
     "polhode.parallel_axis",
     "polhode.results",
+    "polhode.robots",
     "polhode.tops",
 ]
 HEAVY = ("matplotlib", "trimesh", "scipy", "rich", "cyclopts", "periodictable", "pint", "pandas", "PIL")

@@ -3,44 +3,37 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from polhode import RigidBody
-from polhode._extras import require
-from polhode._files.trajectory import TRAJECTORY_SUFFIXES
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
-from polhode.cli.progress import progress
-from polhode.cli.quantities import quantity, vector
+from polhode.cli.quantities import quantities, quantity, vector
 from polhode.cli.source import shown
+from polhode.cli.spin_output import check_paths, save
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from polhode import Trajectory
+    from polhode import FreeMotion, Trajectory
     from polhode.cli.options import BodyOptions, SpinOptions
 
     Floats = NDArray[np.float64]
 
-__all__ = ["PICTURE_SUFFIXES", "spin_report"]
-
-PICTURE_SUFFIXES = (".png", ".pdf", ".svg")
-_LONG = 1e5
-"""Radians of turning beyond which an integration is worth a bar."""
+__all__ = ["spin_report"]
 
 
 def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> Report:
     """Let a body move, save its motion as asked for and report on it."""
-    omega, until = _checked(file, spin)
+    until = _checked(file, spin)
     loaded = _body(file, spin, options)
     body = loaded.body
     axes = body.principal.axes if spin.axes == "principal" else np.eye(3)
-    to_radians = np.pi / 180.0 if spin.degrees else 1.0
-    trajectory = _moved(body, axes @ omega, until, spin)
+    motion = _motion(loaded, axes, spin)
     report = Report()
     report.section(
         "",
@@ -51,59 +44,47 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         "body",
         Field("mass", "mass", body.mass, loaded.mass_unit),
         Field("principal_moments", "I1 I2 I3", body.principal_moments, loaded.moment_unit),
+        Field("top", "top", str(body.principal.top)),
     )
-    rates = trajectory.omega[[0, -1]] @ axes / to_radians
-    angles = np.rad2deg(trajectory.euler_angles("ZXZ", singular="nan")[-1])
-    rate_unit = "deg/s" if spin.degrees else "rad/s"
-    report.section(
-        "motion",
-        Field("time", "end", until, "s"),
-        Field("omega_start", "omega, start", rates[0], rate_unit),
-        Field("omega_end", "omega, end", rates[1], rate_unit),
-        Field("euler_angles_end", "Euler angles, end", angles, "deg", "ZXZ phi, theta, psi"),
-    )
-    report.section("conserved", *_conserved_fields(trajectory, loaded))
-    report.notes += loaded.notes
-    if np.isnan(angles).any():
+    report.section("motion", *_kind_fields(motion, axes, spin))
+    report.section("conserved", *_constant_fields(motion, loaded))
+    report.section("steady spins with this momentum", *_stability_fields(motion))
+    report.notes += _notes(loaded)
+    if until is None:
+        return report
+    trajectory = motion.at(np.linspace(0.0, until, spin.samples))
+    end = _end_fields(trajectory, axes, until, spin)
+    report.section("at the end", *end, *_drift_fields(trajectory))
+    if np.isnan(np.asarray(end[-1].value)).any():
         report.notes.append("at the end theta is 0 or 180 deg, where phi and psi are not defined one by one")
-    if loaded.length == "unit":
-        report.notes.append("unit unknown: mass and moments are in the file's own unit of length")
-    if loaded.assumed:
-        report.notes.append(
-            "neither density nor mass was given: density 1 was used; the motion does not depend on it"
-        )
     for path in spin.save:
-        _save(trajectory, path, spin, title="" if file is None else Path(shown(file)).name)
+        save(trajectory, path, spin, title="" if file is None else Path(shown(file)).name)
         report.notes.append(f"saved {path}")
     return report
 
 
-def _checked(file: Path | None, spin: SpinOptions) -> tuple[Floats, float]:
-    """Everything that can be refused before the work is; the angular velocity and the time."""
-    if (file is None) == (not spin.moments):
-        missing = "give a file, or principal moments with --moments"
-        both = "give one of the two, the file or --moments"
-        raise PolhodeError(f"spin: {missing if file is None else both}")
-    if not spin.omega:
-        raise PolhodeError('--omega: state the angular velocity at the start, as in "10 20 30 deg/s"')
-    words = spin.omega
-    if spin.degrees and not any(c.isalpha() for word in words for c in word):
-        words = (*words, "deg/s")
-    omega = np.array(vector(words, "rad/s", "--omega"))
+def _checked(file: Path | None, spin: SpinOptions) -> float | None:
+    """Refuse what can be refused before the work is; give the time of the end."""
+    if file is None and not spin.moments:
+        raise PolhodeError("spin: give a file, or principal moments with --moments")
+    if file is not None and spin.moments:
+        raise PolhodeError(f"--moments: the body is that of {shown(file)}; give one of the two")
+    if bool(spin.omega) == bool(spin.periods):
+        both = "give one of the two" if spin.omega else 'state the start, as in --omega "10 20 30 deg/s"'
+        raise PolhodeError(f"--omega and --periods: {both}")
+    if spin.periods and spin.attitude:
+        raise PolhodeError("--attitude: --periods starts with the angular momentum along z; leave it out")
+    if spin.save and spin.until is None:
+        raise PolhodeError('--save: state the time of the end with --until, as in "20 s"')
+    if spin.samples < 2:
+        raise PolhodeError(f"--samples: {spin.samples} is less than 2, the start and the end")
+    check_paths(spin.save)
     if spin.until is None:
-        raise PolhodeError('--until: state the time of the end, as in "20 s"')
+        return None
     until = quantity(spin.until, "s", "--until")
     if until == 0.0:
         raise PolhodeError(f"--until: {until:g} is not a time other than 0")
-    if spin.samples < 2:
-        raise PolhodeError(f"--samples: {spin.samples} is less than 2, the start and the end")
-    for path in spin.save:
-        if path.suffix.lower() not in (*PICTURE_SUFFIXES, *TRAJECTORY_SUFFIXES):
-            known = ", ".join((*PICTURE_SUFFIXES, *TRAJECTORY_SUFFIXES))
-            raise PolhodeError(f"--save: {path} does not end in one of {known}")
-        if not path.parent.is_dir():
-            raise PolhodeError(f"--save: there is no directory {path.parent}; create it first")
-    return omega, until
+    return until
 
 
 def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedBody:
@@ -119,32 +100,121 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
     return LoadedBody(body=body, source=[], mass_unit="kg", length="m")
 
 
-def _moved(body: RigidBody, omega: Floats, until: float, spin: SpinOptions) -> Trajectory:
-    """Move the body: freely, or about its origin under gravity."""
+def _motion(loaded: LoadedBody, axes: Floats, spin: SpinOptions) -> FreeMotion:
+    """Start the body as it was told."""
+    body = loaded.body
+    if spin.periods:
+        rotation, precession = quantities(spin.periods, 2, "s", "--periods")
+        return body.free_motion_from_periods(rotation, precession, mode=spin.mode)
+    words = spin.omega
+    if spin.degrees and not any(c.isalpha() for word in words for c in word):
+        words = (*words, "deg/s")
+    omega = axes @ np.array(vector(words, "rad/s", "--omega"))
     attitude = to_quaternion(vector(spin.attitude, "rad", "--attitude")) if spin.attitude else None
-    times = np.linspace(0.0, until, spin.samples)
-    with progress("moving", is_long=abs(until) * float(np.linalg.norm(omega)) > _LONG) as tell:
-        return body.simulate(times, omega, attitude, rtol=spin.rtol, progress=tell)
+    return body.free_motion(omega, attitude)
 
 
-def _conserved_fields(trajectory: Trajectory, loaded: LoadedBody) -> list[Field]:
-    energy = trajectory.kinetic_energy().total
-    momentum = trajectory.angular_momentum().total
+def _kind_fields(motion: FreeMotion, axes: Floats, spin: SpinOptions) -> list[Field]:
+    """Tell what kind of motion it is, its periods and angles."""
+    rate, rate_unit = _rate(spin)
+    angles = np.rad2deg(motion.nutation)
+    periods = motion.periods
     return [
-        Field("kinetic_energy", "kinetic energy", energy[0], f"{loaded.moment_unit}/s^2"),
-        Field("kinetic_energy_drift", "  drift", _drift(energy), hint="largest, relative"),
-        Field("angular_momentum", "|L|", np.linalg.norm(momentum[0]), f"{loaded.moment_unit}/s"),
+        Field("mode", "mode", str(motion.mode)),
+        Field("omega_start", "omega, start", motion.omega @ axes * rate, rate_unit),
+        *_period_fields("rotation_period", "rotation period", periods.rotation, "P_psi, about the long axis"),
+        *_period_fields(
+            "precession_period", "precession period", periods.precession, "P_phi, of the long axis"
+        ),
+        *_period_fields("flip_period", "flips every", periods.flip, "the intermediate axis"),
+        *(
+            Field(f"angle_from_L.e{k + 1}", f"e{k + 1} from L", angles[k], "deg", "least, greatest")
+            for k in range(3)
+        ),
+        Field("energy_ratio", "E / E_min", motion.energy_ratio, hint="1 for a spin about e3"),
+        Field("modulus", "elliptic modulus", motion.modulus),
+    ]
+
+
+def _period_fields(key: str, label: str, seconds: float, hint: str) -> list[Field]:
+    """Give a period in seconds, and a long one in the days or hours of an astronomer too."""
+    fields = [Field(key, label, seconds, "s", hint)]
+    if np.isfinite(seconds) and seconds >= 3600.0:
+        fields.append(Field(f"in_days.{key}", "", seconds / 86400.0, "d"))
+    return fields
+
+
+def _constant_fields(motion: FreeMotion, loaded: LoadedBody) -> list[Field]:
+    momentum = motion.angular_momentum
+    scale = float(np.linalg.norm(momentum))
+    unit = f"{loaded.moment_unit}/s"
+    return [
+        Field("kinetic_energy", "kinetic energy", motion.kinetic_energy, f"{loaded.moment_unit}/s^2"),
+        Field("angular_momentum", "|L|", scale, unit),
+        Field("angular_momentum_vector", "L, in space", momentum, unit, scale=scale),
+    ]
+
+
+def _stability_fields(motion: FreeMotion) -> list[Field]:
+    """Tell whether spins about each principal axis would stay."""
+    squares = motion.stability
+    words = [
+        "undefined" if np.isnan(x) else "stable" if x > 0 else "unstable" if x < 0 else "neutral"
+        for x in squares
+    ]
+    return [
+        Field("stability", "about e1 e2 e3", ", ".join(words)),
         Field(
-            "angular_momentum_drift",
-            "  drift of L",
-            _drift(momentum),
-            hint="largest, relative; the vector in space",
+            "stability_frequency_squared",
+            "frequency^2",
+            squares,
+            "1/s^2",
+            "of small oscillations in the body",
         ),
     ]
 
 
+def _end_fields(trajectory: Trajectory, axes: Floats, until: float, spin: SpinOptions) -> list[Field]:
+    rate, rate_unit = _rate(spin)
+    angles = np.rad2deg(trajectory.euler_angles("ZXZ", singular="nan")[-1])
+    return [
+        Field("time", "end", until, "s"),
+        Field("omega_end", "omega, end", trajectory.omega[-1] @ axes * rate, rate_unit),
+        Field("euler_angles_end", "Euler angles, end", angles, "deg", "ZXZ phi, theta, psi"),
+    ]
+
+
+def _drift_fields(trajectory: Trajectory) -> list[Field]:
+    """Tell how well the trajectory keeps what is constant."""
+    energy = _drift(trajectory.kinetic_energy().total)
+    momentum = _drift(trajectory.angular_momentum().total)
+    return [
+        Field("kinetic_energy_drift", "drift of energy", energy, hint="largest, relative"),
+        Field(
+            "angular_momentum_drift", "drift of L", momentum, hint="largest, relative; the vector in space"
+        ),
+    ]
+
+
+def _rate(spin: SpinOptions) -> tuple[float, str]:
+    return (180.0 / np.pi, "deg/s") if spin.degrees else (1.0, "rad/s")
+
+
 def _axes_text(spin: SpinOptions) -> str:
-    return "along the principal axes e1 e2 e3" if spin.axes == "principal" else "along the file's axes x y z"
+    if spin.moments or spin.axes == "principal":
+        return "along the principal axes e1 e2 e3"
+    return "along the file's axes x y z"
+
+
+def _notes(loaded: LoadedBody) -> list[str]:
+    notes = list(loaded.notes)
+    if loaded.length == "unit":
+        notes.append("unit unknown: mass and moments are in the file's own unit of length")
+    if loaded.assumed:
+        notes.append(
+            "neither density nor mass was given: density 1 was used; the motion does not depend on it"
+        )
+    return notes
 
 
 def _drift(values: Floats) -> float:
@@ -153,18 +223,3 @@ def _drift(values: Floats) -> float:
     size = np.abs(values[0]) if values.ndim == 1 else np.linalg.norm(values[0])
     largest = np.max(np.abs(distance) if values.ndim == 1 else np.linalg.norm(distance, axis=-1))
     return float(largest / size) if size > 0.0 else 0.0
-
-
-def _save(trajectory: Trajectory, path: Path, spin: SpinOptions, *, title: str) -> None:
-    if path.suffix.lower() in TRAJECTORY_SUFFIXES:
-        trajectory.save(path)
-        return
-    figure_module = require("matplotlib.figure", extra="plot", purpose=f"--save {path}:")
-    from polhode.plot import angular_velocity
-
-    # A figure of its own, outside pyplot: no window system is asked for.
-    figure = figure_module.Figure(figsize=(8.0, 4.5), layout="constrained")
-    frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
-    ax = angular_velocity(trajectory, figure.add_subplot(), frame=frame, degrees=spin.degrees)
-    ax.set_title(title, loc="left")
-    figure.savefig(path, dpi=160)
