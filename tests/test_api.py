@@ -34,6 +34,7 @@ MODULES = [
     "polhode.euler_angles",
     "polhode.equimomental",
     "polhode.errors",
+    "polhode.free_motion",
     "polhode.kinematics",
     "polhode.parallel_axis",
     "polhode.results",
@@ -84,7 +85,7 @@ class TestNames:
         modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
-        assert internal <= {"results", "io", "plot", "molecules", "robots", "units", "cli"}
+        assert internal <= {"free_motion", "results", "io", "plot", "molecules", "robots", "units", "cli"}
 
     @pytest.mark.parametrize("name", MODULES)
     def test_lists_are_sorted_and_complete(self, name: str) -> None:

@@ -26,6 +26,13 @@ if TYPE_CHECKING:
         principal_axes,
         principal_moments,
     )
+    from polhode.free_motion import (
+        Cones,
+        ErrorBar,
+        Periods,
+        Poinsot,
+        Sensitivity,
+    )
     from polhode.results import (
         AngularMomentum,
         ErrorBound,
@@ -45,7 +52,7 @@ else:
 
         if name not in __all__:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        for home in ("polhode._core", "polhode.results"):
+        for home in ("polhode._core", "polhode.free_motion", "polhode.results"):
             value = getattr(import_module(home), name, None)
             if value is not None:
                 break
@@ -60,16 +67,21 @@ else:
 
 __all__ = [
     "AngularMomentum",
+    "Cones",
+    "ErrorBar",
     "ErrorBound",
     "FreeMotion",
     "FreePrecession",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",
+    "Periods",
+    "Poinsot",
     "PrincipalAxes",
     "PrincipalDerivative",
     "Provenance",
     "RigidBody",
+    "Sensitivity",
     "Trajectory",
     "__version__",
     "equimomental",

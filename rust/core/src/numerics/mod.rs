@@ -11,6 +11,8 @@
 //! | [`elliptic`] | elliptic integrals by means and duplication |
 //! | [`theta`] | Jacobi's functions and the phase of Θ |
 //! | [`turns`] | phases without their whole turns, sines, exponentials in lanes |
+//! | [`jacobi`] | Jacobi's functions of one number, Carlson's integral of the second kind |
+//! | [`jet`] | numbers with their derivatives |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
 //! | [`eigen3`] | eigenvalues and eigenvectors of symmetric 3×3 matrices |
@@ -22,6 +24,8 @@ pub mod dispatch;
 pub mod double_double;
 pub mod eigen3;
 pub mod elliptic;
+pub mod jacobi;
+pub mod jet;
 pub mod lane;
 pub mod planes;
 pub mod quadrature;
