@@ -85,7 +85,9 @@ class ReportOptions:
         How far they may differ, relative to the largest component.
     """
 
-    about: Annotated[Words, Parameter(name="--about", negative="", consume_multiple=True)] = ()
+    about: Annotated[
+        Words, Parameter(name="--about", negative="", consume_multiple=True, show_default=False)
+    ] = ()
     mass_unit: Annotated[str | None, Parameter(name="--mass-unit")] = None
     expect: Annotated[Path | None, Parameter(name="--expect")] = None
     rtol: Annotated[float, Parameter(name="--rtol")] = 1e-6
@@ -106,7 +108,7 @@ class CheckOptions:
         Write the file to this one with right values where links fail, everything else as it stands.
     """
 
-    packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="")] = ()
+    packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="", show_default=False)] = ()
     strict: Annotated[bool, Parameter(name="--strict", negative="")] = False
     fix: Annotated[Path | None, Parameter(name="--fix")] = None
 
@@ -124,7 +126,7 @@ class MoleculeOptions:
         Unit of the file's coordinates.
     """
 
-    isotopes: Annotated[Words, Parameter(name="--isotopes", negative="")] = ()
+    isotopes: Annotated[Words, Parameter(name="--isotopes", negative="", show_default=False)] = ()
     length_unit: Annotated[LengthUnit, Parameter(name="--length-unit")] = "angstrom"
 
 
@@ -165,15 +167,25 @@ class SpinOptions:
         numbers (.csv, .npz, .json). May be repeated.
     """
 
-    moments: Annotated[Words, Parameter(name="--moments", negative="", consume_multiple=True)] = ()
-    center: Annotated[Words, Parameter(name="--center", negative="", consume_multiple=True)] = ()
-    omega: Annotated[Words, Parameter(name="--omega", negative="", consume_multiple=True)] = ()
-    periods: Annotated[Words, Parameter(name="--periods", negative="", consume_multiple=True)] = ()
+    moments: Annotated[
+        Words, Parameter(name="--moments", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    center: Annotated[
+        Words, Parameter(name="--center", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    omega: Annotated[
+        Words, Parameter(name="--omega", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    periods: Annotated[
+        Words, Parameter(name="--periods", negative="", consume_multiple=True, show_default=False)
+    ] = ()
     mode: Annotated[Literal["long-axis", "short-axis"], Parameter(name="--mode")] = "long-axis"
     gravity: Annotated[str | None, Parameter(name="--gravity")] = None
-    attitude: Annotated[Words, Parameter(name="--attitude", negative="", consume_multiple=True)] = ()
+    attitude: Annotated[
+        Words, Parameter(name="--attitude", negative="", consume_multiple=True, show_default=False)
+    ] = ()
     until: Annotated[str | None, Parameter(name="--until")] = None
     degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False
     axes: Annotated[Literal["file", "principal"], Parameter(name="--axes")] = "file"
     samples: Annotated[int, Parameter(name="--samples")] = 1001
-    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="")] = ()
+    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()
