@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     )
     from polhode._core import (
         FreeMotion,
+        HeavyTop,
         MassAccumulator,
         RigidBody,
         __version__,
@@ -72,6 +73,7 @@ __all__ = [
     "ErrorBound",
     "FreeMotion",
     "FreePrecession",
+    "HeavyTop",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",

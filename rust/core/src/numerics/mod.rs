@@ -7,6 +7,7 @@
 //! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
+//! | [`power_of_two`] | scales that keep all digits |
 //! | [`split_vector`] | differences, scalar products and determinants that survive cancellation |
 //! | [`elliptic`] | elliptic integrals by means and duplication |
 //! | [`theta`] | Jacobi's functions and the phase of Θ |
@@ -28,6 +29,7 @@ pub mod jacobi;
 pub mod jet;
 pub mod lane;
 pub mod planes;
+pub mod power_of_two;
 pub mod quadrature;
 pub mod reduce;
 pub mod split_vector;
