@@ -15,7 +15,16 @@ from pathlib import Path
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "POLHODE_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
-FILES_OF_ROWS = ("startup", "command_line", "principal_axes", "particles", "voxels", "meshes", "threads")
+FILES_OF_ROWS = (
+    "startup",
+    "command_line",
+    "principal_axes",
+    "particles",
+    "voxels",
+    "meshes",
+    "heavy_top",
+    "threads",
+)
 
 
 def main() -> None:

@@ -35,9 +35,11 @@ MODULES = [
     "polhode.equimomental",
     "polhode.errors",
     "polhode.events",
+    "polhode.free_motion",
     "polhode.kinematics",
     "polhode.parallel_axis",
     "polhode.results",
+    "polhode.robots",
     "polhode.tops",
     "polhode.trajectory",
 ]
@@ -85,7 +87,18 @@ class TestNames:
         modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
-        assert internal <= {"events", "results", "trajectory", "io", "plot", "molecules", "robots", "units", "cli"}
+        assert internal <= {
+            "events",
+            "free_motion",
+            "results",
+            "trajectory",
+            "io",
+            "plot",
+            "molecules",
+            "robots",
+            "units",
+            "cli",
+        }
 
     @pytest.mark.parametrize("name", MODULES)
     def test_lists_are_sorted_and_complete(self, name: str) -> None:

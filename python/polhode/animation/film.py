@@ -6,17 +6,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode import _core
 from polhode._extras import require
 from polhode.plot import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from polhode.animation.scene import Scene
-
-    Floats = NDArray[np.float64]
 
 __all__ = ["film"]
 
@@ -58,7 +55,7 @@ def film(scene: Scene, file: Path) -> None:
 
 def _draw(ax: Any, scene: Scene, frame: int) -> None:
     art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="a film")
-    to_space = _matrix(scene.quaternion[frame])
+    to_space = _core.rotate(scene.quaternion[frame], np.eye(3)).T
     elevation, azimuth = np.deg2rad([ax.elev, ax.azim])
     level = np.cos(elevation)
     toward = np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
@@ -78,8 +75,7 @@ def _draw(ax: Any, scene: Scene, frame: int) -> None:
     for axis, color, dash in zip(scene.axes.T, AXIS_COLORS, _AXIS_DASHES, strict=True):
         ends = np.stack([-1.05 * axis, 1.05 * axis], axis=-1)
         ax.plot(*(to_space @ ends), color=color, linestyle=dash, linewidth=1.2, zorder=3)
-    rates = scene.omega / (np.linalg.norm(scene.omega, axis=1).max() or 1.0)
-    tips = np.array([_matrix(q) @ w for q, w in zip(scene.quaternion[: frame + 1], rates, strict=False)])
+    tips = scene.path[: scene.sample[frame] + 1] / (np.linalg.norm(scene.path, axis=1).max() or 1.0)
     ax.plot(*tips.T, color=OMEGA_COLOR, alpha=0.5, linewidth=1.0, zorder=3)
     strongest = np.linalg.norm(scene.momentum, axis=1).max() or 1.0
     arrows = ((1.25 * scene.momentum[frame] / strongest, MOMENTUM_COLOR, "L"), (tips[-1], OMEGA_COLOR, "ω"))
@@ -92,15 +88,3 @@ def _draw(ax: Any, scene: Scene, frame: int) -> None:
         getattr(ax, f"set_{name}lim")(-0.95, 0.95)
     ax.set_box_aspect((1.0, 1.0, 1.0))
     ax.set_axis_off()
-
-
-def _matrix(quaternion: Floats) -> Floats:
-    """R_NB of a unit quaternion (x, y, z, w)."""
-    x, y, z, w = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )

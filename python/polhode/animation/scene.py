@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode import _core
 from polhode.animation.shape import Shape, equivalent_box, given_shape
 
 if TYPE_CHECKING:
@@ -29,6 +30,10 @@ class Scene:
         Time of each frame.
     quaternion, omega : numpy.ndarray, shapes (F, 4) and (F, 3)
         R_NB and the angular velocity in the body frame.
+    sample : numpy.ndarray, shape (F,)
+        Which sample of the motion each frame is.
+    path : numpy.ndarray, shape (T, 3)
+        The angular velocity at every sample, components in space.
     momentum : numpy.ndarray, shape (F, 3)
         Spin angular momentum about the point of reference, components in space.
     ellipsoid : numpy.ndarray, shape (F, 3)
@@ -46,6 +51,8 @@ class Scene:
     t: Floats
     quaternion: Floats
     omega: Floats
+    sample: NDArray[np.int64]
+    path: Floats
     momentum: Floats
     ellipsoid: Floats
     axes: Floats
@@ -93,6 +100,8 @@ class Scene:
             t=trajectory.t[chosen],
             quaternion=trajectory.quaternion[chosen],
             omega=trajectory.omega[chosen],
+            sample=chosen,
+            path=_core.rotate(trajectory.quaternion, trajectory.omega),
             momentum=momentum,
             ellipsoid=ellipsoid,
             axes=principal.axes,

@@ -1,5 +1,9 @@
 //! The class `FreeMotion`: exact motions of free bodies.
 
+mod constants;
+mod from_periods;
+mod in_time;
+
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use numpy::{PyArray1, PyArrayMethods};
 use polhode::RigidBody;
