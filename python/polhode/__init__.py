@@ -28,13 +28,7 @@ if TYPE_CHECKING:
         principal_moments,
     )
     from polhode.events import Event, Events
-    from polhode.free_motion import (
-        Cones,
-        ErrorBar,
-        Periods,
-        Poinsot,
-        Sensitivity,
-    )
+    from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
     from polhode.results import (
         AngularMomentum,
         ErrorBound,
@@ -69,7 +63,13 @@ else:
         return __all__
 
 
-_HOMES = ("polhode._core", "polhode.results", "polhode.trajectory", "polhode.events", "polhode.free_motion")
+_HOMES = (
+    "polhode._core",
+    "polhode.results",
+    "polhode.trajectory",
+    "polhode.events",
+    "polhode.free_motion",
+)
 """Modules whose names are public here; the other names are modules."""
 
 __all__ = [

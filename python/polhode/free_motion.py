@@ -21,9 +21,10 @@ class Periods(NamedTuple):
     Attributes
     ----------
     rotation : float or numpy.ndarray, shape (...)
-        P_ψ, of the rotation about the long axis in long-axis mode, of its swinging to and fro in short-axis mode:
-        after it ω is again where it was in the body. Infinite on the separatrix and where nothing drives ω; the
-        period of small oscillations in the limit of a steady spin about axis 1 or 3.
+        P_ψ, of the rotation about the long axis in long-axis mode, of its swinging to and fro in
+        short-axis mode: after it ω is again where it was in the body. Infinite on the separatrix and
+        where nothing drives ω; the period of small oscillations in the limit of a steady spin about
+        axis 1 or 3.
     precession : float or numpy.ndarray, shape (...)
         P_φ, the mean period of axis 1 about L.
     flip : float or numpy.ndarray, shape (...)
@@ -41,7 +42,7 @@ class Periods(NamedTuple):
 
 
 class Cones(NamedTuple):
-    """Body cone and space cone, half their openings in radians: round for a symmetric body, else between two angles.
+    """Body cone and space cone, half their openings in radians; round for a symmetric body.
 
     Attributes
     ----------
@@ -59,7 +60,7 @@ class Cones(NamedTuple):
 
 
 class Poinsot(NamedTuple):
-    """The ellipsoid ``ω·I ω = 2T``, fixed in the body about C, and the plane fixed in space on which it rolls.
+    """The ellipsoid ``ω·I ω = 2T``, fixed in the body about C, and the plane in space on which it rolls.
 
     Attributes
     ----------
@@ -83,15 +84,17 @@ class Poinsot(NamedTuple):
 
 
 class Sensitivity(NamedTuple):
-    """Derivatives of the state of a free body; δ is a small rotation ``R → R exp(δ×)``, components in the body frame.
+    """Derivatives of the state of a free body.
+
+    δ is a small rotation, ``R → R exp(δ×)``, components in the body frame.
 
     Attributes
     ----------
     state : numpy.ndarray, shape (..., 6, 6)
         Of (δ, ω) at the time by (δ, ω) at t = 0.
     moments : numpy.ndarray, shape (..., 6, 3)
-        Of (δ, ω) at the time by the principal moments, ascending, with axes and initial state held. NaN for a body
-        with a zero moment.
+        Of (δ, ω) at the time by the principal moments, ascending, with axes and initial state held.
+        NaN for a body with a zero moment.
     """
 
     state: Floats

@@ -130,12 +130,12 @@ impl PyFreeMotion {
     ///
     /// Examples
     /// --------
-    /// A wing nut, set spinning about its intermediate axis, turns over every few seconds:
+    /// A wing nut, set spinning about its intermediate axis, turns over every seven seconds:
     ///
     /// >>> from polhode import RigidBody
     /// >>> nut = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
     /// >>> round(nut.free_motion(omega=(0.001, 6.0, 0.0)).periods.flip, 3)
-    /// 5.424
+    /// 7.366
     #[getter]
     fn periods<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let periods = self.invariants().map(Invariants::periods);
@@ -155,11 +155,11 @@ impl PyFreeMotion {
     ///
     /// Examples
     /// --------
-    /// A plate that wobbles keeps its axis at a constant angle from L:
+    /// A plate that wobbles keeps its axis, the third, at a constant angle from L:
     ///
     /// >>> import numpy as np
-    /// >>> from polhode import laminae
-    /// >>> plate = laminae.disk(radius=0.1, mass=0.2)
+    /// >>> from polhode import RigidBody
+    /// >>> plate = RigidBody.from_principal(mass=1.0, moments=(1.0, 1.0, 2.0))
     /// >>> np.degrees(plate.free_motion(omega=(0.3, 0, 3)).nutation).round(3)
     /// array([[87.138, 92.862],
     ///        [87.138, 92.862],

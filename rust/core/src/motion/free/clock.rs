@@ -26,26 +26,6 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// After `count` whole half periods `T = 2K/λ`: y is zero again, and the faster of c and d has the sign (−1)^count. The
-    /// derivatives are those of T,
-    /// `∂T/∂q = ½ ∫₀ᵀ y²/d² dt`, `∂T/∂p = −∫₀ᵀ dt/d² / 2p` for p ≥ q.
-    pub(super) fn after_half_periods(motion: &Invariants, count: f64) -> Self {
-        let (p, q, k_prime) = motion.fast_and_slow();
-        let over_cube = 2.0 / (3.0 * p * p.sqrt());
-        let over_d = over_cube * carlson_rd(0.0, 1.0, k_prime * k_prime);
-        let by_p = -0.5 * (motion.half_period().high + q * over_d) / p;
-        let by_q = 0.5 * over_d;
-        let sign = if count % 2.0 == 0.0 { 1.0 } else { -1.0 };
-        let later = |period_slope: f64| [-sign * count * period_slope, 0.0, 0.0];
-        Self {
-            value: [0.0, sign, 1.0],
-            by_short: later(by_p),
-            by_long: later(by_q),
-            square_integral: count * over_cube * carlson_rd(0.0, k_prime * k_prime, 1.0),
-        }
-        .with_roles_of(motion)
-    }
-
     /// At a time within half of a half period, |t| ≤ K/λ, in the units of the motion.
     pub(super) fn at(motion: &Invariants, t: f64) -> Self {
         let (p, q, k_prime) = motion.fast_and_slow();
@@ -108,6 +88,33 @@ impl Clock {
             by_short: exchanged(self.by_long),
             by_long: exchanged(self.by_short),
             square_integral: self.square_integral,
+        }
+    }
+}
+
+/// What the half period T = 2K/λ brings, in the units of the motion. Near the separatrix it depends on p − q far more than
+/// on either, which is why that stands by itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HalfPeriod {
+    /// ∂T by the larger of p and q, their difference held.
+    pub by_larger: f64,
+    /// ∂T by |p − q|, the larger held.
+    pub by_gap: f64,
+    /// ∫₀ᵀ y² dt.
+    pub square_integral: f64,
+}
+
+impl HalfPeriod {
+    /// Of a motion with finite T: for p ≥ q, `∂T/∂q = ½ ∫₀ᵀ y²/d² dt` and, by the scaling law, `2(p ∂_p + q ∂_q)T = −T`.
+    pub(super) fn of(motion: &Invariants) -> Self {
+        let (p, _, k_prime) = motion.fast_and_slow();
+        let m1 = k_prime * k_prime;
+        let over_cube = 2.0 / (3.0 * p * p.sqrt());
+        let over_d = over_cube * carlson_rd(0.0, 1.0, m1);
+        Self {
+            by_larger: 0.5 * (m1 * over_d - motion.half_period().high / p),
+            by_gap: -0.5 * over_d,
+            square_integral: over_cube * carlson_rd(0.0, m1, 1.0),
         }
     }
 }

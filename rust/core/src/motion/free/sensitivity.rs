@@ -14,7 +14,7 @@
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::FreeMotion;
-use super::clock::Clock;
+use super::clock::{Clock, HalfPeriod};
 use super::invariants::Invariants;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::jet::Jet;
@@ -132,7 +132,8 @@ impl Invariants {
         (state, moments)
     }
 
-    /// ω at t with its derivatives: whole half periods first, then stretches, each from the exact ω at its beginning.
+    /// ω at t with its derivatives: in stretches over what whole half periods leave of t, each from the exact ω at its
+    /// beginning, then those half periods T, with `ω(t) = ω(t − nT)` but for signs.
     fn rates(&self, t: f64, omega_at: impl Fn(f64) -> Vector3<f64>) -> Rates {
         let half_period = self.half_period();
         let mut rates = Rates {
@@ -141,18 +142,14 @@ impl Invariants {
             by_moments: Matrix3::zeros(),
             middle_square: 0.0,
         };
-        let (mut rest, mut signs) = (t, Vector3::repeat(1.0));
-        let count = (t / half_period.high).round();
-        if half_period.high.is_finite() && count != 0.0 {
-            rest = (DoubleDouble::from(t) - half_period * count.into()).high;
-            rates.advance(self, &Clock::after_half_periods(self, count));
-            if count % 2.0 != 0.0 {
-                let [x, _] = self.planar_axes();
-                (signs.y, signs[x]) = (-1.0, -1.0);
-            }
-        }
+        let periods = (t / half_period.high).round();
+        let rest = if periods == 0.0 {
+            t
+        } else {
+            (DoubleDouble::from(t) - half_period * periods.into()).high
+        };
         let phase = (rest * self.rate_square().high.sqrt()).abs();
-        if phase > BEYOND {
+        if phase.is_nan() || phase > BEYOND {
             rates.by_omega.fill(f64::NAN);
             rates.by_moments.fill(f64::NAN);
             return rates;
@@ -162,12 +159,15 @@ impl Invariants {
         let mut done = 0.0;
         while done < stretches {
             if done > 0.0 {
-                rates.omega = signs.component_mul(&omega_at(rest * (done / stretches)));
+                rates.omega = omega_at(rest * (done / stretches));
             }
             rates.advance(self, &clock);
             done += 1.0;
         }
-        rates.omega = signs.component_mul(&omega_at(rest));
+        rates.omega = omega_at(rest);
+        if periods != 0.0 {
+            rates.skip(self, periods);
+        }
         rates
     }
 
@@ -184,6 +184,14 @@ impl Invariants {
             middle,
             third * t + a3 / a2 * excess,
         ]
+    }
+
+    /// p and q of an ω on the polhode, with their derivatives.
+    fn squares(&self, w: &[Slopes; 3]) -> [Slopes; 2] {
+        let [a1, a2, a3] = self.contrast_slopes();
+        let around_first = a3 * w[1] * w[1] + a2 * w[2] * w[2];
+        let around_third = a2 * w[0] * w[0] + a1 * w[1] * w[1];
+        [a1 * around_first, a3 * around_third]
     }
 
     /// The contrasts, with their derivatives by the moments.
@@ -217,13 +225,41 @@ struct Rates {
 }
 
 impl Rates {
+    /// By whole half periods `T`, back: `dω = −ω̇ n dT`, and the signs that an odd number gives.
+    fn skip(&mut self, motion: &Invariants, periods: f64) {
+        let whole = HalfPeriod::of(motion);
+        let start = std::array::from_fn(|k| Jet::variable(motion.omega[k], k));
+        let [p, q] = motion.squares(&start);
+        let [b1, b2, b3] = motion.contrast_slopes();
+        let gap = b2 * (b1 * start[2] * start[2] - b3 * start[0] * start[0]);
+        let (larger, gap) = if motion.circles_third() {
+            (p, gap)
+        } else {
+            (q, -gap)
+        };
+        let later = Jet::chain(0.0, [(whole.by_larger, &larger), (whole.by_gap, &gap)]).slopes;
+        let [a1, a2, a3] = motion.contrasts;
+        let [x, y, z] = self.omega.into();
+        let rate = Vector3::new(-a1 * y * z, a2 * z * x, -a3 * x * y) * -periods;
+        self.by_omega += rate * Vector3::new(later[0], later[1], later[2]).transpose();
+        self.by_moments += rate * Vector3::new(later[3], later[4], later[5]).transpose();
+        self.middle_square +=
+            motion.around_first * motion.around_third * whole.square_integral * periods;
+        if periods % 2.0 != 0.0 {
+            let [k, _] = motion.planar_axes();
+            for row in [k, 1] {
+                self.omega[row] *= -1.0;
+                self.by_omega.row_mut(row).neg_mut();
+                self.by_moments.row_mut(row).neg_mut();
+            }
+        }
+    }
+
     /// By the time of a clock that is set to zero now.
     fn advance(&mut self, motion: &Invariants, clock: &Clock) {
         let w: [Slopes; 3] = std::array::from_fn(|k| Jet::variable(self.omega[k], k));
         let [a1, a2, a3] = motion.contrast_slopes();
-        let around_first = a3 * w[1] * w[1] + a2 * w[2] * w[2];
-        let around_third = a2 * w[0] * w[0] + a1 * w[1] * w[1];
-        let (p, q) = (a1 * around_first, a3 * around_third);
+        let [p, q] = motion.squares(&w);
         let [y, c, d] = std::array::from_fn(|k| {
             Jet::chain(
                 clock.value[k],
@@ -273,28 +309,28 @@ mod tests {
             7.0,
             [
                 [
-                    -0.22868198229687703,
-                    0.8515354050869732,
-                    1.3355478939413865,
-                    -1.2175496547525855,
-                    -1.9746347933914281,
-                    2.0667276966141768,
+                    -0.228_681_982_296_877_03,
+                    0.851_535_405_086_973_2,
+                    1.335_547_893_941_386_5,
+                    -1.217_549_654_752_585_5,
+                    -1.974_634_793_391_428_1,
+                    2.066_727_696_614_176_8,
                 ],
                 [
-                    -1.3159422227479085,
-                    -0.042996549655228165,
-                    0.7592428201663711,
-                    -0.7378337895571506,
-                    -1.328077924480664,
-                    1.3575958554073915,
+                    -1.315_942_222_747_908_5,
+                    -0.042_996_549_655_228_165,
+                    0.759_242_820_166_371_1,
+                    -0.737_833_789_557_150_6,
+                    -1.328_077_924_480_664,
+                    1.357_595_855_407_391_5,
                 ],
                 [
-                    -0.24784507667334102,
-                    0.09117324475412542,
-                    1.1667306703786102,
-                    -0.13036211061796116,
-                    -0.2888388014791201,
-                    0.28321588543048054,
+                    -0.247_845_076_673_341_02,
+                    0.091_173_244_754_125_42,
+                    1.166_730_670_378_610_2,
+                    -0.130_362_110_617_961_16,
+                    -0.288_838_801_479_120_1,
+                    0.283_215_885_430_480_54,
                 ],
             ],
         ),
@@ -304,28 +340,28 @@ mod tests {
             23.0,
             [
                 [
-                    1.08897304720779,
-                    0.08189716909776745,
-                    -0.024456801709917354,
-                    -0.10715496300840101,
-                    0.015374421590389908,
-                    0.030562447931048477,
+                    1.088_973_047_207_79,
+                    0.081_897_169_097_767_45,
+                    -0.024_456_801_709_917_354,
+                    -0.107_154_963_008_401_01,
+                    0.015_374_421_590_389_908,
+                    0.030_562_447_931_048_477,
                 ],
                 [
-                    2.954021160617068,
-                    -0.61390876648455,
-                    -0.7526785785801735,
-                    -3.20393987463727,
-                    0.8954585203344761,
-                    0.565209133587327,
+                    2.954_021_160_617_068,
+                    -0.613_908_766_484_55,
+                    -0.752_678_578_580_173_5,
+                    -3.203_939_874_637_27,
+                    0.895_458_520_334_476_1,
+                    0.565_209_133_587_327,
                 ],
                 [
-                    0.5886886476970363,
-                    0.5022857330226516,
-                    -0.7355852528316317,
-                    -0.6571949889676595,
-                    0.26260752616226196,
-                    0.052791974657254194,
+                    0.588_688_647_697_036_3,
+                    0.502_285_733_022_651_6,
+                    -0.735_585_252_831_631_7,
+                    -0.657_194_988_967_659_5,
+                    0.262_607_526_162_261_96,
+                    0.052_791_974_657_254_194,
                 ],
             ],
         ),
@@ -335,27 +371,27 @@ mod tests {
             9.0,
             [
                 [
-                    -0.6281736227227391,
-                    -0.7780731968879212,
-                    0.040156852551118394,
-                    -0.283949403087418,
-                    0.18355727170962202,
-                    0.08031370510223679,
+                    -0.628_173_622_722_739_1,
+                    -0.778_073_196_887_921_2,
+                    0.040_156_852_551_118_394,
+                    -0.283_949_403_087_418,
+                    0.183_557_271_709_622_02,
+                    0.080_313_705_102_236_79,
                 ],
                 [
-                    0.7780731968879212,
-                    -0.6281736227227391,
-                    -1.1242830725369781,
-                    1.2395650668521894,
-                    1.5711426144902556,
-                    -2.2485661450739562,
+                    0.778_073_196_887_921_2,
+                    -0.628_173_622_722_739_1,
+                    -1.124_283_072_536_978_1,
+                    1.239_565_066_852_189_4,
+                    1.571_142_614_490_255_6,
+                    -2.248_566_145_073_956_2,
                 ],
                 [
                     0.0,
                     0.0,
                     1.0,
-                    -0.12774517367991117,
-                    0.12774517367991117,
+                    -0.127_745_173_679_911_17,
+                    0.127_745_173_679_911_17,
                     0.0,
                 ],
             ],
@@ -366,28 +402,28 @@ mod tests {
             12.0,
             [
                 [
-                    106.9926671363426,
-                    -0.13200494565136808,
-                    -119.61643967846554,
-                    0.1319958238520518,
-                    0.26337233483494704,
-                    -0.2634961974087784,
+                    106.992_667_136_342_6,
+                    -0.132_004_945_651_368_08,
+                    -119.616_439_678_465_54,
+                    0.131_995_823_852_051_8,
+                    0.263_372_334_834_947_04,
+                    -0.263_496_197_408_778_4,
                 ],
                 [
-                    3.950735698400043,
-                    0.9955808238833371,
-                    -4.415194470847644,
-                    0.004721069529293087,
-                    0.009041620161856912,
-                    -0.009121723941202765,
+                    3.950_735_698_400_043,
+                    0.995_580_823_883_337_1,
+                    -4.415_194_470_847_644,
+                    0.004_721_069_529_293_087,
+                    0.009_041_620_161_856_912,
+                    -0.009_121_723_941_202_765,
                 ],
                 [
-                    -95.69299111908113,
-                    0.11801883443792241,
-                    106.99288786095074,
-                    -0.1180106791061811,
-                    -0.20253667089997093,
-                    0.2092336083624492,
+                    -95.692_991_119_081_13,
+                    0.118_018_834_437_922_41,
+                    106.992_887_860_950_74,
+                    -0.118_010_679_106_181_1,
+                    -0.202_536_670_899_970_93,
+                    0.209_233_608_362_449_2,
                 ],
             ],
         ),
