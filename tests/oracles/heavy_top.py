@@ -39,7 +39,7 @@ class HeavyTop:
         about_center: tuple[float, float] | None = None,
         digits: int = 60,
     ) -> None:
-        """`transverse` is about the pivot, unless ``about_center = (mass, length)`` says that it is about C."""
+        """`transverse` is about the pivot, unless ``about_center = (mass, length)`` is given: then about C."""
         self.digits = digits
         with mp.workdps(digits):
             I_t = mpf(transverse)
@@ -131,4 +131,10 @@ class HeavyTop:
 
 
 def _sum(series: list[list[mpc]], h: mpf) -> State:
-    return tuple(mpmath.polyval(row[::-1], h) for row in series)
+    values = []
+    for row in series:
+        total = mpc(0)
+        for coefficient in reversed(row):
+            total = total * h + coefficient
+        values.append(total)
+    return values[0], values[1], values[2]

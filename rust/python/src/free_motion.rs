@@ -205,7 +205,7 @@ impl PyFreeMotion {
         fields.set_item("about", write(py, &self.centers())?)?;
         fields.set_item("steps", &none)?;
         fields.set_item("evaluations", &none)?;
-        py.import("polhode.results")?
+        py.import("polhode.trajectory")?
             .getattr("Trajectory")?
             .call((), Some(&fields))
     }

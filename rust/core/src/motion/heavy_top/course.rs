@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::nutation::Nutation;
-use super::phases::Phases;
+use super::phases::{Phases, TURN};
 use super::pivoted_top::PivotedTop;
-use super::reduced::{Quaternion2, Reduced, conjugate, product, times};
+use super::reduced::{Reduced, times};
 use super::sampling::{Course, Endless, Functions, Periodic, Series, Steady};
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
@@ -29,7 +29,7 @@ impl Course {
         gravity: &Vector3<f64>,
     ) -> (Self, Nutation) {
         let motion = Reduced::of(top, omega, attitude, gravity);
-        let half_spin = motion.axial / DoubleDouble::PI.scaled(4.0);
+        let half_spin = (motion.axial * TURN).scaled(0.5);
         if !motion.is_steady() {
             let points = TurningPoints::of(&motion);
             if points.height.high > 0.0 {
@@ -95,7 +95,7 @@ impl Course {
         course.steady = phases.steady;
         let constants = course.constants(motion, points, &phases);
         // The body turns against the frame of the equal spherical top.
-        let drift = half_spin - motion.spin / DoubleDouble::PI.scaled(4.0);
+        let drift = half_spin - (motion.spin * TURN).scaled(0.5);
         let [alpha, beta, w] = phases.steady;
         course.steady = [alpha + drift, beta - drift, w - drift.scaled(2.0)];
         course.unit(motion.exponent);
@@ -104,10 +104,8 @@ impl Course {
     }
 
     fn with(motion: &Reduced, series: &Series) -> Self {
-        let back = conjugate(&motion.aligning);
-        let [x, y, z, _] = turned_basis(&back, 2);
-        let along =
-            [x, y, z].map(|n| times_power_of_two((n * motion.axial).rounded(), motion.exponent));
+        let [x, y, z] = turned_basis(&motion.aligning, 2);
+        let spin = times_power_of_two(motion.axial.rounded(), motion.exponent);
         Self {
             series: *series,
             clock: DoubleDouble::default(),
@@ -115,7 +113,7 @@ impl Course {
             steady: [DoubleDouble::default(); 3],
             attitude: [[0.0; 4]; 4],
             across: [[0.0; 2]; 3],
-            along,
+            along: [x * spin, y * spin, z * spin],
         }
     }
 
@@ -182,18 +180,17 @@ impl Course {
             [-beta[1], beta[0], 0.0, 0.0],
         ]
         .map(|column| {
-            let column = column.map(DoubleDouble::from);
-            product(&product(&motion.upward, &column), &motion.aligning)
+            let column = Quaternion::from(Vector4::from(column));
+            (motion.upward * column * motion.aligning).coords
         });
-        let back = conjugate(&motion.aligning);
-        let (first, second) = (turned_basis(&back, 0), turned_basis(&back, 1));
+        let first = turned_basis(&motion.aligning, 0);
+        let second = turned_basis(&motion.aligning, 1);
         for row in 0..4 {
-            self.attitude[row] = columns.map(|column| column[row].rounded());
+            self.attitude[row] = columns.map(|column| column[row]);
         }
         for row in 0..3 {
             let mix = |x: f64, y: f64| {
-                let sum = first[row] * x.into() + second[row] * y.into();
-                times_power_of_two(sum.rounded(), motion.exponent)
+                times_power_of_two(first[row] * x + second[row] * y, motion.exponent)
             };
             self.across[row] = [mix(w[0], w[1]), mix(-w[1], w[0])];
         }
@@ -223,9 +220,10 @@ fn direction([re, im]: Complex) -> Option<Complex> {
     (size > 0.0).then(|| [re / size, im / size])
 }
 
-/// Where the unit quaternion takes the axis `k`.
-fn turned_basis(q: &Quaternion2, k: usize) -> Quaternion2 {
-    let mut axis = [DoubleDouble::default(); 4];
-    axis[k] = 1.0.into();
-    product(&product(q, &axis), &conjugate(q))
+/// The axis of the body that `aligning` takes to the axis `k`.
+fn turned_basis(aligning: &Quaternion<f64>, k: usize) -> [f64; 3] {
+    let mut axis = Vector4::zeros();
+    axis[k] = 1.0;
+    let turned = aligning.conjugate() * Quaternion::from(axis) * aligning;
+    turned.imag().into()
 }

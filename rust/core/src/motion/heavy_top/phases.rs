@@ -16,6 +16,12 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{complete_first, complete_third, incomplete_first};
 use crate::numerics::theta::HalfPeriods;
 
+/// 1/2π.
+pub(super) const TURN: DoubleDouble = DoubleDouble {
+    high: 0.159_154_943_091_895_35,
+    low: -9.839_338_337_591_243e-18,
+};
+
 /// What a motion that is not steady is made of. Rates are in turns per unit of time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Phases {
@@ -60,9 +66,8 @@ impl Phases {
         // Ω_α = ½ (a + b)/(u₃ − u₁) ⟨sn²/(1 + (1 + u₁)/(u₃ − u₁) sn²)⟩, on the separatrix with sn² = 1.
         let p = one + two_kappa * points.above_bottom / points.height;
         let scale = (two_kappa * sum / points.height).scaled(0.5);
-        let tau = DoubleDouble::PI.scaled(2.0);
         if k_prime.high == 0.0 {
-            let alpha = scale / p / tau;
+            let alpha = scale / p * TURN;
             return Self {
                 half: HalfPeriods {
                     real: f64::INFINITY,
@@ -79,9 +84,14 @@ impl Phases {
         }
         let (first, third) = complete_third(k_prime, p, zero, one);
         let clock = lambda.scaled(0.25) / first;
-        let alpha = scale * third / first / tau;
-        let half_turn = tau * clock.scaled(signs[1]);
-        let beta = beta_rate(two_kappa, difference, points, k_prime, half_turn) / tau;
+        let alpha = scale * third / first * TURN;
+        let beta = beta_rate(
+            two_kappa,
+            difference,
+            points,
+            k_prime,
+            clock.scaled(signs[1]),
+        );
         Self {
             half: HalfPeriods {
                 real: first.rounded(),
@@ -103,7 +113,7 @@ impl Phases {
     }
 }
 
-/// Ω of β in radians, of the two forms the one whose integral is the tamer:
+/// Ω of β in turns, of the two forms the one whose integral is the tamer:
 /// `−½ (a − b)/(u₃ − u₁) ⟨sn²/(1 − (1 − u₁)/(u₃ − u₁) sn²)⟩`, or `½ (a − b)/(1 − u₁) ⟨1/(1 − (u₂ − u₁)/(1 − u₁) sn²)⟩ + s_β π/T`.
 fn beta_rate(
     two_kappa: DoubleDouble,
@@ -124,9 +134,9 @@ fn beta_rate(
     if difference.high == 0.0 && beyond.high > 0.0 {
         zero
     } else if beyond.high >= below.high {
-        -(two_kappa * difference / points.height * mean(beyond, zero)).scaled(0.5)
+        -(two_kappa * difference / points.height * mean(beyond, zero) * TURN).scaled(0.5)
     } else {
-        (difference / points.depth * mean(below, one)).scaled(0.5) + turn
+        (difference / points.depth * mean(below, one) * TURN).scaled(0.5) + turn
     }
 }
 

@@ -12,7 +12,7 @@
 //! with γ the upward vertical in the body. All numbers are in double-double: over a million turns the last bit of a double
 //! is 1e-9 rad.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::pivoted_top::PivotedTop;
 use crate::motion::attitude::components;
@@ -20,7 +20,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// A quaternion (x, y, z, w).
-pub(super) type Quaternion2 = [DoubleDouble; 4];
+type Quaternion2 = [DoubleDouble; 4];
 
 /// The state of a top at the start, in units of the rate `2^exponent`.
 #[derive(Clone, Copy, Debug)]
@@ -46,9 +46,9 @@ pub(super) struct Reduced {
     /// α, β and W.
     pub(super) start: [[f64; 2]; 3],
     /// Takes the third axis of space to the upward vertical.
-    pub(super) upward: Quaternion2,
+    pub(super) upward: Quaternion<f64>,
     /// Takes the symmetry axis to the third axis of the body.
-    pub(super) aligning: Quaternion2,
+    pub(super) aligning: Quaternion<f64>,
 }
 
 impl Reduced {
@@ -102,8 +102,8 @@ impl Reduced {
                 [unit(x), unit(y)],
                 [w1.rounded(), w2.rounded()],
             ],
-            upward,
-            aligning,
+            upward: rounded(&upward),
+            aligning: rounded(&aligning),
         }
     }
 
@@ -178,7 +178,7 @@ fn turned(q: &Quaternion2, vector: &Vector3<f64>) -> Quaternion2 {
 }
 
 /// `p∘q`.
-pub(super) fn product(p: &Quaternion2, q: &Quaternion2) -> Quaternion2 {
+fn product(p: &Quaternion2, q: &Quaternion2) -> Quaternion2 {
     let ([a, b, c, d], [x, y, z, w]) = (*p, *q);
     [
         d * x + a * w + (b * z - c * y),
@@ -188,7 +188,11 @@ pub(super) fn product(p: &Quaternion2, q: &Quaternion2) -> Quaternion2 {
     ]
 }
 
-pub(super) fn conjugate(q: &Quaternion2) -> Quaternion2 {
+fn rounded(q: &Quaternion2) -> Quaternion<f64> {
+    Quaternion::from(Vector4::from(q.map(DoubleDouble::rounded)))
+}
+
+fn conjugate(q: &Quaternion2) -> Quaternion2 {
     [-q[0], -q[1], -q[2], q[3]]
 }
 
