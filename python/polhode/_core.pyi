@@ -23,6 +23,7 @@ from polhode.trajectory import Trajectory
 
 __all__ = [
     "FreeMotion",
+    "HeavyTop",
     "Load",
     "MassAccumulator",
     "Region",

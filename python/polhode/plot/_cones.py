@@ -48,11 +48,14 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     upright = _upright(momentum / size)
     now = motion.at(times[-1:])
     attitude = upright @ _core.rotate(now.quaternion[0], np.eye(3)).T
+    corners = [np.zeros(3), 1.3 * np.array([0.0, 0.0, 1.0])]
     in_space = motion.herpolhode(times)
     in_body = motion.polhode(361)
     for curve, turn, color in ((in_body, attitude, AXIS_COLORS[0]), (in_space, upright, AXIS_COLORS[2])):
         directions = curve / np.linalg.norm(curve, axis=-1, keepdims=True)
-        fan(ax, directions @ turn.T, color, 0.22)
+        rim = directions @ turn.T
+        corners += [rim.min(axis=0), rim.max(axis=0)]
+        fan(ax, rim, color, 0.22)
     omega = attitude @ (now.omega[0] / np.linalg.norm(now.omega[0]))
     side = motion.cones.axis
     symmetry = attitude @ motion.body.principal.axes[:, side]
@@ -65,7 +68,7 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
         f"body cone {_angles(motion.cones.body)} (blue), space cone {_angles(motion.cones.space)} (green)",
         transform=ax.transAxes, ha="center",
     )  # fmt: skip
-    plain_frame(ax, 1.1)
+    plain_frame(ax, np.min(corners, axis=0), np.max(corners, axis=0))
     return ax
 
 

@@ -28,7 +28,7 @@ def ellipsoid(
     *,
     size: float = 1.0,
     center: ArrayLike | None = None,
-    opacity: float = 0.6,
+    opacity: float = 1.0,
 ) -> Axes3D:
     """Draw the ellipsoid of inertia about the centre of mass and the principal axes.
 
@@ -65,7 +65,7 @@ def ellipsoid(
         curve_on(ax, points + middle, normals, "#6B7486", linewidth=0.9)
     principal_axes(body, ax, length=1.2 * size, center=middle)
     if new:
-        plain_frame(ax, 1.25 * size, middle)
+        plain_frame(ax, middle - 1.1 * size, middle + 1.1 * size)
     return ax
 
 
@@ -110,8 +110,8 @@ def polhodes(
     ax.view_init(elev=18.0, azim=42.0)
     free = _core.RigidBody.from_principal(body.mass, moments)
     semi_axes = np.sqrt(2.0 * energy) * inertia_semi_axes(moments)
-    solid_ellipsoid(ax, semi_axes, np.eye(3), np.zeros(3), 0.7)
-    # Where the separatrix meets the plane of axes 1 and 3: the angle from axis 3, the ellipsoid made a sphere.
+    solid_ellipsoid(ax, semi_axes, np.eye(3), np.zeros(3), 1.0)
+    # Where the separatrix meets the plane of axes 1 and 3: the angle from axis 3 on the unit sphere.
     edge = np.arctan2(np.sqrt(moments[2] - moments[1]), np.sqrt(moments[1] - moments[0]))
     for axis, dash, span in ((0, "--", np.pi / 2 - edge), (2, "-.", edge)):
         if span == 0.0:
@@ -127,7 +127,7 @@ def polhodes(
         across = np.array([np.sin(edge), 0.0, sign * np.cos(edge)])
         curve = (np.cos(around) * across + np.sin(around) * np.array([0.0, 1.0, 0.0])) * semi_axes
         curve_on(ax, curve, curve * moments, AXIS_COLORS[1])
-    reach = 1.15 * semi_axes.max()
+    reach = 1.1 * semi_axes.max()
     for k, color in enumerate(AXIS_COLORS):
         tip = np.zeros(3)
         tip[k] = semi_axes[k] + 0.2 * semi_axes.max()
@@ -136,7 +136,7 @@ def polhodes(
                 ha="center", va="center", fontsize=13, zorder=6)  # fmt: skip
     lengths = ", ".join(f"{a:.3g}" for a in semi_axes)
     ax.text2D(0.5, 0.03, f"semi-axes {lengths} {rate_unit}", transform=ax.transAxes, ha="center")
-    plain_frame(ax, reach)
+    plain_frame(ax, 3 * [-reach], 3 * [reach])
     return ax
 
 
@@ -172,11 +172,11 @@ def poinsot(
     if not np.linalg.norm(motion.angular_momentum) > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = new_axes3d() if ax is None else ax
-    ax.view_init(elev=14.0, azim=-60.0)
+    ax.view_init(elev=17.0, azim=-60.0)
     upright = _upright(found.normal)
     attitude = upright @ _core.rotate(motion.at(times[-1:]).quaternion[0], np.eye(3)).T
     axes = attitude @ motion.body.principal.axes
-    solid_ellipsoid(ax, found.semi_axes, axes, np.zeros(3), 0.7)
+    solid_ellipsoid(ax, found.semi_axes, axes, np.zeros(3), 1.0)
     polhode = motion.polhode(361)
     curve_on(ax, polhode @ attitude.T, (polhode @ motion.body.inertia) @ attitude.T, AXIS_COLORS[1])
     herpolhode = found.contact @ upright.T
@@ -193,7 +193,8 @@ def poinsot(
         f"polhode (vermilion) rolls on herpolhode (blue); plane at 2T/L = {found.distance:.4g} {rate_unit}",
         transform=ax.transAxes, ha="center",
     )  # fmt: skip
-    plain_frame(ax, max(reach, found.semi_axes.max(), height))
+    side = max(reach, float(found.semi_axes.max()))
+    plain_frame(ax, (-side, -side, -side), (side, side, height))
     return ax
 
 

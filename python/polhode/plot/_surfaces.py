@@ -10,13 +10,13 @@ from polhode._extras import require
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
 
 __all__ = ["arrow", "curve_on", "fan", "inertia_semi_axes", "plain_frame", "solid_ellipsoid", "toward_viewer"]
 
-SURFACE: Final = "#C9D6E8"
+_SURFACE: Final = np.array([0.79, 0.84, 0.91])
 _LONGEST: Final = 3.0
 """A semi-axis without end, that of a zero moment, is cut at so many times the longest other one."""
 
@@ -46,19 +46,18 @@ def inertia_semi_axes(moments: Floats) -> Floats:
 
 def solid_ellipsoid(ax: Axes3D, semi_axes: Floats, axes: Floats, center: Floats, opacity: float) -> None:
     """Draw an ellipsoid whose axes are the columns of a matrix."""
-    polar, around = np.meshgrid(np.linspace(0.0, np.pi, 31), np.linspace(0.0, 2.0 * np.pi, 61))
+    polar, around = np.meshgrid(np.linspace(0.0, np.pi, 61), np.linspace(0.0, 2.0 * np.pi, 121))
     unit = np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar)], axis=-1)
     points = (unit * semi_axes) @ axes.T + center
+    normals = (unit / semi_axes) @ axes.T
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    light = toward_viewer(ax) + np.array([0.0, 0.0, 0.7])
+    brightness = 0.84 + 0.2 * (normals @ (light / np.linalg.norm(light)))
+    colors = np.clip(brightness[..., np.newaxis] * _SURFACE, 0.0, 1.0)
     ax.plot_surface(
-        *np.moveaxis(points, -1, 0),
-        color=SURFACE,
-        alpha=opacity,
-        linewidth=0,
-        antialiased=False,
-        zorder=2,
-        rcount=61,
-        ccount=61,
-    )
+        *np.moveaxis(points, -1, 0), facecolors=colors, shade=False, alpha=opacity, linewidth=0,
+        antialiased=False, zorder=2, rcount=121, ccount=121,
+    )  # fmt: skip
 
 
 def curve_on(ax: Axes3D, points: Floats, normals: Floats, color: str, **style: Any) -> None:
@@ -98,10 +97,11 @@ def arrow(ax: Axes3D, tip: Floats, color: str, name: str, *, order: int = 6) -> 
     ax.text(*(1.1 * tip), name, color=color, ha="center", va="center", fontsize=13, zorder=order)
 
 
-def plain_frame(ax: Axes3D, reach: float, center: Floats | None = None) -> None:
-    """Show a cube about a centre, without coordinate axes."""
-    middle = np.zeros(3) if center is None else center
+def plain_frame(ax: Axes3D, low: ArrayLike, high: ArrayLike) -> None:
+    """Show a cube about the box between two corners, without coordinate axes."""
+    corners = np.array([low, high], dtype=np.float64)
+    middle, half = corners.mean(axis=0), 0.5 * float(np.ptp(corners, axis=0).max())
     for name, value in zip("xyz", middle, strict=True):
-        getattr(ax, f"set_{name}lim")(value - reach, value + reach)
-    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.35)
+        getattr(ax, f"set_{name}lim")(value - half, value + half)
+    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.2)
     ax.set_axis_off()

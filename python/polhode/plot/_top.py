@@ -48,8 +48,10 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
     potential = top.effective_potential(inclination)
     level = float(top.effective_potential(high if high < np.pi else low))
     bottom = float(potential.min())
-    # Of the walls toward both verticals as much is shown as there is below the level, and some of the valley.
-    room = max(1.5 * (level - bottom), 0.15 * float(np.median(potential) - bottom)) or 1.0
+    # Above the level four times as much of the walls is shown as there is of the valley below it.
+    room = 4.0 * (level - bottom)
+    if room <= 1e-9 * abs(level):  # a steady precession, at the very bottom
+        room = 0.1 * float(np.median(potential) - bottom)
     ax.plot(np.rad2deg(inclination), potential, color=AXIS_COLORS[0])
     ax.plot(
         np.rad2deg([low, high]),
@@ -61,10 +63,10 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
     )
     ax.annotate(
         f"nutation from {np.rad2deg(low):.2f}° to {np.rad2deg(high):.2f}°",
-        (np.rad2deg(0.5 * (low + high)), level), (0.0, 9.0), textcoords="offset points", ha="center",
+        (np.rad2deg(0.5 * (low + high)), level), (0.0, 12.0), textcoords="offset points", ha="center",
         color=AXIS_COLORS[1],
     )  # fmt: skip
-    ax.set_ylim(bottom - 0.12 * room, level + room)
+    ax.set_ylim(bottom - 0.2 * room, level + room)
     ax.set_xlabel("inclination (degrees)")
     ax.set_ylabel(f"effective potential ({energy_unit})")
     tidy(ax)
@@ -98,7 +100,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
         )
     if ax is None:
         ax = new_axes3d()
-    ax.view_init(elev=32.0, azim=-55.0)
+    ax.view_init(elev=40.0, azim=-55.0)
     path = top.at(t).point("center_of_mass") / arm @ _upright(-top.gravity / weight).T
     solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.35)
     around = np.linspace(0.0, 2.0 * np.pi, 181)
@@ -116,5 +118,5 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
         0.5, 0.02, f"{top.path} path between {low:.2f}° and {high:.2f}° from the vertical",
         transform=ax.transAxes, ha="center",
     )  # fmt: skip
-    plain_frame(ax, 1.1)
+    plain_frame(ax, (-1.05, -1.05, -1.05), (1.05, 1.05, 1.25))
     return ax
