@@ -38,6 +38,7 @@ MODULES = [
     "polhode.kinematics",
     "polhode.parallel_axis",
     "polhode.results",
+    "polhode.robots",
     "polhode.tops",
     "polhode.trajectory",
 ]

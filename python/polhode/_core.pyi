@@ -5,6 +5,7 @@ from os import PathLike
 from typing import Any, Literal, Self, TypeAlias, final
 
 import numpy as np
+from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import ArrayLike, NDArray
 
 from polhode._typing import SupportsQuaternion
@@ -22,6 +23,7 @@ from polhode.trajectory import Trajectory
 
 __all__ = [
     "FreeMotion",
+    "HeavyTop",
     "Load",
     "MassAccumulator",
     "Region",
@@ -251,7 +253,18 @@ class RigidBody:
         progress: Callable[[float], object] | None = None,
     ) -> RigidBody: ...
     @staticmethod
+    def from_mesh_object(
+        mesh: Any, *, density: float | None = None, mass: float | None = None, **options: Any
+    ) -> RigidBody: ...
+    @staticmethod
+    def from_atoms(atoms: Any, *, conformer: int | None = None) -> RigidBody: ...
+    @staticmethod
+    def load(path: str | PathLike[str]) -> RigidBody: ...
+    @staticmethod
     def stack(bodies: Iterable[RigidBody]) -> RigidBody: ...
+    def save(self, path: str | PathLike[str]) -> None: ...
+    def plot(self, ax: Axes3D | None = None, **options: Any) -> Axes3D: ...
+    def _repr_html_(self) -> str: ...
     @property
     def mass(self) -> Any: ...
     @property
@@ -320,9 +333,6 @@ class RigidBody:
     ) -> _Floats: ...
     def stability(self, rate: ArrayLike, about: _About = "center_of_mass") -> _Floats: ...
     def equimomental_particles(self) -> Particles: ...
-    def heavy_top(
-        self, omega: ArrayLike, attitude: _Attitude | None, gravity: ArrayLike, *, rtol: float = 1e-06
-    ) -> HeavyTop: ...
     def free_motion(self, omega: ArrayLike, attitude: _Attitude | None = None) -> FreeMotion: ...
     def free_motion_from_periods(
         self,
@@ -333,6 +343,9 @@ class RigidBody:
         phase: ArrayLike = 0.0,
         angular_momentum_direction: ArrayLike = (0.0, 0.0, 1.0),
     ) -> FreeMotion: ...
+    def heavy_top(
+        self, omega: ArrayLike, attitude: _Attitude | None, gravity: ArrayLike, *, rtol: float = 1e-06
+    ) -> HeavyTop: ...
     def simulate(
         self,
         t: ArrayLike,

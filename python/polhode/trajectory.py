@@ -14,6 +14,7 @@ from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
 
 if TYPE_CHECKING:
     from os import PathLike
+    from pathlib import Path
 
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
@@ -392,6 +393,38 @@ class Trajectory:
         from polhode.plot import angular_velocity
 
         return angular_velocity(self, ax)
+
+    def animate(self, path: str | PathLike[str], **options: Any) -> Path:
+        """Write the motion of one body as a moving picture.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib; ``.mp4``: needs
+            matplotlib and the program ffmpeg.
+        **options
+            `shape`, `frames`, `duration`, `title` and `time_unit`, see :func:`polhode.animation.animate`.
+
+        Returns
+        -------
+        pathlib.Path
+            Where it was written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import numpy as np
+        >>> from polhode import solids
+        >>> motion = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 10, 201), omega=(0.01, 1, 0))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     page = motion.animate(Path(folder) / "racket.html", title="The tennis racket")
+        ...     page.read_text(encoding="utf-8")[:15]
+        '<!DOCTYPE html>'
+        """
+        from polhode.animation import animate
+
+        return animate(self, path, **options)
 
     def _bodies(self) -> _core.RigidBody:
         """Give the body or stack the axes of time, along which it broadcasts."""
