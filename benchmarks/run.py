@@ -22,9 +22,11 @@ FILES_OF_ROWS = (
     "particles",
     "voxels",
     "meshes",
+    "free_motion",
+    "heavy_top",
     "simulate",
-    "threads",
     "callbacks",
+    "threads",
 )
 
 

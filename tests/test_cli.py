@@ -229,38 +229,6 @@ def test_a_directory(tmp_path: Path) -> None:
     assert "is a directory" in err
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("report",), "FILE"),
-        (("repot", "FILE"), 'Did you mean "report"'),
-        (("report", "FILE", "--densty", "1"), "Did you mean --density"),
-        (("report", "FILE", "--density", "heavy"), "heavy"),
-        (("report", "FILE", "--density", "-1"), "density must be positive"),
-        (("report", "FILE", "--mass", "0"), "mass must be positive"),
-        (("report", "FILE", "--density", "1", "--mass", "1"), "one of the two"),
-        (("report", "FILE", "--length-unit", "parsec"), "parsec"),
-        (("report", "FILE", "--index-base", "2"), "2"),
-        (("report", "FILE", "--format", "xml"), "xml"),
-        (("spin", "FILE", "--omega", "0", "1", "--until", "1"), "--omega"),
-        (("spin", "FILE", "--omega", "0", "1", "0"), "--until"),
-        (("spin", "FILE", "--omega", "0", "nan", "0", "--until", "1"), "--omega"),
-        (("spin", "FILE", "--omega", "0", "1", "0", "--until", "0"), "--until"),
-        (("spin", "FILE", "--omega", "0", "1", "0", "--until", "inf"), "--until"),
-        (("spin", "FILE", "--omega", "0", "1", "0", "--until", "1", "--samples", "1"), "--samples"),
-        (("spin", "FILE", "--omega", "0", "1", "0", "--until", "1", "--rtol", "-1"), "rtol"),
-        (("spin", "FILE", "--omega", "0", "1", "0", "--until", "1", "--save", "a.jpg"), r"\.png"),
-        (("spin", "FILE", "--omega", "0", "1", "0", "--until", "1", "--save", "no/a.png"), "no directory"),
-        (("demo", "--output-dir", "FILE"), "is a file"),
-    ],
-)
-def test_bad_option_is_one_line_and_exit_2(arguments: tuple[str, ...], message: str, slab: Path) -> None:
-    code, out, err = run(*(slab if argument == "FILE" else argument for argument in arguments))
-    assert (code, out) == (2, "")
-    assert one_line(err)
-    assert re.search(message, err)
-
-
 def test_inverted_mesh_is_refused_or_turned(tmp_path: Path) -> None:
     vertices, faces = cube(2.0)
     path = write_obj(tmp_path / "inverted.obj", vertices, faces[:, ::-1])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from command_line import run, write_obj
 from mesh_files import WRITERS
 from oracles.meshes import box
 from polhode import RigidBody
+from polhode.cli.progress import progress
 from polhode.cli.quantities import quantities, quantity, vector
 from polhode.errors import PolhodeError
 
@@ -200,10 +202,27 @@ def test_solidworks(shared_data: Path) -> None:
 
 
 def test_the_help_needs_no_numpy() -> None:
-    import subprocess
 
     code = "import sys; from polhode.cli import main; main(['--help']); print('numpy' in sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
     )
     assert done.stdout.splitlines()[-1] == "False"
+
+
+def test_long_work_draws_a_bar_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    for stream, is_long, has_bar in (
+        (Terminal(), True, True),
+        (Terminal(), False, False),
+        (io.StringIO(), True, False),
+    ):
+        monkeypatch.setattr(sys, "stderr", stream)
+        with progress("reading [part]", is_long=is_long) as tell:
+            assert (tell is not None) == has_bar
+            if tell is not None:
+                tell(0.5)
+        assert ("reading [part]" in stream.getvalue()) == has_bar

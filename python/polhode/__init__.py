@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     )
     from polhode._core import (
         FreeMotion,
+        HeavyTop,
         MassAccumulator,
         RigidBody,
         __version__,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
         principal_moments,
     )
     from polhode.events import Event, Events
+    from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
     from polhode.results import (
         AngularMomentum,
         ErrorBound,
@@ -61,24 +63,36 @@ else:
         return __all__
 
 
-_HOMES = ("polhode._core", "polhode.results", "polhode.trajectory", "polhode.events")
+_HOMES = (
+    "polhode._core",
+    "polhode.results",
+    "polhode.trajectory",
+    "polhode.events",
+    "polhode.free_motion",
+)
 """Modules whose names are public here; the other names are modules."""
 
 __all__ = [
     "AngularMomentum",
+    "Cones",
+    "ErrorBar",
     "ErrorBound",
     "Event",
     "Events",
     "FreeMotion",
     "FreePrecession",
+    "HeavyTop",
     "Invariants",
     "KineticEnergy",
     "MassAccumulator",
     "Particles",
+    "Periods",
+    "Poinsot",
     "PrincipalAxes",
     "PrincipalDerivative",
     "Provenance",
     "RigidBody",
+    "Sensitivity",
     "State",
     "Trajectory",
     "__version__",

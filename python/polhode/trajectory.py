@@ -14,6 +14,7 @@ from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
 
 if TYPE_CHECKING:
     from os import PathLike
+    from pathlib import Path
 
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
@@ -35,7 +36,7 @@ class Trajectory:
     body : RigidBody
         The body, or the stack of them.
     t : numpy.ndarray, shape (T,)
-        Times, the first being the start.
+        Times, the first being the start; of an exact motion any times, of any shape in place of (T,).
     omega : numpy.ndarray, shape (..., T, 3)
         Angular velocity of the body relative to space, components in the body frame.
     quaternion : numpy.ndarray, shape (..., T, 4)
@@ -79,10 +80,11 @@ class Trajectory:
         return len(self.t)
 
     def __repr__(self) -> str:
-        shape = self.omega.shape[:-2]
+        shape = self.omega.shape[: -1 - self.t.ndim]
         bodies = f"{'x'.join(map(str, shape))} bodies, " if shape else ""
-        span = f" from {self.t[0]:.6g} to {self.t[-1]:.6g}" if len(self) else ""
-        return f"Trajectory({bodies}{len(self)} times{span})"
+        count = self.t.size
+        span = f" from {self.t.flat[0]:.6g} to {self.t.flat[-1]:.6g}" if count else ""
+        return f"Trajectory({bodies}{count} times{span})"
 
     @cached_property
     def rotation(self) -> Rotation:
@@ -104,7 +106,7 @@ class Trajectory:
         return self._bodies().kinetic_energy(
             self.omega,
             velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
-            about=self.about[..., np.newaxis, :],
+            about=self._reference(),
         )
 
     def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
@@ -126,7 +128,7 @@ class Trajectory:
             self.omega,
             velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
             position=_core.rotate(self.quaternion, self.position, inverse=True),
-            about=self.about[..., np.newaxis, :],
+            about=self._reference(),
         )
         if frame == "body":
             return in_body
@@ -196,7 +198,7 @@ class Trajectory:
         if place.shape[-1:] != (3,):
             raise ValueError(f"r: expected shape (..., 3), got {place.shape}")
         arm = place - self.about
-        return self.position + _core.rotate(self.quaternion, arm[..., np.newaxis, :])
+        return self.position + _core.rotate(self.quaternion, self._per_time(arm))
 
     def torque(self) -> Floats:
         """Torque of the load about the point `about` at every time, components in the body frame.
@@ -227,9 +229,7 @@ class Trajectory:
         -------
         numpy.ndarray, shape (..., T, 3)
         """
-        return self._bodies().angular_acceleration(
-            self.omega, self.torque(), about=self.about[..., np.newaxis, :]
-        )
+        return self._bodies().angular_acceleration(self.omega, self.torque(), about=self._reference())
 
     def potential_energy(self) -> Floats:
         """Energy of position in the field of the load at every time.
@@ -394,9 +394,52 @@ class Trajectory:
 
         return angular_velocity(self, ax)
 
+    def animate(self, path: str | PathLike[str], **options: Any) -> Path:
+        """Write the motion of one body as a moving picture.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib; ``.mp4``: needs
+            matplotlib and the program ffmpeg.
+        **options
+            `shape`, `frames`, `duration`, `title` and `time_unit`, see :func:`polhode.animation.animate`.
+
+        Returns
+        -------
+        pathlib.Path
+            Where it was written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import numpy as np
+        >>> from polhode import solids
+        >>> motion = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 10, 201), omega=(0.01, 1, 0))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     page = motion.animate(Path(folder) / "racket.html", title="The tennis racket")
+        ...     page.read_text(encoding="utf-8")[:15]
+        '<!DOCTYPE html>'
+        """
+        from polhode.animation import animate
+
+        return animate(self, path, **options)
+
     def _bodies(self) -> _core.RigidBody:
-        """Give the body or stack an axis for time, along which it broadcasts."""
-        return self.body[..., np.newaxis]
+        """Give the body or stack the axes of time, along which it broadcasts."""
+        return self.body[(..., *self._time_axes())]
+
+    def _time_axes(self) -> tuple[None, ...]:
+        """One for a series of times; as many as the times that a free motion was asked at have."""
+        return (np.newaxis,) * self.t.ndim
+
+    def _per_time(self, vectors: Floats) -> Floats:
+        """Give vectors the axes of time before their components."""
+        return vectors[(..., *self._time_axes(), slice(None))]
+
+    def _reference(self) -> Floats:
+        return self._per_time(self.about)
 
     def _over_time(self, load: _core.Load) -> _core.Load:
         """Give a stack of loads an axis for time, along which it broadcasts."""

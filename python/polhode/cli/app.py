@@ -51,7 +51,7 @@ app = App(
     name="polhode",
     help="One body in: an inertia you can trust, and exactly how it will spin.",
     version=_version,
-    help_format="plaintext",
+    help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
 
@@ -142,7 +142,7 @@ def spin(
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Let the body in a file spin freely and print how it ends.
+    """Tell how a body moves, freely or as a top: mode, periods, stability, invariants; exact at any time.
 
     Parameters
     ----------

@@ -85,7 +85,9 @@ class ReportOptions:
         How far they may differ, relative to the largest component.
     """
 
-    about: Annotated[Words, Parameter(name="--about", negative="", consume_multiple=True)] = ()
+    about: Annotated[
+        Words, Parameter(name="--about", negative="", consume_multiple=True, show_default=False)
+    ] = ()
     mass_unit: Annotated[str | None, Parameter(name="--mass-unit")] = None
     expect: Annotated[Path | None, Parameter(name="--expect")] = None
     rtol: Annotated[float, Parameter(name="--rtol")] = 1e-6
@@ -106,7 +108,7 @@ class CheckOptions:
         Write the file to this one with right values where links fail, everything else as it stands.
     """
 
-    packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="")] = ()
+    packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="", show_default=False)] = ()
     strict: Annotated[bool, Parameter(name="--strict", negative="")] = False
     fix: Annotated[Path | None, Parameter(name="--fix")] = None
 
@@ -124,7 +126,7 @@ class MoleculeOptions:
         Unit of the file's coordinates.
     """
 
-    isotopes: Annotated[Words, Parameter(name="--isotopes", negative="")] = ()
+    isotopes: Annotated[Words, Parameter(name="--isotopes", negative="", show_default=False)] = ()
     length_unit: Annotated[LengthUnit, Parameter(name="--length-unit")] = "angstrom"
 
 
@@ -141,29 +143,49 @@ class SpinOptions:
     omega
         Angular velocity at the start, its components in the body, as in 0 6 0.01 or "10 20 30 deg/s"; a bare
         number is rad/s.
+    periods
+        Instead of --omega, the two periods of a tumbling asteroid: rotation about the long axis and mean
+        precession of that axis, as in "5.41 d, 7.35 d"; a bare number is in s.
+    mode
+        Which of the two motions has these periods.
+    gravity
+        A top: the origin of the body stays where it is and this acceleration pulls along -z, as in 9.81; a
+        bare number is m/s^2. The centre of mass and the origin have to lie on the symmetry axis.
     attitude
         Euler angles phi theta psi (ZXZ) at the start, as in "0 30 0 deg"; a bare number is in radians.
     until
-        Time of the end, as in 20 or "30 d"; a bare number is in s. The start is 0.
+        Time of the end, as in 20 or "30 d"; in s if bare. The start is 0. Without it the report tells
+        what kind of motion it is, and nothing is saved.
     degrees
         Print angular velocity in deg/s, and take it so where no unit stands with it.
     axes
         Axes of the components: the file's, or the principal axes (ascending moments).
     samples
         Number of times, start and end included.
-    rtol
-        Relative tolerance where the motion is integrated.
     save
-        Where to write the motion: a picture (.png, .pdf, .svg) or its numbers (.csv, .npz). May be repeated.
+        Where to write the motion: a picture (.png, .pdf, .svg), an animation (.html, .gif, .mp4) or its
+        numbers (.csv, .npz, .json). May be repeated.
     """
 
-    moments: Annotated[Words, Parameter(name="--moments", negative="", consume_multiple=True)] = ()
-    center: Annotated[Words, Parameter(name="--center", negative="", consume_multiple=True)] = ()
-    omega: Annotated[Words, Parameter(name="--omega", negative="", consume_multiple=True)] = ()
-    attitude: Annotated[Words, Parameter(name="--attitude", negative="", consume_multiple=True)] = ()
+    moments: Annotated[
+        Words, Parameter(name="--moments", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    center: Annotated[
+        Words, Parameter(name="--center", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    omega: Annotated[
+        Words, Parameter(name="--omega", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    periods: Annotated[
+        Words, Parameter(name="--periods", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    mode: Annotated[Literal["long-axis", "short-axis"], Parameter(name="--mode")] = "long-axis"
+    gravity: Annotated[str | None, Parameter(name="--gravity")] = None
+    attitude: Annotated[
+        Words, Parameter(name="--attitude", negative="", consume_multiple=True, show_default=False)
+    ] = ()
     until: Annotated[str | None, Parameter(name="--until")] = None
     degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False
     axes: Annotated[Literal["file", "principal"], Parameter(name="--axes")] = "file"
     samples: Annotated[int, Parameter(name="--samples")] = 1001
-    rtol: Annotated[float, Parameter(name="--rtol")] = 1e-10
-    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="")] = ()
+    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()

@@ -398,6 +398,37 @@ pub enum Error {
         /// Of the symmetry axis from the upward vertical.
         inclination: f64,
     },
+    /// A mode that a body with these moments does not have.
+    #[error(
+        "the body has no {mode} mode: of its principal moments {:?}, {:?}, {:?} the two that ω would need apart are equal, or the \
+         least is zero; use free_motion with an angular velocity",
+        moments[0], moments[1], moments[2]
+    )]
+    NoSuchMode {
+        /// Which.
+        mode: &'static str,
+        /// The principal moments.
+        moments: [f64; 3],
+    },
+    /// Two periods that no free motion of the body has.
+    #[error(
+        "no {mode} motion has rotation_period/precession_period = {ratio:?}: for the principal moments {:?}, {:?}, {:?} the ratio \
+         reaches from {least:.6} (steady spin) to {most:.6} (the separatrix, as near as float64 tells); check the mode and \
+         the moments",
+        moments[0], moments[1], moments[2]
+    )]
+    UnreachablePeriods {
+        /// In which mode.
+        mode: &'static str,
+        /// `P_ψ/P_φ`.
+        ratio: f64,
+        /// The least that is reached.
+        least: f64,
+        /// The greatest that is reached.
+        most: f64,
+        /// The principal moments.
+        moments: [f64; 3],
+    },
     /// The mesh cannot be used; the message says which part of it and why.
     #[error(transparent)]
     Mesh(#[from] crate::mass::polyhedron::MeshFault),

@@ -22,6 +22,7 @@ mod events;
 mod files;
 mod forms;
 mod free_motion;
+mod heavy_top;
 mod interrupt;
 mod kinematics;
 mod laminae;
@@ -62,6 +63,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::free_motion::PyFreeMotion;
+    #[pymodule_export]
+    use crate::heavy_top::PyHeavyTop;
     #[pymodule_export]
     use crate::kinematics::transport;
     #[pymodule_export]

@@ -10,7 +10,7 @@
 //! | Euler's equations, forward and inverse (mln27) | [`euler_equations`] |
 //! | the force in a pivot (mln24) | [`mod@pivot_reaction`] |
 //! | steady spins and whether they are stable | [`stability`] |
-//! | free motion of any body, exact at any time | [`free`] |
+//! | free motion of any body, exact at any time, and what it tells | [`free`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | attitude, ω, position and velocity together | [`state`] |

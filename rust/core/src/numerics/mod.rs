@@ -7,10 +7,13 @@
 //! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
+//! | [`power_of_two`] | scales that keep all digits |
 //! | [`split_vector`] | differences, scalar products and determinants that survive cancellation |
 //! | [`elliptic`] | elliptic integrals by means and duplication |
 //! | [`theta`] | Jacobi's functions and the phase of Θ |
 //! | [`turns`] | phases without their whole turns, sines, exponentials in lanes |
+//! | [`jacobi`] | Jacobi's functions of one number, Carlson's integral of the second kind |
+//! | [`jet`] | numbers with their derivatives |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
 //! | [`eigen3`] | eigenvalues and eigenvectors of symmetric 3×3 matrices |
@@ -22,8 +25,11 @@ pub mod dispatch;
 pub mod double_double;
 pub mod eigen3;
 pub mod elliptic;
+pub mod jacobi;
+pub mod jet;
 pub mod lane;
 pub mod planes;
+pub mod power_of_two;
 pub mod quadrature;
 pub mod reduce;
 pub mod split_vector;

@@ -10,6 +10,7 @@ mod from_shapes;
 mod matter;
 mod motion;
 mod outcome;
+mod outside;
 mod properties;
 mod simulate;
 mod trust;

@@ -14,17 +14,30 @@
 //! | `tumbling.rs` | long- and short-axis mode and the separatrix: from a start to the constants of the theta functions |
 //! | `circling.rs` | steady spin and the symmetric body: the limits in which they are sines |
 //! | `propagator.rs` | from the constants to the states, in lanes |
+//! | `invariants.rs` | what a motion keeps: energy, momentum, modulus, amplitudes |
+//! | `periods.rs`, `from_periods.rs` | periods and mean precession; the motion that has two given periods |
+//! | `polhode.rs`, `nutation.rs`, `poinsot.rs` | the curve of ω in the body, cones, the rolling ellipsoid |
+//! | `sensitivity.rs` on `clock.rs`, `conditioning.rs` | derivatives by initial state and moments; error bars |
 
 mod circling;
+mod clock;
+mod conditioning;
+mod from_periods;
+mod invariants;
 pub mod mode;
+mod nutation;
+mod periods;
+mod poinsot;
+mod polhode;
 mod propagator;
 pub mod refined;
+mod sensitivity;
 mod tumbling;
 
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
@@ -32,9 +45,16 @@ use crate::motion::simulate::State;
 use crate::numerics::dispatch::dispatch;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::threads::{Halt, fill_blocks};
+pub use conditioning::ErrorBar;
+pub use from_periods::{Circled, FromPeriods, attitude_about};
+pub use invariants::Invariants;
 pub use mode::Mode;
+pub use nutation::Cones;
+pub use periods::Periods;
+pub use poinsot::Poinsot;
 use propagator::{At, Propagator, Sample};
 pub use refined::RefinedPrincipal;
+pub use sensitivity::Sensitivity;
 use tumbling::Tumbling;
 
 /// The motion of a body on which no torque acts about its centre of mass, from its state at t = 0.
@@ -47,6 +67,8 @@ pub struct FreeMotion {
     pub initial: State,
     /// Principal moments, ascending, to twice the precision.
     pub moments: [DoubleDouble; 3],
+    /// The principal axes as columns, components in B.
+    pub axes: Matrix3<f64>,
     /// ω at t = 0 along the principal axes.
     pub principal_omega: [DoubleDouble; 3],
     /// The constants of the theta functions.
@@ -120,6 +142,7 @@ impl FreeMotion {
             mode,
             initial,
             moments: principal.moments,
+            axes,
             principal_omega: w.map(|rate| rate.scaled(rate_unit)),
             secular: secular.in_units_of(rate_unit),
             propagator: propagator.in_units_of(rate_unit),

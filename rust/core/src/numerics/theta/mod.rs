@@ -13,6 +13,7 @@
 
 pub mod circular;
 pub mod hyperbolic;
+pub mod quotients;
 
 /// The half periods: K along the real axis, K′ along the imaginary one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,105 +1,28 @@
-"""Pictures with matplotlib (extra ``plot``). Every function takes ``ax=`` and returns it.
-
-Colours are those of Okabe and Ito, which readers with any colour vision can tell apart; lines differ in
-their dashes too.
-"""
+"""Pictures of a body: its surface and its principal axes."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Literal, cast
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from polhode._extras import require
+from polhode.plot._style import AXIS_COLORS, OUTLINE_COLOR, new_axes3d
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from mpl_toolkits.mplot3d.axes3d import Axes3D
     from numpy.typing import ArrayLike, NDArray
 
     from polhode import RigidBody
-    from polhode.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
 
-__all__ = ["AXIS_COLORS", "OUTLINE_COLOR", "angular_velocity", "body", "principal_axes"]
+__all__ = ["body", "principal_axes"]
 
-AXIS_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
-"""Blue, vermilion and bluish green: first, second and third axis."""
-OUTLINE_COLOR: Final = (0.17, 0.18, 0.22)
-"""Red, green and blue of a body's edges."""
-
-_DASHES: Final = ("--", "-", "-.")
 _SURFACE: Final = np.array([0.78, 0.83, 0.90])
 _LIGHT: Final = np.array([0.30, -0.55, 0.78])
 _FEATURE_ANGLE: Final = np.deg2rad(40.0)
 _PIECES: Final = 24
-
-
-def _matplotlib(module: str) -> Any:
-    return require(f"matplotlib.{module}", extra="plot", purpose="drawing")
-
-
-def angular_velocity(
-    trajectory: Trajectory,
-    ax: Axes | None = None,
-    *,
-    frame: Literal["body", "principal"] = "body",
-    degrees: bool = False,
-    time_unit: str = "s",
-) -> Axes:
-    """Draw the components of the angular velocity over time.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The motion; of a stack, every body is drawn.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; a new figure by default.
-    frame : {"body", "principal"}
-        Components along the body's axes or along its principal axes (ascending moments).
-    degrees : bool
-        Degrees instead of radians.
-    time_unit : str
-        Name of the unit of time, for the labels.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    if ax is None:
-        ax = cast("Axes", _matplotlib("pyplot").subplots(layout="constrained")[1])
-    omega = trajectory.omega
-    if frame == "principal":
-        omega = np.einsum("...ij,...ti->...tj", trajectory.body.principal.axes, omega)
-        labels = [rf"$\omega_{i}$" for i in "123"]
-    elif frame == "body":
-        labels = [rf"$\omega_{i}$" for i in "xyz"]
-    else:
-        raise ValueError(f"frame: {frame!r} is not 'body' or 'principal'")
-    if degrees:
-        omega = np.rad2deg(omega)
-    curves = omega.reshape(-1, len(trajectory), 3)
-    opacity = 1.0 if len(curves) == 1 else 0.5
-    for number, curve in enumerate(curves):
-        for i in range(3):
-            ax.plot(
-                trajectory.t,
-                curve[:, i],
-                color=AXIS_COLORS[i],
-                linestyle=_DASHES[i],
-                alpha=opacity,
-                label=labels[i] if number == 0 else None,
-            )
-    ax.set_xlabel(f"time ({time_unit})")
-    ax.set_ylabel(f"angular velocity ({'deg' if degrees else 'rad'}/{time_unit})")
-    ax.margins(x=0.0)
-    ax.grid(color="0.9", linewidth=0.6)
-    ax.set_axisbelow(True)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2, ncols=3, frameon=False)
-    return ax
 
 
 def body(
@@ -131,7 +54,7 @@ def body(
     """
     art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="drawing")
     if ax is None:
-        ax = _new_axes3d()
+        ax = new_axes3d()
     points = np.asarray(vertices, dtype=np.float64)
     corners = np.asarray(faces, dtype=np.int64)
     size = max(float(np.ptp(points, axis=0).max()), float(np.finfo(float).tiny))
@@ -205,11 +128,6 @@ def principal_axes(
         ax.text(*name, label, color=color, ha="center", va="center", fontsize=12, zorder=5)
     ax.scatter(*origin[:, np.newaxis], color="black", s=14, zorder=5, depthshade=False)
     return ax
-
-
-def _new_axes3d() -> Axes3D:
-    figure = _matplotlib("pyplot").figure(layout="constrained")
-    return cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
 
 
 def _view_direction(ax: Axes3D) -> Floats:

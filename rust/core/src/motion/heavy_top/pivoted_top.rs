@@ -1,9 +1,12 @@
-//! The heavy symmetric top about a fixed point: steady precession and the sleeping limit (part II).
+//! Which bodies are heavy symmetric tops about a fixed point; their steady precession and the sleeping limit (part II).
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
+use super::reduced::norm;
 use crate::error::Error;
 use crate::mass::RigidBody;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::principal::SymmetricTop;
 
 /// A symmetric top whose symmetry axis passes through the pivot O, the origin of the body frame.
@@ -17,6 +20,33 @@ pub struct PivotedTop {
     pub transverse: f64,
     /// `m l`, with l the distance from O to C.
     pub mass_moment: f64,
+    /// What the numbers above are rounded from.
+    source: Source,
+}
+
+/// The data of a top as the body has them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Source {
+    mass: f64,
+    /// A vector along the axis, of any length.
+    direction: Vector3<f64>,
+    center_of_mass: Vector3<f64>,
+    axial: f64,
+    /// The two moments across the axis, about C.
+    lateral: [f64; 2],
+}
+
+/// A top in units of its own mass and of a length `2^(exponent/2)`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sizes {
+    /// `I_t`, in double-double.
+    pub(super) transverse: DoubleDouble,
+    /// `I_s`.
+    pub(super) axial: DoubleDouble,
+    /// l over a power of two, and that power; not negative.
+    pub(super) arm: (DoubleDouble, i32),
+    /// The moments are to be multiplied by the mass and by 2 to this power.
+    pub(super) exponent: i32,
 }
 
 impl PivotedTop {
@@ -31,7 +61,7 @@ impl PivotedTop {
         let principal = body.principal();
         let (m, c) = (body.mass(), body.center_of_mass());
         let top = SymmetricTop::of(&principal, rtol)?;
-        let [i1, _, i3] = principal.moments;
+        let [i1, i2, i3] = principal.moments;
         let is_spherical = i3 - i1 <= rtol * i3;
         let axis = match c.try_normalize(0.0) {
             Some(to_center) if is_spherical => to_center,
@@ -56,12 +86,91 @@ impl PivotedTop {
                 allowed: rtol,
             });
         }
+        let lateral = if top.axial == i3 { [i1, i2] } else { [i2, i3] };
         Ok(Self {
             axis,
             axial: top.axial,
             transverse,
             mass_moment: m * arm,
+            source: Source {
+                mass: m,
+                direction: if is_spherical && arm > 0.0 { c } else { axis },
+                center_of_mass: c,
+                axial: top.axial,
+                lateral,
+            },
         })
+    }
+
+    /// Effective potential of the inclination: `V(θ) = (L_z − L_s cos θ)²/(2 I_t sin²θ) + m g l cos θ`.
+    ///
+    /// `I_t θ̇²/2 + V(θ)` is constant: the energy less that of the spin about the axis. `L_z`, `L_s`: the angular momenta about the upward
+    /// vertical and about the axis, both constant. `omega`: in B; `gravity`: in N; θ: of the axis (from O to C) from the upward
+    /// vertical. Without gravity the third axis of N stands for the vertical. Source: part II; Landau and Lifshitz, Mechanics, §35.
+    #[must_use]
+    pub fn effective_potential(
+        &self,
+        omega: &Vector3<f64>,
+        attitude: &UnitQuaternion<f64>,
+        gravity: &Vector3<f64>,
+        inclination: f64,
+    ) -> f64 {
+        let up = UnitQuaternion::new_normalize(attitude.into_inner())
+            .inverse_transform_vector(&(-gravity).try_normalize(0.0).unwrap_or_else(Vector3::z));
+        let spin = omega.dot(&self.axis);
+        let across = omega - self.axis * spin;
+        let start = up.dot(&self.axis);
+        // L_z − L_s cos θ, where L_z = I_t ω_t·γ + L_s cos θ₀.
+        let (half_sin, half_cos) = (0.5 * inclination).sin_cos();
+        let (sine, cosine) = (2.0 * half_sin * half_cos, inclination.cos());
+        let rest = self.transverse * across.dot(&up) + self.axial * spin * (start - cosine);
+        let turning = if rest == 0.0 { 0.0 } else { rest / sine };
+        0.5 * turning * turning / self.transverse + self.mass_moment * gravity.norm() * cosine
+    }
+
+    /// A vector along the axis toward C, of any length.
+    pub(super) fn direction(&self) -> Vector3<f64> {
+        self.source.direction
+    }
+
+    /// The moments and the arm to twice the precision, in units of the top itself.
+    pub(super) fn sizes(&self) -> Sizes {
+        let Source {
+            mass,
+            direction,
+            center_of_mass: c,
+            axial,
+            lateral,
+        } = self.source;
+        let mass_exponent = exponent(mass);
+        let mass = DoubleDouble::from(times_power_of_two(mass, -mass_exponent));
+        let (length, _) = norm(&direction);
+        let e = [direction.amax(), c.amax()].map(exponent);
+        let (n, c) = (
+            direction.map(|x| times_power_of_two(x, -e[0])),
+            c.map(|x| times_power_of_two(x, -e[1])),
+        );
+        let along = (n.iter().zip(c.iter())).fold(DoubleDouble::default(), |sum, (&a, &b)| {
+            sum + DoubleDouble::product(a, b)
+        });
+        let arm = not_negative(along / length);
+        // The larger of arm and radii of gyration is of the order of one.
+        let [i1, i2] = lateral;
+        let largest = exponent(axial.max(i1).max(i2)) - mass_exponent;
+        let exponent = largest.max(if arm.high == 0.0 { largest } else { 2 * e[1] });
+        let moment =
+            |i: f64| DoubleDouble::from(times_power_of_two(i, -mass_exponent - exponent)) / mass;
+        let squared = arm * arm;
+        let squared = DoubleDouble {
+            high: times_power_of_two(squared.high, 2 * e[1] - exponent),
+            low: times_power_of_two(squared.low, 2 * e[1] - exponent),
+        };
+        Sizes {
+            transverse: (moment(i1) + moment(i2)).scaled(0.5) + squared,
+            axial: moment(axial),
+            arm: (arm, e[1]),
+            exponent,
+        }
     }
 
     /// Least spin that precesses steadily at the inclination θ: `2 √(I_t m g l cos θ)/I_s`; zero for cos θ ≤ 0.
@@ -111,6 +220,14 @@ impl PivotedTop {
             return Ok([0.0, 0.0]); // neither spin nor weight
         }
         Ok([weight / sum, sum / upright])
+    }
+}
+
+fn not_negative(x: DoubleDouble) -> DoubleDouble {
+    if x.high > 0.0 {
+        x
+    } else {
+        DoubleDouble::default()
     }
 }
 

@@ -1,0 +1,150 @@
+"""What notebooks show of a body: a table beside its ellipsoid of inertia. No drawing library is needed."""
+
+from __future__ import annotations
+
+import html
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode import RigidBody
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["body_html", "ellipsoid_svg"]
+
+_SIZE: Final = 200
+_REACH: Final = 0.36 * _SIZE
+"""Length of the longest semi-axis in the drawing."""
+_LONGEST: Final = 3.0
+"""A semi-axis without end, that of a zero moment, is cut at so many times the longest other one."""
+_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
+_DASHES: Final = ("6 4", "none", "6 3 1.5 3")
+# From which side the body is seen: rows are rightward and upward in the drawing and toward the viewer.
+_AZIMUTH, _ELEVATION = np.deg2rad(-55.0), np.deg2rad(25.0)
+_CA, _SA, _CE, _SE = np.cos(_AZIMUTH), np.sin(_AZIMUTH), np.cos(_ELEVATION), np.sin(_ELEVATION)
+_VIEW: Final = np.array([[-_SA, _CA, 0.0], [-_SE * _CA, -_SE * _SA, _CE], [_CE * _CA, _CE * _SA, _SE]])
+
+
+def body_html(body: RigidBody) -> str:
+    """Write one body as a table and a drawing; a stack as its shape.
+
+    Parameters
+    ----------
+    body : RigidBody
+        What a notebook is about to show.
+    """
+    if body.shape:
+        return f"<pre>{html.escape(repr(body))}</pre>"
+    principal = body.principal
+    rows = [
+        ("mass", f"{body.mass:.6g}"),
+        ("center of mass", _vector(body.center_of_mass)),
+        *(
+            (f'<span style="color:{color}">principal moment {k + 1}</span>', f"{moment:.6g}")
+            for k, (color, moment) in enumerate(zip(_COLORS, principal.moments, strict=True))
+        ),
+        *(
+            (f'<span style="color:{color}">axis {k + 1}</span>', _vector(axis))
+            for k, (color, axis) in enumerate(zip(_COLORS, principal.axes.T, strict=True))
+        ),
+        ("top", html.escape(str(principal.top))),
+        ("source", html.escape(str(body.provenance))),
+    ]
+    cells = "".join(
+        f'<tr><th style="text-align:left">{name}</th><td style="text-align:left">{value}</td></tr>'
+        for name, value in rows
+    )
+    drawing = ellipsoid_svg(body) if principal.moments.any() else ""
+    return (
+        '<div style="display:flex;flex-wrap:wrap;align-items:center;gap:16px">'
+        f"{drawing}<table><caption>RigidBody</caption>{cells}</table></div>"
+    )
+
+
+def ellipsoid_svg(body: RigidBody) -> str:
+    """Draw the ellipsoid of inertia, r·I r constant about the centre of mass, with the principal axes.
+
+    Parameters
+    ----------
+    body : RigidBody
+        One body, not a point.
+
+    Returns
+    -------
+    str
+        An ``svg`` element. The axes x, y, z of the body are grey.
+    """
+    moments, axes = body.principal.moments, body.principal.axes
+    with np.errstate(divide="ignore"):
+        semi_axes = 1.0 / np.sqrt(moments)
+    semi_axes = np.minimum(semi_axes, _LONGEST * semi_axes[np.isfinite(semi_axes)].max())
+    semi_axes *= _REACH / semi_axes.max()
+    seen = _VIEW @ axes  # columns: the principal axes as the viewer has them
+    far, near, names = [], [], []
+    for name, direction in zip("xyz", _VIEW.T, strict=True):
+        far.append(_line(0.44 * _SIZE * direction, color="#bbb", width=1.0))
+        names.append(_name(0.44 * _SIZE * direction, name, "#999"))
+    for k, (color, dash) in enumerate(zip(_COLORS, _DASHES, strict=True)):
+        tip = seen[:, k] * (semi_axes[k] + 0.2 * _REACH)
+        far += [_line(end, color=color, dash=dash) for end in (-tip, tip)]
+        if tip[2] > 0.0:  # it comes out of the surface toward the viewer
+            near.append(_line(tip, start=seen[:, k] * semi_axes[k], color=color))
+        names.append(_name(tip, f"e{'₁₂₃'[k]}", color))
+    rings = [part for k in range(3) for part in _ring(seen, semi_axes, (k + 1) % 3, (k + 2) % 3)]
+    parts = [*far, _outline(seen[:2] * semi_axes), *rings, *near, *names]
+    half = _SIZE / 2
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_SIZE}" height="{_SIZE}" '
+        f'viewBox="{-half:g} {-half:g} {_SIZE} {_SIZE}" role="img" '
+        'font-family="sans-serif" font-size="12" text-anchor="middle">'
+        f"<title>ellipsoid of inertia and principal axes</title>{''.join(parts)}</svg>"
+    )
+
+
+def _outline(projected: Floats) -> str:
+    """Draw the silhouette, the ellipse that a 2 x 3 matrix makes of the unit sphere."""
+    directions, radii, _ = np.linalg.svd(projected)
+    tilt = np.rad2deg(np.arctan2(-directions[1, 0], directions[0, 0]))
+    return (
+        f'<ellipse rx="{radii[0]:.2f}" ry="{radii[1]:.2f}" transform="rotate({tilt:.3f})" '
+        'fill="#C9D6E8" fill-opacity="0.85" stroke="#4a5568" stroke-width="1.2"/>'
+    )
+
+
+def _ring(seen: Floats, semi_axes: Floats, i: int, j: int) -> list[str]:
+    """Draw the ellipse in the plane of two principal axes, its far half faint."""
+    # The normal cos a e_i/s_i + sin a e_j/s_j faces the viewer within a quarter turn of this angle.
+    middle = np.arctan2(seen[2, j] / semi_axes[j], seen[2, i] / semi_axes[i])
+    parts = []
+    for begin, style in ((middle + np.pi / 2, 'stroke-opacity="0.25"'), (middle - np.pi / 2, "")):
+        angle = begin + np.linspace(0.0, np.pi, 37)
+        points = np.outer(np.cos(angle), semi_axes[i] * seen[:, i])
+        points += np.outer(np.sin(angle), semi_axes[j] * seen[:, j])
+        path = " ".join(f"{x:.2f},{-y:.2f}" for x, y, _ in points)
+        parts.append(f'<polyline points="{path}" fill="none" stroke="#4a5568" stroke-width="0.8" {style}/>')
+    return parts
+
+
+def _line(
+    end: Floats, *, start: Floats | None = None, color: str, width: float = 1.8, dash: str = "none"
+) -> str:
+    x0, y0 = (0.0, 0.0) if start is None else start[:2]
+    return (
+        f'<line x1="{x0:.2f}" y1="{-y0:.2f}" x2="{end[0]:.2f}" y2="{-end[1]:.2f}" stroke="{color}" '
+        f'stroke-width="{width:g}" stroke-dasharray="{dash}"/>'
+    )
+
+
+def _name(tip: Floats, name: str, color: str) -> str:
+    """Write a name beyond the tip of a line from the middle."""
+    x, y = tip[:2] * (1.0 + 9.0 / (float(np.hypot(*tip[:2])) or 1.0))
+    return f'<text x="{x:.2f}" y="{-y + 4.0:.2f}" fill="{color}">{name}</text>'
+
+
+def _vector(components: Floats) -> str:
+    # Adding zero makes a plain zero of a negative one.
+    return "(" + ", ".join(f"{component + 0.0:.6g}" for component in components) + ")"

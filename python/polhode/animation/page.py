@@ -1,0 +1,61 @@
+"""A motion as one interactive page that needs nothing from the network."""
+
+from __future__ import annotations
+
+import html
+import json
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from polhode.animation.scene import Scene
+
+__all__ = ["page"]
+
+_DIGITS = 7
+_BODY = 0.8
+
+
+def page(scene: Scene) -> str:
+    """Write the page: what is in ``page.html``, with the motion in it.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is shown.
+    """
+    vertices = scene.shape.vertices
+    size = float(np.linalg.norm(vertices, axis=1).max()) or 1.0
+    motion = {
+        "title": scene.title,
+        "time_unit": scene.time_unit,
+        "duration": scene.duration,
+        "t": scene.t.tolist(),
+        "quaternion": _rounded(scene.quaternion),
+        "omega": _rounded(scene.omega / _largest(scene.omega)),
+        "momentum": _rounded(scene.momentum / _largest(scene.momentum)),
+        "ellipsoid": _rounded(scene.ellipsoid / _largest(scene.omega)),
+        "axes": _rounded(scene.axes.T),
+        "shape": {
+            "vertices": _rounded(vertices * (_BODY / size)),
+            "faces": scene.shape.faces.tolist(),
+            "colors": scene.shape.colors.tolist(),
+        },
+    }
+    # Inside a script element only "</" could end it early.
+    text = json.dumps(motion, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+    template = files("polhode.animation").joinpath("page.html").read_text(encoding="utf-8")
+    named = template.replace("<title>polhode</title>", f"<title>{html.escape(scene.title)}</title>")
+    return named.replace("@MOTION@", text)
+
+
+def _largest(rows: np.ndarray[Any, np.dtype[np.float64]]) -> float:
+    return float(np.linalg.norm(rows, axis=-1).max()) or 1.0
+
+
+def _rounded(numbers: np.ndarray[Any, np.dtype[np.float64]]) -> list[Any]:
+    """Give the numbers with as many decimals as a screen can show."""
+    rounded: list[Any] = np.round(numbers, _DIGITS).tolist()
+    return rounded

@@ -1,0 +1,112 @@
+"""What an animation shows: the frames of a motion and the body in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode import _core
+from polhode.animation.shape import Shape, equivalent_box, given_shape
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from polhode import Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Scene"]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The frames of one body's motion.
+
+    Attributes
+    ----------
+    t : numpy.ndarray, shape (F,)
+        Time of each frame.
+    quaternion, omega : numpy.ndarray, shapes (F, 4) and (F, 3)
+        R_NB and the angular velocity in the body frame.
+    sample : numpy.ndarray, shape (F,)
+        Which sample of the motion each frame is.
+    path : numpy.ndarray, shape (T, 3)
+        The angular velocity at every sample, components in space.
+    momentum : numpy.ndarray, shape (F, 3)
+        Spin angular momentum about the point of reference, components in space.
+    ellipsoid : numpy.ndarray, shape (F, 3)
+        Semi-axes of ω·Iω = 2T, along the principal axes about the point of reference.
+    axes : numpy.ndarray, shape (3, 3)
+        Those axes, as columns in the body frame.
+    shape : Shape
+        The surface drawn.
+    title, time_unit : str
+        As the viewer reads them.
+    duration : float
+        Seconds that the whole motion takes on the screen.
+    """
+
+    t: Floats
+    quaternion: Floats
+    omega: Floats
+    sample: NDArray[np.int64]
+    path: Floats
+    momentum: Floats
+    ellipsoid: Floats
+    axes: Floats
+    shape: Shape
+    title: str
+    time_unit: str
+    duration: float
+
+    @classmethod
+    def of(
+        cls,
+        trajectory: Trajectory,
+        *,
+        frames: int | None,
+        duration: float,
+        shape: tuple[ArrayLike, ArrayLike] | None,
+        title: str,
+        time_unit: str,
+    ) -> Scene:
+        """Choose frames evenly among the samples of a motion and work out what is drawn in them."""
+        if trajectory.omega.ndim != 2:
+            stack = trajectory.omega.shape[:-2]
+            raise ValueError(
+                f"animate: expected the motion of one body, got a stack of shape {stack}; index it"
+            )
+        if not np.isfinite(trajectory.omega).all() or not np.isfinite(trajectory.quaternion).all():
+            raise ValueError("animate: the motion holds states that are not numbers; it ended early")
+        if not (duration > 0.0 and np.isfinite(duration)):
+            raise ValueError(f"duration: {duration} is not a positive number of seconds")
+        count = len(trajectory)
+        if frames is not None and not 1 <= frames <= count:
+            raise ValueError(f"frames: {frames} is not between 1 and the {count} samples of the motion")
+        chosen = np.unique(np.linspace(0, count - 1, frames or count).round().astype(int))
+        about = trajectory.about
+        principal = trajectory.body.principal_about(about)
+        in_axes = trajectory.omega[chosen] @ principal.axes
+        momentum = trajectory.angular_momentum().spin[chosen]
+        doubled = (in_axes**2) @ principal.moments
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ellipsoid = np.sqrt(doubled[:, np.newaxis] / principal.moments)
+        # About an axis without a moment the ellipsoid is a cylinder without end.
+        reach = 1.5 * np.linalg.norm(in_axes, axis=1, keepdims=True).max()
+        ellipsoid = np.where(np.isfinite(ellipsoid), np.minimum(ellipsoid, reach), reach)
+        return cls(
+            t=trajectory.t[chosen],
+            quaternion=trajectory.quaternion[chosen],
+            omega=trajectory.omega[chosen],
+            sample=chosen,
+            path=_core.rotate(trajectory.quaternion, trajectory.omega),
+            momentum=momentum,
+            ellipsoid=ellipsoid,
+            axes=principal.axes,
+            shape=equivalent_box(trajectory.body, about) if shape is None else given_shape(*shape, about),
+            title=title,
+            time_unit=time_unit,
+            duration=duration,
+        )

@@ -1,0 +1,85 @@
+"""What is drawn for a body: its mesh, or the box that has its inertia."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from polhode import RigidBody
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Shape", "equivalent_box", "given_shape"]
+
+_LIGHT_TINTS = ((158, 197, 224), (240, 190, 150), (158, 214, 196))
+_DARK_TINTS = ((110, 160, 200), (222, 150, 96), (98, 178, 150))
+_PLAIN = (199, 212, 230)
+# The corners of a face of the unit cube whose normal is +e3, counterclockwise seen from outside.
+_FACE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A surface about the point that the motion refers to.
+
+    Attributes
+    ----------
+    vertices : numpy.ndarray, shape (n, 3)
+        From that point, in the body frame.
+    faces : numpy.ndarray, shape (m, 3)
+        Triangles, counterclockwise seen from outside.
+    colors : numpy.ndarray, shape (m, 3)
+        Red, green and blue of each, from 0 to 255.
+    """
+
+    vertices: Floats
+    faces: NDArray[np.int64]
+    colors: NDArray[np.int64]
+
+
+def equivalent_box(body: RigidBody, about: Floats) -> Shape:
+    """Find the uniform box with the mass and inertia of a body, its pairs of faces in six colours.
+
+    Parameters
+    ----------
+    body : RigidBody
+        One body. Its box has sides (6 (I_j + I_k - I_i)/m)^(1/2).
+    about : numpy.ndarray, shape (3,)
+        The point that the vertices are counted from.
+    """
+    moments, axes = body.principal.moments, body.principal.axes
+    squares = 6.0 * (moments.sum() - 2.0 * moments) / body.mass
+    half = 0.5 * np.sqrt(np.maximum(squares, 0.0))
+    half = np.maximum(half, 0.01 * half.max() or 1.0)  # a sheet or a rod is drawn a hundredth thick
+    vertices: list[Floats] = []
+    faces: list[list[int]] = []
+    colors: list[tuple[int, int, int]] = []
+    for axis in range(3):
+        across = [(axis + 1) % 3, (axis + 2) % 3]
+        for sense, tint in ((1.0, _LIGHT_TINTS[axis]), (-1.0, _DARK_TINTS[axis])):
+            corners = np.empty((4, 3))
+            corners[:, axis] = sense
+            corners[:, across] = _FACE if sense > 0.0 else _FACE[::-1]
+            first = 4 * len(vertices)
+            vertices.append((corners * half) @ axes.T)
+            faces += [[first, first + 1, first + 2], [first, first + 2, first + 3]]
+            colors += [tint, tint]
+    return Shape(np.concatenate(vertices) + body.center_of_mass - about, np.array(faces), np.array(colors))
+
+
+def given_shape(vertices: ArrayLike, faces: ArrayLike, about: Floats) -> Shape:
+    """Take the user's mesh, in the body frame."""
+    points, corners = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
+    if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
+        raise ValueError(f"shape: expected finite vertices of shape (n, 3), got {points.shape}")
+    if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
+        raise ValueError(f"shape: expected whole numbers of shape (m, 3) as faces, got {corners.shape}")
+    if corners.size and not 0 <= corners.min() <= corners.max() < len(points):
+        wrong = corners.min() if corners.min() < 0 else corners.max()
+        raise ValueError(f"shape: a face names vertex {wrong}, but they run from 0 to {len(points) - 1}")
+    return Shape(points - about, corners.astype(np.int64), np.tile(_PLAIN, (len(corners), 1)))

@@ -1,0 +1,158 @@
+"""What ``polhode spin`` tells of a free body and of a heavy top: each has the same four questions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode.cli.layout import Field
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode import FreeMotion, HeavyTop, Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["FreeKind", "TopKind"]
+
+
+class FreeKind:
+    """A body on which nothing acts."""
+
+    def __init__(self, motion: FreeMotion) -> None:
+        self._motion = motion
+
+    def fields(self, rate: float, rate_unit: str) -> list[Field]:
+        """Tell the mode, the periods and the angles from L."""
+        motion = self._motion
+        angles, periods = np.rad2deg(motion.nutation), motion.periods
+        return [
+            Field("mode", "mode", str(motion.mode)),
+            *_period("rotation_period", "rotation period", periods.rotation, "P_psi, about e1"),
+            *_period(
+                "precession_period", "precession period", periods.precession, "P_phi, mean, of e1 about L"
+            ),
+            *_period("flip_period", "flips every", periods.flip, "the intermediate axis"),
+            Field(
+                "mean_precession", "mean precession", periods.rates * rate, rate_unit, "of e1 e2 e3 about L"
+            ),
+            *(
+                Field(f"angle_from_L.e{k + 1}", f"e{k + 1} from L", angles[k], "deg", "least, greatest")
+                for k in range(3)
+            ),
+            Field("energy_ratio", "E / E_min", motion.energy_ratio, hint="1 for a spin about e3"),
+            Field("modulus", "elliptic modulus", motion.modulus),
+        ]
+
+    def constants(self, moment_unit: str) -> list[Field]:
+        """Give what stays: the energy and the angular momentum."""
+        motion, unit = self._motion, f"{moment_unit}/s"
+        momentum = motion.angular_momentum
+        size = float(np.linalg.norm(momentum))
+        return [
+            Field("kinetic_energy", "kinetic energy", motion.kinetic_energy, f"{moment_unit}/s^2"),
+            Field("angular_momentum", "|L|", size, unit),
+            Field("angular_momentum_vector", "L, in space", momentum, unit, scale=size),
+        ]
+
+    def stability(self) -> list[Field]:
+        """Tell whether steady spins with this angular momentum would stay."""
+        squares = self._motion.stability
+        words = ["stable" if x > 0 else "unstable" if x < 0 else "neutral" for x in squares]
+        words = ["undefined" if np.isnan(x) else word for x, word in zip(squares, words, strict=True)]
+        return [
+            Field("stability", "spin about e1 e2 e3", ", ".join(words)),
+            Field(
+                "stability_frequency_squared", "frequency^2", squares, "1/s^2", "of oscillations in the body"
+            ),
+        ]
+
+    def drifts(self, trajectory: Trajectory) -> list[Field]:
+        """Tell how well the trajectory keeps what stays."""
+        energy = trajectory.kinetic_energy().total
+        momentum = trajectory.angular_momentum().total
+        hint = "largest, relative; the vector in space"
+        return [
+            Field(
+                "kinetic_energy_drift", "drift of energy", _drift(energy, energy), hint="largest, relative"
+            ),
+            Field("angular_momentum_drift", "drift of L", _drift(momentum, momentum), hint=hint),
+        ]
+
+
+class TopKind:
+    """A symmetric top under gravity, its origin fixed."""
+
+    def __init__(self, motion: HeavyTop) -> None:
+        self._motion = motion
+
+    def fields(self, rate: float, rate_unit: str) -> list[Field]:
+        """Tell how the axis nods and goes round."""
+        motion = self._motion
+        limits = np.rad2deg(motion.nutation_limits)
+        return [
+            Field("path", "path of the axis", str(motion.path)),
+            Field("nutation_limits", "axis from vertical", limits, "deg", "least, greatest"),
+            *_period("nutation_period", "nutation period", motion.nutation_period, ""),
+            Field(
+                "mean_precession", "mean precession", motion.mean_precession * rate, rate_unit, "mean of phi'"
+            ),
+            Field("mean_spin", "mean spin", motion.mean_spin * rate, rate_unit, "mean of psi'"),
+            Field("axial_spin", "omega along axis", motion.axial_spin * rate, rate_unit),
+            Field(
+                "sleeping_limit", "sleeping limit", motion.sleeping_limit * rate, rate_unit, "least, upright"
+            ),
+        ]
+
+    def constants(self, moment_unit: str) -> list[Field]:
+        """Give what stays: the energy and the angular momentum about the vertical."""
+        start = self._motion.at([0.0])
+        kinetic, potential = self._energies(start)
+        upright = start.angular_momentum().total[0, 2]
+        hint = "kinetic and of its weight, from the pivot"
+        return [
+            Field("energy", "energy", (kinetic + potential)[0], f"{moment_unit}/s^2", hint),
+            Field("angular_momentum_vertical", "L, vertical", upright, f"{moment_unit}/s"),
+        ]
+
+    def stability(self) -> list[Field]:
+        """Tell whether the top would sleep upright with this spin about its axis."""
+        is_stable = abs(self._motion.axial_spin) >= self._motion.sleeping_limit
+        return [Field("stability", "upright", "stable" if is_stable else "unstable")]
+
+    def drifts(self, trajectory: Trajectory) -> list[Field]:
+        """Tell how well the trajectory keeps what stays."""
+        kinetic, potential = self._energies(trajectory)
+        momentum = trajectory.angular_momentum().total
+        energy = _drift(kinetic + potential, kinetic + np.abs(potential))
+        upright = _drift(momentum[:, 2], momentum)
+        return [
+            Field("energy_drift", "drift of energy", energy, hint="largest, relative"),
+            Field("angular_momentum_drift", "drift of L vertical", upright, hint="largest, relative to L"),
+        ]
+
+    def _energies(self, trajectory: Trajectory) -> tuple[Floats, Floats]:
+        """Kinetic energy, and that of the weight, zero at the height of the pivot."""
+        height = -(trajectory.point("center_of_mass") @ self._motion.gravity)
+        return trajectory.kinetic_energy().total, float(trajectory.body.mass) * height
+
+
+def _period(key: str, label: str, seconds: float, hint: str) -> list[Field]:
+    """Give a period in seconds, and a long one in days too."""
+    fields = [Field(key, label, seconds, "s", hint)]
+    if np.isfinite(seconds) and seconds >= 3600.0:
+        fields.append(Field(f"in_days.{key}", "", seconds / 86400.0, "d"))
+    return fields
+
+
+def _drift(values: Floats, sizes: Floats) -> float:
+    """Largest distance from the value at the start, relative to the largest size."""
+    distance = values - values[0]
+    if values.ndim > 1:
+        distance = np.linalg.norm(distance, axis=-1)
+    if sizes.ndim > 1:
+        sizes = np.linalg.norm(sizes, axis=-1)
+    largest = float(np.abs(sizes).max())
+    return float(np.abs(distance).max() / largest) if largest > 0.0 else 0.0

@@ -1,0 +1,116 @@
+"""What a free motion tells: tuples of numbers that `FreeMotion` computes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Cones", "ErrorBar", "Periods", "Poinsot", "Sensitivity"]
+
+
+class Periods(NamedTuple):
+    """The periods of a free motion, in the long-axis convention of tumbling asteroids.
+
+    The Euler angles (ZXZ) refer to axis 1, of the least moment, with L along z.
+
+    Attributes
+    ----------
+    rotation : float or numpy.ndarray, shape (...)
+        P_ψ, of the rotation about the long axis in long-axis mode, of its swinging to and fro in
+        short-axis mode: after it ω is again where it was in the body. Infinite on the separatrix and
+        where nothing drives ω; the period of small oscillations in the limit of a steady spin about
+        axis 1 or 3.
+    precession : float or numpy.ndarray, shape (...)
+        P_φ, the mean period of axis 1 about L.
+    flip : float or numpy.ndarray, shape (...)
+        From one turning over of the intermediate axis to the next, half of `rotation`.
+    rates : numpy.ndarray, shape (..., 3)
+        Mean rate, in radians a unit of time, at which each principal axis goes about L. The two axes that are
+        not circled share theirs; axis 3, where it is circled, is ahead of them by 2π/P_ψ, axis 1 behind. NaN
+        without angular momentum.
+    """
+
+    rotation: Any
+    precession: Any
+    flip: Any
+    rates: Floats
+
+
+class Cones(NamedTuple):
+    """Body cone and space cone, half their openings in radians; round for a symmetric body.
+
+    Attributes
+    ----------
+    axis : int or numpy.ndarray, shape (...)
+        The principal axis that ω circles in the body, 0 or 2, on the side of ω.
+    body : numpy.ndarray, shape (..., 2)
+        Least and greatest angle between ω and that axis.
+    space : numpy.ndarray, shape (..., 2)
+        Least and greatest angle between ω and L.
+    """
+
+    axis: Any
+    body: Floats
+    space: Floats
+
+
+class Poinsot(NamedTuple):
+    """The ellipsoid ``ω·I ω = 2T``, fixed in the body about C, and the plane in space on which it rolls.
+
+    Attributes
+    ----------
+    semi_axes : numpy.ndarray, shape (..., 3)
+        ``√(2T/I_k)`` along the principal axes; infinite for a zero moment.
+    normal : numpy.ndarray, shape (..., 3)
+        Of the plane, in space: the direction of L.
+    distance : float or numpy.ndarray, shape (...)
+        ``2T/L``, of the plane from C.
+    radii : numpy.ndarray, shape (..., 2)
+        Least and greatest distance of the herpolhode from the foot of the perpendicular from C.
+    contact : numpy.ndarray, shape (..., 3)
+        Where they touch at each time, in space: the tip of ω. The shape of the stack, then that of the times.
+    """
+
+    semi_axes: Floats
+    normal: Floats
+    distance: Any
+    radii: Floats
+    contact: Floats
+
+
+class Sensitivity(NamedTuple):
+    """Derivatives of the state of a free body.
+
+    δ is a small rotation, ``R → R exp(δ×)``, components in the body frame.
+
+    Attributes
+    ----------
+    state : numpy.ndarray, shape (..., 6, 6)
+        Of (δ, ω) at the time by (δ, ω) at t = 0.
+    moments : numpy.ndarray, shape (..., 6, 3)
+        Of (δ, ω) at the time by the principal moments, ascending, with axes and initial state held.
+        NaN for a body with a zero moment.
+    """
+
+    state: Floats
+    moments: Floats
+
+
+class ErrorBar(NamedTuple):
+    """Bounds on the error of a state, to first order, from errors of what it is computed from.
+
+    Attributes
+    ----------
+    attitude : float or numpy.ndarray, shape (...)
+        Angle in radians.
+    omega : float or numpy.ndarray, shape (...)
+        Length of the error of the angular velocity.
+    """
+
+    attitude: Any
+    omega: Any

@@ -1,0 +1,33 @@
+"""Pictures with matplotlib (extra ``plot``). Every function takes ``ax=`` and returns it.
+
+Colours are those of Okabe and Ito, which readers with any colour vision can tell apart; lines differ in
+their dashes too.
+"""
+
+from __future__ import annotations
+
+from polhode.plot._bodies import body, principal_axes
+from polhode.plot._cones import cones
+from polhode.plot._ellipsoid import ellipsoid, poinsot, polhodes
+from polhode.plot._motion import angular_momentum, angular_velocity, euler_angles, invariants
+from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, OUTLINE_COLOR
+from polhode.plot._top import effective_potential, nutation
+
+__all__ = [
+    "AXIS_COLORS",
+    "MOMENTUM_COLOR",
+    "OMEGA_COLOR",
+    "OUTLINE_COLOR",
+    "angular_momentum",
+    "angular_velocity",
+    "body",
+    "cones",
+    "effective_potential",
+    "ellipsoid",
+    "euler_angles",
+    "invariants",
+    "nutation",
+    "poinsot",
+    "polhodes",
+    "principal_axes",
+]

@@ -1,0 +1,78 @@
+"""Picture of the body cone that rolls on the space cone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode import _core
+from polhode.plot._ellipsoid import _one, _upright
+from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, new_axes3d
+from polhode.plot._surfaces import arrow, fan, plain_frame
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+    from numpy.typing import ArrayLike
+
+    from polhode import FreeMotion
+
+__all__ = ["cones"]
+
+
+def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
+    """Draw the body cone and the space cone of a free body: they touch along ω and roll on each other.
+
+    Parameters
+    ----------
+    motion : FreeMotion
+        Of one body.
+    t : array_like, shape (T,)
+        Times over which ω sweeps the space cone; the body cone is drawn as it is at the last of them. For a
+        body that is not symmetric the cones are not round, and the space cone need not close.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+        Where to draw; a new figure by default. L is drawn upward.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    _one(motion.shape, "motion")
+    momentum = motion.angular_momentum
+    size = float(np.linalg.norm(momentum))
+    if not size > 0.0:
+        raise ValueError("motion: the body is at rest, and nothing rolls")
+    ax = new_axes3d() if ax is None else ax
+    ax.view_init(elev=16.0, azim=-60.0)
+    times = np.asarray(t, dtype=np.float64).reshape(-1)
+    upright = _upright(momentum / size)
+    now = motion.at(times[-1:])
+    attitude = upright @ _core.rotate(now.quaternion[0], np.eye(3)).T
+    corners = [np.zeros(3), 1.3 * np.array([0.0, 0.0, 1.0])]
+    in_space = motion.herpolhode(times)
+    in_body = motion.polhode(361)
+    for curve, turn, color in ((in_body, attitude, AXIS_COLORS[0]), (in_space, upright, AXIS_COLORS[2])):
+        directions = curve / np.linalg.norm(curve, axis=-1, keepdims=True)
+        rim = directions @ turn.T
+        corners += [rim.min(axis=0), rim.max(axis=0)]
+        fan(ax, rim, color, 0.22)
+    omega = attitude @ (now.omega[0] / np.linalg.norm(now.omega[0]))
+    side = motion.cones.axis
+    symmetry = attitude @ motion.body.principal.axes[:, side]
+    symmetry *= np.sign(symmetry @ omega) or 1.0
+    arrow(ax, 1.25 * np.array([0.0, 0.0, 1.0]), MOMENTUM_COLOR, "L")
+    arrow(ax, 1.2 * omega, OMEGA_COLOR, r"$\omega$")
+    arrow(ax, 1.25 * symmetry, AXIS_COLORS[0], f"$e_{side + 1}$")
+    ax.text2D(
+        0.5, 0.02,
+        f"body cone {_angles(motion.cones.body)} (blue), space cone {_angles(motion.cones.space)} (green)",
+        transform=ax.transAxes, ha="center",
+    )  # fmt: skip
+    plain_frame(ax, np.min(corners, axis=0), np.max(corners, axis=0))
+    return ax
+
+
+def _angles(half_openings: np.ndarray) -> str:
+    """Say half the opening in degrees, or between which two angles it is."""
+    low, high = (f"{angle:.1f}°" for angle in np.rad2deg(half_openings))
+    return low if low == high else f"{low} to {high}"

@@ -1,0 +1,219 @@
+"""Pictures of the ellipsoid of inertia: alone, with polhodes, and rolling on Poinsot's plane."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode import _core
+from polhode.plot._bodies import principal_axes
+from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, new_axes3d
+from polhode.plot._surfaces import arrow, curve_on, inertia_semi_axes, plain_frame, solid_ellipsoid
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+    from numpy.typing import ArrayLike, NDArray
+
+    from polhode import FreeMotion, RigidBody
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["ellipsoid", "poinsot", "polhodes"]
+
+
+def ellipsoid(
+    body: RigidBody,
+    ax: Axes3D | None = None,
+    *,
+    size: float = 1.0,
+    center: ArrayLike | None = None,
+    opacity: float = 1.0,
+) -> Axes3D:
+    """Draw the ellipsoid of inertia about the centre of mass and the principal axes.
+
+    Parameters
+    ----------
+    body : RigidBody
+        One body.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+        Where to draw; a new figure by default. Over a body that :func:`body` has drawn, an `opacity` of 0.3
+        shows both.
+    size : float
+        Length of the longest semi-axis. They are as 1/√I_k; that of a zero moment has no end and is cut.
+    center : array_like, shape (3,), optional
+        Where to draw the centre of mass; where it is by default.
+    opacity : float
+        Of the surface, from 0 to 1.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    _one(body.shape, "body")
+    new = ax is None
+    ax = new_axes3d() if ax is None else ax
+    middle = np.asarray(body.center_of_mass if center is None else center, dtype=np.float64)
+    semi_axes = inertia_semi_axes(body.principal.moments)
+    semi_axes *= size / semi_axes.max()
+    solid_ellipsoid(ax, semi_axes, body.principal.axes, middle, opacity)
+    around = np.linspace(0.0, 2.0 * np.pi, 181)
+    for k in range(3):
+        ring = np.zeros((181, 3))
+        ring[:, (k + 1) % 3], ring[:, (k + 2) % 3] = np.cos(around), np.sin(around)
+        points, normals = ((ring * s) @ body.principal.axes.T for s in (semi_axes, 1.0 / semi_axes))
+        curve_on(ax, points + middle, normals, "#6B7486", linewidth=0.9)
+    principal_axes(body, ax, length=1.2 * size, center=middle)
+    if new:
+        plain_frame(ax, middle - 1.1 * size, middle + 1.1 * size)
+    return ax
+
+
+def polhodes(
+    body: RigidBody,
+    ax: Axes3D | None = None,
+    *,
+    count: int = 4,
+    energy: float = 0.5,
+    rate_unit: str = "rad/s",
+) -> Axes3D:
+    """Draw polhodes of a body: the curves of ω on the ellipsoid ω·I ω = 2T of one kinetic energy.
+
+    Those about the axis of the least moment are blue and dashed, those about that of the greatest green and
+    dashed with dots; the separatrix through the intermediate axis is vermilion and drawn through. The
+    components of ω are along the principal axes.
+
+    Parameters
+    ----------
+    body : RigidBody
+        One body without zero moments.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+        Where to draw; a new figure by default.
+    count : int
+        How many about each axis and side.
+    energy : float
+        T, in the units of the body.
+    rate_unit : str
+        Of ω, for the labels.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    _one(body.shape, "body")
+    moments = body.principal.moments
+    if moments[0] == 0.0:
+        raise ValueError("body: its least moment is zero, so that its ellipsoid of inertia has no end")
+    if not energy > 0.0:
+        raise ValueError(f"energy: {energy} is not positive")
+    ax = new_axes3d() if ax is None else ax
+    ax.view_init(elev=18.0, azim=42.0)
+    free = _core.RigidBody.from_principal(body.mass, moments)
+    semi_axes = np.sqrt(2.0 * energy) * inertia_semi_axes(moments)
+    solid_ellipsoid(ax, semi_axes, np.eye(3), np.zeros(3), 1.0)
+    # Where the separatrix meets the plane of axes 1 and 3: the angle from axis 3 on the unit sphere.
+    edge = np.arctan2(np.sqrt(moments[2] - moments[1]), np.sqrt(moments[1] - moments[0]))
+    for axis, dash, span in ((0, "--", np.pi / 2 - edge), (2, "-.", edge)):
+        if span == 0.0:
+            continue
+        for angle in span * np.arange(1, count + 1) / (count + 1):
+            start = np.zeros(3)
+            start[axis], start[2 - axis] = np.cos(angle), np.sin(angle)
+            curve = free.free_motion(start * semi_axes).polhode(241)
+            for side in (curve, -curve):
+                curve_on(ax, side, side * moments, AXIS_COLORS[axis], linestyle=dash, linewidth=1.3)
+    around = np.linspace(0.0, 2.0 * np.pi, 241)[:, np.newaxis]
+    for sign in (1.0, -1.0):
+        across = np.array([np.sin(edge), 0.0, sign * np.cos(edge)])
+        curve = (np.cos(around) * across + np.sin(around) * np.array([0.0, 1.0, 0.0])) * semi_axes
+        curve_on(ax, curve, curve * moments, AXIS_COLORS[1])
+    reach = 1.1 * semi_axes.max()
+    for k, color in enumerate(AXIS_COLORS):
+        tip = np.zeros(3)
+        tip[k] = semi_axes[k] + 0.2 * semi_axes.max()
+        ax.plot(*np.stack([0.0 * tip, tip], axis=-1), color=color, linewidth=1.6, zorder=1)
+        ax.text(*(tip * (1.0 + 0.1 * semi_axes.max() / tip[k])), rf"$\omega_{k + 1}$", color=color,
+                ha="center", va="center", fontsize=13, zorder=6)  # fmt: skip
+    lengths = ", ".join(f"{a:.3g}" for a in semi_axes)
+    ax.text2D(0.5, 0.03, f"semi-axes {lengths} {rate_unit}", transform=ax.transAxes, ha="center")
+    plain_frame(ax, 3 * [-reach], 3 * [reach])
+    return ax
+
+
+def poinsot(
+    motion: FreeMotion,
+    t: ArrayLike,
+    ax: Axes3D | None = None,
+    *,
+    rate_unit: str = "rad/s",
+) -> Axes3D:
+    """Draw Poinsot's construction: the ellipsoid that rolls on a fixed plane, polhode and herpolhode.
+
+    Parameters
+    ----------
+    motion : FreeMotion
+        Of one body.
+    t : array_like, shape (T,)
+        Times of the herpolhode; the ellipsoid is drawn as it is at the last of them.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+        Where to draw; a new figure by default. L is drawn upward.
+    rate_unit : str
+        Of ω, for the label.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    _one(motion.shape, "motion")
+    times = np.asarray(t, dtype=np.float64).reshape(-1)
+    found = motion.poinsot(times)
+    if not np.isfinite(found.semi_axes).all():
+        raise ValueError("motion: the body has a zero moment, and its ellipsoid no end")
+    if not np.linalg.norm(motion.angular_momentum) > 0.0:
+        raise ValueError("motion: the body is at rest, and nothing rolls")
+    ax = new_axes3d() if ax is None else ax
+    ax.view_init(elev=17.0, azim=-60.0)
+    upright = _upright(found.normal)
+    attitude = upright @ _core.rotate(motion.at(times[-1:]).quaternion[0], np.eye(3)).T
+    axes = attitude @ motion.body.principal.axes
+    solid_ellipsoid(ax, found.semi_axes, axes, np.zeros(3), 1.0)
+    polhode = motion.polhode(361)
+    curve_on(ax, polhode @ attitude.T, (polhode @ motion.body.inertia) @ attitude.T, AXIS_COLORS[1])
+    herpolhode = found.contact @ upright.T
+    reach = 1.25 * max(found.radii[1], 0.6 * found.semi_axes.max())
+    _disc(ax, found.distance, reach)
+    ax.plot(*herpolhode.T, color=AXIS_COLORS[0], linewidth=1.3, zorder=5)
+    tip = herpolhode[-1]
+    ax.scatter(*tip[:, np.newaxis], color=OMEGA_COLOR, s=22, zorder=7, depthshade=False)
+    arrow(ax, tip, OMEGA_COLOR, r"$\omega$")
+    height = 1.35 * found.distance
+    arrow(ax, np.array([0.0, 0.0, height]), MOMENTUM_COLOR, "L")
+    ax.text2D(
+        0.5, 0.02,
+        f"polhode (vermilion) rolls on herpolhode (blue); plane at 2T/L = {found.distance:.4g} {rate_unit}",
+        transform=ax.transAxes, ha="center",
+    )  # fmt: skip
+    side = max(reach, float(found.semi_axes.max()))
+    plain_frame(ax, (-side, -side, -side), (side, side, height))
+    return ax
+
+
+def _disc(ax: Axes3D, height: float, radius: float) -> None:
+    around = np.linspace(0.0, 2.0 * np.pi, 121)
+    rim = np.stack([radius * np.cos(around), radius * np.sin(around), np.full(121, height)])
+    ax.plot(*rim, color="0.45", linewidth=0.9, zorder=4)
+    ax.plot_trisurf(*rim[:, :-1], color="0.6", alpha=0.16, linewidth=0, zorder=4)
+
+
+def _upright(normal: Floats) -> Floats:
+    """Give the rotation that takes a unit vector to the third axis by the shortest way."""
+    x, y, z = normal
+    if z < -1.0 + 1e-12:
+        return np.diag([1.0, -1.0, -1.0])
+    w = 1.0 / (1.0 + z)
+    return np.array([[1 - x * x * w, -x * y * w, -x], [-x * y * w, 1 - y * y * w, -y], [x, y, z]])
+
+
+def _one(shape: tuple[int, ...], name: str) -> None:
+    if shape:
+        raise ValueError(f"{name}: expected one body, got a stack of shape {shape}; index it")

@@ -1,0 +1,209 @@
+"""Pictures of a motion over time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from polhode.plot._style import AXIS_COLORS, AXIS_DASHES, new_axes, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from polhode.trajectory import Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["angular_momentum", "angular_velocity", "euler_angles", "invariants"]
+
+
+def angular_velocity(
+    trajectory: Trajectory,
+    ax: Axes | None = None,
+    *,
+    frame: Literal["body", "principal"] = "body",
+    degrees: bool = False,
+    time_unit: str = "s",
+) -> Axes:
+    """Draw the components of the angular velocity over time.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion; of a stack, every body is drawn.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    frame : {"body", "principal"}
+        Components along the body's axes or along its principal axes (ascending moments).
+    degrees : bool
+        Degrees instead of radians.
+    time_unit : str
+        Name of the unit of time, for the labels.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    if ax is None:
+        ax = new_axes()
+    omega = trajectory.omega
+    if frame == "principal":
+        omega = np.einsum("...ij,...ti->...tj", trajectory.body.principal.axes, omega)
+        labels = [rf"$\omega_{i}$" for i in "123"]
+    elif frame == "body":
+        labels = [rf"$\omega_{i}$" for i in "xyz"]
+    else:
+        raise ValueError(f"frame: {frame!r} is not 'body' or 'principal'")
+    if degrees:
+        omega = np.rad2deg(omega)
+    _components(ax, trajectory, omega, labels)
+    return _over_time(ax, time_unit, f"angular velocity ({'deg' if degrees else 'rad'}/{time_unit})")
+
+
+def angular_momentum(
+    trajectory: Trajectory,
+    ax: Axes | None = None,
+    *,
+    frame: Literal["space", "body"] = "space",
+    unit: str = "kg m²/s",
+    time_unit: str = "s",
+) -> Axes:
+    """Draw the components of the spin angular momentum over time.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion; of a stack, every body is drawn.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    frame : {"space", "body"}
+        Whose axes the components refer to.
+    unit, time_unit : str
+        For the labels.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    if ax is None:
+        ax = new_axes()
+    spin = trajectory.angular_momentum(frame).spin
+    _components(ax, trajectory, spin, [rf"$L_{i}$" for i in "xyz"])
+    return _over_time(ax, time_unit, f"angular momentum in {frame} ({unit})")
+
+
+def euler_angles(
+    trajectory: Trajectory,
+    ax: Axes | None = None,
+    *,
+    sequence: str = "ZXZ",
+    unwrap: bool = False,
+    time_unit: str = "s",
+) -> Axes:
+    """Draw the Euler angles over time, in degrees; where they are not defined there is a gap.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion; of a stack, every body is drawn.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    sequence : str
+        As in :mod:`polhode.euler_angles`.
+    unwrap : bool
+        Let the first and third angle run on over many turns. Otherwise the line is broken where they wrap.
+    time_unit : str
+        For the labels.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    if ax is None:
+        ax = new_axes()
+    angles = np.rad2deg(trajectory.euler_angles(sequence, "nan", unwrap=unwrap))
+    if not unwrap:
+        jumps = np.abs(np.diff(angles, axis=-2)) > 180.0
+        angles[..., 1:, :][jumps] = np.nan
+    names = [r"$\varphi$", r"$\theta$", r"$\psi$"]
+    _components(ax, trajectory, angles, names)
+    return _over_time(ax, time_unit, f"Euler angles {sequence} (degrees)")
+
+
+def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str = "s") -> Axes:
+    """Draw how far energy and angular momentum have drifted from their values at the start.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion; of a stack, every body is drawn.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    time_unit : str
+        For the labels.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Changes relative to the largest value on the way; the scale of sizes is logarithmic, and a change of
+        exactly zero is shown at half the rounding of float64.
+
+    Raises
+    ------
+    ValueError
+        If the load keeps neither.
+    """
+    kept = trajectory.invariants()
+    if kept.energy is None and kept.angular_momentum is None:
+        raise ValueError(
+            "trajectory: its load keeps neither the energy nor a component of the angular momentum"
+        )
+    if ax is None:
+        ax = new_axes()
+    size = np.linalg.norm(trajectory.angular_momentum().spin, axis=-1)
+    shown = [
+        (kept.energy, None if kept.energy is None else np.abs(kept.energy), "energy", 0),
+        (kept.angular_momentum, size, "angular momentum", 1),
+    ]
+    for values, scale, name, number in shown:
+        if values is None or scale is None:
+            continue
+        vectors = values.ndim > scale.ndim
+        start = values[..., :1, :] if vectors else values[..., :1]
+        change = np.linalg.norm(values - start, axis=-1) if vectors else np.abs(values - start)
+        largest = np.nanmax(scale, axis=-1, keepdims=True)
+        change = change / np.where(largest > 0.0, largest, 1.0)
+        curves = np.maximum(change, 0.5 * np.finfo(float).eps).reshape(-1, len(trajectory))
+        for row, curve in enumerate(curves):
+            ax.plot(
+                trajectory.t, curve, color=AXIS_COLORS[number], linestyle=AXIS_DASHES[1 - number],
+                label=name if row == 0 else None,
+            )  # fmt: skip
+    ax.set_yscale("log")
+    return _over_time(ax, time_unit, "relative change since the start")
+
+
+def _components(ax: Axes, trajectory: Trajectory, vectors: Floats, labels: list[str]) -> None:
+    """Draw three components over time, of every body of a stack."""
+    curves = vectors.reshape(-1, len(trajectory), 3)
+    opacity = 1.0 if len(curves) == 1 else 0.5
+    for number, curve in enumerate(curves):
+        for i in range(3):
+            ax.plot(
+                trajectory.t,
+                curve[:, i],
+                color=AXIS_COLORS[i],
+                linestyle=AXIS_DASHES[i],
+                alpha=opacity,
+                label=labels[i] if number == 0 else None,
+            )
+
+
+def _over_time(ax: Axes, time_unit: str, quantity: str) -> Axes:
+    ax.set_xlabel(f"time ({time_unit})")
+    ax.set_ylabel(quantity)
+    tidy(ax)
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2, ncols=3, frameon=False)
+    return ax

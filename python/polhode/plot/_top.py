@@ -1,0 +1,122 @@
+"""Pictures of the heavy top: its effective potential, and the path of its axis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode.plot._ellipsoid import _one, _upright
+from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, new_axes, new_axes3d, tidy
+from polhode.plot._surfaces import arrow, curve_on, plain_frame, solid_ellipsoid
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+    from numpy.typing import ArrayLike, NDArray
+
+    from polhode import HeavyTop
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["effective_potential", "nutation"]
+
+_SAMPLES = 721
+
+
+def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: str = "J") -> Axes:
+    """Draw the effective potential of a heavy top over its inclination, and the level of its motion.
+
+    Parameters
+    ----------
+    top : HeavyTop
+        One top.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    energy_unit : str
+        For the labels.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    _one(top.shape, "top")
+    if ax is None:
+        ax = new_axes()
+    low, high = top.nutation_limits
+    inclination = np.linspace(0.0, np.pi, _SAMPLES + 2)[1:-1]
+    potential = top.effective_potential(inclination)
+    level = float(top.effective_potential(high if high < np.pi else low))
+    bottom = float(potential.min())
+    # Above the level four times as much of the walls is shown as there is of the valley below it.
+    room = 4.0 * (level - bottom)
+    if room <= 1e-9 * abs(level):  # a steady precession, at the very bottom
+        room = 0.1 * float(np.median(potential) - bottom)
+    ax.plot(np.rad2deg(inclination), potential, color=AXIS_COLORS[0])
+    ax.plot(
+        np.rad2deg([low, high]),
+        [level, level],
+        color=AXIS_COLORS[1],
+        linewidth=2.4,
+        marker="|",
+        markersize=10,
+    )
+    ax.annotate(
+        f"nutation from {np.rad2deg(low):.2f}° to {np.rad2deg(high):.2f}°",
+        (np.rad2deg(0.5 * (low + high)), level), (0.0, 12.0), textcoords="offset points", ha="center",
+        color=AXIS_COLORS[1],
+    )  # fmt: skip
+    ax.set_ylim(bottom - 0.2 * room, level + room)
+    ax.set_xlabel("inclination (degrees)")
+    ax.set_ylabel(f"effective potential ({energy_unit})")
+    tidy(ax)
+    shown = np.rad2deg(inclination[potential <= level + room])
+    ax.set_xlim(max(0.0, shown.min() - 2.0), min(180.0, shown.max() + 2.0))
+    return ax
+
+
+def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
+    """Draw the path of a heavy top's axis on the unit sphere, between its two circles of inclination.
+
+    Parameters
+    ----------
+    top : HeavyTop
+        One top, whose centre of mass is not the fixed point.
+    t : array_like, shape (T,)
+        Times of the path; the axis is drawn as it is at the last of them.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+        Where to draw; a new figure by default. Against gravity is upward.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    _one(top.shape, "top")
+    arm = float(np.linalg.norm(top.body.center_of_mass))
+    weight = float(np.linalg.norm(top.gravity))
+    if not arm > 0.0 or not weight > 0.0:
+        raise ValueError(
+            "top: without weight, or with its centre of mass at the fixed point, it does not nutate"
+        )
+    if ax is None:
+        ax = new_axes3d()
+    ax.view_init(elev=40.0, azim=-55.0)
+    path = top.at(t).point("center_of_mass") / arm @ _upright(-top.gravity / weight).T
+    solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.35)
+    around = np.linspace(0.0, 2.0 * np.pi, 181)
+    for limit in top.nutation_limits:
+        circle = np.stack(
+            [np.sin(limit) * np.cos(around), np.sin(limit) * np.sin(around), np.full(181, np.cos(limit))],
+            axis=-1,
+        )
+        curve_on(ax, circle, circle, "0.35", linewidth=0.9, linestyle="--")
+    curve_on(ax, path, path, AXIS_COLORS[1])
+    arrow(ax, np.array([0.0, 0.0, 1.25]), MOMENTUM_COLOR, "up")
+    arrow(ax, 1.12 * path[-1], OMEGA_COLOR, "axis")
+    low, high = np.rad2deg(top.nutation_limits)
+    ax.text2D(
+        0.5, 0.02, f"{top.path} path between {low:.2f}° and {high:.2f}° from the vertical",
+        transform=ax.transAxes, ha="center",
+    )  # fmt: skip
+    plain_frame(ax, (-1.05, -1.05, -1.05), (1.05, 1.05, 1.25))
+    return ax

@@ -1,0 +1,229 @@
+//! The set-up of a heavy top's motion: from its state to the numbers that [`sampling`](super::sampling) runs on.
+
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
+
+use super::nutation::Nutation;
+use super::phases::{Phases, TURN};
+use super::pivoted_top::PivotedTop;
+use super::reduced::{Reduced, times};
+use super::sampling::{Course, Endless, Functions, Periodic, Series, Steady};
+use super::turning_points::TurningPoints;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::lane::{Double, Lane};
+use crate::numerics::power_of_two::times_power_of_two;
+use crate::numerics::theta::quotients::{Circular, Hyperbolic, Values};
+use crate::numerics::theta::{circular, hyperbolic};
+use crate::numerics::turns::{sin_cos_turns, whole_off};
+
+/// A complex number.
+type Complex = [f64; 2];
+
+impl Course {
+    /// The motion from this state on, and what there is to tell about it. All arguments are finite.
+    pub(super) fn of(
+        top: &PivotedTop,
+        omega: &Vector3<f64>,
+        attitude: &UnitQuaternion<f64>,
+        gravity: &Vector3<f64>,
+    ) -> (Self, Nutation) {
+        let motion = Reduced::of(top, omega, attitude, gravity);
+        let half_spin = (motion.axial * TURN).scaled(0.5);
+        if !motion.is_steady() {
+            let points = TurningPoints::of(&motion);
+            if points.height.high > 0.0 {
+                return Self::moving(&motion, &points, half_spin);
+            }
+        }
+        let [alpha, beta, _] = motion.start;
+        let sizes = [alpha, beta].map(|[re, im]| re.hypot(im));
+        let directions = [alpha, beta].map(|z| direction(z).unwrap_or([1.0, 0.0]));
+        let mut course = Self::with(&motion, &Series::Steady(Steady(sizes)));
+        course.steady = [half_spin, -half_spin, DoubleDouble::default()];
+        course.unit(motion.exponent);
+        course.frame(&motion, [directions[0], directions[1], [1.0, 0.0]]);
+        (course, Nutation::steady(&motion))
+    }
+
+    fn moving(
+        motion: &Reduced,
+        points: &TurningPoints,
+        half_spin: DoubleDouble,
+    ) -> (Self, Nutation) {
+        let phases = Phases::of(motion, points);
+        let half = phases.half;
+        let is_endless = half.real.is_infinite();
+        let sizes = [
+            (motion.bottom + points.rise).rounded().sqrt() / SQRT_2,
+            points.depth.rounded().sqrt() / SQRT_2,
+            points.fastest.rounded().sqrt(),
+        ];
+        let series = if half.real <= half.imaginary {
+            let quotients = Circular::new(half, phases.shifts);
+            let at = |s: f64, c: f64| {
+                let z = circular::Argument::new(Single::new(s), Single::new(c));
+                quotients.values(&z)
+            };
+            Series::Circular(quotients.scaled(factors(&sizes, &at(1.0, 0.0), &at(0.0, 1.0))))
+        } else {
+            let quotients = Hyperbolic::new(half, phases.shifts);
+            let end = FRAC_PI_2 * half.real / half.imaginary;
+            let least = (-end).exp();
+            let at = |from_middle: f64, from_end: f64| {
+                quotients.values(&hyperbolic::Argument {
+                    from_middle: Single::new(from_middle),
+                    from_end: Single::new(from_end),
+                    sign: Single::new(1.0),
+                })
+            };
+            let upper = at(least, if is_endless { 0.0 } else { 1.0 });
+            let quotients = quotients.scaled(factors(&sizes, &upper, &at(1.0, least)));
+            if is_endless {
+                Series::Endless(Endless { quotients })
+            } else {
+                Series::Hyperbolic(Periodic { quotients, end })
+            }
+        };
+        let mut course = Self::with(motion, &series);
+        course.clock = if is_endless {
+            phases.lambda
+        } else {
+            phases.clock
+        };
+        course.start = phases.start;
+        course.steady = phases.steady;
+        let constants = course.constants(motion, points, &phases);
+        // The body turns against the frame of the equal spherical top.
+        let drift = half_spin - (motion.spin * TURN).scaled(0.5);
+        let [alpha, beta, w] = phases.steady;
+        course.steady = [alpha + drift, beta - drift, w - drift.scaled(2.0)];
+        course.unit(motion.exponent);
+        course.frame(motion, constants);
+        (course, Nutation::of(motion, points, &phases, drift))
+    }
+
+    fn with(motion: &Reduced, series: &Series) -> Self {
+        let [x, y, z] = turned_basis(&motion.aligning, 2);
+        let spin = times_power_of_two(motion.axial.rounded(), motion.exponent);
+        Self {
+            series: *series,
+            clock: DoubleDouble::default(),
+            start: DoubleDouble::default(),
+            steady: [DoubleDouble::default(); 3],
+            attitude: [[0.0; 4]; 4],
+            across: [[0.0; 2]; 3],
+            along: [x * spin, y * spin, z * spin],
+        }
+    }
+
+    /// From the units of the reduced motion to those of the arguments.
+    fn unit(&mut self, exponent: i32) {
+        self.clock = times(self.clock, exponent);
+        self.steady = self.steady.map(|rate| times(rate, exponent));
+    }
+
+    /// The constant phases of α, β and W, of which two are independent: those of the two functions that are larger at the start,
+    /// relative to the largest each becomes. At u₁ the three have `W α β* = ½ i (a − b u₁)`.
+    fn constants(&self, motion: &Reduced, points: &TurningPoints, phases: &Phases) -> [Complex; 3] {
+        let (values, extra) = match &self.series {
+            Series::Steady(functions) => functions.at(self, Single::new(0.0)),
+            Series::Circular(functions) => functions.at(self, Single::new(0.0)),
+            Series::Hyperbolic(functions) => functions.at(self, Single::new(0.0)),
+            Series::Endless(functions) => functions.at(self, Single::new(0.0)),
+        };
+        let found = [0, 1, 2].map(|k| {
+            let (s, c) = sin_cos_turns(whole_off(extra[k]));
+            let turned = times_complex(values[k].map(Single::get), [c.get(), s.get()]);
+            direction(times_complex(motion.start[k], [turned[0], -turned[1]]))
+        });
+        let parts = [
+            motion.bottom / (motion.bottom + points.rise),
+            motion.top / points.depth,
+            motion.square / points.fastest,
+        ]
+        .map(|part| if part.high.is_nan() { 0.0 } else { part.high });
+        let winding = if phases.half.real.is_infinite() {
+            0.0
+        } else {
+            phases.carry * phases.start.high
+        };
+        let (s, c) = sin_cos_turns(Single::new(winding));
+        let (there, back) = ([c.get(), s.get()], [c.get(), -s.get()]);
+        let one = [1.0, 0.0];
+        let [alpha, beta, w] = found.map(|direction| direction.unwrap_or(one));
+        let least_is = |k: usize| parts[k] <= parts[(k + 1) % 3] && parts[k] <= parts[(k + 2) % 3];
+        let minus = |[re, im]: Complex| [-re, -im];
+        let (alpha, beta) = if least_is(2) {
+            (alpha, beta)
+        } else if least_is(1) {
+            (alpha, minus(times_complex(times_complex(w, alpha), back)))
+        } else {
+            let product = times_complex([w[0], -w[1]], beta);
+            (minus(times_complex(product, there)), beta)
+        };
+        let w = minus(times_complex(
+            times_complex(beta, [alpha[0], -alpha[1]]),
+            there,
+        ));
+        [alpha, beta, w]
+    }
+
+    /// The matrices from the three functions to attitude and ω.
+    fn frame(&mut self, motion: &Reduced, constants: [Complex; 3]) {
+        let [alpha, beta, w] = constants;
+        // (x, y, z, w) of the unit values of Re α, Im α, Re β, Im β.
+        let columns = [
+            [0.0, 0.0, alpha[1], alpha[0]],
+            [0.0, 0.0, alpha[0], -alpha[1]],
+            [beta[0], beta[1], 0.0, 0.0],
+            [-beta[1], beta[0], 0.0, 0.0],
+        ]
+        .map(|column| {
+            let column = Quaternion::from(Vector4::from(column));
+            (motion.upward * column * motion.aligning).coords
+        });
+        let first = turned_basis(&motion.aligning, 0);
+        let second = turned_basis(&motion.aligning, 1);
+        for row in 0..4 {
+            self.attitude[row] = columns.map(|column| column[row]);
+        }
+        for row in 0..3 {
+            let mix = |x: f64, y: f64| {
+                times_power_of_two(first[row] * x + second[row] * y, motion.exponent)
+            };
+            self.across[row] = [mix(w[0], w[1]), mix(-w[1], w[0])];
+        }
+    }
+}
+
+/// One lane for what is done once.
+type Single = Double<false>;
+
+/// What gives the functions their sizes: of α at the highest point, of β and W at the lowest.
+fn factors(sizes: &[f64; 3], upper: &Values<Single>, lower: &Values<Single>) -> [f64; 3] {
+    let size = |[re, im]: [Single; 2]| re.get().hypot(im.get());
+    [
+        sizes[0] / size(upper[0]),
+        sizes[1] / size(lower[1]),
+        sizes[2] / size(lower[2]),
+    ]
+}
+
+fn times_complex(a: Complex, b: Complex) -> Complex {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+/// z over its size; `None` of zero.
+fn direction([re, im]: Complex) -> Option<Complex> {
+    let size = re.hypot(im);
+    (size > 0.0).then(|| [re / size, im / size])
+}
+
+/// The axis of the body that `aligning` takes to the axis `k`.
+fn turned_basis(aligning: &Quaternion<f64>, k: usize) -> [f64; 3] {
+    let mut axis = Vector4::zeros();
+    axis[k] = 1.0;
+    let turned = aligning.conjugate() * Quaternion::from(axis) * aligning;
+    turned.imag().into()
+}

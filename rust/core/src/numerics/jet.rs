@@ -1,0 +1,94 @@
+//! Numbers that carry their first derivatives with them.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A value and its derivatives with respect to N variables, to first order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet<const N: usize> {
+    /// The value.
+    pub value: f64,
+    /// Its derivatives.
+    pub slopes: [f64; N],
+}
+
+impl<const N: usize> Jet<N> {
+    /// Variable number `index`.
+    #[must_use]
+    pub fn variable(value: f64, index: usize) -> Self {
+        Self {
+            value,
+            slopes: std::array::from_fn(|k| f64::from(u8::from(k == index))),
+        }
+    }
+
+    /// A function of two jets: its value, and its derivatives with respect to each.
+    #[must_use]
+    pub fn chain(value: f64, [(by_p, p), (by_q, q)]: [(f64, &Self); 2]) -> Self {
+        Self {
+            value,
+            slopes: std::array::from_fn(|k| by_p * p.slopes[k] + by_q * q.slopes[k]),
+        }
+    }
+}
+
+impl<const N: usize> Add for Jet<N> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::chain(self.value + other.value, [(1.0, &self), (1.0, &other)])
+    }
+}
+
+impl<const N: usize> Sub for Jet<N> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self::chain(self.value - other.value, [(1.0, &self), (-1.0, &other)])
+    }
+}
+
+impl<const N: usize> Neg for Jet<N> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            value: -self.value,
+            slopes: self.slopes.map(|slope| -slope),
+        }
+    }
+}
+
+impl<const N: usize> Mul for Jet<N> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let (x, y) = (self.value, other.value);
+        Self::chain(x * y, [(y, &self), (x, &other)])
+    }
+}
+
+impl<const N: usize> Div for Jet<N> {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let (x, y) = (self.value, other.value);
+        Self::chain(x / y, [(1.0 / y, &self), (-(x / y) / y, &other)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rules_of_differentiation() {
+        let (x, y) = (Jet::<2>::variable(3.0, 0), Jet::variable(2.0, 1));
+        assert_eq!((x + y).slopes, [1.0, 1.0]);
+        assert_eq!((x - y).slopes, [1.0, -1.0]);
+        assert_eq!((-x).slopes, [-1.0, -0.0]);
+        assert_eq!((x * x * y).slopes, [12.0, 9.0]);
+        assert_eq!((x / y).slopes, [0.5, -0.75]);
+        let composed = Jet::chain(7.0, [(2.0, &(x * y)), (5.0, &y)]);
+        assert_eq!((composed.value, composed.slopes), (7.0, [4.0, 11.0]));
+    }
+}

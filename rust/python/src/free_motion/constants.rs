@@ -1,0 +1,283 @@
+//! What a free motion tells without a time: mode, constants, periods, angles.
+
+use nalgebra::Vector3;
+use numpy::PyArrayDyn;
+use polhode::motion::free::{FreeMotion, Invariants};
+use polhode::motion::stability::stability;
+use polhode::numerics::double_double::DoubleDouble;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+
+use super::PyFreeMotion;
+use crate::arrays::{Item, numpy, write, write_numbers};
+use crate::stack::Stack;
+
+type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
+
+impl PyFreeMotion {
+    fn invariants(&self) -> Stack<Invariants> {
+        self.motions.map(Invariants::of_motion)
+    }
+
+    /// A float for one motion, an array for a stack.
+    fn numbers<'py>(
+        &self,
+        py: Python<'py>,
+        f: fn(&Invariants) -> f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        write_numbers(py, &self.invariants().map(f))
+    }
+}
+
+/// A named tuple of `polhode.free_motion`.
+pub(super) fn tuple<'py>(
+    py: Python<'py>,
+    name: &str,
+    parts: impl pyo3::call::PyCallArgs<'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    py.import("polhode.free_motion")?
+        .getattr(name)?
+        .call1(parts)
+}
+
+/// Angles from the least to the greatest, for each axis.
+struct Ranges([[f64; 2]; 3]);
+
+impl Item for Ranges {
+    const TAIL: &'static [usize] = &[3, 2];
+
+    fn read(numbers: &[f64]) -> Self {
+        Self(std::array::from_fn(|k| {
+            [numbers[2 * k], numbers[2 * k + 1]]
+        }))
+    }
+
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend(self.0.as_flattened());
+    }
+}
+
+#[pymethods]
+impl PyFreeMotion {
+    /// How the body moves: the first that fits of "spherical", "symmetric", "steady", "separatrix", "long-axis",
+    /// "short-axis".
+    ///
+    /// Spherical and symmetric bodies have equal moments. A steady spin is along a principal axis. In
+    /// long-axis mode (``L² < 2T I₂``) the angular velocity circles in the body about axis 1, that of the least
+    /// moment; in short-axis mode (``L² > 2T I₂``) about axis 3; on the separatrix (exactly equal) it goes to
+    /// the intermediate axis for ever. A string, or an array of them for a stack.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> brick = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> print(*brick.free_motion([(0.3, 0.2, 1.1), (1.3, 0.2, 0.1), (0, 1, 0)]).mode)
+    /// short-axis long-axis steady
+    #[getter]
+    fn mode<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let modes = self.motions.map(|motion| motion.mode.as_str());
+        if modes.is_one() {
+            return Ok(PyString::new(py, modes[0]).into_any());
+        }
+        numpy(py)?
+            .call_method1("array", (modes.rows, "<U10"))?
+            .call_method1("reshape", (modes.shape,))
+    }
+
+    /// Angular momentum about the centre of mass, components in space, shape (..., 3): constant.
+    #[getter]
+    fn angular_momentum<'py>(&self, py: Python<'py>) -> Array<'py> {
+        write(py, &self.motions.map(FreeMotion::angular_momentum))
+    }
+
+    /// Kinetic energy of the rotation, ½ ω·I ω: constant.
+    #[getter]
+    fn kinetic_energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.numbers(py, Invariants::kinetic_energy)
+    }
+
+    /// ``T/T_min`` with ``T_min = L²/(2 I₃)``, the least energy of a body with this angular momentum.
+    ///
+    /// One for a spin about axis 3, ``I₃/I₁`` for one about axis 1, ``I₃/I₂`` on the separatrix. Known as E/E₀ of
+    /// tumbling asteroids. NaN without angular momentum.
+    #[getter]
+    fn energy_ratio<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.numbers(py, Invariants::energy_ratio)
+    }
+
+    /// k, the modulus of the elliptic functions of time (their parameter is m = k²).
+    ///
+    /// Zero for a symmetric body and in the limit of a steady spin about axis 1 or 3, one on the separatrix.
+    #[getter]
+    fn modulus<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.numbers(py, Invariants::modulus)
+    }
+
+    /// k′ = √(1 − k²), with all its digits near the separatrix.
+    #[getter]
+    fn complementary_modulus<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.numbers(py, Invariants::complementary_modulus)
+    }
+
+    /// The periods of the motion, in the long-axis convention of the literature on tumbling asteroids.
+    ///
+    /// Returns
+    /// -------
+    /// Periods
+    ///     ``rotation`` P_ψ, after which ω is again where it was in the body; ``precession`` P_φ, the mean period of
+    ///     axis 1 about L; ``flip``, from one turning over of the intermediate axis to the next; ``rates``, the mean
+    ///     precession of each principal axis.
+    ///
+    /// Examples
+    /// --------
+    /// A wing nut, set spinning about its intermediate axis, turns over every seven seconds:
+    ///
+    /// >>> from polhode import RigidBody
+    /// >>> nut = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> round(nut.free_motion(omega=(0.001, 6.0, 0.0)).periods.flip, 3)
+    /// 7.366
+    #[getter]
+    fn periods<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let periods = self.invariants().map(Invariants::periods);
+        let parts = (
+            write_numbers(py, &periods.map(|periods| periods.rotation))?,
+            write_numbers(py, &periods.map(|periods| periods.precession))?,
+            write_numbers(py, &periods.map(|periods| periods.flip))?,
+            write(py, &periods.map(|periods| periods.rates))?,
+        );
+        tuple(py, "Periods", parts)
+    }
+
+    /// Least and greatest angle between each principal axis and L, in radians, shape (..., 3, 2).
+    ///
+    /// The range of the Euler angle θ of that axis, with L along z. NaN without angular momentum; on the
+    /// separatrix the bounds that are approached.
+    ///
+    /// Examples
+    /// --------
+    /// A plate that wobbles keeps its axis, the third, at a constant angle from L:
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody
+    /// >>> plate = RigidBody.from_principal(mass=1.0, moments=(1.0, 1.0, 2.0))
+    /// >>> np.degrees(plate.free_motion(omega=(0.3, 0, 3)).nutation).round(3)
+    /// array([[87.138, 92.862],
+    ///        [87.138, 92.862],
+    ///        [ 2.862,  2.862]])
+    #[getter]
+    fn nutation<'py>(&self, py: Python<'py>) -> Array<'py> {
+        write(
+            py,
+            &self.invariants().map(|motion| Ranges(motion.nutation())),
+        )
+    }
+
+    /// Body cone and space cone: half their openings, least and greatest.
+    ///
+    /// Returns
+    /// -------
+    /// Cones
+    ///     ``axis``, which principal axis is circled (0 or 2); ``body``, shape (..., 2), between ω and that
+    ///     axis; ``space``, shape (..., 2), between ω and L.
+    ///
+    /// Examples
+    /// --------
+    /// A symmetric body has round cones:
+    ///
+    /// >>> from polhode import laminae
+    /// >>> plate = laminae.disk(radius=0.1, mass=0.2)
+    /// >>> cones = plate.free_motion(omega=(0.3, 0, 3)).cones
+    /// >>> cones.axis, cones.body.round(4), cones.space.round(4)
+    /// (2, array([0.0997, 0.0997]), array([0.0497, 0.0497]))
+    #[getter]
+    fn cones<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let cones = self.invariants().map(Invariants::cones);
+        let axis = if cones.is_one() {
+            cones[0].axis.into_pyobject(py)?.into_any()
+        } else {
+            let axes: Vec<usize> = cones.rows.iter().map(|cones| cones.axis).collect();
+            numpy(py)?
+                .call_method1("array", (axes, "int64"))?
+                .call_method1("reshape", (cones.shape.clone(),))?
+        };
+        let parts = (
+            axis,
+            write(py, &cones.map(|cones| cones.body))?,
+            write(py, &cones.map(|cones| cones.space))?,
+        );
+        tuple(py, "Cones", parts)
+    }
+
+    /// Stability of the steady spins about the principal axes with this angular momentum, shape (..., 3).
+    ///
+    /// Squared frequency, seen from the body, of small oscillations about a spin with ``ω = L/I_k`` about axis
+    /// k, as `RigidBody.stability` gives it for one rate. Negative: unstable. NaN for an axis with zero moment, about
+    /// which no spin has that angular momentum.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> brick = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> brick.free_motion(omega=(0, 2, 0)).stability.round(12)
+    /// array([ 4.8 , -0.8 ,  0.96])
+    #[getter]
+    fn stability<'py>(&self, py: Python<'py>) -> Array<'py> {
+        let squares = self.motions.map(|motion| {
+            let moments = motion.moments.map(DoubleDouble::rounded);
+            let momentum = Invariants::of_motion(motion).angular_momentum();
+            std::array::from_fn::<_, 3, _>(|k| {
+                if moments[k] > 0.0 {
+                    stability(&moments, momentum / moments[k])[k]
+                } else {
+                    f64::NAN
+                }
+            })
+        });
+        write(py, &squares)
+    }
+
+    /// The polhode: the closed curve of the angular velocity in the body, exact.
+    ///
+    /// Parameters
+    /// ----------
+    /// n : int, optional
+    ///     How many points, at least two; the last is the first again.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., n, 3)
+    ///     Angular velocities, components in the body frame, from that at t = 0 in the sense of the motion, in equal
+    ///     steps of the amplitude of the elliptic functions. A constant angular velocity is repeated. On the separatrix
+    ///     the limit of the curves beside it.
+    ///
+    /// Examples
+    /// --------
+    /// Every point has the energy and the momentum of the motion:
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody
+    /// >>> brick = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> curve = brick.free_motion(omega=(0.3, 0.2, 1.1)).polhode(5)
+    /// >>> brick.kinetic_energy(curve).rotational.round(12)
+    /// array([1.5975, 1.5975, 1.5975, 1.5975, 1.5975])
+    #[pyo3(signature = (n=181))]
+    fn polhode<'py>(&self, py: Python<'py>, n: usize) -> PyResult<Bound<'py, PyAny>> {
+        if n < 2 {
+            return Err(pyo3::exceptions::PyValueError::new_err(format!(
+                "n: expected at least 2 points of a closed curve, got {n}"
+            )));
+        }
+        let points: Vec<Vector3<f64>> = (self.motions.rows.iter())
+            .flat_map(|motion| motion.polhode(n))
+            .collect();
+        let shape = [&self.motions.shape[..], &[n]].concat();
+        Ok(write(
+            py,
+            &Stack {
+                shape,
+                rows: points,
+            },
+        )?
+        .into_any())
+    }
+}

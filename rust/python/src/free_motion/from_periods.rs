@@ -1,0 +1,126 @@
+//! The free motion that has two given periods.
+
+use nalgebra::Vector3;
+use polhode::Error;
+use polhode::motion::free::{Circled, FromPeriods, attitude_about};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::PyFreeMotion;
+use crate::arrays::{Argument, read, read_or};
+use crate::rigid_body::PyRigidBody;
+use crate::stack::{Broadcast, Stack};
+
+#[pymethods]
+impl PyRigidBody {
+    /// The free motion that has two given periods, as the light curve of a tumbling asteroid gives them.
+    ///
+    /// Parameters
+    /// ----------
+    /// rotation_period : array_like, shape (...)
+    ///     P_ψ: of the rotation about the long axis (axis 1, of the least moment) in long-axis mode; of its swinging to
+    ///     and fro in short-axis mode. After it the angular velocity is again where it was in the body.
+    /// precession_period : array_like, shape (...)
+    ///     P_φ: mean period of the long axis about L, in both modes.
+    /// mode : {"long-axis", "short-axis"}, optional
+    ///     Whether the angular velocity circles axis 1 or axis 3 in the body.
+    /// sense : {1, -1}, optional
+    ///     On which side of that axis the angular velocity is.
+    /// phase : array_like, shape (...), optional
+    ///     Fraction of the rotation period that has passed at t = 0 since the angular velocity lay in the plane of axes 1
+    ///     and 3, on the positive side of the one that is not circled.
+    /// angular_momentum_direction : array_like, shape (..., 3), optional
+    ///     In space, of any length. The long axis starts with the Euler angle φ = 0 about it.
+    ///
+    /// Returns
+    /// -------
+    /// FreeMotion
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     For a body that has no such mode, or a ratio of periods out of its reach, with the range.
+    ///
+    /// Notes
+    /// -----
+    /// The ratio P_ψ/P_φ grows from its value for a steady spin about the circled axis to infinity at the separatrix, so
+    /// at most one motion has it.
+    ///
+    /// Examples
+    /// --------
+    /// Toutatis, of its shape's moments and its periods in days: the long axis nods between 49.18° and 50.10° from L.
+    ///
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody
+    /// >>> toutatis = RigidBody.from_principal(mass=1.0, moments=(1.0, 3.01307, 3.18992))
+    /// >>> motion = toutatis.free_motion_from_periods(5.41, 7.35, mode="long-axis")
+    /// >>> np.degrees(motion.nutation[0]).round(2)
+    /// array([49.18, 50.1 ])
+    #[pyo3(
+        signature = (
+            rotation_period, precession_period, mode="long-axis", sense=1.0, phase=Argument::default(),
+            angular_momentum_direction=Argument::default()
+        ),
+        text_signature = "($self, rotation_period, precession_period, mode='long-axis', sense=1.0, phase=0.0, angular_momentum_direction=(0.0, 0.0, 1.0))"
+    )]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+    fn free_motion_from_periods(
+        slf: Py<Self>,
+        py: Python<'_>,
+        rotation_period: &Bound<'_, PyAny>,
+        precession_period: &Bound<'_, PyAny>,
+        mode: &str,
+        sense: f64,
+        phase: Argument<'_>,
+        angular_momentum_direction: Argument<'_>,
+    ) -> PyResult<PyFreeMotion> {
+        let circled = match mode {
+            "long-axis" => Circled::Long,
+            "short-axis" => Circled::Short,
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "mode: expected \"long-axis\" or \"short-axis\", got \"{mode}\""
+                )));
+            }
+        };
+        let rotation: Stack<f64> = read(rotation_period, "rotation_period")?;
+        let precession: Stack<f64> = read(precession_period, "precession_period")?;
+        let phase = read_or(&phase, "phase", 0.0)?;
+        let direction = read_or(
+            &angular_momentum_direction,
+            "angular_momentum_direction",
+            Vector3::z(),
+        )?;
+        let bodies = &slf.get().bodies;
+        let names = [
+            "body",
+            "rotation_period",
+            "precession_period",
+            "phase",
+            "angular_momentum_direction",
+        ];
+        let shapes = [
+            &bodies.shape[..],
+            &rotation.shape,
+            &precession.shape,
+            &phase.shape,
+            &direction.shape,
+        ];
+        let starts = Broadcast::of(names, shapes)?.try_map(py, |[b, r, p, f, d]| {
+            let principal = bodies[b].principal();
+            let wanted = FromPeriods {
+                rotation: rotation[r],
+                precession: precession[p],
+                circled,
+                sense,
+                phase: phase[f],
+            };
+            let omega = wanted.omega(&principal.moments)?;
+            let attitude =
+                attitude_about(&principal.moments, &principal.axes, &omega, &direction[d])?;
+            Ok::<_, Error>((principal.axes * omega, attitude))
+        })?;
+        let (omega, attitude) = (starts.map(|start| start.0), starts.map(|start| start.1));
+        PyFreeMotion::new(py, slf, &omega, &attitude)
+    }
+}

@@ -1,0 +1,460 @@
+//! The class `HeavyTop`: exact motions of heavy symmetric tops about a fixed point.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use numpy::{PyArray1, PyArrayMethods};
+use polhode::RigidBody;
+use polhode::motion::attitude::{components, from_components};
+use polhode::motion::heavy_top::{HeavyTop, Nutation, PivotedTop, sample_many};
+use polhode::principal::TOP_RTOL;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::{numpy, read, read_quaternion, try_rows, write, write_numbers};
+use crate::interrupt::Interrupt;
+use crate::rigid_body::PyRigidBody;
+use crate::stack::{Broadcast, Stack, tuple};
+
+type Array<'py> = PyResult<Bound<'py, PyAny>>;
+
+/// What a motion is made of.
+#[derive(Clone, Copy)]
+struct Start {
+    top: PivotedTop,
+    omega: Vector3<f64>,
+    attitude: UnitQuaternion<f64>,
+    gravity: Vector3<f64>,
+}
+
+/// The motion of a heavy symmetric top, or of a stack of them, about the origin of the body frame as a fixed point.
+///
+/// Made by `RigidBody.heavy_top`. Exact at any time, by theta functions: a state a million turns away costs as much as
+/// one close by, and is as accurate. Values never change.
+///
+/// Attributes
+/// ----------
+/// body : RigidBody
+///     The body, or the stack of them.
+/// omega : numpy.ndarray, shape (..., 3)
+///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
+/// quaternion : numpy.ndarray, shape (..., 4)
+///     R_NB at t = 0 as (x, y, z, w).
+/// gravity : numpy.ndarray, shape (..., 3)
+///     The acceleration of free fall, components in space.
+/// shape : tuple of int
+///     Of the stack of motions: bodies, angular velocities, attitudes and gravities broadcast together.
+/// path : str or numpy.ndarray of str, shape (...)
+///     What the axis draws on a sphere about the pivot. "cusp": it rests whenever it is highest. "loop": its precession
+///     turns back while it is high. "wave": it does not. "regular": steady precession. "crossing": it goes through the
+///     vertical in each period. "planar": it swings or turns over in a vertical plane. "asymptotic": it approaches the
+///     upward vertical for ever. "steady": the axis rests, upright or hanging (a sleeping top) or without weight.
+/// nutation_limits : numpy.ndarray, shape (..., 2)
+///     Least and largest inclination θ of the axis, from the pivot to the centre of mass, from the upward vertical.
+/// nutation_period : float or numpy.ndarray, shape (...)
+///     From one least inclination to the next: infinite on an asymptotic path, NaN where the axis rests.
+/// mean_precession : float or numpy.ndarray, shape (...)
+///     Mean rate at which the axis goes about the upward vertical, the mean of φ̇. Through the vertical φ jumps by half a
+///     turn.
+/// mean_spin : float or numpy.ndarray, shape (...)
+///     Mean rate at which the body turns about its axis relative to the line of nodes, the mean of ψ̇.
+/// axial_spin : float or numpy.ndarray, shape (...)
+///     ω_s, the component of ω along the axis, which gravity leaves constant.
+/// sleeping_limit : float or numpy.ndarray, shape (...)
+///     The spin above which the top stands stably upright, 2 √(I_t m g l)/I_s: infinite without moment about the axis.
+///
+/// Examples
+/// --------
+/// A top let go at an inclination of 0.6 falls until gyroscopic torque holds it, and comes to rest again higher up:
+///
+/// >>> from polhode import RigidBody, euler_angles
+/// >>> body = RigidBody.from_principal(0.5, (2e-4, 2e-4, 3e-4), center_of_mass=(0, 0, 0.04))
+/// >>> top = body.heavy_top((0, 0, 150), euler_angles.to_quaternion((0, 0.6, 0)), gravity=(0, 0, -9.81))
+/// >>> top.path, top.nutation_limits.round(4), round(top.nutation_period, 5)
+/// ('cusp', array([0.6   , 0.7426]), 0.16619)
+#[pyclass(name = "HeavyTop", module = "polhode", frozen)]
+pub(crate) struct PyHeavyTop {
+    #[pyo3(get)]
+    body: Py<PyRigidBody>,
+    starts: Stack<Start>,
+    motions: Stack<HeavyTop>,
+    rtol: f64,
+}
+
+impl PyHeavyTop {
+    fn new(
+        py: Python<'_>,
+        body: Py<PyRigidBody>,
+        omega: &Stack<Vector3<f64>>,
+        attitude: &Stack<UnitQuaternion<f64>>,
+        gravity: &Stack<Vector3<f64>>,
+        rtol: f64,
+    ) -> PyResult<Self> {
+        let bodies = &body.get().bodies;
+        let tops = Broadcast::of(["body"], [&bodies.shape])?
+            .try_map(py, |[b]| PivotedTop::of(&bodies[b], rtol))?;
+        let shapes = [
+            &bodies.shape[..],
+            &omega.shape,
+            &attitude.shape,
+            &gravity.shape,
+        ];
+        let grid = Broadcast::of(["body", "omega", "attitude", "gravity"], shapes)?;
+        let start = |[b, w, q, g]: [usize; 4]| Start {
+            top: tops[b],
+            omega: omega[w],
+            attitude: attitude[q],
+            gravity: gravity[g],
+        };
+        let motions = grid.try_map(py, |row| {
+            let Start {
+                top,
+                omega,
+                attitude,
+                gravity,
+            } = start(row);
+            HeavyTop::of(&top, &omega, &attitude, &gravity)
+        })?;
+        let starts = Stack {
+            shape: grid.shape.clone(),
+            rows: grid.rows().map(start).collect(),
+        };
+        Ok(Self {
+            body,
+            starts,
+            motions,
+            rtol,
+        })
+    }
+
+    fn numbers<'py>(&self, py: Python<'py>, of: fn(&Nutation) -> f64) -> Array<'py> {
+        write_numbers(py, &self.motions.map(|motion| of(motion.nutation())))
+    }
+}
+
+/// Attitudes to their last bit: normalising them in double precision would be another top, 1e-10 rad away after a million turns.
+fn read_exactly(
+    py: Python<'_>,
+    attitude: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Stack<UnitQuaternion<f64>>> {
+    let Some(attitude) = attitude else {
+        return Ok(Stack::one(UnitQuaternion::identity()));
+    };
+    let given = read_quaternion(attitude, "attitude")?;
+    try_rows(py, &given, |q| {
+        from_components("attitude", q)?;
+        let [x, y, z, w] = *q;
+        Ok(UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)))
+    })
+}
+
+#[pymethods]
+impl PyRigidBody {
+    /// The motion of a symmetric top about the origin of the body frame, fixed in space, in uniform gravity: exact at any time.
+    ///
+    /// Lagrange's top: two principal moments are equal, and both the pivot and the centre of mass lie on the axis. Among
+    /// these are the spherical pendulum and the plane one.
+    ///
+    /// Parameters
+    /// ----------
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
+    /// attitude : array_like, shape (..., 4), or rotation
+    ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as SciPy's
+    ///     Rotation. None is the identity.
+    /// gravity : array_like, shape (..., 3)
+    ///     The acceleration of free fall, components in space, as ``(0, 0, -9.81)``.
+    /// rtol : float, optional
+    ///     Moments closer than this times the largest count as equal, and the pivot as lying on the axis when it is
+    ///     nearer to it than this times the radius of gyration.
+    ///
+    /// Returns
+    /// -------
+    /// HeavyTop
+    ///     Bodies, angular velocities, attitudes and gravities broadcast together.
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     For a body that is no symmetric top, with the gap between its moments, or a pivot off its axis, with
+    ///     the distance; `simulate` integrates such bodies.
+    ///
+    /// Examples
+    /// --------
+    /// Started with the rate of slow precession it keeps its inclination, here a million turns later:
+    ///
+    /// >>> from polhode import RigidBody, euler_angles, tops
+    /// >>> body = RigidBody.from_principal(0.5, (2e-4, 2e-4, 3e-4), center_of_mass=(0, 0, 0.04))
+    /// >>> slow = tops.steady_precession(body, 150.0, 0.6, gravity=(0, 0, -9.81))[0]
+    /// >>> angles, rates = (0, 0.6, 0), (slow, 0, 150 - slow * 0.825335614909678)
+    /// >>> omega = euler_angles.angular_velocity(angles, rates)
+    /// >>> top = body.heavy_top(omega, euler_angles.to_quaternion(angles), gravity=(0, 0, -9.81))
+    /// >>> top.at(4e4).euler_angles()[1].round(9)
+    /// np.float64(0.6)
+    #[pyo3(signature = (omega, attitude, gravity, *, rtol=TOP_RTOL))]
+    #[pyo3(text_signature = "($self, omega, attitude, gravity, *, rtol=1e-06)")]
+    fn heavy_top(
+        slf: Py<Self>,
+        py: Python<'_>,
+        omega: &Bound<'_, PyAny>,
+        attitude: Option<&Bound<'_, PyAny>>,
+        gravity: &Bound<'_, PyAny>,
+        rtol: f64,
+    ) -> PyResult<PyHeavyTop> {
+        let (omega, gravity) = (read(omega, "omega")?, read(gravity, "gravity")?);
+        let attitude = read_exactly(py, attitude)?;
+        PyHeavyTop::new(py, slf, &omega, &attitude, &gravity, rtol)
+    }
+}
+
+#[pymethods]
+impl PyHeavyTop {
+    /// Angular velocity at t = 0.
+    #[getter]
+    fn omega<'py>(&self, py: Python<'py>) -> Array<'py> {
+        Ok(write(py, &self.starts.map(|start| start.omega))?.into_any())
+    }
+
+    /// Attitude at t = 0.
+    #[getter]
+    fn quaternion<'py>(&self, py: Python<'py>) -> Array<'py> {
+        let quaternions = self.starts.map(|start| components(&start.attitude));
+        Ok(write(py, &quaternions)?.into_any())
+    }
+
+    /// The acceleration of free fall.
+    #[getter]
+    fn gravity<'py>(&self, py: Python<'py>) -> Array<'py> {
+        Ok(write(py, &self.starts.map(|start| start.gravity))?.into_any())
+    }
+
+    /// The shape of the stack of motions.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.motions.shape)
+    }
+
+    /// What the axis draws on a sphere about the pivot.
+    #[getter]
+    fn path<'py>(&self, py: Python<'py>) -> Array<'py> {
+        let name = |motion: &HeavyTop| motion.nutation().path.name();
+        if self.motions.is_one() {
+            return Ok(name(&self.motions[0]).into_pyobject(py)?.into_any());
+        }
+        let names: Vec<&str> = self.motions.rows.iter().map(name).collect();
+        let names = numpy(py)?.call_method1("array", (names, "U10"))?;
+        names.call_method1("reshape", (self.motions.shape.clone(),))
+    }
+
+    /// Least and largest inclination of the axis from the upward vertical.
+    #[getter]
+    fn nutation_limits<'py>(&self, py: Python<'py>) -> Array<'py> {
+        let limits = self.motions.map(|motion| motion.nutation().inclination);
+        Ok(write(py, &limits)?.into_any())
+    }
+
+    /// Time from one least inclination to the next.
+    #[getter]
+    fn nutation_period<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.numbers(py, |nutation| nutation.period)
+    }
+
+    /// Mean rate of the axis about the upward vertical.
+    #[getter]
+    fn mean_precession<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.numbers(py, |nutation| nutation.precession)
+    }
+
+    /// Mean rate of the body about its axis relative to the line of nodes.
+    #[getter]
+    fn mean_spin<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.numbers(py, |nutation| nutation.spin)
+    }
+
+    /// The component of ω along the axis.
+    #[getter]
+    fn axial_spin<'py>(&self, py: Python<'py>) -> Array<'py> {
+        let spins = self.starts.map(|start| start.omega.dot(&start.top.axis));
+        write_numbers(py, &spins)
+    }
+
+    /// The spin above which the top stands stably upright.
+    #[getter]
+    fn sleeping_limit<'py>(&self, py: Python<'py>) -> Array<'py> {
+        let limit = |start: &Start| start.top.least_spin(0.0, &start.gravity);
+        write_numbers(py, &self.starts.map(limit))
+    }
+
+    /// Effective potential of the inclination: ``I_t θ̇²/2 + V(θ)`` is constant, the energy less that of the axial spin.
+    ///
+    /// ``V(θ) = (L_z − L_s cos θ)²/(2 I_t sin²θ) + m g l cos θ``, with the angular momenta L_z about the
+    /// upward vertical and L_s about the axis, both constant. The axis nods where V is at most that constant.
+    ///
+    /// Parameters
+    /// ----------
+    /// inclination : array_like, shape (n,) or ()
+    ///     θ, of the axis from the upward vertical.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., n) or (...)
+    ///     The potential; infinite at the verticals that the axis cannot reach.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import RigidBody
+    /// >>> body = RigidBody.from_principal(1.0, (1.0, 1.0, 0.5), center_of_mass=(0, 0, 1))
+    /// >>> top = body.heavy_top((1, 0, 4), None, gravity=(0, 0, -10))
+    /// >>> top.effective_potential([0.5, 1.0])
+    /// array([8.84102512, 5.70146947])
+    fn effective_potential<'py>(
+        &self,
+        py: Python<'py>,
+        inclination: &Bound<'py, PyAny>,
+    ) -> Array<'py> {
+        let angles: Stack<f64> = read(inclination, "inclination")?;
+        let shape = [&self.motions.shape[..], &angles.shape].concat();
+        let rows = (self.starts.rows.iter())
+            .flat_map(|start| {
+                angles.rows.iter().map(|&angle| {
+                    start.top.effective_potential(
+                        &start.omega,
+                        &start.attitude,
+                        &start.gravity,
+                        angle,
+                    )
+                })
+            })
+            .collect();
+        Ok(write(py, &Stack { shape, rows })?.into_any())
+    }
+
+    /// Attitude and angular velocity at the times asked for.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like
+    ///     Times of any shape and in any order, negative ones too; every motion is asked at each.
+    ///
+    /// Returns
+    /// -------
+    /// Trajectory
+    ///     About the origin of the body frame, which rests. Its ``omega`` and ``quaternion`` have the shape of the stack,
+    ///     then that of `t`, then their components. The quaternion is continuous in time. A time that is not finite
+    ///     gives NaN.
+    ///
+    /// Notes
+    /// -----
+    /// The GIL is released, many states run on all cores, and Ctrl-C ends the run. A state has the
+    /// same bits alone and among others.
+    ///
+    /// Examples
+    /// --------
+    /// A plane pendulum of one metre let go at 1 rad: after half a swing it is on the other side, and rests again.
+    ///
+    /// >>> from polhode import solids, euler_angles
+    /// >>> bob = solids.sphere(radius=0.0, mass=1.0).translated((0, 0, -1))
+    /// >>> swing = bob.heavy_top((0, 0, 0), euler_angles.to_quaternion((0, 1, 0)), gravity=(0, 0, -9.81))
+    /// >>> round(2 * swing.nutation_period, 6)
+    /// 2.139138
+    /// >>> swing.at([0.0, swing.nutation_period]).point("center_of_mass").round(6)
+    /// array([[ 0.      ,  0.841471, -0.540302],
+    ///        [ 0.      , -0.841471, -0.540302]])
+    fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> Array<'py> {
+        let times: Stack<f64> = read(t, "t")?;
+        let shape = [&self.motions.shape[..], &times.shape].concat();
+        let count = self.motions.rows.len() * times.rows.len();
+        let (mut attitudes, mut omegas) = (vec![0.0; 4 * count], vec![0.0; 3 * count]);
+        let interrupt = Interrupt::new(None);
+        let outcome = py.detach(|| {
+            sample_many(
+                &self.motions.rows,
+                &times.rows,
+                attitudes.as_chunks_mut().0,
+                omegas.as_chunks_mut().0,
+                &mut |_| interrupt.poll(None),
+            )
+        });
+        interrupt.finish(py, outcome.is_ok())?;
+        let array = |numbers: Vec<f64>, components: usize| {
+            PyArray1::from_vec(py, numbers).reshape([&shape[..], &[components]].concat())
+        };
+        let np = numpy(py)?;
+        let still = np.call_method1("zeros", ([&shape[..], &[3]].concat(),))?;
+        let none = np.call_method1("zeros", (self.motions.shape.clone(), "int64"))?;
+        let origins = self.body.get().bodies.map(|_: &RigidBody| Vector3::zeros());
+        let fields = PyDict::new(py);
+        fields.set_item("body", &self.body)?;
+        fields.set_item("t", write(py, &times)?)?;
+        fields.set_item("omega", array(omegas, 3)?)?;
+        fields.set_item("quaternion", array(attitudes, 4)?)?;
+        fields.set_item("position", &still)?;
+        fields.set_item("velocity", &still)?;
+        fields.set_item("about", write(py, &origins)?)?;
+        fields.set_item("steps", &none)?;
+        fields.set_item("evaluations", &none)?;
+        let gravity = py
+            .import("polhode.loads")?
+            .call_method1("uniform_gravity", (self.gravity(py)?,))?;
+        fields.set_item("load", gravity)?;
+        fields.set_item("pivoted", true)?;
+        py.import("polhode.trajectory")?
+            .getattr("Trajectory")?
+            .call((), Some(&fields))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restore = py.get_type::<Self>().getattr("_from_start")?;
+        let body = self.body.bind(py).clone().into_any();
+        let rtol = self.rtol.into_pyobject(py)?.into_any();
+        let parts = [
+            body,
+            self.omega(py)?,
+            self.quaternion(py)?,
+            self.gravity(py)?,
+            rtol,
+        ];
+        Ok((restore, PyTuple::new(py, parts)?))
+    }
+
+    /// The motions that `__reduce__` took apart; for pickle.
+    #[staticmethod]
+    fn _from_start(
+        py: Python<'_>,
+        body: Py<PyRigidBody>,
+        omega: &Bound<'_, PyAny>,
+        quaternion: &Bound<'_, PyAny>,
+        gravity: &Bound<'_, PyAny>,
+        rtol: f64,
+    ) -> PyResult<Self> {
+        let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
+        let attitude = quaternion.map(|&[x, y, z, w]| {
+            UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
+        });
+        let (omega, gravity) = (read(omega, "omega")?, read(gravity, "gravity")?);
+        Self::new(py, body, &omega, &attitude, &gravity, rtol)
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    /// One motion by its path and start; a stack by its shape.
+    fn __repr__(&self) -> String {
+        if !self.motions.is_one() {
+            let count = self.motions.rows.len();
+            return format!(
+                "<HeavyTop stack of shape {}: {count} motions>",
+                tuple(&self.motions.shape)
+            );
+        }
+        let [p, q, r]: [f64; 3] = self.starts[0].omega.into();
+        let path = self.motions[0].nutation().path.name();
+        format!("<HeavyTop: {path}, omega=[{p:?}, {q:?}, {r:?}]>")
+    }
+}

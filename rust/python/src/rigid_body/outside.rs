@@ -1,0 +1,166 @@
+//! Bodies outside the library: other libraries' objects, files, notebooks. Python does it all.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::PyRigidBody;
+
+#[pymethods]
+impl PyRigidBody {
+    /// Body of a mesh object as other libraries have it, such as a `trimesh.Trimesh`.
+    ///
+    /// Parameters
+    /// ----------
+    /// mesh : object
+    ///     With ``vertices`` (n, 3) and ``faces`` (m, 3); or a `trimesh.Scene`, whose meshes are placed as it
+    ///     says. Coordinates stay as they are.
+    /// density, mass : float
+    ///     Exactly one of the two. A density that the object itself may carry is not used.
+    /// **options
+    ///     `closure`, `orient` and `check` as of `from_mesh`.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// MeshError
+    ///     When the mesh does not bound a solid.
+    /// TypeError
+    ///     For an object without vertices and faces.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from types import SimpleNamespace
+    /// >>> from polhode import RigidBody
+    /// >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    /// >>> mesh = SimpleNamespace(vertices=corners, faces=[(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+    /// >>> RigidBody.from_mesh_object(mesh, density=6.0).mass
+    /// 1.0
+    #[staticmethod]
+    #[pyo3(signature = (mesh, *, density=None, mass=None, **options))]
+    fn from_mesh_object<'py>(
+        mesh: &Bound<'py, PyAny>,
+        density: Option<f64>,
+        mass: Option<f64>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = mesh.py();
+        let all = PyDict::new(py);
+        if let Some(options) = options {
+            all.update(options.as_mapping())?;
+        }
+        all.set_item("density", density)?;
+        all.set_item("mass", mass)?;
+        py.import("polhode._objects")?
+            .call_method("body_from_mesh", (mesh,), Some(&all))
+    }
+
+    /// Body of a molecule as other libraries have it: ASE's `Atoms`, or RDKit's `Mol` with a conformer.
+    ///
+    /// Parameters
+    /// ----------
+    /// atoms : object
+    ///     With ``get_masses()`` and ``get_positions()`` (ASE), or ``GetAtoms()`` and ``GetConformer()`` (RDKit):
+    ///     daltons and ångströms, in which the result stays.
+    /// conformer : int, optional
+    ///     Which of an RDKit molecule's; its first by default.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///     In daltons and ångströms.
+    ///
+    /// Raises
+    /// ------
+    /// TypeError
+    ///     For an object that is neither.
+    /// ValueError
+    ///     For a molecule without a conformer.
+    #[staticmethod]
+    #[pyo3(signature = (atoms, *, conformer=None))]
+    fn from_atoms<'py>(
+        atoms: &Bound<'py, PyAny>,
+        conformer: Option<i64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        atoms
+            .py()
+            .import("polhode._objects")?
+            .call_method1("body_from_atoms", (atoms, conformer))
+    }
+
+    /// Write the body or the stack to a file, with every bit of it.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     ``.json``: readable, after the schema in :mod:`polhode.files`; ``.npz``: arrays for NumPy.
+    ///
+    /// See Also
+    /// --------
+    /// RigidBody.load : reads it.
+    #[pyo3(signature = (path))]
+    fn save<'py>(
+        slf: &Bound<'py, Self>,
+        path: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("polhode.files")?
+            .call_method1("save_body", (slf, path))
+    }
+
+    /// Read a body or a stack that `save` wrote.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     ``.json`` or ``.npz``.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///     Equal to the one that was saved, bit for bit.
+    ///
+    /// Raises
+    /// ------
+    /// FileFormatError
+    ///     For a file that is not such a body.
+    #[staticmethod]
+    #[pyo3(signature = (path))]
+    fn load<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        path.py()
+            .import("polhode.files")?
+            .call_method1("load_body", (path,))
+    }
+
+    /// Draw the ellipsoid of inertia and the principal axes; needs matplotlib.
+    ///
+    /// Parameters
+    /// ----------
+    /// ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+    ///     Where to draw; a new figure by default.
+    /// **options
+    ///     As of `polhode.plot.ellipsoid`.
+    ///
+    /// Returns
+    /// -------
+    /// mpl_toolkits.mplot3d.axes3d.Axes3D
+    #[pyo3(signature = (ax=None, **options))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        ax: Option<&Bound<'py, PyAny>>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("polhode.plot")?
+            .call_method("ellipsoid", (slf, ax), options)
+    }
+
+    /// What a notebook shows: a table, and the ellipsoid of inertia as a drawing.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("polhode._notebook")?
+            .call_method1("body_html", (slf,))
+    }
+}
