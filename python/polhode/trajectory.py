@@ -400,8 +400,8 @@ class Trajectory:
         Parameters
         ----------
         path : str or os.PathLike
-            ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib; ``.mp4``: needs
-            matplotlib and the program ffmpeg.
+            ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib; ``.mp4``:
+            needs matplotlib and the program ffmpeg.
         **options
             `shape`, `frames`, `duration`, `title` and `time_unit`, see :func:`polhode.animation.animate`.
 
