@@ -240,7 +240,6 @@ class TestOptions:
             ({"atol": np.nan}, "atol"),
             ({"method": "rk4"}, "method"),
             ({"method": "RK4"}, "method"),
-            ({"method": "taylor"}, "method"),
             ({"about": "middle"}, "about"),
             ({"attitude": (0.0, 0.0, 0.0, 0.0)}, "attitude"),
         ],

@@ -14,7 +14,7 @@ gravity against the third axis of space,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import mpmath
 from mpmath import mp, mpc, mpf
@@ -64,13 +64,7 @@ class HeavyTop:
                 series, step = self._series(state)
                 now, later = self._rate(state), self._rate(_sum(series, step))
                 if mpmath.sign(now) * mpmath.sign(later) < 0:
-                    zero = mpmath.findroot(
-                        lambda h, s=series: self._rate(_sum(s, h)),
-                        (mpf(0), step),
-                        solver="anderson",
-                        tol=0,
-                        verify=False,
-                    )
+                    zero = _zero(lambda h, s=series: self._rate(_sum(s, h)), step)
                     times.append(t + zero)
                 state, t = _sum(series, step), t + step
             self.period = times[2] - times[0]
@@ -128,6 +122,22 @@ class HeavyTop:
             for row, scale in zip((a, b, w), scales, strict=True)
         )
         return [a, b, w], min(radius * mpmath.exp(-2), 1 / rate)
+
+
+def _zero(function: Callable[[mpf], mpf], end: mpf) -> mpf:
+    """The zero between 0 and `end` by false positions (Illinois), until rounding ends them."""
+    far, near = mpf(0), end
+    at_far, at_near = function(far), function(near)
+    while True:
+        place = (far * at_near - near * at_far) / (at_near - at_far)
+        value = function(place)
+        if value == 0 or abs(place - near) <= 8 * mp.eps * abs(end):
+            return place
+        if mpmath.sign(value) != mpmath.sign(at_near):
+            far, at_far = near, at_near
+        else:
+            at_far /= 2
+        near, at_near = place, value
 
 
 def _sum(series: list[list[mpc]], h: mpf) -> State:
