@@ -34,7 +34,9 @@ MODULES = [
     "polhode.euler_angles",
     "polhode.equimomental",
     "polhode.errors",
+    "polhode.animation",
     "polhode.events",
+    "polhode.files",
     "polhode.free_motion",
     "polhode.kinematics",
     "polhode.parallel_axis",
@@ -88,7 +90,9 @@ class TestNames:
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
         assert internal <= {
+            "animation",
             "events",
+            "files",
             "free_motion",
             "results",
             "trajectory",
