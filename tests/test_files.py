@@ -18,7 +18,6 @@ BODIES = {
     "molecule": RigidBody.from_principal(3e-26, (0.0, 1.9e-46, 1.9e-46)),
     "rod": RigidBody.from_particles([1.0, 2.0, 3.0], [(i, 1e-12 * i * i, 0.0) for i in range(3)]),
     "stack": solids.box(np.arange(1.0, 19.0).reshape(2, 3, 3), density=2.0),
-    "empty": solids.box(np.ones((0, 3)), mass=1.0),
 }
 
 
@@ -35,6 +34,13 @@ class TestBodies:
         assert np.array_equal(again.principal.axes, body.principal.axes)
         assert np.array_equal(again.principal_moments, body.principal_moments)
         assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+    def test_an_empty_stack(self, tmp_path: Path) -> None:
+        empty = solids.box(np.ones((2, 0, 3)), mass=1.0)
+        empty.save(tmp_path / "body.npz")
+        assert RigidBody.load(tmp_path / "body.npz").shape == (2, 0)
+        with pytest.raises(ValueError, match=r"shape of an empty stack; \.npz does"):
+            empty.save(tmp_path / "body.json")
 
     def test_json_is_readable_and_after_its_schema(self, tmp_path: Path) -> None:
         BODIES["box"].save(tmp_path / "body.json")

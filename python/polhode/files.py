@@ -210,8 +210,7 @@ def _body(fields: dict[str, Any], file: Path) -> RigidBody:
         if "numbers" not in fields:
             return _core.RigidBody(given["mass"], given["inertia"], given["center_of_mass"])
         numbers = _numbers(fields, "numbers", file)
-        restore = _core.RigidBody._from_numbers
-        body: RigidBody = restore(numbers)
+        body = _core.RigidBody._from_numbers(numbers)
     except PolhodeError as error:
         raise FileFormatError(f"{file}: {error}") from error
     except ValueError as error:
@@ -219,7 +218,7 @@ def _body(fields: dict[str, Any], file: Path) -> RigidBody:
     for name, value in given.items():
         if not np.array_equal(getattr(body, name), value):
             raise FileFormatError(
-                f"{file}: {name} is not that of the body in numbers; who changes it by hand leaves numbers out"
+                f"{file}: {name} is not that of the body in numbers; leave numbers out after a change by hand"
             )
     return body
 
@@ -262,6 +261,8 @@ def _suffix(file: Path) -> str:
 
 
 def _write_json(file: Path, fields: dict[str, Any]) -> None:
+    if fields.get("mass") is not None and not np.size(fields["mass"]):
+        raise ValueError(f"path: {file}: JSON does not tell the shape of an empty stack; .npz does")
     # Python writes the shortest decimal that gives the same float64 back.
     file.write_text(json.dumps(_listed(fields), indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
@@ -272,10 +273,8 @@ def _listed(fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    if (
-        isinstance(value, np.ndarray | np.floating)
-        and value.dtype.kind == "f"
-        and not np.isfinite(value).all()
-    ):
-        return [_plain(part) for part in value] if value.ndim else None
-    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+    if not isinstance(value, np.ndarray | np.generic):
+        return value
+    if value.dtype.kind != "f" or np.isfinite(value).all():
+        return value.tolist()
+    return [_plain(part) for part in np.asarray(value)] if value.ndim else None

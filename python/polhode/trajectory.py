@@ -374,8 +374,8 @@ class Trajectory:
         path : str or os.PathLike
             ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
             (space); a stack's lines begin with the indices of the body. ``.npz``: the arrays under the names
-            of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``. ``.json``: readable,
-            after the schema in :mod:`polhode.files`. The load and the events are not kept.
+            of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``. ``.json``:
+            readable, after the schema in :mod:`polhode.files`. The load and the events are not kept.
         """
         from polhode._files.trajectory import save_trajectory
 
