@@ -1,4 +1,4 @@
-"""The tumbling asteroid Toutatis: from its two periods to its exact motion, years later as easily as today."""
+"""The tumbling asteroid Toutatis: from its two periods to its exact motion, at any time."""
 
 import sys
 

@@ -50,7 +50,7 @@ def draw() -> Figure:
             ax.plot(*ends.T, color=color, linestyle=dash, label="ab"[k])
         ax.plot(*center, "k.", zorder=3)
         ax.set(
-            title=f"{name}: A, B, C = {a:.0f}, {b:.0f}, {c:.0f} GHz",
+            title=f"{name}: {a:.0f}, {b:.0f}, {c:.0f} GHz",
             xlabel="x (Å)",
             ylabel="y (Å)",
             aspect="equal",

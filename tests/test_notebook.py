@@ -20,7 +20,7 @@ def test_one_body_has_its_numbers_and_a_drawing() -> None:
 
 
 def test_the_outline_is_that_of_the_ellipsoid() -> None:
-    """A ball's ellipsoid is a ball; seen from anywhere it is a circle. No point of a ring lies beyond the outline."""
+    """That of a ball is a circle, seen from anywhere; no point of a ring lies beyond the outline."""
     outline = _drawing(solids.sphere(1.0, mass=1.0)).find(f"{NAMESPACE}ellipse")
     assert outline is not None
     assert outline.get("rx") == outline.get("ry") == "72.00"

@@ -65,8 +65,8 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     arrow(ax, 1.25 * symmetry, AXIS_COLORS[0], f"$e_{side + 1}$")
     ax.text2D(
         0.5, 0.02,
-        f"body cone {_angles(motion.cones.body)} (blue), space cone {_angles(motion.cones.space)} (green)",
-        transform=ax.transAxes, ha="center",
+        f"body cone {_angles(motion.cones.body)} (blue),\nspace cone {_angles(motion.cones.space)} (green)",
+        transform=ax.transAxes, ha="center", in_layout=False,
     )  # fmt: skip
     plain_frame(ax, np.min(corners, axis=0), np.max(corners, axis=0))
     return ax

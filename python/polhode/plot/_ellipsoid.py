@@ -135,7 +135,9 @@ def polhodes(
         ax.text(*(tip * (1.0 + 0.1 * semi_axes.max() / tip[k])), rf"$\omega_{k + 1}$", color=color,
                 ha="center", va="center", fontsize=13, zorder=6)  # fmt: skip
     lengths = ", ".join(f"{a:.3g}" for a in semi_axes)
-    ax.text2D(0.5, 0.03, f"semi-axes {lengths} {rate_unit}", transform=ax.transAxes, ha="center")
+    ax.text2D(
+        0.5, 0.03, f"semi-axes {lengths} {rate_unit}", transform=ax.transAxes, ha="center", in_layout=False
+    )
     plain_frame(ax, 3 * [-reach], 3 * [reach])
     return ax
 
@@ -190,8 +192,8 @@ def poinsot(
     arrow(ax, np.array([0.0, 0.0, height]), MOMENTUM_COLOR, "L")
     ax.text2D(
         0.5, 0.02,
-        f"polhode (vermilion) rolls on herpolhode (blue); plane at 2T/L = {found.distance:.4g} {rate_unit}",
-        transform=ax.transAxes, ha="center",
+        f"polhode (vermilion) rolls on herpolhode (blue);\nplane at 2T/L = {found.distance:.4g} {rate_unit}",
+        transform=ax.transAxes, ha="center", in_layout=False,
     )  # fmt: skip
     side = max(reach, float(found.semi_axes.max()))
     plain_frame(ax, (-side, -side, -side), (side, side, height))
