@@ -6,7 +6,7 @@ export CARGO_TERM_COLOR ?= auto
 
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
 
-.PHONY: help setup build demo test test-rust test-python lint format docs figures package bench clean
+.PHONY: help setup build demo test test-rust test-python test-long lint format docs figures package bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -26,6 +26,9 @@ test-rust: ## the tests of the core
 
 test-python: build ## the tests of the package
 	$(BIN)/python -m pytest
+
+test-long: build ## the tests that take minutes: more random cases than `make test` draws
+	$(BIN)/python -m pytest -m long
 
 lint: build ## formatting, lints, types, stubs
 	cargo fmt --all --check

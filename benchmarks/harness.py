@@ -38,6 +38,8 @@ class Row:
         Given both answers, raises AssertionError where they differ.
     items : int
         How many things one call does, for the time per item.
+    peer_items : int, optional
+        As `items`, where one call of the peer does fewer.
     at_least, at_most : float, optional
         Bars for the peer's time over ours, or for ours over the peer's.
     """
@@ -48,6 +50,7 @@ class Row:
     theirs: Callable[[], Any]
     compare: Callable[[Any, Any], None]
     items: int = 1
+    peer_items: int | None = None
     at_least: float | None = None
     at_most: float | None = None
 
@@ -70,10 +73,11 @@ def measure(row: Row, rounds: int = 9, least_seconds: float = 0.02) -> Result:
     """Compare the answers of a row, then time both sides in turn, each round long enough for the clock."""
     row.compare(row.ours(), row.theirs())
     repeats = [_repeats(call, least_seconds) for call in (row.ours, row.theirs)]
+    items_each = (row.items, row.peer_items or row.items)
     times = [
         [
-            _seconds(call, count) / row.items
-            for call, count in zip((row.ours, row.theirs), repeats, strict=True)
+            _seconds(call, count) / items
+            for call, count, items in zip((row.ours, row.theirs), repeats, items_each, strict=True)
         ]
         for _ in range(rounds)
     ]

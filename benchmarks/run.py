@@ -22,7 +22,10 @@ FILES_OF_ROWS = (
     "particles",
     "voxels",
     "meshes",
+    "free_motion",
     "heavy_top",
+    "simulate",
+    "callbacks",
     "threads",
 )
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from harness import Row
@@ -21,6 +22,7 @@ WORKER = """
 import hashlib, sys
 from concurrent.futures import ThreadPoolExecutor
 import numpy as np
+from meshes import globe
 from polhode import MassAccumulator, RigidBody
 
 threads, count = map(int, sys.argv[1:])
@@ -31,6 +33,7 @@ thin = positions * [1.0, 1e-3, 1e-3]
 density = rng.uniform(size=(256, 256, 256)).astype(np.float32)
 atoms = 20
 small = masses.reshape(-1, atoms)[:100_000], positions.reshape(-1, atoms, 3)[:100_000]
+ball = globe(708, 707)
 
 def stream():
     particles = MassAccumulator()
@@ -48,6 +51,7 @@ tasks = {
     "stream": stream,
     "stack": lambda: RigidBody.from_particles(*small),
     "voxels": lambda: RigidBody.from_voxels(density, 1.0),
+    "mesh": lambda: RigidBody.from_mesh(*ball, density=1.0),
 }
 for line in sys.stdin:
     body = tasks[line.strip()]()
@@ -62,7 +66,7 @@ class Worker:
     def __init__(self, threads: int) -> None:
         self.process = subprocess.Popen(
             [sys.executable, "-c", WORKER, str(threads), str(COUNT)],
-            env={**os.environ, "POLHODE_NUM_THREADS": str(threads)},
+            env={**os.environ, "POLHODE_NUM_THREADS": str(threads), "PYTHONPATH": str(Path(__file__).parent)},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -98,6 +102,7 @@ def rows() -> Iterator[Row]:
             ("1e7 particles through a stream", "stream", 1.7),
             ("1e5 bodies x 20 particles", "stack", 1.7),
             ("256^3 voxels, float32", "voxels", 1.7),
+            ("checked solid, 1e6 triangles", "mesh", 1.7),
         ):
             yield Row(
                 name=f"{name}, two threads",

@@ -166,7 +166,7 @@ class TestFailures:
                 raise KeyboardInterrupt
 
         with pytest.raises(KeyboardInterrupt) as caught:
-            BODY.simulate(np.linspace(0, 1e7, 1001), (1, 0.2, 1), progress=interrupt)
+            BODY.simulate(np.linspace(0, 1e7, 1001), (1, 0.2, 1), progress=interrupt, method="dop853")
         partial = caught.value.partial  # type: ignore[attr-defined]
         assert partial.status == "stopped"
         assert np.isfinite(partial.omega[1]).all()

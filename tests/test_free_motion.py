@@ -180,6 +180,13 @@ def test_shapes_are_those_of_the_stack_and_of_the_times() -> None:
     assert states.omega.shape == (4, 3, 2, 5, 3)
     assert states.quaternion.shape == (4, 3, 2, 5, 4)
     assert motion.at(1.0).omega.shape == (4, 3, 3)
+    energies = states.kinetic_energy().total
+    assert energies.shape == (4, 3, 2, 5)
+    np.testing.assert_allclose(energies, np.broadcast_to(energies[:, :, :1, :1], energies.shape), rtol=1e-14)
+    single = bodies[0].free_motion(omega[0, 0]).at(2.0)
+    np.testing.assert_allclose(single.kinetic_energy().total, energies[0, 0, 0, 0], rtol=1e-14)
+    assert single.angular_momentum().total.shape == (3,)
+    assert repr(single) == "Trajectory(1 times from 2 to 2)"
     one = bodies[1].free_motion(omega[2, 0]).at(times[1, 3])
     assert np.array_equal(one.omega, states.omega[2, 1, 1, 3])
     assert np.array_equal(one.quaternion, states.quaternion[2, 1, 1, 3])

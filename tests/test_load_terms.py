@@ -219,12 +219,14 @@ class TestMotions:
         windows = [(0.5, 1.25), (2.0, np.pi), (9.0, 10.0)]
         load = loads.schedule(loads.constant_torque((0, 0, 3.0)), windows)
         t = np.linspace(0, 4, 33)
-        got = ball.simulate(t, (0, 0, 0), load=load)
+        got = ball.simulate(t, (0, 0, 0), load=load, method="dop853")
         on = np.clip(t, 0.5, 1.25) - 0.5 + np.clip(t, 2.0, np.pi) - 2.0
         assert np.abs(got.omega[:, 2] - 3 * on).max() < 1e-14
         assert int(got.steps) < 40
         called = loads.schedule(loads.torque_callback(lambda _t, _w, _q: (0.0, 0.0, 3.0)), windows)
         assert np.array_equal(ball.simulate(t, (0, 0, 0), load=called).omega, got.omega)
+        series = ball.simulate(t, (0, 0, 0), load=load, method="taylor")
+        assert np.abs(series.omega - got.omega).max() < 1e-14
         back = ball.simulate(t[::-1], got.omega[-1], got.quaternion[-1], load=load)
         assert np.abs(back.omega[::-1] - got.omega).max() < 1e-14
 

@@ -28,7 +28,7 @@ def constant(value: Any) -> Callable[[float, Any, Any], Any]:
 class TestCallback:
     def test_a_callback_that_returns_a_constant_is_the_constant_torque(self) -> None:
         t = np.linspace(0, 10, 11)
-        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE))
+        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE), method="dop853")
         for value in (TORQUE, list(TORQUE), np.array(TORQUE), np.array(TORQUE, dtype=np.float64)[::1]):
             got = BODY.simulate(t, RATES, load=loads.torque_callback(constant(value)))
             assert np.array_equal(got.omega, want.omega)
@@ -79,7 +79,7 @@ class TestCallback:
         t = np.linspace(0, 10, 11)
         half = tuple(x / 2 for x in TORQUE)
         both = loads.torque_callback(lambda _t, _w, _q: half) + loads.constant_torque(half)
-        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE))
+        want = BODY.simulate(t, RATES, load=loads.constant_torque(TORQUE), method="dop853")
         assert np.abs(BODY.simulate(t, RATES, load=both).omega - want.omega).max() < 1e-13
 
     def test_in_a_stack_it_is_asked_row_by_row(self) -> None:
@@ -99,7 +99,7 @@ class TestCallback:
             quaternion[:] = 0.0
             return (0.0, 0.0, 0.0)
 
-        free = BODY.simulate([0.0, 5.0], RATES)
+        free = BODY.simulate([0.0, 5.0], RATES, method="dop853")
         scribbled = BODY.simulate([0.0, 5.0], RATES, load=loads.torque_callback(scribble))
         assert np.array_equal(scribbled.omega, free.omega)
 
@@ -107,7 +107,7 @@ class TestCallback:
         def nested(_t: float, omega: Any, _quaternion: Any) -> Any:
             return 0 * BODY.simulate([0.0, 0.1], omega).omega[-1]
 
-        free = BODY.simulate([0.0, 1.0], RATES)
+        free = BODY.simulate([0.0, 1.0], RATES, method="dop853")
         assert np.array_equal(
             BODY.simulate([0.0, 1.0], RATES, load=loads.torque_callback(nested)).omega, free.omega
         )
@@ -214,9 +214,15 @@ else:
 """
 
 LONG_RUNS = {
-    "one body": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0))",
-    "a stack": "lambda: body.simulate([0.0, 1e8], np.ones((64, 3)) + np.arange(64)[:, None])",
-    "dense output": "lambda: body.simulate(np.linspace(0.0, 1e9, 100_000), (1.0, 1e-3, 1.0))",
+    "dop853": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0), method='dop853')",
+    "taylor": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0), method='taylor')",
+    "a stack by dop853": "lambda: body.simulate([0.0, 1e8], np.ones((64, 3)) + np.arange(64)[:, None],"
+    " method='dop853')",
+    "a stack by taylor": "lambda: body.simulate([0.0, 1e8], np.ones((64, 3)) + np.arange(64)[:, None],"
+    " method='taylor')",
+    "events": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0), events=lambda t, *_: 1.0)",
+    "dense output": "lambda: body.simulate(np.linspace(0.0, 1e9, 100_000), (1.0, 1e-3, 1.0),"
+    " method='dop853')",
     "a callback": "lambda: body.simulate([0.0, 1e9], (1.0, 1e-3, 1.0),"
     " load=loads.torque_callback(lambda t, w, q: (0.0, 0.0, 0.0)))",
 }
@@ -236,7 +242,7 @@ def test_ctrl_c_ends_a_long_run_within_a_fifth_of_a_second(name: str) -> None:
 class TestProgress:
     def test_the_fraction_done_rises_to_one_at_most(self) -> None:
         seen: list[float] = []
-        BODY.simulate([0.0, 2e4], RATES, progress=seen.append)
+        BODY.simulate([0.0, 2e4], RATES, progress=seen.append, method="dop853")
         assert seen
         assert all(isinstance(x, float) for x in seen)
         assert seen == sorted(seen)
@@ -249,7 +255,7 @@ class TestProgress:
             raise error
 
         with pytest.raises(RuntimeError) as caught:
-            BODY.simulate([0.0, 1e7], RATES, progress=stop)
+            BODY.simulate([0.0, 1e7], RATES, progress=stop, method="dop853")
         assert caught.value is error
 
 

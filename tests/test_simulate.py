@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from oracles.bodies import Body, attitudes, bodies, matrix, vectors
 from oracles.free_motion import as_floats, taylor_motion
 from polhode import RigidBody, Trajectory, loads, solids
+from polhode.errors import PolhodeError
 
 # NASA/TM-2015-218675 (NESC), check case 2: 8 x 4 x 2.25 in brick, slug and foot
 BRICK = RigidBody.from_principal(0.155404754, [0.001894220, 0.006211019, 0.007194665])
@@ -240,16 +241,37 @@ class TestOutput:
         assert np.array_equal(trajectory.omega[0], START)
 
     def test_work_is_counted(self) -> None:
-        trajectory = BRICK.simulate([0.0, 30.0], START)
+        trajectory = BRICK.simulate([0.0, 30.0], START, method="dop853")
         assert 5 < int(trajectory.steps) < 1000
         assert int(trajectory.evaluations) > 11 * int(trajectory.steps)
-        sharper = BRICK.simulate([0.0, 30.0], START, rtol=1e-13)
+        sharper = BRICK.simulate([0.0, 30.0], START, rtol=1e-13, method="dop853")
         assert int(sharper.steps) > int(trajectory.steps)
 
-    def test_auto_is_dop853_here(self) -> None:
-        auto, named = BRICK.simulate(TIMES, START), BRICK.simulate(TIMES, START, method="dop853")
+    @pytest.mark.parametrize(
+        ("method", "load"),
+        [
+            ("exact", None),
+            ("taylor", loads.damping(1e-3)),
+            ("dop853", loads.torque_callback(lambda _t, w, _q: -1e-3 * w)),
+        ],
+    )
+    def test_auto_is_the_first_that_can(self, method: Any, load: Any) -> None:
+        auto, named = (BRICK.simulate(TIMES, START, load=load, method=name) for name in ("auto", method))
         assert np.array_equal(auto.omega, named.omega)
         assert np.array_equal(auto.quaternion, named.quaternion)
+
+    def test_a_method_that_cannot_says_which_can(self) -> None:
+        call = loads.torque_callback(lambda _t, w, _q: -w)
+        for method, load, events, word in (
+            ("exact", loads.damping(1.0), (), 'method="taylor" can'),
+            ("exact", call, (), 'method="dop853" can'),
+            ("taylor", call, (), 'method="dop853" can'),
+            ("taylor", loads.damping(1.0), (lambda t, *_: t,), "a run without events"),
+        ):
+            with pytest.raises(PolhodeError, match=word):
+                BRICK.simulate(TIMES, START, load=load, method=method, events=events)
+        with pytest.raises(ValueError, match='method: expected one of "auto", "exact", "taylor", "dop853"'):
+            BRICK.simulate(TIMES, START, method="euler")  # type: ignore[arg-type]
 
 
 class TestStacks:

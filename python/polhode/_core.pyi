@@ -357,7 +357,7 @@ class RigidBody:
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         about: _Reference = "center_of_mass",
-        method: Literal["auto", "dop853", "radau", "splitting"] = "auto",
+        method: Literal["auto", "exact", "taylor", "dop853", "radau", "splitting"] = "auto",
         rtol: float = 1e-10,
         atol: float | None = None,
         events: Callable[..., float] | Iterable[Callable[..., float]] | None = None,

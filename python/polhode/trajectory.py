@@ -37,7 +37,7 @@ class Trajectory:
     body : RigidBody
         The body, or the stack of them.
     t : numpy.ndarray, shape (T,)
-        Times, the first being the start.
+        Times, the first being the start; of an exact motion any times, of any shape in place of (T,).
     omega : numpy.ndarray, shape (..., T, 3)
         Angular velocity of the body relative to space, components in the body frame.
     quaternion : numpy.ndarray, shape (..., T, 4)
@@ -81,10 +81,11 @@ class Trajectory:
         return len(self.t)
 
     def __repr__(self) -> str:
-        shape = self.omega.shape[:-2]
+        shape = self.omega.shape[: -1 - self.t.ndim]
         bodies = f"{'x'.join(map(str, shape))} bodies, " if shape else ""
-        span = f" from {self.t[0]:.6g} to {self.t[-1]:.6g}" if len(self) else ""
-        return f"Trajectory({bodies}{len(self)} times{span})"
+        count = self.t.size
+        span = f" from {self.t.flat[0]:.6g} to {self.t.flat[-1]:.6g}" if count else ""
+        return f"Trajectory({bodies}{count} times{span})"
 
     @cached_property
     def rotation(self) -> Rotation:
@@ -106,7 +107,7 @@ class Trajectory:
         return self._bodies().kinetic_energy(
             self.omega,
             velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
-            about=self.about[..., np.newaxis, :],
+            about=self._reference(),
         )
 
     def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
@@ -128,7 +129,7 @@ class Trajectory:
             self.omega,
             velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
             position=_core.rotate(self.quaternion, self.position, inverse=True),
-            about=self.about[..., np.newaxis, :],
+            about=self._reference(),
         )
         if frame == "body":
             return in_body
@@ -198,7 +199,7 @@ class Trajectory:
         if place.shape[-1:] != (3,):
             raise ValueError(f"r: expected shape (..., 3), got {place.shape}")
         arm = place - self.about
-        return self.position + _core.rotate(self.quaternion, arm[..., np.newaxis, :])
+        return self.position + _core.rotate(self.quaternion, self._per_time(arm))
 
     def torque(self) -> Floats:
         """Torque of the load about the point `about` at every time, components in the body frame.
@@ -229,9 +230,7 @@ class Trajectory:
         -------
         numpy.ndarray, shape (..., T, 3)
         """
-        return self._bodies().angular_acceleration(
-            self.omega, self.torque(), about=self.about[..., np.newaxis, :]
-        )
+        return self._bodies().angular_acceleration(self.omega, self.torque(), about=self._reference())
 
     def potential_energy(self) -> Floats:
         """Energy of position in the field of the load at every time.
@@ -482,8 +481,19 @@ class Trajectory:
         return animate(self, path, **options)
 
     def _bodies(self) -> _core.RigidBody:
-        """Give the body or stack an axis for time, along which it broadcasts."""
-        return self.body[..., np.newaxis]
+        """Give the body or stack the axes of time, along which it broadcasts."""
+        return self.body[(..., *self._time_axes())]
+
+    def _time_axes(self) -> tuple[None, ...]:
+        """One for a series of times; as many as the times that a free motion was asked at have."""
+        return (np.newaxis,) * self.t.ndim
+
+    def _per_time(self, vectors: Floats) -> Floats:
+        """Give vectors the axes of time before their components."""
+        return vectors[(..., *self._time_axes(), slice(None))]
+
+    def _reference(self) -> Floats:
+        return self._per_time(self.about)
 
     def _over_time(self, load: _core.Load) -> _core.Load:
         """Give a stack of loads an axis for time, along which it broadcasts."""

@@ -39,7 +39,7 @@ class HeavyTop:
         about_center: tuple[float, float] | None = None,
         digits: int = 60,
     ) -> None:
-        """`transverse` is about the pivot, unless ``about_center = (mass, length)`` is given: then about C."""
+        """`transverse` is about the pivot; with ``about_center = (mass, length)`` about C."""
         self.digits = digits
         with mp.workdps(digits):
             I_t = mpf(transverse)

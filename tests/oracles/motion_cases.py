@@ -10,8 +10,8 @@ from __future__ import annotations
 import json
 import math
 import sys
-import time
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
@@ -96,42 +96,51 @@ class MotionCase(NamedTuple):
 @cache
 def load_table(name: str) -> tuple[MotionCase, ...]:
     """The cases of one table, their expected states as mpmath numbers."""
-    with mp.workdps(DIGITS + 10):
-        return tuple(_case(entry) for entry in json.loads((TABLES / f"{name}.json").read_text("utf-8")))
+    return tuple(_case(entry) for entry in json.loads((TABLES / f"{name}.json").read_text("utf-8")))
 
 
 def generate(name: str, cases: Iterable[MotionCase], proven: Callable[[MotionCase], MotionCase]) -> None:
     """Compute the cases and write their table; words on the command line pick cases, the others stay."""
     words = sys.argv[1:]
-    kept = {case.name: case for case in load_table(name)} if words else {}
-    done = []
-    for case in cases:
-        if words and not any(word in case.name for word in words):
-            done.append(kept[case.name])
-            continue
-        began = time.perf_counter()
-        done.append(proven(case))
-        print(f"{time.perf_counter() - began:6.1f} s  {case.name}", file=sys.stderr)
-    write_table(name, done)
+    fresh = list(cases)
+    done = list(fresh)
+    wanted = [i for i, case in enumerate(fresh) if not words or any(word in case.name for word in words)]
+    if words:
+        kept = {case.name: case for case in load_table(name)}
+        done = [kept.get(case.name, case) for case in fresh]
+    with ProcessPoolExecutor() as pool:
+        futures = {pool.submit(_written, proven, fresh[i]): i for i in wanted}
+        for future in as_completed(futures):
+            i = futures[future]
+            done[i] = _case(json.loads(future.result()))
+            print(done[i].name, file=sys.stderr)
+            write_table(name, [case for case in done if case.expected])
 
 
 def write_table(name: str, cases: Iterable[MotionCase]) -> None:
     """A table, one line for each state."""
-    entries = []
-    for case in cases:
-        fields = {
-            key: value
-            for key, value in case._asdict().items()
-            if key != "expected" and (value or key in ("omega", "times"))
-        }
-        lines = [f'  "{key}": {json.dumps(value)}' for key, value in fields.items()]
-        states = [
-            json.dumps([[_digits(x) for x in part] for part in state if len(part)]) for state in case.expected
-        ]
-        lines.append('  "expected": [\n    ' + ",\n    ".join(states) + "\n  ]")
-        entries.append("{\n" + ",\n".join(lines) + "\n}")
+    text = "[\n" + ",\n".join(map(_text, cases)) + "\n]\n"
     TABLES.mkdir(exist_ok=True)
-    (TABLES / f"{name}.json").write_text("[\n" + ",\n".join(entries) + "\n]\n", encoding="utf-8")
+    (TABLES / f"{name}.json").write_text(text, encoding="utf-8")
+
+
+def _written(proven: Callable[[MotionCase], MotionCase], case: MotionCase) -> str:
+    """A proven case as text: numbers of mpmath lose digits on their way between processes."""
+    return _text(proven(case))
+
+
+def _text(case: MotionCase) -> str:
+    fields = {
+        key: value
+        for key, value in case._asdict().items()
+        if key != "expected" and (value or key in ("omega", "times"))
+    }
+    lines = [f'  "{key}": {json.dumps(value)}' for key, value in fields.items()]
+    states = [
+        json.dumps([[_digits(x) for x in part] for part in state if len(part)]) for state in case.expected
+    ]
+    lines.append('  "expected": [\n    ' + ",\n    ".join(states) + "\n  ]")
+    return "{\n" + ",\n".join(lines) + "\n}"
 
 
 def _digits(x: Any) -> str:
@@ -139,7 +148,10 @@ def _digits(x: Any) -> str:
 
 
 def _case(entry: dict[str, Any]) -> MotionCase:
-    states = tuple(State(*(tuple(mpf(x) for x in part) for part in state)) for state in entry.pop("expected"))
+    with mp.workdps(DIGITS + 10):
+        states = tuple(
+            State(*(tuple(mpf(x) for x in part) for part in state)) for state in entry.pop("expected")
+        )
     lists = {key: tuple(value) for key, value in entry.items() if isinstance(value, list)}
     return MotionCase(**{**entry, **lists}, expected=states)
 

@@ -5,14 +5,14 @@ mod from_periods;
 mod in_time;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::RigidBody;
 use polhode::motion::attitude::components;
 use polhode::motion::free::{FreeMotion, RefinedPrincipal, sample_many};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{numpy, read, read_attitude, write, write_of};
+use crate::arrays::{floats, numpy, read, read_attitude, write, write_of};
 use crate::interrupt::Interrupt;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack, tuple};
@@ -174,32 +174,37 @@ impl PyFreeMotion {
     ///        [ 0. ,  0.1, 10. ],
     ///        [-0.1,  0. , 10. ]])
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let times: Stack<f64> = read(t, "t")?;
-        let shape = [&self.motions.shape[..], &times.shape].concat();
-        let count = self.motions.rows.len() * times.rows.len();
-        let (mut attitudes, mut omegas) = (vec![0.0; 4 * count], vec![0.0; 3 * count]);
-        let interrupt = Interrupt::new(None);
-        let outcome = py.detach(|| {
-            sample_many(
-                &self.motions.rows,
-                &times.rows,
-                attitudes.as_chunks_mut().0,
-                omegas.as_chunks_mut().0,
-                &mut |_| interrupt.poll(None),
-            )
-        });
-        interrupt.finish(py, outcome.is_ok())?;
-        let array = |numbers: Vec<f64>, components: usize| {
-            PyArray1::from_vec(py, numbers).reshape([&shape[..], &[components]].concat())
+        let times = floats(t, "t")?;
+        let shape = [&self.motions.shape[..], times.shape()].concat();
+        // NumPy's own memory, in large pages: the pages of a plain vector take longer to come by than the states.
+        let array = |components: usize| {
+            PyArrayDyn::<f64>::zeros(py, [&shape[..], &[components]].concat(), false)
         };
+        let (quaternion, omega) = (array(4), array(3));
+        let interrupt = Interrupt::new(None);
+        {
+            let (mut quaternion, mut omega) = (quaternion.readwrite(), omega.readwrite());
+            let (attitudes, omegas) = (quaternion.as_slice_mut()?, omega.as_slice_mut()?);
+            let times = times.as_slice()?;
+            let outcome = py.detach(|| {
+                sample_many(
+                    &self.motions.rows,
+                    times,
+                    attitudes.as_chunks_mut().0,
+                    omegas.as_chunks_mut().0,
+                    &mut |_| interrupt.poll(None),
+                )
+            });
+            interrupt.finish(py, outcome.is_ok())?;
+        }
         let np = numpy(py)?;
         let still = np.call_method1("zeros", ([&shape[..], &[3]].concat(),))?;
         let none = np.call_method1("zeros", (self.motions.shape.clone(), "int64"))?;
         let fields = PyDict::new(py);
         fields.set_item("body", &self.body)?;
-        fields.set_item("t", write(py, &times)?)?;
-        fields.set_item("omega", array(omegas, 3)?)?;
-        fields.set_item("quaternion", array(attitudes, 4)?)?;
+        fields.set_item("t", np.call_method1("array", (&*times,))?)?;
+        fields.set_item("omega", omega)?;
+        fields.set_item("quaternion", quaternion)?;
         fields.set_item("position", &still)?;
         fields.set_item("velocity", &still)?;
         fields.set_item("about", write(py, &self.centers())?)?;

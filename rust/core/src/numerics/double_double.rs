@@ -68,6 +68,12 @@ impl DoubleDouble {
         low: 1.224_646_799_147_353_2e-16,
     };
 
+    /// 1/2π.
+    pub const PER_TURN: Self = Self {
+        high: 0.159_154_943_091_895_35,
+        low: -9.839_338_337_591_243e-18,
+    };
+
     /// The product of two doubles, exactly within the range that [`two_product`] states.
     #[inline]
     #[must_use]
@@ -175,20 +181,14 @@ impl Mul for DoubleDouble {
 impl Div for DoubleDouble {
     type Output = Self;
 
-    /// Long division, a double at a time.
+    /// Long division: a digit, and the exact remainder's.
     #[inline]
-    #[expect(
-        clippy::suspicious_arithmetic_impl,
-        reason = "division is made of products and differences"
-    )]
     fn div(self, other: Self) -> Self {
-        let mut rest = self;
-        let [a, b, c] = [(); 3].map(|()| {
-            let digit = rest.high / other.high;
-            rest = rest - other * digit.into();
-            digit
-        });
-        Self::sum(a, b) + c.into()
+        let digit = self.high / other.high;
+        let (p, e) = two_product(digit, other.high);
+        // self.high − p is exact, as the digit is within a rounding of the quotient.
+        let rest = (self.high - p) + ((self.low - e) - digit * other.low);
+        Self::renormalized(digit, rest / other.high)
     }
 }
 

@@ -72,6 +72,10 @@ impl<'a, 'py> Acting<'a, 'py> {
 impl Load for Acting<'_, '_> {
     type Error = Fault;
 
+    fn analytic(&self) -> Option<&[Term]> {
+        (self.load.is_analytic()).then(|| self.analytic.analytic())?
+    }
+
     fn exerts_force(&self) -> bool {
         self.analytic.exerts_force()
             || self.load.callbacks().any(Callback::exerts_force)

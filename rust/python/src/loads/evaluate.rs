@@ -231,7 +231,7 @@ impl PyLoad {
         position: Option<&Bound<'py, PyAny>>,
         about: &str,
     ) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
-        if self.calls_python() || self.compiled().next().is_some() {
+        if !self.is_analytic() {
             return Ok(None);
         }
         let (terms, bodies, pivoted) = (self.terms()?, &body.get().bodies, is_pivot(about)?);
@@ -286,7 +286,7 @@ impl PyLoad {
         about: &str,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let pivoted = is_pivot(about)?;
-        if self.calls_python() || self.compiled().next().is_some() {
+        if !self.is_analytic() {
             return Ok(None);
         }
         let kept = (self.terms()?).map(|terms| {

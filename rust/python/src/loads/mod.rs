@@ -112,6 +112,11 @@ impl PyLoad {
         })
     }
 
+    /// Whether it has analytic terms alone.
+    pub(crate) fn is_analytic(&self) -> bool {
+        (self.parts.iter()).all(|part| matches!(part.acts, Acts::Term(_)))
+    }
+
     /// Whether it calls Python.
     pub(crate) fn calls_python(&self) -> bool {
         self.callbacks().next().is_some()

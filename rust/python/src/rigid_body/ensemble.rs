@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::RigidBody;
+use polhode::motion::integrate::taylor;
 use polhode::motion::loads::Term;
 use polhode::motion::simulate::{End, Events, Method, NoEvents, Run, Task, Tolerance, simulate};
 use polhode::motion::state::Phase;
@@ -94,6 +95,8 @@ impl Ensemble<'_> {
                     break;
                 }
             }
+        } else if self.method == Method::Taylor {
+            runs = self.abreast(py, interrupt);
         } else {
             let fraction = |of_row: f64| (count == 1).then_some(of_row);
             // Where a run ends all, the rows begun so far are kept.
@@ -127,6 +130,25 @@ impl Ensemble<'_> {
         Ok(runs)
     }
 
+    /// Integrates every row by Taylor series, eight side by side.
+    fn abreast(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs {
+        let count = self.grid.len();
+        let mut runs: Vec<Option<Run<polhode::Error>>> = (0..count).map(|_| None).collect();
+        py.detach(|| {
+            if count == 1 {
+                let (task, terms) = self.task(0);
+                let mut watch = |part| interrupt.poll(Some(part));
+                runs[0] = Some(taylor::solve_one(&task, terms, &mut watch));
+            } else {
+                let poll = |begun| interrupt.poll(Some(begun));
+                taylor::solve_many(&|row| self.task(row), &mut runs, &poll);
+            }
+        });
+        (runs.into_iter())
+            .map(|run| run.map(|run| run.with_error(Fault::Core)))
+            .collect()
+    }
+
     fn ends_all(&self, run: &Run<Fault>) -> bool {
         match &run.end {
             End::Stopped | End::Failed(Fault::Python(_)) => true,
@@ -142,6 +164,13 @@ impl Ensemble<'_> {
         events: &mut dyn Events<Error = Fault>,
         mut watch: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Run<Fault> {
+        let (task, terms) = self.task(row);
+        let mut load = Acting::new(self.load, terms, task.subject, py);
+        simulate(&task, &mut load, events, &mut watch)
+    }
+
+    /// What is to be simulated in a row, and the analytic terms of the load.
+    fn task(&self, row: usize) -> (Task<'_>, &[Term]) {
         let [b, w, q, r, v, l] = self.grid.operands(row);
         let initial = Phase {
             attitude: self.start.attitude[q],
@@ -156,7 +185,6 @@ impl Ensemble<'_> {
         };
         let body = &self.start.bodies[b];
         let task = of(body, initial, self.times, self.method, self.tolerance);
-        let mut load = Acting::new(self.load, &self.start.terms[l], task.subject, py);
-        simulate(&task, &mut load, events, &mut watch)
+        (task, &self.start.terms[l])
     }
 }

@@ -101,10 +101,7 @@ impl PyRigidBody {
     /// --------
     /// RigidBody.load : reads it.
     #[pyo3(signature = (path))]
-    fn save<'py>(
-        slf: &Bound<'py, Self>,
-        path: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn save<'py>(slf: &Bound<'py, Self>, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         slf.py()
             .import("polhode.files")?
             .call_method1("save_body", (slf, path))

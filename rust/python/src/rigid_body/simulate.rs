@@ -41,13 +41,15 @@ impl PyRigidBody {
     /// about : {"center_of_mass", "origin"}, optional
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.
-    /// method : {"auto", "dop853", "radau", "splitting"}, optional
-    ///     "dop853" is the explicit Runge-Kutta method of order 8 by Dormand and Prince with a dense
-    ///     output of order 7: any load. "radau" is the implicit Runge-Kutta method Radau IIA of order 5:
+    /// method : {"auto", "exact", "taylor", "dop853", "radau", "splitting"}, optional
+    ///     "exact" is the closed form of a free body without a load, whose cost and error do not grow with time.
+    ///     "taylor" sums Taylor series of the order at which the work is least, 22 at the tightest `rtol`:
+    ///     any load without callbacks, in runs without events. "dop853" is the explicit Runge-Kutta method
+    ///     of order 8 by Dormand and Prince with a dense output of order 7: any load. "auto" takes the first
+    ///     of these that can serve the run. "radau" is the implicit Runge-Kutta method Radau IIA of order 5:
     ///     any load, for those that are stiff, such as strong damping. "splitting" kicks the body between
     ///     exact free motions at equal steps, as long as `rtol` allows at the start: loads that depend on
     ///     time, attitude and position alone, for long times, since the energy does not drift.
-    ///     "auto" chooses.
     /// rtol : float, optional
     ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
     ///     distance and speed so far; from 2.3e-15 to 0.1.
@@ -154,12 +156,20 @@ impl PyRigidBody {
             terms: acts.terms()?,
         };
         let events = Functions::read(events)?;
+        let of_first = start.terms.rows.first().map_or(&[][..], Vec::as_slice);
+        let method = parse_method(method)?
+            .serving(
+                pivoted,
+                acts.is_analytic().then_some(of_first),
+                !events.is_empty(),
+            )
+            .map_err(|error| to_py(py, &error))?;
         let ensemble = Ensemble {
             start: &start,
             grid: start.grid()?,
             times: &times,
             pivoted,
-            method: parse_method(method)?,
+            method,
             tolerance,
             load: acts,
             events: &events,
@@ -192,27 +202,23 @@ impl PyRigidBody {
     }
 }
 
-/// The methods by their names.
-const METHODS: [(&str, Method); 4] = [
-    ("auto", Method::Auto),
-    ("dop853", Method::Dop853),
-    ("radau", Method::Radau),
-    ("splitting", Method::Splitting),
+const METHODS: [Method; 6] = [
+    Method::Auto,
+    Method::Exact,
+    Method::Taylor,
+    Method::Dop853,
+    Method::Radau,
+    Method::Splitting,
 ];
 
 fn parse_method(word: &str) -> PyResult<Method> {
-    METHODS
-        .iter()
-        .find_map(|&(name, method)| (name == word).then_some(method))
+    (METHODS.into_iter())
+        .find(|method| method.name() == word)
         .ok_or_else(|| {
-            let names: Vec<_> = METHODS
-                .iter()
-                .map(|(name, _)| format!("\"{name}\""))
-                .collect();
-            PyValueError::new_err(format!(
-                "method: expected one of {}, got \"{word}\"",
-                names.join(", ")
-            ))
+            let names = METHODS
+                .map(|method| format!("\"{}\"", method.name()))
+                .join(", ");
+            PyValueError::new_err(format!("method: expected one of {names}, got \"{word}\""))
         })
 }
 

@@ -18,7 +18,7 @@ fn sines() -> AnySeries {
 }
 
 fn turns_of(radians: DoubleDouble) -> DoubleDouble {
-    radians / (DoubleDouble::PI + DoubleDouble::PI)
+    radians * DoubleDouble::PER_TURN
 }
 
 /// ω constant in the body, and so in space: `q(t) = q(0) ∘ (n sin ½|ω|t, cos ½|ω|t)`, n along ω.

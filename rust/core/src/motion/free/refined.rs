@@ -103,6 +103,8 @@ impl RefinedPrincipal {
     }
 }
 
+/// Below this tangent `tan 2φ = 2 tan φ` and `1 − cos φ = ½ tan² φ`, to what a sweep needs.
+const SMALL: f64 = 1e-9;
 /// The most sweeps; two or three are enough.
 const SWEEPS: usize = 8;
 /// Elements off the diagonal below this part of the largest moment are zero to twice the precision.
@@ -114,13 +116,13 @@ fn rotate(b: &mut [Vector; 3], axes: &mut [Vector; 3], i: usize, j: usize) {
     if product.rounded() == 0.0 {
         return;
     }
-    let one = DoubleDouble::from(1.0);
-    // cot 2φ, and the smaller root t = tan φ of t² + 2 t cot 2φ − 1 = 0.
-    let cotangent = (b[j][j] - b[i][i]) / (product + product);
-    let is_tiny = cotangent.rounded().abs() > 1e40;
-    let tangent = if is_tiny {
-        one / (cotangent + cotangent)
+    let gap = b[j][j] - b[i][i];
+    let tangent = if product.high.abs() < SMALL * gap.high.abs() {
+        (product.high / gap.high).into()
     } else {
+        // cot 2φ, and the smaller root t = tan φ of t² + 2 t cot 2φ − 1 = 0.
+        let cotangent = gap / (product + product);
+        let one = DoubleDouble::from(1.0);
         let root = one / (cotangent.abs() + (one + cotangent * cotangent).sqrt());
         if cotangent.rounded() < 0.0 {
             -root
@@ -128,12 +130,22 @@ fn rotate(b: &mut [Vector; 3], axes: &mut [Vector; 3], i: usize, j: usize) {
             root
         }
     };
-    let cosine = one / (one + tangent * tangent).sqrt();
-    let sine = tangent * cosine;
-    let turned = |u: DoubleDouble, v: DoubleDouble| (cosine * u - sine * v, sine * u + cosine * v);
+    // 1 − cos φ; to rounding of its first term where φ is small.
+    let square = tangent * tangent;
+    let versine = if square.high < SMALL * SMALL {
+        square.scaled(0.5)
+    } else {
+        let root = (DoubleDouble::from(1.0) + square).sqrt();
+        square / (root * (root + 1.0.into()))
+    };
+    let sine = tangent - tangent * versine;
+    let turned = |u: DoubleDouble, v: DoubleDouble| {
+        (u - (sine * v + versine * u), v + (sine * u - versine * v))
+    };
     let (u, v) = (axes[i], axes[j]);
-    axes[i] = std::array::from_fn(|c| turned(u[c], v[c]).0);
-    axes[j] = std::array::from_fn(|c| turned(u[c], v[c]).1);
+    let pairs: [(DoubleDouble, DoubleDouble); 3] = std::array::from_fn(|c| turned(u[c], v[c]));
+    axes[i] = pairs.map(|pair| pair.0);
+    axes[j] = pairs.map(|pair| pair.1);
     let k = 3 - i - j;
     let shift = tangent * product;
     b[i][i] = b[i][i] - shift;

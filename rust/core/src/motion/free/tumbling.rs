@@ -58,11 +58,10 @@ impl Tumbling {
     /// Of distinct moments and an ω that is along none of their axes.
     pub(super) fn of(moments: &Vector, w: &Vector) -> Self {
         let [i1, i2, i3] = *moments;
-        // L² − 2T I₂ over the units of the larger of ω₁ and ω₃.
-        let unit = w[0].high.abs().max(w[2].high.abs());
-        let unit = Double::<false>::new(unit).power_of_two_scale().0.get();
-        let square = |rate: DoubleDouble| rate.scaled(unit) * rate.scaled(unit);
-        let difference = i3 * (i3 - i2) * square(w[2]) - i1 * (i2 - i1) * square(w[0]);
+        // L² − 2T I₂ in units of the larger of ω₁ and ω₃, and its like below: tiny rates keep their digits.
+        let middle = Unit::of(w[0], w[2]);
+        let difference =
+            i3 * (i3 - i2) * middle.square(w[2]) - i1 * (i2 - i1) * middle.square(w[0]);
         let (mode, axes, sense) = if difference.high < 0.0 {
             (Mode::LongAxis, [2, 1, 0], -1.0)
         } else if difference.high == 0.0 {
@@ -73,30 +72,29 @@ impl Tumbling {
         let [x, y, z] = axes;
         let [jx, jy, jz] = axes.map(|k| moments[k]);
         let (zx, zy, yx) = ((jz - jx).abs(), (jz - jy).abs(), (jy - jx).abs());
-        let weighted = |a: DoubleDouble, k: usize, b: DoubleDouble, l: usize| {
-            let zero = DoubleDouble::default();
-            hypotenuse(&[a.sqrt() * w[k], b.sqrt() * w[l], zero])
-        };
-        let root_dz = weighted(jx * zx, x, jy * zy, y);
-        let root_dx = weighted(jy * yx, y, jz * zx, z);
-        let root_dy = difference.abs().sqrt().scaled(1.0 / unit);
-        let rate = (zy / (jx * jy * jz)).sqrt() * root_dx;
-        let complementary = (zx / zy).sqrt() * (root_dy / root_dx);
-        let modulus = (yx / zy).sqrt() * (root_dz / root_dx);
+        let (across, along) = (Unit::of(w[x], w[y]), Unit::of(w[y], w[z]));
+        let dz = (jx * zx * across.square(w[x]) + jy * zy * across.square(w[y])).high;
+        let dx = jy * yx * along.square(w[y]) + jz * zx * along.square(w[z]);
+        let volume = jx * jy * jz;
+        let rate = (zy * dx / volume).sqrt().scaled(along.size);
+        let complementary = (zx * difference.abs() / (zy * dx))
+            .sqrt()
+            .scaled(middle.size / along.size);
+        let modulus = (yx.high * dz / (zy.high * dx.high)).sqrt() * (across.size / along.size);
         let momentum = hypotenuse(&[jx * w[x], jy * w[y], jz * w[z]]);
         let amplitudes = [
-            (root_dz / (jx * zx).sqrt()).high,
-            (root_dz / (jy * zy).sqrt()).high,
-            (root_dx / (jz * zx).sqrt()).high,
+            (dz / (jx * zx).high).sqrt() * across.size,
+            (dz / (jy * zy).high).sqrt() * across.size,
+            (dx.high / (jz * zx).high).sqrt() * along.size,
         ];
         let (quarter, precession) = if mode == Mode::Separatrix {
             (f64::INFINITY.into(), momentum / jy)
         } else {
             // (L/I_x) ∫ (cn² + (I_x p/I_y) sn²)/(cn² + p sn²) du over K, p = I_y |I_z − I_x|/(I_x |I_z − I_y|).
             let weight = zx / zy;
-            let p = weight * jy / jx;
+            let p = jy * zx / (jx * zy);
             let (first, third) = complete_third(complementary, p, 1.0.into(), weight);
-            (first, momentum / jx * (third / first))
+            (first, momentum * third / (jx * first))
         };
         let sign = |k: usize| if w[k].high < 0.0 { -1.0 } else { 1.0 };
         // (3, 2, 1) is left-handed, so there y is the other way.
@@ -112,7 +110,7 @@ impl Tumbling {
             amplitudes,
             directions: [0, 1, 2].map(|k| [jx, jy, jz][k].high * amplitudes[k] / momentum.high),
             rate,
-            modulus: modulus.high.min(1.0),
+            modulus: modulus.min(1.0),
             complementary,
             excess: (jz * yx / (jx * zy)).high,
             quarter,
@@ -153,7 +151,7 @@ impl Tumbling {
         } else {
             circling
         };
-        let turns = self.precession / (DoubleDouble::PI + DoubleDouble::PI);
+        let turns = self.precession * DoubleDouble::PER_TURN;
         let propagator = Propagator {
             rate: (turns - circling).scaled(0.5),
             clock,
@@ -259,6 +257,29 @@ impl Tumbling {
             },
         };
         (AnySeries::Hyperbolic(series), ratio)
+    }
+}
+
+/// A unit of two rates, a power of two near the larger.
+#[derive(Clone, Copy)]
+struct Unit {
+    size: f64,
+    inverse: f64,
+}
+
+impl Unit {
+    fn of(a: DoubleDouble, b: DoubleDouble) -> Self {
+        let larger = Double::<false>::new(a.high.abs().max(b.high.abs()));
+        let (inverse, size) = larger.power_of_two_scale();
+        Self {
+            size: size.get(),
+            inverse: inverse.get(),
+        }
+    }
+
+    fn square(self, rate: DoubleDouble) -> DoubleDouble {
+        let rate = rate.scaled(self.inverse);
+        rate * rate
     }
 }
 

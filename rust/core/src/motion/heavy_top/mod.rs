@@ -49,6 +49,8 @@ pub struct HeavyTop {
 impl HeavyTop {
     /// The top with this state at time zero. `omega`: of B relative to N, components in B. `attitude`: `R_NB`. `gravity`: g, in N.
     ///
+    /// The quaternion counts as it is, to its last bit, and is made a unit one in double-double.
+    ///
     /// # Errors
     /// When a number is not finite.
     pub fn of(

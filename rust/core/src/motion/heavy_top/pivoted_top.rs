@@ -115,7 +115,7 @@ impl PivotedTop {
         gravity: &Vector3<f64>,
         inclination: f64,
     ) -> f64 {
-        let up = attitude
+        let up = UnitQuaternion::new_normalize(attitude.into_inner())
             .inverse_transform_vector(&(-gravity).try_normalize(0.0).unwrap_or_else(Vector3::z));
         let spin = omega.dot(&self.axis);
         let across = omega - self.axis * spin;

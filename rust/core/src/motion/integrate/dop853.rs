@@ -206,10 +206,16 @@ impl<const N: usize> Dop853<N> {
         self.slope(system, self.elapsed.0 + NODES[stage] * h, &y)
     }
 
+    #[inline]
     fn weighted(&self, row: Row) -> SVector<f64, N> {
-        row.iter().fold(SVector::zeros(), |sum, &(stage, weight)| {
-            sum + self.slopes[stage] * weight
-        })
+        let mut sum = SVector::zeros();
+        for &(stage, weight) in row {
+            let slope = &self.slopes[stage];
+            for i in 0..N {
+                sum[i] += slope[i] * weight;
+            }
+        }
+        sum
     }
 
     /// The estimate of order 5, damped by that of order 3, in units of what is allowed.

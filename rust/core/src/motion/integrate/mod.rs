@@ -2,6 +2,7 @@
 //!
 //! | method | file | for |
 //! |---|---|---|
+//! | Taylor series | [`taylor`] | analytic loads: as accurate as the numbers can be |
 //! | DOP853 | [`dop853`] | loads that are smooth but not analytic to us: callbacks |
 //! | Radau IIA | [`radau`] | stiff loads: strong damping, stiff control |
 //! | splitting | [`splitting`] | loads without damping over long times: the energy does not drift |
@@ -11,6 +12,7 @@ mod first_step;
 pub mod radau;
 pub mod splitting;
 mod tableau;
+pub mod taylor;
 
 pub use dop853::Dop853;
 pub use radau::Radau;

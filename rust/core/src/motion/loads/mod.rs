@@ -150,6 +150,11 @@ pub trait Load {
     /// What may go wrong in it, besides what the equations of motion themselves may refuse.
     type Error: From<Error>;
 
+    /// Its terms, when it is a sum of analytic terms and nothing else.
+    fn analytic(&self) -> Option<&[Term]> {
+        None
+    }
+
     /// Whether it may push, so that a free body's position depends on it.
     fn exerts_force(&self) -> bool;
 
@@ -198,6 +203,12 @@ impl<'a> Analytic<'a> {
         &self.subject
     }
 
+    /// The terms.
+    #[must_use]
+    pub fn terms(&self) -> &'a [Term] {
+        self.terms
+    }
+
     /// The terms that act in the span of time last entered; of scheduled ones what they switch.
     #[must_use]
     pub fn active(&self) -> &[&'a Term] {
@@ -207,6 +218,10 @@ impl<'a> Analytic<'a> {
 
 impl Load for Analytic<'_> {
     type Error = Error;
+
+    fn analytic(&self) -> Option<&[Term]> {
+        Some(self.terms)
+    }
 
     fn exerts_force(&self) -> bool {
         self.terms.iter().any(Term::exerts_force)

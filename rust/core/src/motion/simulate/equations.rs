@@ -20,6 +20,8 @@ pub(super) const MOVING: usize = 13;
 struct Axes {
     q_bp: UnitQuaternion<f64>,
     columns: Matrix3<f64>,
+    /// Whether they are those of B, as of most bodies that are given by their moments.
+    are_of_body: bool,
 }
 
 /// The largest |ω|, |r| and |v| of the states so far: what errors are relative to.
@@ -59,6 +61,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             axes: Axes {
                 q_bp: from_axes(euler.axes()),
                 columns: *euler.axes(),
+                are_of_body: *euler.axes() == Matrix3::identity(),
             },
             load,
             tolerance,
@@ -87,11 +90,14 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             let (start, position, velocity) = self.origin;
             (position + velocity * (t - start), velocity)
         };
+        let (mut q, mut omega) = (quaternion(y), vector(y, 4));
+        if !self.axes.are_of_body {
+            q *= self.axes.q_bp.conjugate().into_inner();
+            omega = self.axes.columns * omega;
+        }
         Phase {
-            attitude: UnitQuaternion::new_normalize(
-                quaternion(y) * self.axes.q_bp.conjugate().into_inner(),
-            ),
-            omega: self.axes.columns * vector(y, 4),
+            attitude: UnitQuaternion::new_unchecked(q * (1.0 / q.norm_squared().sqrt())),
+            omega,
             position,
             velocity,
         }
@@ -109,10 +115,15 @@ fn vector<const N: usize>(y: &SVector<f64, N>, from: usize) -> Vector3<f64> {
 impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
     type Error = L::Error;
 
+    #[inline]
     fn derivative(&mut self, t: f64, y: &SVector<f64, N>) -> Result<SVector<f64, N>, L::Error> {
         let (q, w) = (quaternion(y), vector(y, 4));
         let wrench = self.load.wrench(t, &self.phase(t, y))?;
-        let torque = self.axes.columns.tr_mul(&wrench.torque);
+        let torque = if self.axes.are_of_body {
+            wrench.torque
+        } else {
+            self.axes.columns.tr_mul(&wrench.torque)
+        };
         let turning = self.euler.principal_acceleration(&w, &torque)?;
         let q_rate = rate(&q, &w);
         let mut slope = SVector::zeros();

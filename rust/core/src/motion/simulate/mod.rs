@@ -1,20 +1,24 @@
 //! The motion of a body under a load, sampled at the times asked for.
 //!
-//! A run is cut into spans in which the load is smooth; [`stepper`] is where a method for a span is chosen, [`equations`]
-//! what a method sees of the mechanics, [`events`] what is looked for on the way.
+//! [`method`] tells which method serves a run. Those of steps cut it into spans in which the load is smooth: [`stepper`] is
+//! what a run needs of them, [`equations`] what they see of the mechanics, [`events`] what is looked for on the way.
 
 mod equations;
 pub mod events;
+mod exact;
 mod implicit;
 mod kicked;
+pub mod method;
 mod stepper;
 
 use std::ops::ControlFlow;
 
 use self::events::Lookout;
 pub use self::events::{Crossing, Direction, Events, NoEvents, Rule};
+pub use self::method::Method;
 use self::stepper::{Carry, Span, Stepper};
 use super::euler_equations::EulerEquations;
+use super::integrate::taylor;
 use super::loads::{Load, Subject};
 pub use super::state::{Phase, State};
 use crate::error::{Error, all_finite, finite};
@@ -59,24 +63,11 @@ impl Tolerance {
     }
 }
 
-/// How a motion is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Method {
-    /// The first that can serve the load.
-    #[default]
-    Auto,
-    /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
-    Dop853,
-    /// The implicit Runge-Kutta method Radau IIA of order 5: every load, for those that are stiff.
-    Radau,
-    /// Kicks between exact free motions at equal steps: loads that do not depend on rates, for long times.
-    Splitting,
-}
-
 /// What is to be simulated: a body from a state through times, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
+    /// The body.
+    pub body: RigidBody,
     /// The body and its reference point, as a load sees them.
     pub subject: Subject,
     /// Euler's equations about the reference point.
@@ -103,6 +94,7 @@ impl<'a> Task<'a> {
     ) -> Self {
         let subject = Subject::free(body, times.first().copied().unwrap_or_default());
         Self {
+            body: *body,
             subject,
             euler: EulerEquations::about(body, &subject.point),
             initial,
@@ -219,15 +211,45 @@ pub fn simulate<L: Load>(
         end: End::Complete,
     };
     run.samples[0] = task.initial;
-    run.end = run
-        .through(task, load, events, watch)
-        .unwrap_or_else(End::Failed);
+    let (terms, has_events) = (load.analytic(), !events.rules().is_empty());
+    let method = task.method.serving(task.subject.pivoted, terms, has_events);
+    run.end = match (method, terms) {
+        (Err(error), _) => End::Failed(error.into()),
+        (Ok(Method::Exact), _) if !has_events => {
+            exact::solve(task, &mut run, watch).unwrap_or_else(End::Failed)
+        }
+        (Ok(Method::Taylor), Some(terms)) => {
+            return taylor::solve_one(task, terms, watch).with_error(L::Error::from);
+        }
+        (Ok(method), _) => run
+            .through(method, task, load, events, watch)
+            .unwrap_or_else(End::Failed),
+    };
     run
 }
 
 impl<E> Run<E> {
+    /// The same run, its error through `f`.
+    #[must_use]
+    pub fn with_error<F>(self, f: impl FnOnce(E) -> F) -> Run<F> {
+        Run {
+            samples: self.samples,
+            crossings: self.crossings,
+            effort: self.effort,
+            time: self.time,
+            phase: self.phase,
+            end: match self.end {
+                End::Complete => End::Complete,
+                End::Event => End::Event,
+                End::Stopped => End::Stopped,
+                End::Failed(error) => End::Failed(f(error)),
+            },
+        }
+    }
+
     fn through<L: Load<Error = E>>(
         &mut self,
+        method: Method,
         task: &Task<'_>,
         load: &mut L,
         events: &mut dyn Events<Error = E>,
@@ -250,7 +272,7 @@ impl<E> Run<E> {
                 phase: self.phase,
                 carry,
             };
-            let mut stepper = stepper::start(task, &span, load)?;
+            let mut stepper = stepper::start(method, task, &span, load)?;
             let before = self.effort;
             let mut watch = |elapsed: f64| watch((from - start + elapsed) / (end - start));
             let ended = self.span(
@@ -360,7 +382,7 @@ mod tests {
             &body.expect("body"),
             initial,
             times,
-            Method::Auto,
+            Method::Dop853,
             tolerance,
         );
         let mut load = Analytic::new(load, task.subject);

@@ -1,6 +1,7 @@
 //! What the run needs of a method, and the one place where a method is chosen.
 
 use super::equations::{Equations, MOVING, Scales, TURNING};
+use super::exact::Exact;
 use super::implicit::Implicit;
 use super::kicked::Kicked;
 use super::{Effort, Method, Task};
@@ -53,10 +54,11 @@ pub(super) struct Span {
     pub(super) carry: Carry,
 }
 
-/// The method of `task` at the start of `span`.
+/// A method of steps at the start of `span`.
 ///
 /// A stepper more is an arm more here, and its row in [`Method`].
 pub(super) fn start<'a, L: Load>(
+    method: Method,
     task: &Task<'_>,
     span: &Span,
     load: &'a mut L,
@@ -65,14 +67,13 @@ where
     L::Error: 'a,
 {
     let moves = !task.subject.pivoted && load.exerts_force();
-    Ok(match task.method {
-        Method::Auto | Method::Dop853 if moves => {
-            Box::new(Explicit::<L, MOVING>::new(task, span, load)?)
-        }
-        Method::Auto | Method::Dop853 => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
+    Ok(match method {
+        Method::Exact => Box::new(Exact::<L::Error>::new(task, span)?),
         Method::Radau if moves => Box::new(Implicit::<L, MOVING>::new(task, span, load)?),
         Method::Radau => Box::new(Implicit::<L, TURNING>::new(task, span, load)?),
         Method::Splitting => Box::new(Kicked::new(task, span, load)?),
+        _ if moves => Box::new(Explicit::<L, MOVING>::new(task, span, load)?),
+        _ => Box::new(Explicit::<L, TURNING>::new(task, span, load)?),
     })
 }
 

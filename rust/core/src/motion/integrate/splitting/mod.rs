@@ -168,13 +168,12 @@ impl Body {
     }
 
     fn drift(&self, point: &mut Point, time: f64) -> Result<(), Error> {
-        let mut attitude = match self.symmetry {
-            Some(top) => top.turned(point, time),
-            None => {
-                let omega = self.omega(point);
-                let motion = FreeMotion::refined(&self.principal, &omega, &point.attitude)?;
-                motion.at(time).attitude
-            }
+        let mut attitude = if let Some(top) = self.symmetry {
+            top.turned(point, time)
+        } else {
+            let omega = self.omega(point);
+            let motion = FreeMotion::refined(&self.principal, &omega, &point.attitude)?;
+            motion.at(time).attitude
         };
         attitude.renormalize();
         point.attitude = attitude;

@@ -1,0 +1,600 @@
+//! Runs motions to their last output time, `R` at a time, each with its own steps.
+
+use std::ops::ControlFlow;
+
+use super::course::Course;
+use super::extras::Extras;
+use super::field::{Field, Parts};
+use super::pack::Pack;
+use super::push::Push;
+use super::series::{Coefficient, HIGHEST_ORDER, Series, cross_term};
+use super::step::{Compensated, increment, longest};
+use crate::error::Error;
+use crate::motion::simulate::{Effort, End, Run};
+use crate::motion::state::Phase;
+use crate::numerics::double_double::two_sum;
+use crate::numerics::lane::Lane;
+
+/// Steps between two looks at the watch.
+const PATIENCE: u32 = 64;
+/// Relative to the tolerance of a step, the size of the last term of its series: the terms left out are a quarter of that,
+/// and at the tightest tolerance stay below the rounding of the state even where they all have the same sign.
+const LAST_TERM: f64 = 0.05;
+/// How far ω may outgrow the unit of rates before another is taken: far below where its 24th power overflows.
+const OUTGROWN: f64 = 65_536.0;
+/// The halvings that find where within a step the law changes.
+const HALVINGS: u32 = 55;
+
+/// What all motions of a run have in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    /// The highest order of the series.
+    order: usize,
+    /// The size of their last terms as a logarithm to base 2.
+    last_term: f64,
+    /// The ω that counts as much as the largest |ω| so far: absolute over relative tolerance.
+    floor: f64,
+    pub(super) parts: Parts,
+}
+
+impl Settings {
+    /// For the equations that `parts` says, with the order at which the work is least: it grows with the square of the order, the step with
+    /// `tolerance^(1/order)`.
+    pub(super) fn new(relative: f64, absolute: f64, parts: Parts) -> Self {
+        let nats = -(LAST_TERM * relative).ln();
+        let mut halves = (4..HIGHEST_ORDER / 2).filter(|&half| half as f64 + 1.0 <= 0.3 * nats);
+        let order = 2 * halves.next_back().map_or(4, |half| half + 1);
+        Self {
+            order,
+            last_term: (LAST_TERM * relative).log2(),
+            floor: absolute / relative,
+            parts,
+        }
+    }
+}
+
+/// A motion to be run, and its run, which is at its start.
+pub(super) struct Job<'a> {
+    pub(super) course: Course<'a>,
+    pub(super) run: &'a mut Run<Error>,
+}
+
+/// What a motion comes to next.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stop {
+    /// A time of output.
+    Output,
+    /// A break of its load.
+    Break,
+}
+
+/// What a motion comes to within a step.
+enum Meeting {
+    /// An output, at this time since the start of the step.
+    Output(f64),
+    /// A break, after this time.
+    Break(f64),
+    Nothing,
+    End,
+}
+
+/// Why the equations of a motion change after a step.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Landing {
+    None,
+    Break,
+    Flip,
+}
+
+/// The search for the first time in a step at which a feedback has changed its sign or ω passed through zero: a look at its end, then halvings.
+struct Search {
+    before: f64,
+    after: f64,
+    looks: u32,
+    has_found: bool,
+}
+
+impl Search {
+    /// In a step as long as `h`; over at once unless `is_needed`.
+    fn new(is_needed: bool, h: f64) -> Self {
+        Self {
+            before: if h.is_finite() { h } else { 0.0 },
+            after: h,
+            looks: u32::from(is_needed && h.is_finite()),
+            has_found: false,
+        }
+    }
+
+    /// Where to look next, until it is over.
+    fn time(&self) -> Option<f64> {
+        (self.looks > 0).then_some(0.5 * (self.before + self.after))
+    }
+
+    /// Goes on with what was seen there.
+    fn narrow(&mut self, has_flipped: bool) {
+        let middle = 0.5 * (self.before + self.after);
+        if self.has_found {
+            if has_flipped {
+                self.after = middle;
+            } else {
+                self.before = middle;
+            }
+            self.looks -= 1;
+        } else if has_flipped {
+            (self.before, self.has_found, self.looks) = (0.0, true, HALVINGS);
+        } else {
+            self.looks = 0;
+        }
+    }
+
+    /// The end of the step.
+    fn end(&self) -> f64 {
+        self.after
+    }
+
+    fn landing(&self) -> Landing {
+        if self.has_found {
+            Landing::Flip
+        } else {
+            Landing::None
+        }
+    }
+}
+
+/// A motion under way.
+struct Lead<'a> {
+    job: Job<'a>,
+    /// The next output.
+    next: usize,
+    stop: Stop,
+    steps: u64,
+}
+
+/// `R` motions under way. Times are since the start, in the unit of each motion.
+struct Lanes<'a, L, S, const B: usize, const R: usize> {
+    settings: Settings,
+    series: S,
+    field: Field<Pack<L, R>, B>,
+    extras: Extras<Pack<L, R>>,
+    directions: [[Pack<L, R>; 3]; B],
+    state: Compensated<Pack<L, R>>,
+    push: Option<Box<Push<Pack<L, R>>>>,
+    leads: [Option<Lead<'a>>; R],
+    /// The times now and of the next stop, each with what rounding has left out.
+    now: [(f64, f64); R],
+    stop: [(f64, f64); R],
+    /// The largest |ω| so far, or what else counts as large, and 1 or −1 for backward in time.
+    fastest: [f64; R],
+    direction: [f64; R],
+}
+
+/// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
+/// done, and may stop them.
+#[inline(always)]
+pub(super) fn drive<L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize>(
+    settings: Settings,
+    jobs: &mut dyn Iterator<Item = Job<'_>>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let zero = Pack::new(0.0);
+    let mut lanes = Lanes::<L, S, B, R> {
+        settings,
+        series: S::new(),
+        field: Field::new(),
+        extras: Extras::new(&settings.parts),
+        directions: [[zero; 3]; B],
+        state: Compensated::new(),
+        push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
+        leads: [const { None }; R],
+        now: [(0.0, 0.0); R],
+        stop: [(f64::INFINITY, 0.0); R],
+        fastest: [1.0; R],
+        direction: [1.0; R],
+    };
+    let mut patience = PATIENCE;
+    let mut idle = true;
+    loop {
+        if idle {
+            for row in 0..R {
+                if lanes.leads[row].is_none() {
+                    lanes.load(row, jobs);
+                }
+            }
+            if lanes.leads.iter().all(Option::is_none) {
+                return ControlFlow::Continue(());
+            }
+        }
+        idle = lanes.step();
+        patience -= 1;
+        if patience == 0 {
+            patience = PATIENCE;
+            if watch(lanes.fraction()).is_break() {
+                for row in 0..R {
+                    lanes.end(row, End::Stopped);
+                }
+                return ControlFlow::Break(());
+            }
+        }
+    }
+}
+
+impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lanes<'a, L, S, B, R> {
+    /// One step of every motion; whether one has ended.
+    #[inline(always)]
+    fn step(&mut self) -> bool {
+        let Settings {
+            order, last_term, ..
+        } = self.settings;
+        self.expand();
+        let mut h = longest(&self.series, order, last_term, &self.fastest);
+        self.extras
+            .limit(&self.series, &self.field, &self.fastest, &mut h);
+        let mut eventful = self.settings.parts.may_flip();
+        for row in 0..R {
+            let (now, gap) = (self.now[row].0, self.gap(row));
+            // What is not a number is an event too.
+            let is_plain = (h[row] < gap) & (h[row] > f64::EPSILON * now.abs());
+            eventful |= !is_plain;
+        }
+        let mut landings = [Landing::None; R];
+        if eventful {
+            for row in 0..R {
+                if self.leads[row].is_some() {
+                    (h[row], landings[row]) = self.pass(row, h[row]);
+                }
+            }
+        }
+        let mut signed = Pack::new(0.0);
+        for row in 0..R {
+            h[row] *= self.direction[row];
+            signed.set(row, h[row]);
+        }
+        let change = increment(&self.series, order, signed);
+        self.state.add(&change);
+        if let Some(push) = &mut self.push {
+            let change = push.increment(order, signed);
+            push.add(&change);
+        }
+        let mut ended = false;
+        let mut outgrown = false;
+        for row in 0..R {
+            let (now, rest) = self.now[row];
+            self.now[row] = two_sum(now, rest + h[row]);
+            let (x, y) = (self.state.value[0].get(row), self.state.value[1].get(row));
+            let z = self.state.value[2].get(row);
+            let speed = (x * x + y * y + z * z).sqrt();
+            if speed > self.fastest[row] {
+                self.fastest[row] = speed;
+            }
+            outgrown |= speed > OUTGROWN;
+        }
+        if eventful | outgrown {
+            for row in 0..R {
+                self.settle(row, landings[row]);
+                ended |= self.leads[row].is_none();
+            }
+        }
+        for lead in self.leads.iter_mut().flatten() {
+            lead.steps += 1;
+        }
+        ended
+    }
+
+    /// The series at the states now.
+    #[inline(always)]
+    fn expand(&mut self) {
+        let Settings { order, parts, .. } = self.settings;
+        let [w0, w1, w2, x, y, z, w] = self.state.value;
+        let q = [x, y, z, w];
+        let mut g = self.directions;
+        for g in &mut g {
+            *g = seen(&q, g);
+        }
+        self.series.start(&Coefficient {
+            w: [w0, w1, w2],
+            q,
+            g,
+        });
+        if self.extras.is_timed() {
+            for row in 0..R {
+                if let Some(lead) = &self.leads[row] {
+                    let moment = lead.job.course.moment(self.now[row]);
+                    let inverse = lead.job.course.inverse_moments();
+                    self.extras.set(row, &moment, &inverse, &q);
+                }
+            }
+        }
+        self.extras.start(&self.fastest);
+        for k in 0..order {
+            let sums = self.series.sums(k);
+            let (spins, at) = (S::spins(&sums), self.series.get(k));
+            let more = self.extras.coefficient(k, &self.series, &self.field);
+            let acceleration = self.field.acceleration(parts, k, spins, &at, more);
+            self.series.extend(k, &sums, &acceleration);
+        }
+        if let Some(push) = &mut self.push {
+            push.expand(order, &self.series, &self.field);
+        }
+    }
+
+    /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.
+    #[inline(always)]
+    fn pass(&mut self, row: usize, mut h: f64) -> (f64, Landing) {
+        let mut search = Search::new(self.settings.parts.may_flip(), h);
+        loop {
+            let looked_at = search.time();
+            let time = match looked_at {
+                Some(time) => time * self.direction[row],
+                None => match self.meet(row, h) {
+                    Meeting::Output(time) => time,
+                    Meeting::Break(gap) => return (gap, Landing::Break),
+                    Meeting::Nothing => return (h, search.landing()),
+                    Meeting::End => return (0.0, Landing::None),
+                },
+            };
+            let (state, place) = self.within(row, time);
+            if looked_at.is_some() {
+                search.narrow(self.has_flipped(row, time, &state));
+                h = search.end();
+            } else {
+                self.give(row, &state, place.as_ref());
+            }
+        }
+    }
+
+    /// The state of a motion, and its position and velocity when it is pushed, at a time since the start of the step.
+    #[inline(always)]
+    #[expect(
+        clippy::manual_map,
+        reason = "a closure would be compiled without the instructions of the level"
+    )]
+    fn within(&self, row: usize, time: f64) -> ([f64; 7], Option<[f64; 6]>) {
+        let mut within = Pack::new(0.0);
+        within.set(row, time);
+        let order = self.settings.order;
+        let state = (self.state).moved(&increment(&self.series, order, within), row);
+        let place = match &self.push {
+            Some(push) => Some(push.moved(&push.increment(order, within), row)),
+            None => None,
+        };
+        (state, place)
+    }
+
+    /// Whether a feedback has another sign in the `state` at a time since the start of the step than there, or ω has passed
+    /// through zero under quadratic damping.
+    #[inline(never)]
+    fn has_flipped(&self, row: usize, time: f64, state: &[f64; 7]) -> bool {
+        let lead = self.leads[row].as_ref();
+        lead.is_some_and(|lead| lead.job.course.has_flipped(state))
+            || self.extras.is_reversed(row, self.settings.order, time)
+    }
+
+    /// The time from now to the next stop, positive also backward in time.
+    #[inline(always)]
+    fn gap(&self, row: usize) -> f64 {
+        let ((now, now_rest), (stop, stop_rest)) = (self.now[row], self.stop[row]);
+        ((stop - now) + (stop_rest - now_rest)) * self.direction[row]
+    }
+
+    /// What a motion comes to next in a step as long as `h`.
+    #[inline(never)]
+    fn meet(&mut self, row: usize, h: f64) -> Meeting {
+        let gap = self.gap(row);
+        let time = self.time(row);
+        let Some(lead) = &self.leads[row] else {
+            return Meeting::End;
+        };
+        let advances = h > f64::EPSILON * self.now[row].0.abs();
+        if !advances {
+            let error = if h.is_finite() {
+                Error::StepTooSmall {
+                    time,
+                    step: h / lead.job.course.unit(),
+                }
+            } else {
+                Error::NotFiniteMotion { time }
+            };
+            self.end(row, End::Failed(error));
+            return Meeting::End;
+        }
+        match lead.stop {
+            _ if gap > h => Meeting::Nothing,
+            Stop::Output => Meeting::Output(gap * self.direction[row]),
+            Stop::Break => Meeting::Break(gap),
+        }
+    }
+
+    /// Gives a sample to a motion; after the last one it ends.
+    #[inline(never)]
+    fn give(&mut self, row: usize, state: &[f64; 7], place: Option<&[f64; 6]>) {
+        let now = self.stop[row];
+        let Some(lead) = &mut self.leads[row] else {
+            return;
+        };
+        let phase = lead.job.course.phase(state, place, now);
+        let run = &mut *lead.job.run;
+        run.samples[lead.next] = phase;
+        lead.next += 1;
+        if lead.next == run.samples.len() {
+            run.effort = effort(lead.steps + 1);
+            run.time = lead.job.course.last_time();
+            run.phase = phase;
+            run.end = End::Complete;
+            self.vacate(row);
+        } else {
+            (self.stop[row], lead.stop) = next_stop(&lead.job.course, lead.next);
+        }
+    }
+
+    /// After a step: past a break or a flip the equations are others, and a motion that has become much faster takes
+    /// another unit.
+    #[inline(never)]
+    fn settle(&mut self, row: usize, landing: Landing) {
+        let state = self.state.now(row);
+        let Some(lead) = &mut self.leads[row] else {
+            return;
+        };
+        let course = &mut lead.job.course;
+        let changed = match landing {
+            Landing::None => Ok(()),
+            Landing::Break => {
+                self.now[row] = self.stop[row];
+                course.pass_break(&state)
+            }
+            Landing::Flip => course.flip(&state),
+        };
+        if let Err(error) = changed {
+            self.end(row, End::Failed(error));
+        } else if landing != Landing::None || state[..3].iter().any(|w| w.abs() > 0.5 * OUTGROWN) {
+            self.enter(row);
+        }
+    }
+
+    /// The next motion into an empty lane.
+    #[inline(never)]
+    fn load(&mut self, row: usize, jobs: &mut dyn Iterator<Item = Job<'a>>) {
+        let Some(job) = jobs.next() else {
+            return;
+        };
+        let start = job.course.start();
+        for i in 0..7 {
+            self.state.value[i].set(row, start[i]);
+            self.state.rest[i].set(row, 0.0);
+        }
+        if let Some(push) = &mut self.push {
+            let Phase {
+                position: r,
+                velocity: v,
+                ..
+            } = job.course.initial();
+            push.set(row, &[r.x, r.y, r.z, v.x, v.y, v.z]);
+        }
+        self.now[row] = (0.0, 0.0);
+        self.direction[row] = job.course.direction();
+        self.fastest[row] = 0.0;
+        self.leads[row] = Some(Lead {
+            job,
+            next: 1,
+            stop: Stop::Output,
+            steps: 0,
+        });
+        self.enter(row);
+    }
+
+    /// Takes the unit of rates, the field and the next stop of a motion.
+    fn enter(&mut self, row: usize) {
+        let state = self.state.now(row);
+        let Some(lead) = &mut self.leads[row] else {
+            return;
+        };
+        let course = &mut lead.job.course;
+        let old = course.unit();
+        let omega = [state[0] * old, state[1] * old, state[2] * old];
+        let unit = course.choose_unit(&omega);
+        let ratio = old / unit;
+        for i in 0..3 {
+            self.state.value[i].set(row, omega[i] / unit);
+            let rest = self.state.rest[i].get(row) * ratio;
+            self.state.rest[i].set(row, rest);
+        }
+        if let Some(push) = &mut self.push {
+            push.rescale(row, ratio);
+        }
+        let (now, rest) = self.now[row];
+        self.now[row] = (now / ratio, rest / ratio);
+        let [x, y, z] = [omega[0] / unit, omega[1] / unit, omega[2] / unit];
+        let speed = (x * x + y * y + z * z).sqrt();
+        let floor = self.settings.floor / unit;
+        self.fastest[row] = (self.fastest[row] * ratio).max(speed).max(floor);
+        if self.fastest[row] == 0.0 {
+            // At rest, what the load makes of it is large.
+            self.fastest[row] = 1.0;
+        }
+        self.field.set(row, &course.field());
+        for (packs, direction) in self.directions.iter_mut().zip(course.directions::<B>()) {
+            for i in 0..3 {
+                packs[i].set(row, direction[i]);
+            }
+        }
+        (self.stop[row], lead.stop) = next_stop(course, lead.next);
+    }
+
+    /// Ends a motion before its last output.
+    fn end(&mut self, row: usize, end: End<Error>) {
+        let (time, state) = (self.time(row), self.state.now(row));
+        let place = self.push.as_ref().map(|push| push.now(row));
+        if let Some(lead) = &mut self.leads[row] {
+            let run = &mut *lead.job.run;
+            run.effort = effort(lead.steps);
+            run.time = time;
+            run.phase = lead.job.course.phase(&state, place.as_ref(), self.now[row]);
+            run.end = end;
+        }
+        self.vacate(row);
+    }
+
+    /// A lane without motion: at rest for ever.
+    fn vacate(&mut self, row: usize) {
+        for i in 0..7 {
+            self.state.value[i].set(row, 0.0);
+            self.state.rest[i].set(row, 0.0);
+        }
+        if let Some(push) = &mut self.push {
+            push.set(row, &[0.0; 6]);
+        }
+        self.field.set(row, &Field::NONE);
+        self.extras.vacate(row);
+        self.leads[row] = None;
+        self.now[row] = (0.0, 0.0);
+        self.stop[row] = (f64::INFINITY, 0.0);
+        self.fastest[row] = 1.0;
+        self.direction[row] = 1.0;
+    }
+
+    fn time(&self, row: usize) -> f64 {
+        let lead = self.leads[row].as_ref();
+        lead.map_or(f64::NAN, |lead| lead.job.course.time(self.now[row]))
+    }
+
+    fn fraction(&self) -> f64 {
+        let lead = self.leads[0].as_ref();
+        lead.map_or(1.0, |lead| lead.job.course.fraction(self.now[0].0))
+    }
+}
+
+/// An evaluation is that of all coefficients of a step.
+fn effort(steps: u64) -> Effort {
+    Effort {
+        steps,
+        evaluations: steps,
+    }
+}
+
+/// The output `next` or the end of the segment, whichever comes first.
+fn next_stop(course: &Course, next: usize) -> ((f64, f64), Stop) {
+    let (output, end) = (course.output(next), course.end_of_segment());
+    // An output on a break belongs to the segment that ends there.
+    let ahead = ((output.0 - end.0) + (output.1 - end.1)) * course.direction();
+    if ahead > 0.0 {
+        (end, Stop::Break)
+    } else {
+        (output, Stop::Output)
+    }
+}
+
+/// A direction fixed in space as seen from the body: `Rᵀ e` for the attitude (x, y, z, w).
+#[inline(always)]
+pub(super) fn seen<L: Lane, const R: usize>(
+    q: &[Pack<L, R>; 4],
+    e: &[Pack<L, R>; 3],
+) -> [Pack<L, R>; 3] {
+    let [x, y, z, w] = *q;
+    let (u, zero) = ([x, y, z], [Pack::new(0.0); 3]);
+    let t = cross_term(&u, e, zero);
+    let t = [t[0] + t[0], t[1] + t[1], t[2] + t[2]];
+    let mut seen = cross_term(&u, &t, zero);
+    for i in 0..3 {
+        seen[i] = (-w).mul_add(t[i], e[i]) + seen[i];
+    }
+    seen
+}

@@ -1,0 +1,154 @@
+//! The terms of a load that are not linear in the coefficients of one order, together.
+
+use super::field::{Field, Parts};
+use super::moment::{Moment, Orbit};
+use super::pack::Pack;
+use super::series::Series;
+use super::terms::{Analytic, Forced, Gradient, Quadratic, STILL};
+use crate::numerics::lane::Lane;
+
+/// Those that the load has; most loads have none.
+#[derive(Clone, Debug)]
+pub(super) struct Extras<T> {
+    is_empty: bool,
+    quadratic: Option<Box<Quadratic<T>>>,
+    forced: Option<Box<Forced<T>>>,
+    gradients: Vec<Gradient<T>>,
+}
+
+impl<L: Lane, const R: usize> Extras<Pack<L, R>> {
+    #[inline(always)]
+    pub(super) fn new(parts: &Parts) -> Self {
+        let mut gradients = Vec::new();
+        for _ in 0..parts.gradients {
+            gradients.push(Gradient::new());
+        }
+        Self {
+            is_empty: !parts.quadratic && !parts.is_timed,
+            quadratic: if parts.quadratic {
+                Some(Box::new(Quadratic::new()))
+            } else {
+                None
+            },
+            forced: if parts.is_timed {
+                Some(Box::new(Forced::new()))
+            } else {
+                None
+            },
+            gradients,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn is_timed(&self) -> bool {
+        self.forced.is_some()
+    }
+
+    /// What depends on time in one row, at the start of a step in the attitude `q`.
+    #[inline(never)]
+    pub(super) fn set(
+        &mut self,
+        row: usize,
+        moment: &Moment,
+        inverse_moments: &[f64; 3],
+        q: &[Pack<L, R>; 4],
+    ) {
+        if let Some(forced) = &mut self.forced {
+            forced.set(row, moment, inverse_moments);
+        }
+        let q = [q[0].get(row), q[1].get(row), q[2].get(row), q[3].get(row)];
+        let mut orbits = moment.orbits.iter();
+        for gradient in &mut self.gradients {
+            let orbit = orbits.next().copied().unwrap_or(Orbit::NONE);
+            let position = seen_by(&q, &orbit.position);
+            let velocity = seen_by(&q, &orbit.velocity);
+            gradient.set(row, &orbit, &position, &velocity);
+        }
+    }
+
+    /// Leaves one row without such terms.
+    pub(super) fn vacate(&mut self, row: usize) {
+        let upright = Pack::new(0.0);
+        let q = [upright, upright, upright, Pack::new(1.0)];
+        self.set(row, &Moment::default(), &[0.0; 3], &q);
+    }
+
+    #[inline(always)]
+    pub(super) fn start(&mut self, fastest: &[f64; R]) {
+        if let Some(quadratic) = &mut self.quadratic {
+            quadratic.start(fastest);
+        }
+    }
+
+    /// The coefficient of order `k` of the angular acceleration by all of them.
+    #[inline(always)]
+    pub(super) fn coefficient<const B: usize>(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        field: &Field<Pack<L, R>, B>,
+    ) -> [Pack<L, R>; 3] {
+        let mut sum = [Pack::new(0.0); 3];
+        if self.is_empty {
+            return sum;
+        }
+        if let Some(quadratic) = &mut self.quadratic {
+            sum = plus(sum, quadratic.coefficient(k, series, field));
+        }
+        if let Some(forced) = &mut self.forced {
+            sum = plus(sum, forced.coefficient(k, series, field));
+        }
+        for gradient in &mut self.gradients {
+            sum = plus(sum, gradient.coefficient(k, series, field));
+        }
+        sum
+    }
+
+    /// Whether the series of one row are another law's at a time.
+    pub(super) fn is_reversed(&self, row: usize, order: usize, time: f64) -> bool {
+        let quadratic = self.quadratic.as_ref();
+        quadratic.is_some_and(|quadratic| quadratic.is_reversed(row, order, time))
+    }
+
+    /// Keeps the steps of motions that are almost at rest so short that they stay so: see [`Quadratic`].
+    #[inline(always)]
+    pub(super) fn limit<const B: usize>(
+        &self,
+        series: &impl Series<Pack<L, R>, B>,
+        field: &Field<Pack<L, R>, B>,
+        fastest: &[f64; R],
+        h: &mut [f64; R],
+    ) {
+        if self.quadratic.is_none() {
+            return;
+        }
+        let (w, change) = (series.get(0).w, series.get(1).w);
+        for row in 0..R {
+            let still = STILL * fastest[row];
+            let is_damped = field.quadratic.iter().flatten().any(|x| x.get(row) != 0.0);
+            if is_damped && size(&w, row) <= still {
+                let most = 2.0 * still / size(&change, row);
+                h[row] = if h[row] > most { most } else { h[row] };
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn size<L: Lane, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
+    let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
+    (x * x + y * y + z * z).sqrt()
+}
+
+#[inline(always)]
+fn plus<L: Lane, const R: usize>(a: [Pack<L, R>; 3], b: [Pack<L, R>; 3]) -> [Pack<L, R>; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// A vector of N as seen in the attitude (x, y, z, w).
+fn seen_by(q: &[f64; 4], vector: &nalgebra::Vector3<f64>) -> [f64; 3] {
+    let [x, y, z, w] = *q;
+    let u = nalgebra::Vector3::new(x, y, z);
+    let t = u.cross(vector) * 2.0;
+    (vector - t * w + u.cross(&t)).into()
+}

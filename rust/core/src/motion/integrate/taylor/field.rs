@@ -1,0 +1,142 @@
+//! The equations of a motion between two breaks of its load, as far as they are linear in the coefficients of one order.
+
+use super::pack::Pack;
+use super::series::Coefficient;
+use crate::numerics::lane::Lane;
+
+type Square<T> = [[T; 3]; 3];
+
+/// `ω̇ = κ (ω₂ω₃, ω₃ω₁, ω₁ω₂) + c + A ω + Q q + Σ_b G_b γ_b`, components in principal axes.
+///
+/// κ₁ = (I₂ − I₃)/I₁ and cyclic; c a torque constant in the body, A damping, Q feedback, `G_b` torques of what is fixed in
+/// space, each divided by the moments.
+#[derive(Clone, Debug)]
+pub(super) struct Field<T, const B: usize> {
+    pub(super) kappa: [T; 3],
+    pub(super) constant: [T; 3],
+    pub(super) on_omega: Square<T>,
+    pub(super) on_attitude: [[T; 4]; 3],
+    pub(super) on_space: [Square<T>; B],
+    /// E of the torque `E |ω| ω`, over the moments.
+    pub(super) quadratic: Square<T>,
+    /// Force over mass in N, and that constant in the body.
+    pub(super) force: [T; 3],
+    pub(super) thrust: [T; 3],
+}
+
+/// Which parts the equations have; the others are zero, and are left out.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "the parts come in every combination"
+)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Parts {
+    /// How many directions fixed in space.
+    pub(super) directions: usize,
+    pub(super) on_omega: bool,
+    pub(super) on_attitude: bool,
+    pub(super) quadratic: bool,
+    /// How many gravity gradients.
+    pub(super) gradients: usize,
+    /// Whether parts depend on time.
+    pub(super) is_timed: bool,
+    /// Whether a force acts on a free body.
+    pub(super) is_pushed: bool,
+}
+
+impl Parts {
+    /// Whether the law may change with the state: by the sign of a feedback, or of ω that passes through zero.
+    pub(super) fn may_flip(&self) -> bool {
+        self.on_attitude || self.quadratic
+    }
+}
+
+impl<const B: usize> Field<f64, B> {
+    /// Nothing turns.
+    pub(super) const NONE: Self = Self {
+        kappa: [0.0; 3],
+        constant: [0.0; 3],
+        on_omega: [[0.0; 3]; 3],
+        on_attitude: [[0.0; 4]; 3],
+        on_space: [[[0.0; 3]; 3]; B],
+        quadratic: [[0.0; 3]; 3],
+        force: [0.0; 3],
+        thrust: [0.0; 3],
+    };
+}
+
+impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            kappa: [zero; 3],
+            constant: [zero; 3],
+            on_omega: [[zero; 3]; 3],
+            on_attitude: [[zero; 4]; 3],
+            on_space: [[[zero; 3]; 3]; B],
+            quadratic: [[zero; 3]; 3],
+            force: [zero; 3],
+            thrust: [zero; 3],
+        }
+    }
+
+    /// Sets the field of one row.
+    #[inline(always)]
+    pub(super) fn set(&mut self, row: usize, field: &Field<f64, B>) {
+        for n in 0..3 {
+            self.kappa[n].set(row, field.kappa[n]);
+            self.constant[n].set(row, field.constant[n]);
+            self.force[n].set(row, field.force[n]);
+            self.thrust[n].set(row, field.thrust[n]);
+            for i in 0..3 {
+                self.on_omega[n][i].set(row, field.on_omega[n][i]);
+                self.quadratic[n][i].set(row, field.quadratic[n][i]);
+            }
+            for i in 0..4 {
+                self.on_attitude[n][i].set(row, field.on_attitude[n][i]);
+            }
+            for b in 0..B {
+                for i in 0..3 {
+                    self.on_space[b][n][i].set(row, field.on_space[b][n][i]);
+                }
+            }
+        }
+    }
+
+    /// The coefficient of order `k` of ω̇ from the products of ω's series, the coefficients of that order, and what the
+    /// terms that are not linear add.
+    #[inline(always)]
+    pub(super) fn acceleration(
+        &self,
+        parts: Parts,
+        k: usize,
+        products: [Pack<L, R>; 3],
+        at: &Coefficient<Pack<L, R>, B>,
+        more: [Pack<L, R>; 3],
+    ) -> [Pack<L, R>; 3] {
+        let mut sum = more;
+        for n in 0..3 {
+            if k == 0 {
+                sum[n] = sum[n] + self.constant[n];
+            }
+            for (matrix, g) in self.on_space.iter().zip(&at.g) {
+                for i in 0..3 {
+                    sum[n] = matrix[n][i].mul_add(g[i], sum[n]);
+                }
+            }
+            if parts.on_omega {
+                for i in 0..3 {
+                    sum[n] = self.on_omega[n][i].mul_add(at.w[i], sum[n]);
+                }
+            }
+            if parts.on_attitude {
+                for i in 0..4 {
+                    sum[n] = self.on_attitude[n][i].mul_add(at.q[i], sum[n]);
+                }
+            }
+            sum[n] = self.kappa[n].mul_add(products[n], sum[n]);
+        }
+        sum
+    }
+}

@@ -1,0 +1,223 @@
+//! Taylor series: each step sums the power series of the motion in time, to the order at which the work is least.
+//!
+//! | file | what it knows |
+//! |---|---|
+//! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
+//! | `field` | the equations that are linear in the coefficients of one order |
+//! | `terms`, `extras` | the recurrences of terms that are not |
+//! | `moment` | what depends on time alone |
+//! | `series` | the sums of products, the lanes over components or over motions |
+//! | `push` | the path of a body that forces act on |
+//! | `step` | the length of a step, the state at its end or within |
+//! | `drive` | steps, outputs, breaks, until all motions are done |
+//! | `pack` | one number of several motions |
+//!
+//! Sources: Jorba & Zou, Experimental Mathematics 14 (2005) 99; Hairer, Nørsett & Wanner, Solving ODEs I, §I.8.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "rows and components are indices of several arrays at once"
+)]
+
+mod course;
+mod drive;
+mod extras;
+mod field;
+mod moment;
+mod pack;
+mod push;
+mod series;
+mod step;
+mod terms;
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use course::{Course, parts};
+use drive::{Job, Settings, drive};
+use field::Parts;
+use series::{Abreast, Alone};
+
+use crate::error::Error;
+use crate::motion::loads::Term;
+use crate::motion::simulate::{Effort, End, Run, Task};
+use crate::motion::state::Phase;
+use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::lane::Lane;
+use crate::numerics::threads::fill_blocks;
+
+/// Motions side by side: a register of the widest machines.
+const ROWS: usize = 8;
+/// Motions that a thread takes at a time.
+const BLOCK: usize = 128;
+/// Fewer motions than this are sooner done one by one.
+const FEW: usize = 4;
+
+/// The motion of `task` under `terms`.
+///
+/// About every 64 steps `watch` gets the fraction done and may stop the run.
+///
+/// # Panics
+/// When there are no times; see [`check_times`](crate::motion::simulate::check_times).
+pub fn solve_one(
+    task: &Task<'_>,
+    terms: &[Term],
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Run<Error> {
+    let mut run = unborn(task);
+    let settings = settings(task, parts(terms, task.subject.pivoted));
+    let mut jobs = job(task, terms, &mut run).into_iter();
+    let _ = dispatch(OneByOne {
+        settings,
+        jobs: &mut jobs,
+        watch,
+    });
+    drop(jobs);
+    run
+}
+
+/// The motions of many tasks, each under its own terms, into `runs`; on all cores, eight side by side in the lanes of each.
+/// Every motion has the bits of [`solve_one`].
+///
+/// `task` gives the tasks and their terms. They may differ in body, state and numbers; times, tolerance, whether the body is
+/// pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
+/// motions that were begun; it may stop the run.
+///
+/// # Panics
+/// As [`solve_one`].
+pub fn solve_many<'a>(
+    task: &(dyn Fn(usize) -> (Task<'a>, &'a [Term]) + Sync),
+    runs: &mut [Option<Run<Error>>],
+    watch: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
+) {
+    let all = runs.len() as f64;
+    let begun = AtomicUsize::new(0);
+    let stopped = AtomicBool::new(false);
+    let ask = || {
+        if stopped.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            watch(begun.load(Ordering::Relaxed) as f64 / all)
+        }
+    };
+    // Where a run is stopped, what was done by then is kept.
+    let _ended = fill_blocks(runs, BLOCK, &mut |_| ask(), |first, runs| {
+        let count = runs.len();
+        let mut common = Parts::default();
+        for row in first..first + count {
+            let (task, terms) = task(row);
+            let quadratic = common.quadratic;
+            common = parts(terms, task.subject.pivoted);
+            common.quadratic |= quadratic;
+        }
+        let settings = settings(&task(first).0, common);
+        let mut jobs = (first..).zip(runs.iter_mut()).filter_map(|(row, run)| {
+            begun.fetch_add(1, Ordering::Relaxed);
+            let (task, terms) = task(row);
+            job(&task, terms, run.insert(unborn(&task)))
+        });
+        let jobs = &mut jobs;
+        let watch = &mut |_| ask();
+        let flow = if count < FEW {
+            dispatch(OneByOne {
+                settings,
+                jobs,
+                watch,
+            })
+        } else {
+            dispatch(SideBySide {
+                settings,
+                jobs,
+                watch,
+            })
+        };
+        if flow.is_break() {
+            stopped.store(true, Ordering::Relaxed);
+            return Err(());
+        }
+        Ok(())
+    });
+}
+
+fn settings(task: &Task<'_>, parts: Parts) -> Settings {
+    Settings::new(task.tolerance.relative, task.tolerance.absolute, parts)
+}
+
+/// The run of a motion that has not begun.
+fn unborn(task: &Task<'_>) -> Run<Error> {
+    let mut samples = vec![Phase::nan(); task.times.len()];
+    samples[0] = task.initial;
+    Run {
+        samples,
+        crossings: Vec::new(),
+        effort: Effort::default(),
+        time: task.times[0],
+        phase: task.initial,
+        end: End::Stopped,
+    }
+}
+
+/// The job of a motion, if there is anything to do and nothing against it.
+fn job<'a>(task: &Task<'a>, terms: &'a [Term], run: &'a mut Run<Error>) -> Option<Job<'a>> {
+    if run.samples.len() == 1 {
+        run.end = End::Complete;
+        return None;
+    }
+    match Course::new(task, terms) {
+        Ok(course) => Some(Job { course, run }),
+        Err(error) => {
+            run.end = End::Failed(error);
+            None
+        }
+    }
+}
+
+/// Motions one after the other, the lanes over the components of each.
+struct OneByOne<'a, 'b> {
+    settings: Settings,
+    jobs: &'b mut dyn Iterator<Item = Job<'a>>,
+    watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+}
+
+impl Kernel for OneByOne<'_, '_> {
+    type Output = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> ControlFlow<()> {
+        let Self {
+            settings,
+            jobs,
+            watch,
+        } = self;
+        match settings.parts.directions {
+            0 => drive::<L, Alone<L, 0, 4>, 0, 1>(settings, jobs, watch),
+            1 => drive::<L, Alone<L, 1, 8>, 1, 1>(settings, jobs, watch),
+            _ => drive::<L, Alone<L, 3, 16>, 3, 1>(settings, jobs, watch),
+        }
+    }
+}
+
+/// Motions side by side, the lanes over the motions.
+struct SideBySide<'a, 'b> {
+    settings: Settings,
+    jobs: &'b mut dyn Iterator<Item = Job<'a>>,
+    watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+}
+
+impl Kernel for SideBySide<'_, '_> {
+    type Output = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> ControlFlow<()> {
+        let Self {
+            settings,
+            jobs,
+            watch,
+        } = self;
+        match settings.parts.directions {
+            0 => drive::<L, Abreast<L, 0, ROWS>, 0, ROWS>(settings, jobs, watch),
+            1 => drive::<L, Abreast<L, 1, ROWS>, 1, ROWS>(settings, jobs, watch),
+            _ => drive::<L, Abreast<L, 3, ROWS>, 3, ROWS>(settings, jobs, watch),
+        }
+    }
+}

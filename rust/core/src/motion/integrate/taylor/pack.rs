@@ -1,0 +1,74 @@
+//! The same number of several rows, side by side.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use crate::numerics::lane::Lane;
+
+/// One number of `R` rows; with one row plain arithmetic. Every operation acts on each row by itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pack<L, const R: usize>(pub(super) [L; R]);
+
+macro_rules! each {
+    ($operator:ident, $method:ident, $symbol:tt) => {
+        impl<L: Lane, const R: usize> $operator for Pack<L, R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(mut self, other: Self) -> Self {
+                for row in 0..R {
+                    self.0[row] = self.0[row] $symbol other.0[row];
+                }
+                self
+            }
+        }
+    };
+}
+each!(Add, add, +);
+each!(Sub, sub, -);
+each!(Mul, mul, *);
+
+impl<L: Lane, const R: usize> Neg for Pack<L, R> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|x| -x)
+    }
+}
+
+impl<L: Lane, const R: usize> Pack<L, R> {
+    /// The number `x` in every row.
+    #[inline(always)]
+    pub(super) fn new(x: f64) -> Self {
+        Self([L::new(x); R])
+    }
+
+    /// The number of one row.
+    #[inline(always)]
+    pub(super) fn get(&self, row: usize) -> f64 {
+        self.0[row].get()
+    }
+
+    /// Sets the number of one row.
+    #[inline(always)]
+    pub(super) fn set(&mut self, row: usize, x: f64) {
+        self.0[row] = L::new(x);
+    }
+
+    /// `self * b + c`.
+    #[inline(always)]
+    pub(super) fn mul_add(mut self, b: Self, c: Self) -> Self {
+        for row in 0..R {
+            self.0[row] = self.0[row].mul_add(b.0[row], c.0[row]);
+        }
+        self
+    }
+
+    /// Each row's number through `f`.
+    #[inline(always)]
+    pub(super) fn map(mut self, f: impl Fn(L) -> L) -> Self {
+        for row in 0..R {
+            self.0[row] = f(self.0[row]);
+        }
+        self
+    }
+}

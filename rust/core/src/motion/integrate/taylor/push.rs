@@ -1,0 +1,116 @@
+//! The path of a free body under forces: `m v̇ = F`, with F constant in space and in the body.
+
+use super::field::Field;
+use super::pack::Pack;
+use super::series::{COUNT, RECIPROCALS, Series};
+use super::step::compensate;
+use crate::numerics::lane::Lane;
+
+/// Position and velocity of the centre of mass in N, and the series of the acceleration in a step.
+#[derive(Clone, Debug)]
+pub(super) struct Push<T> {
+    value: [T; 6],
+    rest: [T; 6],
+    acceleration: [[T; 3]; COUNT],
+}
+
+impl<L: Lane, const R: usize> Push<Pack<L, R>> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            value: [zero; 6],
+            rest: [zero; 6],
+            acceleration: [[zero; 3]; COUNT],
+        }
+    }
+
+    /// Sets position and velocity of one row.
+    pub(super) fn set(&mut self, row: usize, place: &[f64; 6]) {
+        for i in 0..6 {
+            self.value[i].set(row, place[i]);
+            self.rest[i].set(row, 0.0);
+        }
+    }
+
+    /// Multiplies the velocity of one row, which comes to another unit.
+    pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
+        for i in 3..6 {
+            let (value, rest) = (self.value[i].get(row), self.rest[i].get(row));
+            self.value[i].set(row, value * ratio);
+            self.rest[i].set(row, rest * ratio);
+        }
+    }
+
+    /// The series of the acceleration: `R f` has the components `γ_i·f` with the axes γ of space, which are there when a
+    /// force is constant in the body.
+    #[inline(always)]
+    pub(super) fn expand<const B: usize>(
+        &mut self,
+        order: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        field: &Field<Pack<L, R>, B>,
+    ) {
+        for k in 0..order {
+            let mut sum = if k == 0 {
+                field.force
+            } else {
+                [Pack::new(0.0); 3]
+            };
+            if B == 3 {
+                let g = series.get(k).g;
+                for (axis, direction) in g.iter().enumerate() {
+                    for i in 0..3 {
+                        sum[axis] = direction[i].mul_add(field.thrust[i], sum[axis]);
+                    }
+                }
+            }
+            self.acceleration[k] = sum;
+        }
+    }
+
+    /// What the series add to position and velocity within the time `h`.
+    #[inline(always)]
+    pub(super) fn increment(&self, order: usize, h: Pack<L, R>) -> [Pack<L, R>; 6] {
+        let mut sums = [Pack::new(0.0); 6];
+        for k in (0..order).rev() {
+            let (once, twice) = (RECIPROCALS[k + 1], RECIPROCALS[k + 1] * RECIPROCALS[k + 2]);
+            for i in 0..3 {
+                let a = self.acceleration[k][i];
+                sums[i] = sums[i].mul_add(h, a * Pack::new(twice));
+                sums[3 + i] = sums[3 + i].mul_add(h, a * Pack::new(once));
+            }
+        }
+        for i in 0..3 {
+            let velocity = self.value[3 + i] + self.rest[3 + i];
+            sums[i] = sums[i].mul_add(h, velocity) * h;
+            sums[3 + i] = sums[3 + i] * h;
+        }
+        sums
+    }
+
+    #[inline(always)]
+    pub(super) fn add(&mut self, increment: &[Pack<L, R>; 6]) {
+        compensate(&mut self.value, &mut self.rest, increment);
+    }
+
+    /// Position and velocity of one row.
+    pub(super) fn now(&self, row: usize) -> [f64; 6] {
+        let mut place = [0.0; 6];
+        for i in 0..6 {
+            place[i] = self.value[i].get(row);
+        }
+        place
+    }
+
+    /// Position and velocity of one row moved by `increment`.
+    #[inline(always)]
+    pub(super) fn moved(&self, increment: &[Pack<L, R>; 6], row: usize) -> [f64; 6] {
+        let mut place = [0.0; 6];
+        for i in 0..6 {
+            let change = increment[i].get(row) + self.rest[i].get(row);
+            place[i] = self.value[i].get(row) + change;
+        }
+        place
+    }
+}

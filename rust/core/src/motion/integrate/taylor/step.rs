@@ -1,0 +1,162 @@
+//! One step: how long it may be, and the state at its end or anywhere within it.
+
+use super::pack::Pack;
+use super::series::{Coefficient, Series};
+use crate::numerics::double_double::two_sum;
+use crate::numerics::lane::Lane;
+
+/// ω in principal axes and (x, y, z, w) of the attitude, each with what rounding has left out of it so far.
+#[derive(Clone, Debug)]
+pub(super) struct Compensated<T> {
+    pub(super) value: [T; 7],
+    pub(super) rest: [T; 7],
+}
+
+impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self {
+            value: [Pack::new(0.0); 7],
+            rest: [Pack::new(0.0); 7],
+        }
+    }
+
+    /// Adds the increments of a step, then puts the quaternion back to unit length. That correction goes into the rest,
+    /// and the next increment takes it along: nothing is rounded for it.
+    #[inline(always)]
+    pub(super) fn add(&mut self, increment: &[Pack<L, R>; 7]) {
+        compensate(&mut self.value, &mut self.rest, increment);
+        // ½ (1 − |q|²), with the rest: the first-order correction.
+        let mut lack = Pack::new(1.0);
+        for i in 3..7 {
+            let (q, rest) = (self.value[i], self.rest[i]);
+            lack = (-q).mul_add(q + rest + rest, lack);
+        }
+        lack = lack * Pack::new(0.5);
+        for i in 3..7 {
+            self.rest[i] = self.value[i].mul_add(lack, self.rest[i]);
+        }
+    }
+
+    /// The state of one row.
+    pub(super) fn now(&self, row: usize) -> [f64; 7] {
+        let mut state = [0.0; 7];
+        for i in 0..7 {
+            state[i] = self.value[i].get(row);
+        }
+        state
+    }
+
+    /// The state of one row moved by `increment`.
+    #[inline(always)]
+    pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [f64; 7] {
+        let mut state = [0.0; 7];
+        for i in 0..7 {
+            let change = increment[i].get(row) + self.rest[i].get(row);
+            state[i] = self.value[i].get(row) + change;
+        }
+        state
+    }
+}
+
+/// Adds increments to values and to what rounding has left out of them.
+#[inline(always)]
+pub(super) fn compensate<L: Lane, const R: usize, const N: usize>(
+    values: &mut [Pack<L, R>; N],
+    rests: &mut [Pack<L, R>; N],
+    increments: &[Pack<L, R>; N],
+) {
+    for i in 0..N {
+        for row in 0..R {
+            let change = increments[i].0[row] + rests[i].0[row];
+            (values[i].0[row], rests[i].0[row]) = two_sum(values[i].0[row], change);
+        }
+    }
+}
+
+/// What the polynomials of a step add to the state within the time `h` (Horner).
+#[inline(always)]
+pub(super) fn increment<L: Lane, const R: usize, const B: usize>(
+    series: &impl Series<Pack<L, R>, B>,
+    order: usize,
+    h: Pack<L, R>,
+) -> [Pack<L, R>; 7] {
+    let mut sum = [Pack::new(0.0); 7];
+    for k in (1..=order).rev() {
+        let Coefficient { w, q, .. } = series.get(k);
+        for i in 0..3 {
+            sum[i] = sum[i].mul_add(h, w[i]);
+        }
+        for i in 0..4 {
+            sum[3 + i] = sum[3 + i].mul_add(h, q[i]);
+        }
+    }
+    for x in &mut sum {
+        *x = *x * h;
+    }
+    sum
+}
+
+/// The longest step for which the last two terms of the series are `tolerance` (as a logarithm to base 2) at most:
+/// those of ω relative to `scale`, those of the attitude to one, in the norm of the sum of magnitudes.
+///
+/// Not finite where a coefficient is not.
+/// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
+#[inline(always)]
+pub(super) fn longest<L: Lane, const R: usize, const B: usize>(
+    series: &impl Series<Pack<L, R>, B>,
+    order: usize,
+    tolerance: f64,
+    scale: &[f64; R],
+) -> [f64; R] {
+    let (last, last_but_one) = (series.get(order), series.get(order - 1));
+    let mut steps = [0.0; R];
+    for row in 0..R {
+        let a = limit(&last, row, order, tolerance, scale[row]);
+        let b = limit(&last_but_one, row, order - 1, tolerance, scale[row]);
+        steps[row] = exp2(if a < b { a } else { b }) + 0.0 * (a + b);
+    }
+    steps
+}
+
+/// The logarithm of the step for which the term of this order is as large as allowed.
+#[inline(always)]
+fn limit<L: Lane, const R: usize, const B: usize>(
+    at: &Coefficient<Pack<L, R>, B>,
+    row: usize,
+    order: usize,
+    tolerance: f64,
+    scale: f64,
+) -> f64 {
+    let mut spin = 0.0;
+    for w in &at.w {
+        spin += w.get(row).abs();
+    }
+    let mut size = spin / scale;
+    for q in &at.q {
+        size += q.get(row).abs();
+    }
+    (tolerance - log2(size)) / order as f64 + 0.0 * size
+}
+
+/// Binary logarithm to a hundredth, ample for the length of a step; the same bits on every machine. That of zero is −1023.
+#[inline(always)]
+fn log2(x: f64) -> f64 {
+    let bits = x.to_bits();
+    let mantissa = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000);
+    let exponent = ((bits >> 52) & 0x7ff) as i32 - 1023;
+    f64::from(exponent) + (mantissa - 1.0) * (1.3465 - 0.3465 * mantissa)
+}
+
+/// Two to the power x to a hundredth, for |x| up to a thousand.
+#[inline(always)]
+fn exp2(x: f64) -> f64 {
+    let x = if x > 1000.0 { 1000.0 } else { x };
+    let x = if x > -1000.0 { x } else { -1000.0 };
+    let whole = x.floor();
+    let part = x - whole;
+    // Beside 3·2⁵¹ the last bits of a double are those of a whole number.
+    let last_bits = (whole + 6_755_399_441_055_744.0).to_bits();
+    let power = f64::from_bits(last_bits.wrapping_add(1023) << 52);
+    power * (1.0 + part * (0.6565 + 0.3435 * part))
+}

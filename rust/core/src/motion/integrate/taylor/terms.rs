@@ -1,0 +1,288 @@
+//! The recurrences of terms that are not linear in the coefficients of one order.
+
+use super::field::Field;
+use super::moment::{Moment, Orbit};
+use super::pack::Pack;
+use super::series::{COUNT, RECIPROCALS, Series, cross_term};
+use crate::numerics::lane::Lane;
+
+/// A term of a load as a series: its coefficient of order k from those of the motion up to k, asked for in order.
+pub(super) trait Analytic<T, const B: usize> {
+    /// The coefficient of order `k` of the angular acceleration, components in principal axes.
+    fn coefficient(&mut self, k: usize, series: &impl Series<T, B>, field: &Field<T, B>) -> [T; 3];
+}
+
+type Vectors<T> = [[T; 3]; COUNT];
+
+/// `E |ω| ω`: with `u = ω·ω` and `s = √u`, from s s = u
+///
+/// ```text
+/// s_k = (u_k − Σ_{0<j<k} s_j s_{k−j})/2s₀
+/// ```
+///
+/// Where ω passes through zero the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below [`STILL`] of the fastest ω the term counts as zero, in
+/// steps over which what it does stays below rounding.
+#[derive(Clone, Debug)]
+pub(super) struct Quadratic<T> {
+    squares: [T; COUNT],
+    speeds: [T; COUNT],
+    /// What |ω| is small against, and `1/2s₀`.
+    fastest: T,
+    half_over_speed: T,
+}
+
+/// The part of the fastest ω below which quadratic damping is left out: with it the error of ω, relative to the fastest, is
+/// its cube.
+pub(super) const STILL: f64 = 2e-6;
+
+impl<L: Lane, const R: usize> Quadratic<Pack<L, R>> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            squares: [zero; COUNT],
+            speeds: [zero; COUNT],
+            fastest: Pack::new(1.0),
+            half_over_speed: zero,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn start(&mut self, fastest: &[f64; R]) {
+        for row in 0..R {
+            self.fastest.set(row, fastest[row]);
+        }
+    }
+
+    /// Whether the series of |ω| of one row is negative at a time: where ω passes through zero along a line, it goes on as
+    /// −|ω|, which is not the law beyond.
+    pub(super) fn is_reversed(&self, row: usize, order: usize, time: f64) -> bool {
+        let speeds = self.speeds[..order].iter().rev();
+        speeds.fold(0.0, |sum, speed| sum * time + speed.get(row)) < 0.0
+    }
+}
+
+impl<L: Lane, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quadratic<Pack<L, R>> {
+    #[inline(always)]
+    fn coefficient(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        field: &Field<Pack<L, R>, B>,
+    ) -> [Pack<L, R>; 3] {
+        let mut square = Pack::new(0.0);
+        for j in 0..=k {
+            let (a, b) = (series.get(j).w, series.get(k - j).w);
+            for i in 0..3 {
+                square = a[i].mul_add(b[i], square);
+            }
+        }
+        self.squares[k] = square;
+        self.speeds[k] = Pack::new(0.0);
+        if k == 0 {
+            for row in 0..R {
+                let speed = square.get(row).sqrt();
+                let moves = speed > STILL * self.fastest.get(row);
+                self.speeds[0].set(row, if moves { speed } else { 0.0 });
+                let half = if moves { 0.5 / speed } else { 0.0 };
+                self.half_over_speed.set(row, half);
+            }
+        } else {
+            let mut rest = square;
+            for j in 1..k {
+                rest = (-self.speeds[j]).mul_add(self.speeds[k - j], rest);
+            }
+            self.speeds[k] = rest * self.half_over_speed;
+        }
+        let mut spin = [Pack::new(0.0); 3];
+        for j in 0..=k {
+            let w = series.get(k - j).w;
+            for i in 0..3 {
+                spin[i] = self.speeds[j].mul_add(w[i], spin[i]);
+            }
+        }
+        let mut sum = [Pack::new(0.0); 3];
+        for n in 0..3 {
+            for i in 0..3 {
+                sum[n] = field.quadratic[n][i].mul_add(spin[i], sum[n]);
+            }
+        }
+        sum
+    }
+}
+
+/// The gravity gradient on a Kepler orbit: position r and velocity v as seen from the body obey
+///
+/// ```text
+/// ṙ = r×ω + v,   v̇ = v×ω − μ r/r³
+/// ```
+///
+/// and with κ of the body, `I⁻¹ (3μ/r⁵) r×I r = −(3μ/r⁵) κ (r₂r₃, r₃r₁, r₁r₂)`. Powers `p = u^a` of u = r·r follow from
+/// `u ṗ = a u̇ p`:
+///
+/// ```text
+/// p_k = Σ_{0<j≤k} (a j − k + j) u_j p_{k−j}/(k u₀)
+/// ```
+#[derive(Clone, Debug)]
+pub(super) struct Gradient<T> {
+    position: Vectors<T>,
+    velocity: Vectors<T>,
+    squares: [T; COUNT],
+    /// r⁻³ and r⁻⁵, and (r₂r₃, r₃r₁, r₁r₂).
+    cubes: [T; COUNT],
+    fifths: [T; COUNT],
+    products: Vectors<T>,
+    pull: T,
+    strength: T,
+}
+
+impl<L: Lane, const R: usize> Gradient<Pack<L, R>> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            position: [[zero; 3]; COUNT],
+            velocity: [[zero; 3]; COUNT],
+            squares: [zero; COUNT],
+            cubes: [zero; COUNT],
+            fifths: [zero; COUNT],
+            products: [[zero; 3]; COUNT],
+            pull: zero,
+            strength: zero,
+        }
+    }
+
+    /// The orbit's state of one row at the start of a step: components in principal axes.
+    pub(super) fn set(
+        &mut self,
+        row: usize,
+        orbit: &Orbit,
+        position: &[f64; 3],
+        velocity: &[f64; 3],
+    ) {
+        for i in 0..3 {
+            self.position[0][i].set(row, position[i]);
+            self.velocity[0][i].set(row, velocity[i]);
+        }
+        self.pull.set(row, orbit.pull);
+        self.strength.set(row, orbit.strength);
+    }
+
+    /// The next coefficient of the power `a` of the squares, of which the first is one.
+    #[inline(always)]
+    fn power(&self, a: f64, powers: &[Pack<L, R>; COUNT], k: usize) -> Pack<L, R> {
+        if k == 0 {
+            return Pack::new(1.0);
+        }
+        let mut sum = Pack::new(0.0);
+        for j in 1..=k {
+            let factor = Pack::new(a * j as f64 - (k - j) as f64);
+            sum = (self.squares[j] * factor).mul_add(powers[k - j], sum);
+        }
+        sum * Pack::new(RECIPROCALS[k])
+    }
+}
+
+impl<L: Lane, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Gradient<Pack<L, R>> {
+    #[inline(always)]
+    fn coefficient(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        field: &Field<Pack<L, R>, B>,
+    ) -> [Pack<L, R>; 3] {
+        let zero = Pack::new(0.0);
+        let (mut square, mut products) = (zero, [zero; 3]);
+        for j in 0..=k {
+            let (a, b) = (self.position[j], self.position[k - j]);
+            for i in 0..3 {
+                square = a[i].mul_add(b[i], square);
+                let (next, last) = ((i + 1) % 3, (i + 2) % 3);
+                products[i] = a[next].mul_add(b[last], products[i]);
+            }
+        }
+        // u₀ is one but for rounding: lengths are over the distance at the start of the step.
+        self.squares[k] = square;
+        self.products[k] = products;
+        self.cubes[k] = self.power(-1.5, &self.cubes, k);
+        self.fifths[k] = self.power(-2.5, &self.fifths, k);
+        let (mut turned, mut moved, mut pulled) = ([zero; 3], [zero; 3], [zero; 3]);
+        let mut torque = [zero; 3];
+        for j in 0..=k {
+            let w = series.get(k - j).w;
+            turned = cross_term(&self.position[j], &w, turned);
+            moved = cross_term(&self.velocity[j], &w, moved);
+            for i in 0..3 {
+                pulled[i] = self.cubes[k - j].mul_add(self.position[j][i], pulled[i]);
+                torque[i] = self.fifths[k - j].mul_add(self.products[j][i], torque[i]);
+            }
+        }
+        let reciprocal = Pack::new(RECIPROCALS[k + 1]);
+        for i in 0..3 {
+            self.position[k + 1][i] = (turned[i] + self.velocity[k][i]) * reciprocal;
+            self.velocity[k + 1][i] = (-self.pull).mul_add(pulled[i], moved[i]) * reciprocal;
+            torque[i] = -(field.kappa[i] * self.strength * torque[i]);
+        }
+        torque
+    }
+}
+
+/// Torques that are cubics in time, in the body or in space: of the latter `Σ_j τ_j·γ_{k−j}` with the axes γ of space.
+#[derive(Clone, Debug)]
+pub(super) struct Forced<T> {
+    in_body: [[T; 3]; 4],
+    in_space: [[T; 3]; 4],
+    inverse_moments: [T; 3],
+}
+
+impl<L: Lane, const R: usize> Forced<Pack<L, R>> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            in_body: [[zero; 3]; 4],
+            in_space: [[zero; 3]; 4],
+            inverse_moments: [zero; 3],
+        }
+    }
+
+    /// The cubics of one row at the start of a step.
+    pub(super) fn set(&mut self, row: usize, moment: &Moment, inverse_moments: &[f64; 3]) {
+        for i in 0..3 {
+            for k in 0..4 {
+                self.in_body[k][i].set(row, moment.in_body[k][i]);
+                self.in_space[k][i].set(row, moment.in_space[k][i]);
+            }
+            self.inverse_moments[i].set(row, inverse_moments[i]);
+        }
+    }
+}
+
+impl<L: Lane, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Forced<Pack<L, R>> {
+    #[inline(always)]
+    fn coefficient(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        _: &Field<Pack<L, R>, B>,
+    ) -> [Pack<L, R>; 3] {
+        let mut sum = [Pack::new(0.0); 3];
+        if B == 3 {
+            for j in 0..=k.min(3) {
+                let g = series.get(k - j).g;
+                for (axis, direction) in g.iter().enumerate() {
+                    for i in 0..3 {
+                        sum[i] = self.in_space[j][axis].mul_add(direction[i], sum[i]);
+                    }
+                }
+            }
+        }
+        for i in 0..3 {
+            sum[i] = sum[i] * self.inverse_moments[i];
+            if k < 4 {
+                sum[i] = sum[i] + self.in_body[k][i];
+            }
+        }
+        sum
+    }
+}
