@@ -34,7 +34,10 @@ MODULES = [
     "polhode.euler_angles",
     "polhode.equimomental",
     "polhode.errors",
+    "polhode.animation",
     "polhode.events",
+    "polhode.files",
+    "polhode.free_motion",
     "polhode.kinematics",
     "polhode.parallel_axis",
     "polhode.results",
@@ -87,7 +90,7 @@ class TestNames:
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
         known = {"animation", "cli", "events", "free_motion", "io", "molecules", "plot", "results", "robots"}
-        known |= {"trajectory", "units"}
+        known |= {"files", "trajectory", "units"}
         assert internal <= known
 
     @pytest.mark.parametrize("name", MODULES)

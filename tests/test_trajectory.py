@@ -205,7 +205,7 @@ def test_csv_holds_every_bit(shape: tuple[int, ...], rng: np.random.Generator, t
 
 
 def test_save_refuses_other_suffixes(rng: np.random.Generator, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"motion\.txt does not end in \.csv or \.npz"):
+    with pytest.raises(ValueError, match=r"motion\.txt does not end in \.csv, \.json or \.npz"):
         Swarm(rng, ()).trajectory.save(tmp_path / "motion.txt")
 
 

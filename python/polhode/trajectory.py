@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
     from scipy.spatial.transform import Rotation
+    from xarray import Dataset
 
     from polhode.errors import IntegrationError, PolhodeError
 
@@ -372,11 +373,64 @@ class Trajectory:
         path : str or os.PathLike
             ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
             (space); a stack's lines begin with the indices of the body. ``.npz``: the arrays under the names
-            of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``.
+            of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``. ``.json``:
+            readable, after the schema in :mod:`polhode.files`. The load and the events are not kept.
         """
         from polhode._files.trajectory import save_trajectory
 
         save_trajectory(self, path)
+
+    @staticmethod
+    def from_file(path: str | PathLike[str]) -> Trajectory:
+        """Read a motion that `save` wrote as ``.json`` or ``.npz``.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+
+        Returns
+        -------
+        Trajectory
+            With the same bits; without load and events, which the file does not hold.
+
+        Raises
+        ------
+        FileFormatError
+            For a file that is not such a motion.
+        """
+        from polhode.files import load_trajectory
+
+        return load_trajectory(path)
+
+    def to_xarray(self) -> Dataset:
+        """Give the motion as an :class:`xarray.Dataset`; needs xarray.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``time``, after the axes ``body`` (or ``body_0``, ``body_1``, …) of a stack. Components are
+            named ``x y z`` and ``x y z w``; every variable says in which frame it is.
+        """
+        from polhode._extras import require
+
+        xarray = require("xarray", extra=None, purpose="Trajectory.to_xarray")
+        shape = self.omega.shape[:-2]
+        stack = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
+        vector, frames = (
+            [*stack, "time", "component"],
+            {"omega": "body", "position": "space", "velocity": "space"},
+        )
+        variables: dict[str, Any] = {
+            name: (vector, getattr(self, name), {"frame": frame}) for name, frame in frames.items()
+        }
+        variables["quaternion"] = (
+            [*stack, "time", "quaternion_component"],
+            self.quaternion,
+            {"long_name": "R_NB, scalar last"},
+        )
+        coordinates = {"time": self.t, "component": list("xyz"), "quaternion_component": list("xyzw")}
+        dataset: Dataset = xarray.Dataset(variables, coordinates, {"title": repr(self)})
+        return dataset
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the components of the angular velocity in the body over time; needs matplotlib.
@@ -400,8 +454,8 @@ class Trajectory:
         Parameters
         ----------
         path : str or os.PathLike
-            ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib; ``.mp4``:
-            needs matplotlib and the program ffmpeg.
+            ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib;
+            ``.mp4``: needs also the program ffmpeg.
         **options
             `shape`, `frames`, `duration`, `title` and `time_unit`, see :func:`polhode.animation.animate`.
 

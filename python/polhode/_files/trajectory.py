@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode.files import save_trajectory_json, save_trajectory_npz
+
 if TYPE_CHECKING:
     from os import PathLike
 
@@ -16,15 +18,13 @@ if TYPE_CHECKING:
 
 __all__ = ["TRAJECTORY_SUFFIXES", "save_trajectory"]
 
-_ARRAYS = ("t", "omega", "quaternion", "position", "velocity", "about", "steps", "evaluations")
-_BODY = ("mass", "inertia", "center_of_mass")
 _COLUMNS = {"omega": "xyz", "quaternion": "xyzw", "position": "xyz", "velocity": "xyz"}
 
-TRAJECTORY_SUFFIXES = (".csv", ".npz")
+TRAJECTORY_SUFFIXES = (".csv", ".json", ".npz")
 
 
 def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
-    """Write a trajectory to ``.csv`` or ``.npz``: what ``Trajectory.save`` does.
+    """Write a trajectory to ``.csv``, ``.json`` or ``.npz``: what ``Trajectory.save`` does.
 
     Parameters
     ----------
@@ -37,13 +37,12 @@ def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
     suffix = file.suffix.lower()
     if suffix == ".csv":
         _save_csv(trajectory, file)
+    elif suffix == ".json":
+        save_trajectory_json(trajectory, file)
     elif suffix == ".npz":
-        arrays = {name: getattr(trajectory, name) for name in _ARRAYS}
-        arrays |= {name: getattr(trajectory.body, name) for name in _BODY}
-        with file.open("wb") as stream:  # numpy would add its suffix to a name that ends in .NPZ
-            np.savez(stream, **arrays)
+        save_trajectory_npz(trajectory, file)
     else:
-        raise ValueError(f"path: {file} does not end in {' or '.join(TRAJECTORY_SUFFIXES)}")
+        raise ValueError(f"path: {file} does not end in .csv, .json or .npz")
 
 
 def _save_csv(trajectory: Trajectory, file: Path) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
-from polhode.plot._ellipsoid import _one, _upright
+from polhode.plot._ellipsoid import _beside, _one, _upright
 from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, new_axes3d
 from polhode.plot._surfaces import arrow, fan, plain_frame
 
@@ -43,11 +43,12 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     if not size > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = new_axes3d() if ax is None else ax
-    ax.view_init(elev=16.0, azim=-60.0)
     times = np.asarray(t, dtype=np.float64).reshape(-1)
     upright = _upright(momentum / size)
     now = motion.at(times[-1:])
     attitude = upright @ _core.rotate(now.quaternion[0], np.eye(3)).T
+    omega = attitude @ (now.omega[0] / np.linalg.norm(now.omega[0]))
+    ax.view_init(elev=16.0, azim=_beside(omega))
     corners = [np.zeros(3), 1.3 * np.array([0.0, 0.0, 1.0])]
     in_space = motion.herpolhode(times)
     in_body = motion.polhode(361)
@@ -56,7 +57,6 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
         rim = directions @ turn.T
         corners += [rim.min(axis=0), rim.max(axis=0)]
         fan(ax, rim, color, 0.22)
-    omega = attitude @ (now.omega[0] / np.linalg.norm(now.omega[0]))
     side = motion.cones.axis
     symmetry = attitude @ motion.body.principal.axes[:, side]
     symmetry *= np.sign(symmetry @ omega) or 1.0
@@ -65,8 +65,8 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     arrow(ax, 1.25 * symmetry, AXIS_COLORS[0], f"$e_{side + 1}$")
     ax.text2D(
         0.5, 0.02,
-        f"body cone {_angles(motion.cones.body)} (blue), space cone {_angles(motion.cones.space)} (green)",
-        transform=ax.transAxes, ha="center",
+        f"body cone {_angles(motion.cones.body)} (blue),\nspace cone {_angles(motion.cones.space)} (green)",
+        transform=ax.transAxes, ha="center", in_layout=False,
     )  # fmt: skip
     plain_frame(ax, np.min(corners, axis=0), np.max(corners, axis=0))
     return ax

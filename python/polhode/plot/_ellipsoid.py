@@ -135,7 +135,9 @@ def polhodes(
         ax.text(*(tip * (1.0 + 0.1 * semi_axes.max() / tip[k])), rf"$\omega_{k + 1}$", color=color,
                 ha="center", va="center", fontsize=13, zorder=6)  # fmt: skip
     lengths = ", ".join(f"{a:.3g}" for a in semi_axes)
-    ax.text2D(0.5, 0.03, f"semi-axes {lengths} {rate_unit}", transform=ax.transAxes, ha="center")
+    ax.text2D(
+        0.5, 0.03, f"semi-axes {lengths} {rate_unit}", transform=ax.transAxes, ha="center", in_layout=False
+    )
     plain_frame(ax, 3 * [-reach], 3 * [reach])
     return ax
 
@@ -172,14 +174,14 @@ def poinsot(
     if not np.linalg.norm(motion.angular_momentum) > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = new_axes3d() if ax is None else ax
-    ax.view_init(elev=17.0, azim=-60.0)
     upright = _upright(found.normal)
+    herpolhode = found.contact @ upright.T
+    ax.view_init(elev=17.0, azim=_beside(herpolhode[-1]))
     attitude = upright @ _core.rotate(motion.at(times[-1:]).quaternion[0], np.eye(3)).T
     axes = attitude @ motion.body.principal.axes
     solid_ellipsoid(ax, found.semi_axes, axes, np.zeros(3), 1.0)
     polhode = motion.polhode(361)
     curve_on(ax, polhode @ attitude.T, (polhode @ motion.body.inertia) @ attitude.T, AXIS_COLORS[1])
-    herpolhode = found.contact @ upright.T
     reach = 1.25 * max(found.radii[1], 0.6 * found.semi_axes.max())
     _disc(ax, found.distance, reach)
     ax.plot(*herpolhode.T, color=AXIS_COLORS[0], linewidth=1.3, zorder=5)
@@ -190,8 +192,8 @@ def poinsot(
     arrow(ax, np.array([0.0, 0.0, height]), MOMENTUM_COLOR, "L")
     ax.text2D(
         0.5, 0.02,
-        f"polhode (vermilion) rolls on herpolhode (blue); plane at 2T/L = {found.distance:.4g} {rate_unit}",
-        transform=ax.transAxes, ha="center",
+        f"polhode (vermilion) rolls on herpolhode (blue);\nplane at 2T/L = {found.distance:.4g} {rate_unit}",
+        transform=ax.transAxes, ha="center", in_layout=False,
     )  # fmt: skip
     side = max(reach, float(found.semi_axes.max()))
     plain_frame(ax, (-side, -side, -side), (side, side, height))
@@ -212,6 +214,11 @@ def _upright(normal: Floats) -> Floats:
         return np.diag([1.0, -1.0, -1.0])
     w = 1.0 / (1.0 + z)
     return np.array([[1 - x * x * w, -x * y * w, -x], [-x * y * w, 1 - y * y * w, -y], [x, y, z]])
+
+
+def _beside(vector: Floats) -> float:
+    """Give the azimuth, in degrees, from which a vector leans to the right."""
+    return float(np.rad2deg(np.arctan2(vector[1], vector[0]))) - 80.0
 
 
 def _one(shape: tuple[int, ...], name: str) -> None:

@@ -41,7 +41,8 @@ def inertia_semi_axes(moments: Floats) -> Floats:
     with np.errstate(divide="ignore"):
         semi_axes: Floats = 1.0 / np.sqrt(moments)
     longest = semi_axes[np.isfinite(semi_axes)].max()
-    return np.minimum(semi_axes, _LONGEST * longest)
+    cut: Floats = np.minimum(semi_axes, _LONGEST * longest)
+    return cut
 
 
 def solid_ellipsoid(ax: Axes3D, semi_axes: Floats, axes: Floats, center: Floats, opacity: float) -> None:

@@ -116,7 +116,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     low, high = np.rad2deg(top.nutation_limits)
     ax.text2D(
         0.5, 0.02, f"{top.path} path between {low:.2f}° and {high:.2f}° from the vertical",
-        transform=ax.transAxes, ha="center",
+        transform=ax.transAxes, ha="center", in_layout=False,
     )  # fmt: skip
     plain_frame(ax, (-1.05, -1.05, -1.05), (1.05, 1.05, 1.25))
     return ax

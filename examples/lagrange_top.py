@@ -1,0 +1,40 @@
+"""Lagrange's top let go at rest but for its spin: it falls, precesses, and comes to rest at cusps."""
+
+import sys
+
+import numpy as np
+from matplotlib.figure import Figure
+from polhode import euler_angles, plot, solids
+
+GRAVITY = (0.0, 0.0, -9.81)  # m/s²
+
+
+def draw() -> Figure:
+    """Draw the effective potential, the path of the axis and the inclination in time."""
+    # A cone on its point: solids.cone has its apex upward, so it is turned over and put with the apex at O.
+    cone = (
+        solids.cone(radius=0.03, height=0.06, mass=0.1)
+        .rotated((1.0, 0.0, 0.0, 0.0))
+        .translated((0, 0, 0.045))
+    )
+    tilt = np.deg2rad(30.0)
+    attitude = euler_angles.to_quaternion((0.0, tilt, 0.0))
+    motion = cone.heavy_top((0.0, 0.0, 260.0), attitude, GRAVITY)
+    low, high = np.rad2deg(motion.nutation_limits)
+    print(f"{motion.path}: nutates between {low:.4f}° and {high:.4f}° every {motion.nutation_period:.6f} s")
+    fast = cone.mass * 9.81 * 0.045 / (cone.inertia[2, 2] * 260.0)
+    print(f"mean precession {motion.mean_precession:.4f} rad/s; mgl/(I_s ω_s) of a fast top {fast:.4f} rad/s")
+
+    t = np.linspace(0.0, 6 * motion.nutation_period, 1201)
+    figure = Figure(figsize=(12.0, 4.0), layout="constrained")
+    plot.effective_potential(motion, figure.add_subplot(1, 3, 1))
+    plot.nutation(motion, t, figure.add_subplot(1, 3, 2, projection="3d", computed_zorder=False))
+    ax = figure.add_subplot(1, 3, 3)
+    ax.plot(t, np.rad2deg(motion.at(t).euler_angles()[:, 1]), color="#0072B2")
+    ax.set(xlabel="time (s)", ylabel="inclination (degrees)")
+    ax.grid(color="0.9")
+    return figure
+
+
+if __name__ == "__main__":
+    draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "lagrange_top.png", dpi=130)

@@ -1,0 +1,212 @@
+"""Bodies and motions through files, and other libraries' objects taken as they are."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from polhode import RigidBody, Trajectory, files, loads, solids
+from polhode.errors import FileFormatError
+
+TILT = np.array([0.3, -0.1, 0.4, 0.86]) / np.linalg.norm([0.3, -0.1, 0.4, 0.86])
+BODIES = {
+    "box": solids.box((3.0, 0.2, 1.1), mass=0.7).translated((0.1, 1e3, 0.3)).rotated(TILT),
+    "molecule": RigidBody.from_principal(3e-26, (0.0, 1.9e-46, 1.9e-46)),
+    "rod": RigidBody.from_particles([1.0, 2.0, 3.0], [(i, 1e-12 * i * i, 0.0) for i in range(3)]),
+    "stack": solids.box(np.arange(1.0, 19.0).reshape(2, 3, 3), density=2.0),
+}
+
+
+class TestBodies:
+    @pytest.mark.parametrize("suffix", [".json", ".npz", ".JSON", ".NPZ"])
+    @pytest.mark.parametrize("name", BODIES)
+    def test_every_bit_returns(self, name: str, suffix: str, tmp_path: Path) -> None:
+        path = tmp_path / f"body{suffix}"
+        body = BODIES[name]
+        body.save(path)
+        again = RigidBody.load(path)
+        assert again == body
+        assert again.shape == body.shape
+        assert np.array_equal(again.principal.axes, body.principal.axes)
+        assert np.array_equal(again.principal_moments, body.principal_moments)
+        assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+    def test_an_empty_stack(self, tmp_path: Path) -> None:
+        empty = solids.box(np.ones((2, 0, 3)), mass=1.0)
+        empty.save(tmp_path / "body.npz")
+        assert RigidBody.load(tmp_path / "body.npz").shape == (2, 0)
+        with pytest.raises(ValueError, match=r"shape of an empty stack; \.npz does"):
+            empty.save(tmp_path / "body.json")
+
+    def test_json_is_readable_and_after_its_schema(self, tmp_path: Path) -> None:
+        BODIES["box"].save(tmp_path / "body.json")
+        fields = json.loads((tmp_path / "body.json").read_text("utf-8"))
+        assert fields["mass"] == 0.7
+        assert fields["center_of_mass"] == BODIES["box"].center_of_mass.tolist()
+        properties: Any = files.BODY_SCHEMA["properties"]
+        assert set(fields) == set(properties)
+        assert fields["format"] == properties["format"]["const"]
+
+    def test_one_written_by_hand(self, tmp_path: Path) -> None:
+        fields = {"format": "polhode.RigidBody/1", "mass": 2, "center_of_mass": [0, 0, 1]}
+        path = tmp_path / "body.json"
+        path.write_text(json.dumps(fields | {"inertia": np.diag([1.0, 2.0, 2.5]).tolist()}), "utf-8")
+        assert RigidBody.load(path) == RigidBody(2.0, np.diag([1.0, 2.0, 2.5]), (0, 0, 1))
+
+    @pytest.mark.parametrize(
+        ("change", "message"),
+        [
+            ({"mass": 1.0}, "mass is not that of the body in numbers"),
+            ({"format": "polhode.Trajectory/1"}, "its format is 'polhode.Trajectory/1'"),
+            ({"inertia": "big"}, "inertia is not an array of numbers"),
+            ({"inertia": [[1, 2], [3]]}, "inertia is not an array of numbers"),
+            ({"numbers": [1.0, 2.0]}, "not the fields of a body"),
+            ({"numbers": [-1.0] * 33}, "body.json"),
+        ],
+    )
+    def test_what_does_not_fit_is_told(self, change: dict[str, Any], message: str, tmp_path: Path) -> None:
+        path = tmp_path / "body.json"
+        BODIES["box"].save(path)
+        path.write_text(json.dumps(json.loads(path.read_text("utf-8")) | change), "utf-8")
+        with pytest.raises(FileFormatError, match=message):
+            RigidBody.load(path)
+
+    def test_impossible_bodies_and_broken_files(self, tmp_path: Path) -> None:
+        path = tmp_path / "body.json"
+        fields = {"format": "polhode.RigidBody/1", "mass": 2, "center_of_mass": [0, 0, 1]}
+        path.write_text(json.dumps(fields | {"inertia": np.diag([1.0, 1.0, 3.0]).tolist()}), "utf-8")
+        with pytest.raises(FileFormatError, match="triangle inequality"):
+            RigidBody.load(path)
+        path.write_text(json.dumps(fields), "utf-8")
+        with pytest.raises(FileFormatError, match="inertia is missing"):
+            RigidBody.load(path)
+        for name, content in (
+            ("a.json", b"{"),
+            ("b.json", b"\xff"),
+            ("c.npz", b"PK"),
+            ("d.npz", b""),
+            ("e.json", b"[]"),
+        ):
+            (tmp_path / name).write_bytes(content)
+            with pytest.raises(FileFormatError, match=name):
+                RigidBody.load(tmp_path / name)
+        for act in (BODIES["box"].save, RigidBody.load):
+            with pytest.raises(ValueError, match=r"does not end in \.json or \.npz"):
+                act(tmp_path / "body.csv")
+
+
+@pytest.fixture(params=["one", "stack"])
+def motion(request: pytest.FixtureRequest) -> Trajectory:
+    body = BODIES["box" if request.param == "one" else "stack"]
+    load = loads.uniform_gravity((0.0, 0.0, -9.81))
+    return body.simulate(np.linspace(0, 1, 5), (0.1, 1.0, 0.2), load=load, velocity=(0.0, 1.0, 0.0))
+
+
+class TestMotions:
+    @pytest.mark.parametrize("suffix", [".json", ".npz"])
+    def test_every_bit_returns(self, motion: Trajectory, suffix: str, tmp_path: Path) -> None:
+        motion.save(tmp_path / f"motion{suffix}")
+        again = Trajectory.from_file(tmp_path / f"motion{suffix}")
+        assert again.body == motion.body
+        for name in ("t", "omega", "quaternion", "position", "velocity", "about", "steps", "evaluations"):
+            assert np.array_equal(getattr(again, name), getattr(motion, name)), name
+        assert np.array_equal(again.status, motion.status)
+        assert again.pivoted == motion.pivoted
+
+    def test_states_after_a_failure_are_null(self, tmp_path: Path) -> None:
+        motion = BODIES["box"].simulate([0.0, 1.0], (0.1, 1.0, 0.2))
+        motion.omega.setflags(write=True)
+        motion.omega[-1] = np.nan
+        motion.save(tmp_path / "motion.json")
+        assert json.loads((tmp_path / "motion.json").read_text("utf-8"))["omega"][-1] == [None] * 3
+        again = Trajectory.from_file(tmp_path / "motion.json")
+        assert np.array_equal(again.omega, motion.omega, equal_nan=True)
+
+    @pytest.mark.parametrize(
+        ("change", "message"),
+        [
+            ({"omega": [[1.0, 2.0, 3.0]]}, r"omega has shape \(1, 3\), expected \(2, 3\)"),
+            ({"t": 3.0}, "expected"),
+            ({"body": 3}, "body is not an object"),
+            ({"about": [0.0]}, "about has shape"),
+        ],
+    )
+    def test_what_does_not_fit_is_told(self, change: dict[str, Any], message: str, tmp_path: Path) -> None:
+        path = tmp_path / "motion.json"
+        BODIES["box"].simulate([0.0, 1.0], (0.1, 1.0, 0.2)).save(path)
+        path.write_text(json.dumps(json.loads(path.read_text("utf-8")) | change), "utf-8")
+        with pytest.raises(FileFormatError, match=message):
+            Trajectory.from_file(path)
+
+    def test_xarray_names_its_axes(self, motion: Trajectory) -> None:
+        pytest.importorskip("xarray")
+        dataset = motion.to_xarray()
+        stack = ("body_0", "body_1") if motion.body.shape else ()
+        assert dataset["omega"].dims == (*stack, "time", "component")
+        assert dataset["quaternion"].dims == (*stack, "time", "quaternion_component")
+        np.testing.assert_array_equal(dataset["omega"].sel(component="y"), motion.omega[..., 1])
+        np.testing.assert_array_equal(dataset["time"], motion.t)
+        assert dataset["velocity"].attrs["frame"] == "space"
+
+
+class TestOtherLibraries:
+    def test_trimesh(self) -> None:
+        trimesh = pytest.importorskip("trimesh")
+        mesh = trimesh.creation.box(extents=(1.0, 2.0, 3.0))
+        mesh.apply_translation((0.5, 0.0, 0.0))
+        body = RigidBody.from_mesh_object(mesh, density=2.0)
+        assert body.isclose(solids.box((1.0, 2.0, 3.0), density=2.0).translated((0.5, 0.0, 0.0)))
+        np.testing.assert_allclose(body.inertia, 2.0 * mesh.moment_inertia, atol=1e-12)
+        scene = trimesh.Scene()
+        scene.add_geometry(
+            trimesh.creation.box(extents=(1.0, 2.0, 3.0)), transform=np.eye(4)[:, [1, 2, 0, 3]]
+        )
+        assert RigidBody.from_mesh_object(scene, mass=6.0).isclose(
+            RigidBody.from_mesh_object(scene.to_mesh(), mass=6.0)
+        )
+
+    def test_triangles_with_corners_of_their_own(self) -> None:
+        corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
+        faces = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+        soup = SimpleNamespace(vertices=corners[faces].reshape(-1, 3), faces=np.arange(12).reshape(4, 3))
+        body = RigidBody.from_mesh_object(soup, density=6.0)
+        np.testing.assert_allclose(body.mass, 1.0, rtol=1e-15)
+        with pytest.raises(TypeError, match="expected an object with vertices and faces"):
+            RigidBody.from_mesh_object(3.0, density=1.0)
+
+    def test_ase(self) -> None:
+        """Water as ASE gives it: a stand-in with its two methods where ASE is not installed."""
+        positions = np.array([(0.0, 0.0, 0.119262), (0.0, 0.763239, -0.477047), (0.0, -0.763239, -0.477047)])
+        masses = np.array([15.999, 1.008, 1.008])
+        try:
+            import ase  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+            atoms = ase.Atoms("OH2", positions=positions)
+        except ImportError:
+            atoms = SimpleNamespace(get_masses=lambda: masses, get_positions=lambda: positions)
+        assert RigidBody.from_atoms(atoms) == RigidBody.from_particles(masses, positions)
+        with pytest.raises(ValueError, match="conformer"):
+            RigidBody.from_atoms(atoms, conformer=0)
+
+    def test_rdkit(self) -> None:
+        """Two conformers of a diatomic molecule, as a stand-in with RDKit's names."""
+        conformers = {0: np.array([(0.0, 0, 0), (1.0, 0, 0)]), 3: np.array([(0.0, 0, 0), (2.0, 0, 0)])}
+        atoms = [SimpleNamespace(GetMass=lambda: 12.011), SimpleNamespace(GetMass=lambda: 15.999)]
+        molecule = SimpleNamespace(
+            GetAtoms=lambda: atoms,
+            GetNumConformers=lambda: len(conformers),
+            GetConformer=lambda number: SimpleNamespace(GetPositions=lambda: conformers[max(number, 0)]),
+        )
+        reduced = 12.011 * 15.999 / (12.011 + 15.999)
+        for number, length in ((None, 1.0), (0, 1.0), (3, 2.0)):
+            moments = RigidBody.from_atoms(molecule, conformer=number).principal_moments
+            np.testing.assert_allclose(moments, (0.0, reduced * length**2, reduced * length**2), rtol=1e-14)
+        conformers.clear()
+        with pytest.raises(ValueError, match="no conformer"):
+            RigidBody.from_atoms(molecule)
+        with pytest.raises(TypeError, match="expected ASE's Atoms or RDKit's Mol, got str"):
+            RigidBody.from_atoms("H2O")

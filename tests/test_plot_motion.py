@@ -1,0 +1,92 @@
+"""Pictures of bodies and motions: what is drawn, where `ax=` goes, what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from polhode import RigidBody, euler_angles, loads, solids
+
+pytest.importorskip("matplotlib")
+
+from matplotlib.figure import Figure
+from polhode import plot
+
+BODY = RigidBody.from_principal(1.0, (1.0, 1.8, 2.6))
+FREE = BODY.free_motion((1.0, 0.2, 0.5))
+TIMES = np.linspace(0.0, 20.0, 101)
+MOTION = FREE.at(TIMES)
+CONE = solids.cone(radius=0.03, height=0.06, mass=0.1).rotated((1.0, 0.0, 0.0, 0.0)).translated((0, 0, 0.045))
+TOP = CONE.heavy_top((0.0, 0.0, 260.0), euler_angles.to_quaternion((0.0, 0.5, 0.0)), (0.0, 0.0, -9.81))
+
+FLAT: dict[str, Callable[[Any], Any]] = {
+    "angular_velocity": lambda ax: plot.angular_velocity(MOTION, ax),
+    "angular_momentum": lambda ax: plot.angular_momentum(MOTION, ax, frame="body"),
+    "euler_angles": lambda ax: plot.euler_angles(MOTION, ax),
+    "invariants": lambda ax: plot.invariants(MOTION, ax),
+    "effective_potential": lambda ax: plot.effective_potential(TOP, ax),
+}
+SOLID: dict[str, Callable[[Any], Any]] = {
+    "ellipsoid": lambda ax: plot.ellipsoid(BODY, ax),
+    "method": lambda ax: BODY.plot(ax),
+    "rod": lambda ax: plot.ellipsoid(RigidBody.from_principal(1.0, (0.0, 1.0, 1.0)), ax),
+    "polhodes": lambda ax: plot.polhodes(BODY, ax),
+    "symmetric": lambda ax: plot.polhodes(RigidBody.from_principal(1.0, (1.0, 1.0, 1.5)), ax),
+    "poinsot": lambda ax: plot.poinsot(FREE, TIMES, ax),
+    "cones": lambda ax: plot.cones(FREE, TIMES, ax),
+    "nutation": lambda ax: plot.nutation(TOP, TIMES, ax),
+}
+
+
+@pytest.mark.parametrize("name", [*FLAT, *SOLID])
+def test_it_draws_where_it_is_told(name: str) -> None:
+    figure = Figure()
+    if name in FLAT:
+        ax: Any = figure.add_subplot()
+        assert FLAT[name](ax) is ax
+        assert ax.get_xlabel()
+        assert "(" in ax.get_ylabel() or name == "invariants"  # a unit
+    else:
+        ax = figure.add_subplot(projection="3d", computed_zorder=False)
+        assert SOLID[name](ax) is ax
+    assert ax.lines
+    figure.canvas.draw()
+
+
+def test_the_momentum_of_a_free_body_is_a_constant_in_space() -> None:
+    ax = plot.angular_momentum(MOTION, Figure().add_subplot())
+    for line, component in zip(ax.lines, FREE.angular_momentum, strict=True):
+        np.testing.assert_allclose(line.get_ydata(), component, rtol=1e-13)
+
+
+def test_euler_angles_break_where_they_wrap() -> None:
+    ax = plot.euler_angles(MOTION, Figure().add_subplot())
+    for line in ax.lines:
+        steps = np.abs(np.diff(line.get_ydata()))
+        assert np.nanmax(steps) < 180.0
+
+
+def test_the_level_of_a_top_ends_on_its_potential() -> None:
+    ax = plot.effective_potential(TOP, Figure().add_subplot())
+    ends = np.deg2rad(ax.lines[1].get_xdata())
+    np.testing.assert_allclose(TOP.effective_potential(ends), ax.lines[1].get_ydata(), rtol=1e-12)
+
+
+def test_what_cannot_be_drawn_is_told() -> None:
+    stack = solids.cube(np.ones(2), mass=1.0)
+    for draw in (plot.ellipsoid, plot.polhodes):
+        with pytest.raises(ValueError, match=r"one body, got a stack of shape \(2,\)"):
+            draw(stack)
+    with pytest.raises(ValueError, match="a point has no ellipsoid"):
+        plot.ellipsoid(RigidBody.from_principal(1.0, (0.0, 0.0, 0.0)), Figure().add_subplot(projection="3d"))
+    with pytest.raises(ValueError, match="energy: -1"):
+        plot.polhodes(BODY, energy=-1)
+    with pytest.raises(ValueError, match="no end"):
+        plot.polhodes(RigidBody.from_principal(1.0, (0.0, 1.0, 1.0)))
+    with pytest.raises(ValueError, match="at rest"):
+        plot.cones(BODY.free_motion((0.0, 0.0, 0.0)), TIMES)
+    load = loads.torque_callback(lambda *_: np.array([0.1, 0.0, 0.0]))
+    with pytest.raises(ValueError, match="keeps neither"):
+        plot.invariants(BODY.simulate([0.0, 1.0], (0.0, 0.0, 1.0), load=load))
