@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from oracles import load_cases
 from oracles.motion_cases import MotionCase, angle, load_table, relative_error
-from polhode import RigidBody, loads
+from polhode import RigidBody, Trajectory, loads
 
-CASES = load_table("simulate")
+CASES = load_table(load_cases.NAME)
 MATRICES = ("matrix", "quadratic", "K", "D")
 EPSILON = float(np.finfo(float).eps)
+TIGHTEST = 2.3e-15
 
 
 def load_of(case: MotionCase) -> Any:
@@ -33,10 +35,13 @@ def _matrix(x: Any) -> Any:
     return x * np.eye(3) if np.ndim(x) == 0 else x
 
 
-def simulated(case: MotionCase, method: str, rtol: float) -> Any:
-    made = RigidBody.from_principal if "moments" in case.body else RigidBody
+def body_of(case: MotionCase) -> RigidBody:
+    return (RigidBody.from_principal if "moments" in case.body else RigidBody)(**case.body)
+
+
+def simulated(case: MotionCase, method: Any, rtol: float) -> Trajectory:
     path = {"position": case.position, "velocity": case.velocity} if case.position else {}
-    return made(**case.body).simulate(
+    return body_of(case).simulate(
         [0.0, *case.times],
         case.omega,
         case.attitude,
@@ -48,19 +53,112 @@ def simulated(case: MotionCase, method: str, rtol: float) -> Any:
     )
 
 
-# An explicit method on a stiff case stands at the limit of its stability: those are for "radau".
-SMOOTH = tuple(case for case in CASES if "stiff" not in case.name)
-
-
-@pytest.mark.parametrize("case", SMOOTH, ids=lambda case: case.name)
-def test_dop853(case: MotionCase) -> None:
-    trajectory = simulated(case, "dop853", 1e-13)
-    rotation = 2 * np.pi / np.linalg.norm(case.omega)
-    for i, (t, kappa, want) in enumerate(zip(case.times, case.kappa, case.expected, strict=True), start=1):
-        bar = (1e-11 if t < 10.5 * rotation else 1e-9) + 100 * kappa * EPSILON
-        assert angle(trajectory.quaternion[i], want.quaternion) <= bar
-        rate = float(np.linalg.norm(case.omega))
-        assert relative_error(trajectory.omega[i], want.omega, at_least=rate) <= bar
+def errors(case: MotionCase, trajectory: Trajectory) -> list[float]:
+    """The largest error of attitude, rates and path at each time."""
+    rate = float(np.linalg.norm(case.omega))
+    found = []
+    for i, want in enumerate(case.expected, start=1):
+        parts = [
+            angle(trajectory.quaternion[i], want.quaternion),
+            relative_error(trajectory.omega[i], want.omega, at_least=rate),
+        ]
         if case.position:
-            assert relative_error(trajectory.position[i], want.position) <= bar
-            assert relative_error(trajectory.velocity[i], want.velocity) <= bar
+            parts.append(relative_error(trajectory.position[i], want.position))
+            parts.append(relative_error(trajectory.velocity[i], want.velocity))
+        found.append(max(parts))
+    return found
+
+
+def named(cases: Any) -> Any:
+    return pytest.mark.parametrize("case", tuple(cases), ids=lambda case: case.name)
+
+
+def is_stiff(case: MotionCase) -> bool:
+    return "stiff" in case.name
+
+
+def test_the_table_reaches_a_hundred_rotations_and_chaos() -> None:
+    turns = [case.times[-1] * np.linalg.norm(case.omega) / (2 * np.pi) for case in CASES]
+    assert sum(turn > 99.0 for turn in turns) >= 2
+    assert sum(turn > 9.9 for turn in turns) >= len(CASES) - 1
+    assert max(max(case.kappa) for case in CASES) > 1e4
+
+
+@named(case for case in CASES if "sinusoidal" not in case.name)
+def test_taylor(case: MotionCase) -> None:
+    for error, kappa in zip(errors(case, simulated(case, "taylor", TIGHTEST)), case.kappa, strict=True):
+        assert error <= 1e-13 + 30 * kappa * EPSILON
+
+
+# An explicit method on a stiff case stands at the limit of its stability: those are for "radau".
+SMOOTH = named(case for case in CASES if not is_stiff(case))
+
+
+@SMOOTH
+def test_dop853(case: MotionCase) -> None:
+    assert_dop853(case, TIGHTEST)
+
+
+@SMOOTH
+def test_dop853_holds_its_bar_soon_at_a_looser_tolerance(case: MotionCase) -> None:
+    soon = {"times": case.times[:2], "expected": case.expected[:2], "kappa": case.kappa[:2]}
+    assert_dop853(case._replace(**soon), 1e-13)
+
+
+def assert_dop853(case: MotionCase, rtol: float) -> None:
+    rotation = 2 * np.pi / np.linalg.norm(case.omega)
+    found = errors(case, simulated(case, "dop853", rtol))
+    for t, error, kappa in zip(case.times, found, case.kappa, strict=True):
+        assert error <= (1e-11 if t < 10.5 * rotation else 1e-9) + 100 * kappa * EPSILON
+
+
+class TestRadau:
+    @named(case for case in CASES if is_stiff(case))
+    def test_error(self, case: MotionCase) -> None:
+        assert max(errors(case, simulated(case, "radau", 1e-10))) <= 1e-8
+
+    @named(case for case in CASES if is_stiff(case))
+    def test_steps_do_not_grow_with_the_stiffness(self, case: MotionCase) -> None:
+        """The damping that is stiff up to a million times as strong."""
+        (term,) = case.load
+        matrix = np.array(term["matrix"])
+        strong = matrix > 1.0
+        t = [0.0, 6 * np.pi / np.linalg.norm(case.omega)]
+        body, steps = body_of(case), []
+        for factor in (1.0, 1e2, 1e4, 1e6):
+            load = loads.damping(np.where(strong, factor * matrix, matrix))
+            run = body.simulate(t, case.omega, case.attitude, load=load, method="radau", rtol=1e-10)
+            steps.append(run.steps)
+        assert max(steps) <= 1.05 * steps[0]
+
+
+def drifts(case: MotionCase, rotations: float) -> tuple[float, float]:
+    """Largest |ΔE/E| in the first and in the second half of a run of a heavy top by splitting."""
+    t = np.linspace(0.0, rotations * 2 * np.pi / np.linalg.norm(case.omega), 4001)
+    body = body_of(case)
+    run = body.simulate(t, case.omega, case.attitude, load=load_of(case), about="origin", method="splitting")
+    (weight,) = case.load
+    inertia = body.inertia_about((0.0, 0.0, 0.0))
+    kinetic = 0.5 * np.einsum("ti,ij,tj->t", run.omega, inertia, run.omega)
+    center = run.rotation.apply(body.center_of_mass)
+    energy = kinetic - body.mass * center @ np.array(weight["gravity"])
+    drift = np.abs(energy / energy[0] - 1.0)
+    return float(drift[: len(t) // 2].max()), float(drift[len(t) // 2 :].max())
+
+
+REGULAR = ("heavy symmetric top: nodding", "Kovalevskaya top: generic")
+
+
+@named(case for case in CASES if case.name in (*REGULAR, "heavy asymmetric top: fast"))
+def test_splitting_keeps_the_energy_for_a_thousand_rotations(case: MotionCase) -> None:
+    first, second = drifts(case, 1e3)
+    assert first <= 1e-9
+    assert second <= 1.5 * first + 1e-11
+
+
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+@named(case for case in CASES if case.name in REGULAR)
+def test_splitting_keeps_the_energy_for_a_million_rotations(case: MotionCase) -> None:
+    first, second = drifts(case, 1e6)
+    assert second <= 1.5 * first + 1e-11
