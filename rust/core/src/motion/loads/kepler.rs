@@ -148,8 +148,10 @@ impl Orbit {
                 (low, high) = if t > 0.0 { (0.5 * s, s) } else { (s, 0.5 * s) };
             }
         }
-        // Laguerre's iteration takes three or four rounds; halving alone would take no more than these.
-        for _ in 0..100 {
+        // Laguerre's iteration takes three or four rounds near the root; far out on a hyperbola, where the time grows like an
+        // exponential, its steps do not shrink, and halving is faster.
+        let mut before = high - low;
+        for _ in 0..200 {
             let g = functions(self.beta, s);
             let excess = self.time_at(&g) - t;
             if excess > 0.0 {
@@ -161,11 +163,13 @@ impl Orbit {
             let bend = self.sigma * g[0] + (self.scaled_mu - self.beta * self.distance) * g[1];
             let radical = (16.0 * slope * slope - 20.0 * excess * bend).abs().sqrt();
             let next = s - 5.0 * excess / (slope + radical);
-            let next = if next > low && next < high {
+            let shrinks = (next - s).abs() <= 0.5 * before.abs();
+            let next = if shrinks && next > low && next < high {
                 next
             } else {
                 0.5 * (low + high)
             };
+            before = next - s;
             if (next - s).abs() <= f64::EPSILON * s.abs() || next == low || next == high {
                 return next;
             }

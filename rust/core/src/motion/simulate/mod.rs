@@ -1,7 +1,7 @@
 //! The motion of a body under a load, sampled at the times asked for.
 //!
-//! [`method`] tells which method serves a run. Those of steps cut it into spans in which the load is smooth: [`stepper`] is
-//! what a run needs of them, [`equations`] what they see of the mechanics, [`events`] what is looked for on the way.
+//! `method` tells which method serves a run. Those of steps cut it into spans in which the load is smooth: `stepper` is
+//! what a run needs of them, `equations` what they see of the mechanics, [`events`] what is looked for on the way.
 
 mod equations;
 pub mod events;
