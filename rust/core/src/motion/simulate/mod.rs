@@ -96,7 +96,7 @@ impl<'a> Task<'a> {
         Self {
             body: *body,
             subject,
-            euler: EulerEquations::about(body, &subject.point),
+            euler: EulerEquations::refined_about(body, &subject.point),
             initial,
             times,
             method,
@@ -116,7 +116,7 @@ impl<'a> Task<'a> {
         let subject = Subject::pivoted(body, times.first().copied().unwrap_or_default());
         Self {
             subject,
-            euler: EulerEquations::about(body, &subject.point),
+            euler: EulerEquations::refined_about(body, &subject.point),
             ..Self::free(body, initial, times, method, tolerance)
         }
     }

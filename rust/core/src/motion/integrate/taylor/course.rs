@@ -53,7 +53,7 @@ impl<'a> Course<'a> {
     /// # Errors
     /// When a term cannot act, or acts along an axis without a moment of inertia.
     pub(super) fn new(task: &Task<'a>, terms: &'a [Term]) -> Result<Self, Error> {
-        let [i1, i2, i3] = task.euler.moments();
+        let ([i1, i2, i3], [d1, d2, d3]) = (task.euler.moments(), task.euler.differences());
         let axes = *task.euler.axes();
         let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
         let mut breaks: Vec<f64> = terms.iter().flat_map(Term::breaks).collect();
@@ -69,7 +69,7 @@ impl<'a> Course<'a> {
             terms,
             axes,
             q_bp: from_axes(&axes),
-            kappa: Vector3::new(over(i2 - i3, i1), over(i3 - i1, i2), over(i1 - i2, i3)),
+            kappa: Vector3::new(over(d1, i1), over(d2, i2), over(d3, i3)),
             inverse_moments: Vector3::new(over(1.0, i1), over(1.0, i2), over(1.0, i3)),
             breaks,
             segment: 0,
