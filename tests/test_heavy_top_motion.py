@@ -101,6 +101,8 @@ def errors(case: Case, times: list[float]) -> tuple[float, float]:
     return float(angle), float(rate)
 
 
+@pytest.mark.long
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize("name", CASES)
 def test_it_is_the_motion_to_the_last_digits(name: str) -> None:
     """At 1, 10, 1e3 and 1e6 rotations; on a separatrix as long as it moves."""

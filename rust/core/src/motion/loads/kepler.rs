@@ -154,7 +154,8 @@ impl Orbit {
         for _ in 0..200 {
             let g = functions(self.beta, s);
             let excess = self.time_at(&g) - t;
-            if excess > 0.0 {
+            // Not a number where the exponentials overflow: far too far.
+            if excess > 0.0 || excess.is_nan() && t > 0.0 {
                 high = s;
             } else {
                 low = s;
