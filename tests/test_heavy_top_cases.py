@@ -9,8 +9,6 @@ from polhode import RigidBody
 
 BAR = 1e-14
 
-pytestmark = pytest.mark.skipif(not hasattr(RigidBody, "heavy_top"), reason="this build has no heavy_top")
-
 
 @pytest.mark.parametrize("case", load_table("heavy_top"), ids=lambda case: case.name)
 def test_every_class(case: MotionCase) -> None:
