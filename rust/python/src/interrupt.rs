@@ -4,18 +4,19 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use pyo3::prelude::*;
 
-/// How often Python is asked; fast enough to feel immediate, rare enough to cost nothing.
-const INTERVAL: Duration = Duration::from_millis(50);
+/// How often Python is asked, in milliseconds; fast enough to feel immediate, rare enough to cost nothing.
+const INTERVAL: u64 = 50;
 
 /// A run that Python may stop: by Ctrl-C, or by an exception from its progress callback.
 pub(crate) struct Interrupt {
     start: Instant,
-    /// When Python was last asked, in milliseconds since the start.
-    asked: AtomicU64,
+    /// When Python is to be asked next, in milliseconds since the start: with a progress callback at once, so that the
+    /// quickest run tells of itself too.
+    due: AtomicU64,
     stopped: AtomicBool,
     error: Mutex<Option<PyErr>>,
     progress: Option<Py<PyAny>>,
@@ -25,7 +26,7 @@ impl Interrupt {
     pub(crate) fn new(progress: Option<Py<PyAny>>) -> Self {
         Self {
             start: Instant::now(),
-            asked: AtomicU64::new(0),
+            due: AtomicU64::new(if progress.is_some() { 0 } else { INTERVAL }),
             stopped: AtomicBool::new(false),
             error: Mutex::new(None),
             progress,
@@ -36,12 +37,12 @@ impl Interrupt {
     ///
     /// Called from any thread, attached or not. Signals are only seen by Python's main thread.
     pub(crate) fn poll(&self, fraction: Option<f64>) -> ControlFlow<()> {
-        let now = u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX);
-        let asked = self.asked.load(Ordering::Relaxed);
-        if u128::from(now - asked.min(now)) >= INTERVAL.as_millis()
+        let now = u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX - INTERVAL);
+        let due = self.due.load(Ordering::Relaxed);
+        if now >= due
             && self
-                .asked
-                .compare_exchange(asked, now, Ordering::Relaxed, Ordering::Relaxed)
+                .due
+                .compare_exchange(due, now + INTERVAL, Ordering::Relaxed, Ordering::Relaxed)
                 .is_ok()
         {
             self.ask(fraction);
