@@ -2,69 +2,19 @@
 //! step. It damps what decays fast whatever the length of the step (L-stable), so that a stiff load does not
 //! dictate the steps (Hairer & Wanner, Solving ODEs II, §IV.8).
 
+mod dense;
+mod tableau;
+#[cfg(test)]
+mod tests;
+
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU, SVector};
 
+pub use self::dense::Dense;
+use self::tableau::{COMPLEX, ERROR, NODES, REAL, T, T_INVERSE};
 use super::first_step::first_step;
 use super::{Compensated, System};
 use crate::error::Error;
 use crate::numerics::double_double::fast_two_sum;
-
-const ROOT_6: f64 = 2.449_489_742_783_178;
-/// The points of collocation, in steps.
-const NODES: [f64; 3] = [(4.0 - ROOT_6) / 10.0, (4.0 + ROOT_6) / 10.0, 1.0];
-/// The inverse of the method's matrix is `T Λ T⁻¹` with Λ of a real block γ and the block of α ± iβ.
-const REAL: f64 = 3.637_834_252_744_496;
-const COMPLEX: Complex<f64> = Complex::new(2.681_082_873_627_752, -3.050_430_199_247_410_5);
-const T: [[f64; 3]; 3] = [
-    [
-        0.094_438_762_488_975_24,
-        -0.141_255_295_020_954_2,
-        0.030_029_194_105_147_42,
-    ],
-    [
-        0.250_213_122_965_333_3,
-        0.204_129_352_293_799_94,
-        -0.382_942_112_757_261_9,
-    ],
-    [1.0, 1.0, 0.0],
-];
-const T_INVERSE: [[f64; 3]; 3] = [
-    [
-        4.178_718_591_551_904,
-        0.327_682_820_761_062_4,
-        0.523_376_445_499_449_5,
-    ],
-    [
-        -4.178_718_591_551_904,
-        -0.327_682_820_761_062_4,
-        0.476_623_554_500_550_45,
-    ],
-    [
-        0.502_872_634_945_786_8,
-        -2.571_926_949_855_605,
-        0.596_039_204_828_224_9,
-    ],
-];
-/// The weights of the stages in the estimate of the error, of order 3.
-const ERROR: [f64; 3] = [
-    (-13.0 - 7.0 * ROOT_6) / 3.0,
-    (-13.0 + 7.0 * ROOT_6) / 3.0,
-    -1.0 / 3.0,
-];
-/// The stages as the polynomial through them: rows of coefficients of x, x², x³, x in steps.
-const POLYNOMIAL: [[f64; 3]; 3] = [
-    [
-        (13.0 + 7.0 * ROOT_6) / 3.0,
-        (-23.0 - 22.0 * ROOT_6) / 3.0,
-        (10.0 + 15.0 * ROOT_6) / 3.0,
-    ],
-    [
-        (13.0 - 7.0 * ROOT_6) / 3.0,
-        (-23.0 + 22.0 * ROOT_6) / 3.0,
-        (10.0 - 15.0 * ROOT_6) / 3.0,
-    ],
-    [1.0 / 3.0, -8.0 / 3.0, 10.0 / 3.0],
-];
 
 /// Newton's iterations before the step is shortened.
 const ITERATIONS: i32 = 7;
@@ -446,140 +396,4 @@ fn combine<const N: usize>(weights: &[f64; 3], stages: &Stages<N>) -> SVector<f6
 
 fn combined<const N: usize>(matrix: &[[f64; 3]; 3], stages: &Stages<N>) -> Stages<N> {
     matrix.each_ref().map(|row| combine(row, stages))
-}
-
-/// The states during one step as a polynomial of degree 3 in time.
-#[derive(Clone, Debug)]
-pub struct Dense<const N: usize> {
-    start: f64,
-    step: f64,
-    y: SVector<f64, N>,
-    coefficients: Stages<N>,
-}
-
-impl<const N: usize> Dense<N> {
-    fn new(start: f64, step: f64, y: &SVector<f64, N>, stages: &Stages<N>) -> Self {
-        let column = |k: usize| combine(&POLYNOMIAL.map(|row| row[k]), stages);
-        Self {
-            start,
-            step,
-            y: *y,
-            coefficients: [column(0), column(1), column(2)],
-        }
-    }
-
-    /// The state at `elapsed` since the start of the integration.
-    #[must_use]
-    pub fn at(&self, elapsed: f64) -> SVector<f64, N> {
-        let x = (elapsed - self.start) / self.step;
-        let [first, second, third] = &self.coefficients;
-        self.y + (first + (second + third * x) * x) * x
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::{Matrix3, Vector2};
-
-    #[test]
-    fn constants_are_those_of_the_method() {
-        // Collocation: the row i of A integrates the Lagrange polynomials through the nodes from 0 to node i.
-        let powers = |x: f64| [x, x * x / 2.0, x * x * x / 3.0];
-        let vandermonde = Matrix3::from_fn(|j, k| NODES[j].powi(i32::try_from(k).expect("small")));
-        let integrals = Matrix3::from_fn(|i, k| powers(NODES[i])[k]);
-        let method = integrals * vandermonde.try_inverse().expect("distinct nodes");
-        let matrix = |rows: &[[f64; 3]; 3]| Matrix3::from_fn(|i, j| rows[i][j]);
-        let blocks = Matrix3::new(
-            REAL,
-            0.0,
-            0.0,
-            0.0,
-            COMPLEX.re,
-            -COMPLEX.im,
-            0.0,
-            COMPLEX.im,
-            COMPLEX.re,
-        );
-        let eigen = |sign: f64| {
-            let mut blocks = blocks;
-            blocks[(1, 2)] *= sign;
-            blocks[(2, 1)] *= sign;
-            matrix(&T) * blocks * matrix(&T_INVERSE) - method.try_inverse().expect("regular")
-        };
-        assert!((matrix(&T) * matrix(&T_INVERSE) - Matrix3::identity()).norm() < 1e-14);
-        assert!(eigen(1.0).norm() < 1e-13, "{}", eigen(1.0));
-        // The dense output passes through the stages.
-        for (i, node) in NODES.into_iter().enumerate() {
-            for (j, row) in POLYNOMIAL.iter().enumerate() {
-                let value = node * (row[0] + node * (row[1] + node * row[2]));
-                assert!((value - if i == j { 1.0 } else { 0.0 }).abs() < 1e-14);
-            }
-        }
-    }
-
-    /// ẏ = −λ (y − cos t) − sin t beside ẍ = −x: the solution from y(0) = 1 + departure is cos t + departure e^(−λ t).
-    struct Stiff {
-        rate: f64,
-        tolerance: f64,
-    }
-
-    impl System<3> for Stiff {
-        type Error = Error;
-
-        fn derivative(&mut self, t: f64, y: &SVector<f64, 3>) -> Result<SVector<f64, 3>, Error> {
-            let pull = -self.rate * (y[0] - t.cos()) - t.sin();
-            Ok(SVector::from([pull, y[2], -y[1]]))
-        }
-
-        fn error_norm(
-            &self,
-            _: &SVector<f64, 3>,
-            _: &SVector<f64, 3>,
-            error: &SVector<f64, 3>,
-        ) -> f64 {
-            error.norm() / self.tolerance
-        }
-
-        fn accept(&mut self, _: &mut Compensated<3>) {}
-    }
-
-    fn run(rate: f64, tolerance: f64, departure: f64, end: f64) -> (f64, f64, u64) {
-        let mut system = Stiff { rate, tolerance };
-        let y = SVector::from([1.0 + departure, 1.0, 0.0]);
-        let mut stepper = Radau::new(&mut system, 0.0, end, y, None).expect("finite");
-        let mut between: f64 = 0.0;
-        while !stepper.is_finished() {
-            let before = stepper.elapsed();
-            stepper.advance(&mut system).expect("smooth");
-            let dense = stepper.dense().expect("a step was taken");
-            for part in [0.0, 0.3, 0.8, 1.0] {
-                let t = before + part * (stepper.elapsed() - before);
-                let exact = Vector2::new(t.cos(), -t.sin());
-                between = between.max((dense.at(t).fixed_rows::<2>(1) - exact).norm());
-            }
-        }
-        let exact = SVector::from([end.cos(), end.cos(), -end.sin()]);
-        ((stepper.state() - exact).norm(), between, stepper.steps)
-    }
-
-    #[test]
-    fn error_follows_the_tolerance() {
-        for tolerance in [1e-4, 1e-7, 1e-10] {
-            let (error, between, _) = run(50.0, tolerance, 0.0, 10.0);
-            assert!(error < 30.0 * tolerance, "{error:e}");
-            assert!(between < 100.0 * tolerance, "{between:e}");
-        }
-        assert!(run(0.0, 1e-8, 0.0, -7.0).0 > 0.0);
-    }
-
-    #[test]
-    fn steps_do_not_depend_on_the_stiffness() {
-        let mild = run(1e3, 1e-8, 0.5, 10.0);
-        for rate in [1e5, 1e7, 1e9] {
-            let (error, _, steps) = run(rate, 1e-8, 0.5, 10.0);
-            assert!(error < 1e-6, "{error:e}");
-            assert!(steps < mild.2 + mild.2 / 4, "{steps} for {}", mild.2);
-        }
-    }
 }

@@ -1,0 +1,62 @@
+use super::*;
+use nalgebra::Vector2;
+
+/// ẏ = −λ (y − cos t) − sin t beside ẍ = −x: the solution from y(0) = 1 + departure is cos t + departure e^(−λ t).
+struct Stiff {
+    rate: f64,
+    tolerance: f64,
+}
+
+impl System<3> for Stiff {
+    type Error = Error;
+
+    fn derivative(&mut self, t: f64, y: &SVector<f64, 3>) -> Result<SVector<f64, 3>, Error> {
+        let pull = -self.rate * (y[0] - t.cos()) - t.sin();
+        Ok(SVector::from([pull, y[2], -y[1]]))
+    }
+
+    fn error_norm(&self, _: &SVector<f64, 3>, _: &SVector<f64, 3>, error: &SVector<f64, 3>) -> f64 {
+        error.norm() / self.tolerance
+    }
+
+    fn accept(&mut self, _: &mut Compensated<3>) {}
+}
+
+fn run(rate: f64, tolerance: f64, departure: f64, end: f64) -> (f64, f64, u64) {
+    let mut system = Stiff { rate, tolerance };
+    let y = SVector::from([1.0 + departure, 1.0, 0.0]);
+    let mut stepper = Radau::new(&mut system, 0.0, end, y, None).expect("finite");
+    let mut between: f64 = 0.0;
+    while !stepper.is_finished() {
+        let before = stepper.elapsed();
+        stepper.advance(&mut system).expect("smooth");
+        let dense = stepper.dense().expect("a step was taken");
+        for part in [0.0, 0.3, 0.8, 1.0] {
+            let t = before + part * (stepper.elapsed() - before);
+            let exact = Vector2::new(t.cos(), -t.sin());
+            between = between.max((dense.at(t).fixed_rows::<2>(1) - exact).norm());
+        }
+    }
+    let exact = SVector::from([end.cos(), end.cos(), -end.sin()]);
+    ((stepper.state() - exact).norm(), between, stepper.steps)
+}
+
+#[test]
+fn error_follows_the_tolerance() {
+    for tolerance in [1e-4, 1e-7, 1e-10] {
+        let (error, between, _) = run(50.0, tolerance, 0.0, 10.0);
+        assert!(error < 30.0 * tolerance, "{error:e}");
+        assert!(between < 100.0 * tolerance, "{between:e}");
+    }
+    assert!(run(0.0, 1e-8, 0.0, -7.0).0 > 0.0);
+}
+
+#[test]
+fn steps_do_not_depend_on_the_stiffness() {
+    let mild = run(1e3, 1e-8, 0.5, 10.0);
+    for rate in [1e5, 1e7, 1e9] {
+        let (error, _, steps) = run(rate, 1e-8, 0.5, 10.0);
+        assert!(error < 1e-6, "{error:e}");
+        assert!(steps < mild.2 + mild.2 / 4, "{steps} for {}", mild.2);
+    }
+}

@@ -1,0 +1,110 @@
+//! How long the equal steps may be, and which scheme then takes fewest kicks.
+
+use super::body::{Body, Point};
+use super::scheme::Scheme;
+use crate::motion::loads::Load;
+
+/// Steps that are tried to find out how long a step may be.
+const TRIALS: usize = 6;
+/// Rounds of that search.
+const ROUNDS: usize = 5;
+/// Of the length of step at which a trial just meets the tolerance.
+const SAFETY: f64 = 0.9;
+
+/// The scheme that takes fewest kicks at the length of step at which it meets the tolerance.
+pub(super) fn cheapest<L: Load>(
+    body: &Body,
+    point: &Point,
+    load: &mut L,
+    start: f64,
+    span: f64,
+    tolerance: f64,
+    evaluations: &mut u64,
+) -> Result<(Scheme, f64), L::Error> {
+    let mut best: Option<(f64, Scheme, f64)> = None;
+    for scheme in Scheme::ALL {
+        let step = longest(
+            body,
+            point,
+            load,
+            start,
+            span,
+            tolerance,
+            scheme,
+            evaluations,
+        )?;
+        let cost = scheme.kicks() as f64 / step.abs();
+        if best.is_none_or(|(least, ..)| cost < least) {
+            best = Some((cost, scheme, step));
+        }
+    }
+    Ok(best.map_or((Scheme::Strang, span), |(_, scheme, step)| (scheme, step)))
+}
+
+/// The length of step at which one step differs from two halves by no more than the tolerance, over the first few steps.
+#[expect(clippy::too_many_arguments, reason = "one search, said in full")]
+fn longest<L: Load>(
+    body: &Body,
+    point: &Point,
+    load: &mut L,
+    start: f64,
+    span: f64,
+    tolerance: f64,
+    scheme: Scheme,
+    evaluations: &mut u64,
+) -> Result<f64, L::Error> {
+    let mut step = first_trial(body, point, load, start, span)?;
+    for _ in 0..ROUNDS {
+        let mut worst: f64 = 0.0;
+        let mut fine = *point;
+        let mut reached = 0.0;
+        for _ in 0..TRIALS {
+            if (reached + step).abs() > span.abs() {
+                break;
+            }
+            let mut coarse = fine;
+            let at = start + reached;
+            body.step(scheme, &mut coarse, load, at, step)?;
+            body.step(scheme, &mut fine, load, at, 0.5 * step)?;
+            body.step(scheme, &mut fine, load, at + 0.5 * step, 0.5 * step)?;
+            *evaluations += 3 * scheme.kicks() as u64;
+            worst = worst.max(body.difference(&coarse, &fine) / tolerance);
+            reached += step;
+        }
+        if worst == 0.0 && reached != 0.0 {
+            return Ok(span); // the load does nothing
+        }
+        let factor = if reached == 0.0 {
+            0.25 // longer than the span
+        } else {
+            SAFETY * worst.powf(-1.0 / f64::from(scheme.order() + 1))
+        };
+        let next = step * factor.clamp(0.02, 50.0);
+        if (0.8..1.1).contains(&factor) {
+            return Ok(next);
+        }
+        step = next.abs().min(span.abs() / TRIALS as f64).copysign(span);
+    }
+    Ok(step)
+}
+
+/// A twentieth of the faster of a turn and a swing.
+fn first_trial<L: Load>(
+    body: &Body,
+    point: &Point,
+    load: &mut L,
+    start: f64,
+    span: f64,
+) -> Result<f64, L::Error> {
+    let phase = body.phase(point);
+    let torque = load.wrench(start, &phase)?.torque;
+    let along = body.q_bp.inverse_transform_vector(&torque);
+    let swing: f64 = (along.iter().zip(body.moments))
+        .filter(|&(_, moment)| moment > 0.0)
+        .map(|(torque, moment)| (torque / moment).abs())
+        .fold(0.0, f64::max);
+    let rate = phase.omega.norm().max(swing.sqrt());
+    let step = std::f64::consts::TAU / 20.0 / rate;
+    let most = span.abs() / TRIALS as f64;
+    Ok(if step < most { step } else { most }.copysign(span))
+}
