@@ -233,7 +233,7 @@ class TestWhatItTells:
     def test_paths(self) -> None:
         def path(name: str) -> str:
             case = CASES[name]
-            return case.body.heavy_top(case.omega, case.attitude, (0, 0, -case.gravity)).path
+            return str(case.body.heavy_top(case.omega, case.attitude, (0, 0, -case.gravity)).path)
 
         assert [path(name) for name in ("cusp", "loop", "wave")] == ["cusp", "loop", "wave"]
         assert path("through the upper vertical") == path("through the lower vertical") == "crossing"
