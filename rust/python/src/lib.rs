@@ -15,6 +15,7 @@
 
 mod accumulator;
 mod arrays;
+mod attitudes;
 mod closed_form;
 mod environment;
 mod equimomental;
