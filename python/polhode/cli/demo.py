@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 __all__ = ["run"]
 
-# One turn a second about the stem, and a breath of spin about the other two axes. Steel, in kg/m^3.
+# One turn a second about the stem, and a breath of spin about the other two axes. Steel.
 SPIN = (0.01, 2.0 * np.pi, 0.0)
 DURATION = 20.0
 SAMPLES = 2001
-STEEL = "7850"
+STEEL = "7850 kg/m^3"
 
 GOOD, BAD = 0, 1
 

@@ -11,6 +11,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from polhode._files.content import content_format
 from polhode._files.xml_source import Edit, Element, edited, parse_xml
 from polhode.errors import FileFormatError
 from polhode.robots import mjcf, sdf, urdf
@@ -91,6 +92,9 @@ def parse_robot(source: bytes, *, name: str, folder: str | os.PathLike[str]) -> 
     """
     if not source.strip():
         raise FileFormatError(f"{name}: the file is empty")
+    body_format, _ = content_format(source[:4096], len(source))
+    if body_format is not None:
+        raise FileFormatError(f"{name}: is {body_format}, not a robot; polhode report reads it")
     root = parse_xml(source, name)
     if root.tag not in _FORMATS:
         raise FileFormatError(

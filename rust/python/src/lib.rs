@@ -5,6 +5,7 @@
 //! | `arrays`, `meshes` | NumPy layout |
 //! | `stack` | shape arithmetic |
 //! | `errors` | which exception an error of the core becomes |
+//! | `hints` | the way out of mistakes that many make |
 //! | `interrupt` | Ctrl-C and progress |
 //! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
@@ -23,6 +24,7 @@ mod files;
 mod forms;
 mod free_motion;
 mod heavy_top;
+mod hints;
 mod interrupt;
 mod kinematics;
 mod laminae;
