@@ -82,7 +82,7 @@ def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> 
         loaded = _load_mesh(path, options)
         if not with_shape:
             return loaded
-        mesh = read_mesh(path, index_base=options.index_base)
+        mesh = read_mesh(path, index_base=options.index_base, weld=_weld(options))
         scale = 1.0 if options.length_unit is None else metres_per(options.length_unit)
         return replace(loaded, shape=mesh._replace(vertices=mesh.vertices * scale))
 
@@ -97,13 +97,7 @@ def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
     assumed = options.density is None and options.mass is None
     density = 1.0 if assumed else _amount(options.density, "kg/m^3", "--density", unit)
     mass = _amount(options.mass, "kg", "--mass", unit)
-    weld = 0.0
-    if options.weld is not None:
-        weld = in_file_unit(options.weld, "--weld", unit)
-        if not weld > 0.0:
-            raise PolhodeError(
-                f"--weld: {weld:g} is not a positive length; leave it out to join equal corners"
-            )
+    weld = _weld(options)
     try:
         solid = _solid(file, options, density, mass, scale, weld)
     except MeshError as error:
@@ -145,6 +139,16 @@ def _solid(
             index_base=options.index_base,
             progress=tell,
         )
+
+
+def _weld(options: BodyOptions) -> float:
+    """Read the length within which corners are joined, in the unit of the file; 0 for equal ones alone."""
+    if options.weld is None:
+        return 0.0
+    weld = in_file_unit(options.weld, "--weld", options.length_unit)
+    if not weld > 0.0:
+        raise PolhodeError(f"--weld: {weld:g} is not a positive length; leave it out to join equal corners")
+    return weld
 
 
 def _taken(options: BodyOptions, unit: str | None) -> list[str]:

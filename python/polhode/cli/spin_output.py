@@ -93,6 +93,8 @@ def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, par
         body(vertices, part[1], picture)
         length = 1.06 * float(np.linalg.norm(vertices[part[1]], axis=-1).max())
         principal_axes(trajectory.body, picture, length=length, center=np.zeros(3))
+        for name in "xyz":
+            getattr(picture, f"set_{name}lim")(-0.9 * length, 0.9 * length)
     frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
     ax = angular_velocity(trajectory, place, frame=frame, degrees=spin.degrees)
     ax.set_title(title, loc="left")
