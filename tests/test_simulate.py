@@ -262,12 +262,13 @@ class TestOutput:
 
     def test_a_method_that_cannot_says_which_can(self) -> None:
         call = loads.torque_callback(lambda _t, w, _q: -w)
-        for method, load, events, word in (
+        refused: tuple[tuple[Any, ...], ...] = (
             ("exact", loads.damping(1.0), (), 'method="taylor" can'),
             ("exact", call, (), 'method="dop853" can'),
             ("taylor", call, (), 'method="dop853" can'),
             ("taylor", loads.damping(1.0), (lambda t, *_: t,), "a run without events"),
-        ):
+        )
+        for method, load, events, word in refused:
             with pytest.raises(PolhodeError, match=word):
                 BRICK.simulate(TIMES, START, load=load, method=method, events=events)
         with pytest.raises(ValueError, match='method: expected one of "auto", "exact", "taylor", "dop853"'):

@@ -7,6 +7,7 @@
 //! | `errors` | which exception an error of the core becomes |
 //! | `hints` | the way out of mistakes that many make |
 //! | `interrupt` | Ctrl-C and progress |
+//! | `closed_form` | exact motions at many times |
 //! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
 
@@ -15,6 +16,7 @@
 
 mod accumulator;
 mod arrays;
+mod closed_form;
 mod environment;
 mod equimomental;
 mod errors;
