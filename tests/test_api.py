@@ -46,7 +46,18 @@ MODULES = [
     "polhode.trajectory",
     "polhode.view",
 ]
-HEAVY = ("matplotlib", "trimesh", "scipy", "rich", "cyclopts", "periodictable", "pint", "pandas", "PIL", "pyvista")
+HEAVY = (
+    "matplotlib",
+    "trimesh",
+    "scipy",
+    "rich",
+    "cyclopts",
+    "periodictable",
+    "pint",
+    "pandas",
+    "PIL",
+    "pyvista",
+)
 
 
 def public_objects() -> Iterator[tuple[str, Any]]:

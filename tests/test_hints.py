@@ -142,7 +142,7 @@ def test_a_file_is_closed_and_welded_on_request(tmp_path: Path) -> None:
     whole = tmp_path / "open.obj"
     whole.write_bytes(obj(vertices, faces[1:]))
     for closure in ("caps", "hull"):
-        body = RigidBody.from_file(whole, density=1.0, closure=closure)  # type: ignore[arg-type]
+        body = RigidBody.from_file(whole, density=1.0, closure=closure)
         assert body.mass == pytest.approx(8.0, rel=1e-14)
         assert body.provenance.closure == closure
     # A corner of one triangle strays by a hundred-millionth: the edges beside it are open.

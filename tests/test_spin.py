@@ -91,7 +91,7 @@ def drawn(page: Path) -> np.ndarray:
     found = re.search(r'id="motion">(.*?)</script>', page.read_text("utf-8"))
     assert found
     shape = json.loads(found[1])["shape"]
-    return np.array(shape["vertices"])[np.array(shape["faces"])]
+    return np.asarray(np.array(shape["vertices"])[np.array(shape["faces"])])
 
 
 def volume(triangles: np.ndarray) -> float:
