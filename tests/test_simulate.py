@@ -275,6 +275,40 @@ class TestOutput:
             BRICK.simulate(TIMES, START, method="euler")  # type: ignore[arg-type]
 
 
+class TestArguments:
+    @pytest.mark.parametrize("kind", [list, tuple, np.array])
+    def test_numbers_in_any_sequence(self, kind: Any) -> None:
+        want = BRICK.simulate(np.array([0.0, 2.0]), np.array([1.0, 0.0, 2.0]), np.array([0.0, 0.6, 0.0, 0.8]))
+        got = BRICK.simulate(kind([0, 2]), kind([np.float64(1), 0, 2.0]), kind([0, 0.6, 0, np.float64(0.8)]))
+        assert np.array_equal(got.omega, want.omega)
+        assert np.array_equal(got.quaternion, want.quaternion)
+
+    @pytest.mark.parametrize(
+        ("t", "error", "message"),
+        [
+            ([], PolhodeError, "t"),
+            ([0.0, True, 2.0], None, ""),
+            ([0, 2**70], TypeError, "t: expected real numbers"),
+            ([0.0, "1"], TypeError, "t: expected real numbers"),
+            ([0.0, 1j], TypeError, "t: expected real numbers"),
+            ([0.0, None], TypeError, "t: expected real numbers"),
+            ([[0.0, 1.0]], ValueError, r"t: expected shape \(T,\), got \(1, 2\)"),
+            (1.0, ValueError, r"t: expected shape \(T,\), got \(\)"),
+        ],
+    )
+    def test_what_numpy_makes_of_others(self, t: Any, error: Any, message: str) -> None:
+        if error is None:
+            assert len(BRICK.simulate(t, START)) == len(t)
+            return
+        with pytest.raises(error, match=message):
+            BRICK.simulate(t, START)
+
+    def test_vectors_have_three_components(self) -> None:
+        for omega, shape in (([1, 2], r"\(2,\)"), ((1.0, 2.0, 3.0, 4.0), r"\(4,\)"), ([], r"\(0,\)")):
+            with pytest.raises(ValueError, match=rf"omega: expected shape \(\.\.\., 3\), got {shape}"):
+                BRICK.simulate(TIMES, omega)
+
+
 class TestStacks:
     def test_bodies_and_starts_broadcast(self, rng: np.random.Generator) -> None:
         stack = solids.box(rng.uniform(1, 3, size=(4, 3)), mass=1.0)
