@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from polhode.robots import Verdict
 
-BALL = '<inertial mass="5" pos="0 0 0" diaginertia="0.02 0.02 0.02"/><geom type="sphere" size="0.1"/>'  # 2/5 m r²
+# 2/5 m r² = 0.02.
+BALL = '<inertial mass="5" pos="0 0 0" diaginertia="0.02 0.02 0.02"/><geom type="sphere" size="0.1"/>'
 WORLD = "<mujoco>{}<worldbody>{}</worldbody></mujoco>"
 
 
@@ -89,7 +90,7 @@ class TestMuJoCoInclude:
             loop_xml='<x><include file="loop.xml"/></x>',
             cut_xml="<x><body>",
             bomb_xml='<!DOCTYPE x [<!ENTITY a "b">]><x><body name="&a;"/></x>',
-            bad_xml='<x>\n<body><geom size="1"/></body>\n<body name="b"><geom mass="heavy" size="1"/></body></x>',
+            bad_xml='<x>\n<body><geom size="1"/></body>\n<body><geom mass="heavy" size="1"/></body></x>',
         )
         with pytest.raises(FileFormatError, match=says) as told:
             judged(main)

@@ -77,8 +77,8 @@ def run(directory: Path, console: Console) -> int:
         'polhode report part.stl --length-unit mm --density "2.7 g/cm^3"',
         "polhode check robot.urdf --fix better.urdf",
         "polhode molecule water.xyz",
-        "polhode spin part.stl --length-unit mm --axes principal --omega 0.01 6 0 --until 20 --save spin.png",
-        f"polhode spin {mesh_file} --length-unit mm --omega 0 1 5 --until 10 --save spin.csv",
+        f"polhode spin {mesh_file} --length-unit mm --axes principal --omega 0.01 6 0 --until 20 "
+        "--save racket.html",
         "polhode --help",
     ):
         write(console, f"  {command}")
