@@ -122,7 +122,7 @@ def test_it_is_the_motion_to_the_last_digits(name: str) -> None:
 
 
 def test_an_axis_that_is_tilted_in_the_body() -> None:
-    """Along (1, −4, 8)/9, tensor and centre exact in doubles: as good after a million rotations as after one."""
+    """Along (1, −4, 8)/9, tensor and centre exact in doubles: a million rotations on as after one."""
     tilt = np.array([1.0, -4.0, 8.0])
     across, difference, length, gravity = 1.25, -0.6328125, 0.5625, 9.75
     body = RigidBody(1.0, across * np.eye(3) + difference / 81 * np.outer(tilt, tilt), tilt / 16)
