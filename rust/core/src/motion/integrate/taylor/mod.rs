@@ -216,9 +216,9 @@ impl Kernel for Seen<'_, '_> {
     fn run<L: Lane>(self) -> Option<Step> {
         let Self { settings, job, see } = self;
         match settings.parts.directions {
-            0 => drive_seen::<L, Alone<L, 0, 4>, 0>(settings, job, see),
-            1 => drive_seen::<L, Alone<L, 1, 8>, 1>(settings, job, see),
-            _ => drive_seen::<L, Alone<L, 3, 16>, 3>(settings, job, see),
+            0 => drive_seen::<L, Alone<L, 0>, 0>(settings, job, see),
+            1 => drive_seen::<L, Alone<L, 1>, 1>(settings, job, see),
+            _ => drive_seen::<L, Alone<L, 3>, 3>(settings, job, see),
         }
     }
 }
