@@ -40,7 +40,7 @@ def body_of(case: MotionCase) -> RigidBody:
 
 
 def simulated(case: MotionCase, method: Any, rtol: float) -> Trajectory:
-    path = {"position": case.position, "velocity": case.velocity} if case.position else {}
+    path: dict[str, Any] = {"position": case.position, "velocity": case.velocity} if case.position else {}
     return body_of(case).simulate(
         [0.0, *case.times],
         case.omega,
@@ -69,7 +69,7 @@ def errors(case: MotionCase, trajectory: Trajectory) -> list[float]:
     return found
 
 
-def named(cases: Any) -> Any:
+def named(cases: Any) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("case", tuple(cases), ids=lambda case: case.name)
 
 
@@ -101,7 +101,7 @@ def test_dop853(case: MotionCase) -> None:
 
 @SMOOTH
 def test_dop853_holds_its_bar_soon_at_a_looser_tolerance(case: MotionCase) -> None:
-    soon = {"times": case.times[:2], "expected": case.expected[:2], "kappa": case.kappa[:2]}
+    soon: dict[str, Any] = {"times": case.times[:2], "expected": case.expected[:2], "kappa": case.kappa[:2]}
     assert_dop853(case._replace(**soon), 1e-13)
 
 
@@ -123,7 +123,7 @@ class TestRadau:
         (term,) = case.load
         matrix = np.array(term["matrix"])
         strong = matrix > 1.0
-        t = [0.0, 6 * np.pi / np.linalg.norm(case.omega)]
+        t = [0.0, 6 * np.pi / float(np.linalg.norm(case.omega))]
         body, steps = body_of(case), []
         for factor in (1.0, 1e2, 1e4, 1e6):
             load = loads.damping(np.where(strong, factor * matrix, matrix))

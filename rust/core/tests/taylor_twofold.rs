@@ -164,7 +164,7 @@ fn a_motion_has_the_same_bits_alone_in_a_stack_on_any_threads_and_at_any_level()
                 set_thread_limit(NonZeroUsize::new(threads));
                 let mut runs = vec![None; alone.len()];
                 let go_on = |_| ControlFlow::Continue(());
-                solve_many(&|row| (task(row), &terms[..]), &mut runs, &go_on);
+                solve_many(&task, &|_| &terms[..], &mut runs, &go_on);
                 for (row, (run, alone)) in runs.iter().zip(&alone).enumerate() {
                     let run = run.as_ref().expect("begun");
                     if level == Level::Baseline {
