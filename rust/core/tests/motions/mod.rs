@@ -6,23 +6,23 @@ use polhode::motion::loads::schedule::Windows;
 use polhode::motion::loads::{Damping, Feedback, Frame, GravityGradient, Sampled, Term};
 use polhode::motion::simulate::{Phase, State};
 
-pub fn turned(attitude: UnitQuaternion<f64>, omega: Vector3<f64>) -> Phase {
+pub(crate) fn turned(attitude: UnitQuaternion<f64>, omega: Vector3<f64>) -> Phase {
     Phase::in_place(&State { attitude, omega })
 }
 
-pub fn skew() -> UnitQuaternion<f64> {
+pub(crate) fn skew() -> UnitQuaternion<f64> {
     UnitQuaternion::from_euler_angles(0.3, -0.5, 1.1)
 }
 
 /// An asymmetric body whose axes and centre are askew.
-pub fn asymmetric() -> RigidBody {
+pub(crate) fn asymmetric() -> RigidBody {
     let axes = skew().to_rotation_matrix().into_inner();
     let center = Vector3::new(0.1, -0.2, 0.3);
     RigidBody::from_principal(1.3, &[1.0, 2.0, 2.5], &axes, &center, 0.0).expect("a body")
 }
 
 /// Every kind of term, alone or with others.
-pub fn loads() -> Vec<(&'static str, Vec<Term>)> {
+pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
     let v = Vector3::new(0.3, -0.2, 0.5);
     let at = Vector3::new(0.3, 0.1, 0.9);
     let m = Matrix3::new(0.3, 0.05, 0.0, 0.05, 0.4, -0.02, 0.0, -0.02, 0.2);
@@ -67,13 +67,13 @@ pub fn loads() -> Vec<(&'static str, Vec<Term>)> {
 }
 
 /// On an eccentric orbit.
-pub fn gradient() -> Term {
+pub(crate) fn gradient() -> Term {
     let (position, velocity) = (Vector3::new(1.0, 0.2, 0.1), Vector3::new(-0.2, 0.9, 0.3));
     Term::GravityGradient(GravityGradient::new(1.0, &position, &velocity, None).expect("an orbit"))
 }
 
 /// How far two states are apart, in the largest of angle, ω, position and velocity.
-pub fn apart(a: &Phase, b: &Phase) -> f64 {
+pub(crate) fn apart(a: &Phase, b: &Phase) -> f64 {
     let q = (a.attitude.coords - b.attitude.coords).norm();
     let q = q.min((a.attitude.coords + b.attitude.coords).norm());
     [

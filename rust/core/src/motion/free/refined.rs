@@ -200,8 +200,8 @@ fn rotate(b: &mut [Vector; 3], axes: &mut [Vector; 3], i: usize, j: usize) {
     axes[j] = pairs.map(|pair| pair.1);
     let k = 3 - i - j;
     let shift = tangent * product;
-    b[i][i] = b[i][i] - shift;
-    b[j][j] = b[j][j] + shift;
+    b[i][i] -= shift;
+    b[j][j] += shift;
     (b[i][k], b[j][k]) = turned(b[i][k], b[j][k]);
     (b[k][i], b[k][j]) = (b[i][k], b[j][k]);
     (b[i][j], b[j][i]) = (DoubleDouble::default(), DoubleDouble::default());

@@ -359,15 +359,12 @@ where
 
     /// The state of a motion, and its position and velocity when it is pushed, at a time since the start of the step.
     #[inline(always)]
-    #[expect(
-        clippy::manual_map,
-        reason = "a closure would be compiled without the instructions of the level"
-    )]
     fn within(&self, row: usize, time: L::Real) -> ([L::Real; 7], Option<[L::Real; 6]>) {
         let mut within = Pack::new(0.0);
         within.put(row, time);
         let order = self.settings.order;
         let state = (self.state).moved(&increment(&self.series, order, within), row);
+        // No `map`: its closure would be compiled without the instructions of the level.
         let place = match &self.push {
             Some(push) => Some(push.moved(&push.increment(order, within), row)),
             None => None,

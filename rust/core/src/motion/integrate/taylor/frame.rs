@@ -54,7 +54,7 @@ impl Precision for DoubleDouble {
     const CARRIES_ORBITS: bool = true;
 
     fn principal(task: &Task<'_>) -> Principal<Self> {
-        let refined = RefinedPrincipal::about(&task.body, &task.subject.point);
+        let refined = RefinedPrincipal::about(task.body, &task.subject.point);
         let [i1, i2, i3] = refined.moments;
         let axes = refined.axes();
         Principal {

@@ -64,7 +64,7 @@ impl<L: Lane, const W: usize> Components<L, W> {
     }
 }
 
-/// One order: what each component of ω makes of attitude and directions, q∘e_n and γ×e_n; and ω.
+/// One order: what each component of ω makes of attitude and directions, `q∘e_n` and `γ×e_n`; and ω.
 #[derive(Clone, Copy, Debug)]
 struct Order<L, const W: usize> {
     turned: [Components<L, W>; 3],
