@@ -22,9 +22,7 @@ CASES = load_table(free_cases.NAME) + load_table(top_cases.NAME)
 BRICK = solids.box((8.0, 4.0, 2.25), mass=1.0)
 
 
-def motion(
-    case: MotionCase, omega: Any, attitude: Any, t: float, rtol: float = TIGHTEST_IN_DOUBLES
-) -> Any:
+def motion(case: MotionCase, omega: Any, attitude: Any, t: float, rtol: float = TIGHTEST_IN_DOUBLES) -> Any:
     """Rates and attitude at `t`."""
     given = dict(case.body)
     body = RigidBody.from_principal(**given) if "moments" in given else RigidBody(**given)
@@ -116,6 +114,84 @@ def test_ten_rotations_to_the_last_digit(case: MotionCase) -> None:
 @named(case for case in CASES if case.kind not in SETTLING)
 def test_a_thousand_rotations_to_the_last_digit(case: MotionCase) -> None:
     assert error(case, 2, 1e-27) <= ROUNDING
+
+
+class TestBeyondDoubles:
+    @pytest.mark.parametrize("seed", range(12))
+    def test_doubles_are_wrong_by_no_more_than_doubles_are(self, seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        body = RigidBody.from_particles(
+            rng.uniform(0.1, 1.0, 6), rng.normal(size=(6, 3)) * 10.0 ** rng.uniform(-9, 9)
+        )
+        inertia, mass = body.inertia_about((0.0, 0.0, 0.0)), body.mass
+        rate = 10.0 ** rng.uniform(-6, 6)
+        omega, attitude = rate * rng.normal(size=3), rng.normal(size=4)
+        attitude /= np.linalg.norm(attitude)
+        torque = 0.3 * rate**2 * float(np.trace(inertia)) * rng.normal(size=3)
+        lever = mass * float(np.linalg.norm(body.center_of_mass))
+        load = (
+            loads.constant_torque(torque, "space"),
+            loads.constant_torque(torque, "body"),
+            loads.damping(0.1 * rate * inertia),
+            loads.uniform_gravity(torque / lever),
+        )[seed % 4]
+        t = [0.0, 12.0 / float(np.linalg.norm(omega))]
+
+        def end(omega: Any, attitude: Any, rtol: float = 1e-24) -> Any:
+            run = body.simulate(t, omega, attitude, load=load, about="origin", method="taylor", rtol=rtol)
+            return run.quaternion[-1], run.omega[-1] / rate
+
+        def apart(a: Any, b: Any) -> np.ndarray:
+            turn = 2 * product(b[0] * [-1, -1, -1, 1], a[0])
+            return np.concatenate([turn[:3] * np.sign(turn[3]), a[1] - b[1]])
+
+        exact, small, columns = end(omega, attitude), 1e-7, []
+        for k in range(6):
+            turn, push = np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(3)
+            (turn if k < 3 else push)[k % 3] = small / 2 if k < 3 else small * rate
+            moved = end(omega + push, product(attitude, turn / np.linalg.norm(turn)))
+            columns.append(apart(moved, exact) / small)
+        kappa = float(np.linalg.norm(np.array(columns), 2))
+        assert float(np.linalg.norm(apart(end(omega, attitude, TIGHTEST_IN_DOUBLES), exact))) <= (
+            1e-13 + 30 * 1.1e-16 * kappa
+        )
+
+    def test_a_row_alone_has_the_bits_of_the_row_in_the_stack(self, rng: Any) -> None:
+        t, starts, load = [0.0, 3.0, 8.0], rng.normal(size=(5, 3)), loads.constant_torque((0.1, 0.0, 0.2))
+        together = BRICK.simulate(t, starts, load=load, rtol=1e-22)
+        for row, start in enumerate(starts):
+            alone = BRICK.simulate(t, start, load=load, rtol=1e-22)
+            assert np.array_equal(alone.omega, together.omega[row])
+            assert np.array_equal(alone.quaternion, together.quaternion[row])
+
+    def test_auto_takes_it_for_a_free_body(self) -> None:
+        t, start = [0.0, 20.0], (0.3, 1.0, 0.2)
+        auto = BRICK.simulate(t, start, rtol=1e-24)
+        assert auto.steps > 0
+        assert np.array_equal(auto.omega, BRICK.simulate(t, start, rtol=1e-24, method="taylor").omega)
+        assert np.abs(auto.omega - BRICK.simulate(t, start).omega).max() < 1e-14
+
+    @pytest.mark.parametrize("method", ["exact", "dop853", "radau", "splitting"])
+    def test_the_others_say_what_they_need(self, method: Any) -> None:
+        with pytest.raises(ValueError, match=r'needs an rtol of 2.3e-15 or more.*method="taylor"'):
+            BRICK.simulate([0.0, 1.0], (1.0, 0.0, 0.0), method=method, rtol=1e-20)
+
+    def test_what_taylor_cannot_serve_is_not_served(self) -> None:
+        callback = loads.torque_callback(lambda _t, _omega, _quaternion: np.zeros(3))
+        with pytest.raises(ValueError, match=r"rtol must be 2.3e-15 or more"):
+            BRICK.simulate([0.0, 1.0], (1.0, 0.0, 0.0), load=callback, rtol=1e-20)
+        with pytest.raises(ValueError, match=r"rtol must be between 1e-28 and 0.1"):
+            BRICK.simulate([0.0, 1.0], (1.0, 0.0, 0.0), rtol=1e-29)
+
+    def test_samples_of_a_cubic_are_the_cubic(self) -> None:
+        """N = t³ about an axis, in dyadic samples: ω = t⁴/4 I."""
+        knots = np.arange(6.0)
+        torque = np.outer(knots**3, (0.0, 0.0, 1.0))
+        body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        run = body.simulate(
+            np.linspace(0.0, 5.0, 9), np.zeros(3), load=loads.sampled(knots, torque), rtol=1e-24
+        )
+        np.testing.assert_allclose(run.omega[:, 2], run.t**4 / 10.0, rtol=3e-16)
 
 
 class TestStacks:

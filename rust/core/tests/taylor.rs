@@ -11,7 +11,9 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::integrate::taylor::{solve_many, solve_one};
 use polhode::motion::loads::{Analytic, Damping, Frame, Term};
-use polhode::motion::simulate::{End, Method, NoEvents, Run, TIGHTEST, Task, Tolerance, simulate};
+use polhode::motion::simulate::{
+    End, Method, NoEvents, Phase, Run, TIGHTEST, Task, Tolerance, simulate,
+};
 use polhode::numerics::dispatch::{Level, level, set_level};
 use polhode::numerics::threads::set_thread_limit;
 use proptest::prelude::*;

@@ -50,15 +50,12 @@ impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
         state
     }
 
-    /// The state of one row moved by `increment`.
+    /// The state of one row moved by `increment`: to the bit what [`Self::add`] would make of it.
     #[inline(always)]
     pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [L::Real; 7] {
-        let mut state = [L::Real::default(); 7];
-        for i in 0..7 {
-            let change = increment[i].real(row) + self.rest[i].real(row);
-            state[i] = self.value[i].real(row) + change;
-        }
-        state
+        let mut end = self.clone();
+        end.add(increment);
+        end.now(row)
     }
 }
 
