@@ -47,6 +47,7 @@ impl<X: Real> Default for Linear<'_, X> {
 }
 
 /// A motion on its way.
+#[derive(Clone, Debug)]
 pub(super) struct Course<'a, X> {
     task: Task<'a>,
     terms: &'a [Term],
@@ -341,6 +342,14 @@ impl<'a, X: Precision> Course<'a, X> {
         }
     }
 
+    /// ω and (x, y, z, w) in body axes and real units of a state, or of a coefficient of its series.
+    pub(super) fn in_body(&self, state: &[X; 7]) -> [X; 7] {
+        let [x, y, z, i, j, k, w] = *state;
+        let omega = self.axes * Vector3::new(x, y, z) * X::from(self.unit);
+        let [i, j, k, w] = product([i, j, k, w], conjugate(self.q_bp));
+        [omega.x, omega.y, omega.z, i, j, k, w]
+    }
+
     /// Takes the power of two at or below the fastest rate of the motion at ω (in principal axes) as the unit of rates.
     pub(super) fn choose_unit(&mut self, omega: &[f64; 3]) -> f64 {
         let (linear, inverse) = (&self.linear, self.inverse_moments.map(X::rounded));
@@ -501,6 +510,11 @@ impl<'a, X: Precision> Course<'a, X> {
 
     pub(super) fn time(&self, now: (f64, f64)) -> f64 {
         self.task.times[0] + (now.0 + now.1) / self.unit
+    }
+
+    /// The whole length of the motion.
+    pub(super) fn last_elapsed(&self) -> f64 {
+        self.last_time() - self.task.times[0]
     }
 
     pub(super) fn last_time(&self) -> f64 {

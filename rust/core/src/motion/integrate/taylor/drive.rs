@@ -1,5 +1,7 @@
 //! Runs motions to their last output time, `R` at a time, each with its own steps.
 
+mod seen;
+
 use std::ops::ControlFlow;
 
 use super::course::Course;
@@ -15,6 +17,8 @@ use crate::motion::simulate::{Effort, End, Run};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
 use crate::numerics::number::{Number, Real};
+pub(crate) use seen::Step;
+pub(super) use seen::drive_seen;
 
 /// Steps between two looks at the watch.
 const PATIENCE: u32 = 64;
@@ -182,21 +186,7 @@ pub(super) fn drive<
     jobs: &mut dyn Iterator<Item = Job<'_, L::Real>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let zero = Pack::new(0.0);
-    let mut lanes = Lanes::<L, S, B, R> {
-        settings,
-        series: S::new(),
-        field: Field::none(zero),
-        extras: Extras::new(&settings.parts),
-        directions: [[zero; 3]; B],
-        state: Compensated::new(),
-        push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
-        leads: [const { None }; R],
-        now: [(0.0, 0.0); R],
-        stop: [(f64::INFINITY, 0.0); R],
-        fastest: [1.0; R],
-        direction: [1.0; R],
-    };
+    let mut lanes = Lanes::<L, S, B, R>::new(settings);
     let mut patience = PATIENCE;
     let mut idle = true;
     loop {
@@ -229,6 +219,26 @@ where
     L: Number<Real: Precision>,
     S: Series<Pack<L, R>, B>,
 {
+    /// All empty.
+    #[inline(always)]
+    fn new(settings: Settings) -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            settings,
+            series: S::new(),
+            field: Field::none(zero),
+            extras: Extras::new(&settings.parts),
+            directions: [[zero; 3]; B],
+            state: Compensated::new(),
+            push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
+            leads: [const { None }; R],
+            now: [(0.0, 0.0); R],
+            stop: [(f64::INFINITY, 0.0); R],
+            fastest: [1.0; R],
+            direction: [1.0; R],
+        }
+    }
+
     /// One step of every motion; whether one has ended.
     #[inline(always)]
     fn step(&mut self) -> bool {

@@ -11,7 +11,7 @@
 //! | `twin` | those sums in numbers of twice the precision |
 //! | `push` | the path of a body that forces act on |
 //! | `step` | the length of a step, the state at its end or within |
-//! | `drive` | steps, outputs, breaks, until all motions are done |
+//! | `drive` | steps, outputs, breaks, until all motions are done; `seen`: each step as it is made |
 //! | `pack` | one number of several motions |
 //!
 //! Sources: Jorba & Zou, Experimental Mathematics 14 (2005) 99; Hairer, Nørsett & Wanner, Solving ODEs I, §I.8.
@@ -38,7 +38,8 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use course::{Course, parts};
-use drive::{Job, Settings, drive};
+pub(crate) use drive::Step;
+use drive::{Job, Settings, drive, drive_seen};
 use field::Parts;
 use frame::Precision;
 use series::{Abreast, Alone};
@@ -46,8 +47,7 @@ use twin::Twin;
 
 use crate::error::Error;
 use crate::motion::loads::Term;
-use crate::motion::simulate::{Effort, End, Run, Task};
-use crate::motion::state::Phase;
+use crate::motion::simulate::{End, Run, Task};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
@@ -72,7 +72,7 @@ pub fn solve_one(
     terms: &[Term],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<Error> {
-    let mut run = unborn(task);
+    let mut run = Run::at_start(task, End::Stopped);
     let settings = settings(task, parts(terms, task.subject.pivoted));
     if task.tolerance.is_beyond_doubles() {
         let jobs = &mut job(task, terms, &mut run).into_iter();
@@ -88,6 +88,28 @@ pub fn solve_one(
             jobs,
             watch,
         });
+    }
+    run
+}
+
+/// As [`solve_one`], with every step shown to `see`, which may stop the run, as soon as it is made.
+pub(crate) fn solve_seen(
+    task: &Task<'_>,
+    terms: &[Term],
+    see: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+) -> Run<Error> {
+    let mut run = Run::at_start(task, End::Stopped);
+    let settings = settings(task, parts(terms, task.subject.pivoted));
+    let last = if task.tolerance.is_beyond_doubles() {
+        job::<DoubleDouble>(task, terms, &mut run)
+            .and_then(|job| dispatch(Seen { settings, job, see }))
+    } else {
+        job::<f64>(task, terms, &mut run).and_then(|job| dispatch(Seen { settings, job, see }))
+    };
+    if let Some(last) = last
+        && run.end == End::Complete
+    {
+        let _over = see(&last);
     }
     run
 }
@@ -175,20 +197,6 @@ fn settings(task: &Task<'_>, parts: Parts) -> Settings {
     Settings::new(tolerance.relative, tolerance.absolute, highest, parts)
 }
 
-/// The run of a motion that has not begun.
-fn unborn(task: &Task<'_>) -> Run<Error> {
-    let mut samples = vec![Phase::nan(); task.times.len()];
-    samples[0] = task.initial;
-    Run {
-        samples,
-        crossings: Vec::new(),
-        effort: Effort::default(),
-        time: task.times[0],
-        phase: task.initial,
-        end: End::Stopped,
-    }
-}
-
 /// The job of a motion, if there is anything to do and nothing against it.
 fn job<'a, X: Precision>(
     task: &Task<'a>,
@@ -216,7 +224,7 @@ fn rows<'a, X: Precision>(
 ) -> impl Iterator<Item = Job<'a, X>> {
     (first..).zip(runs).filter_map(|(row, run)| {
         let (task, terms) = begin(row);
-        job(&task, terms, run.insert(unborn(&task)))
+        job(&task, terms, run.insert(Run::at_start(&task, End::Stopped)))
     })
 }
 
@@ -266,6 +274,41 @@ impl Kernel for OneByOne<'_, '_> {
             0 => drive::<L, Alone<L, 0, 4>, 0, 1>(settings, jobs, watch),
             1 => drive::<L, Alone<L, 1, 8>, 1, 1>(settings, jobs, watch),
             _ => drive::<L, Alone<L, 3, 16>, 3, 1>(settings, jobs, watch),
+        }
+    }
+}
+
+/// One motion whose steps are shown as they are made.
+struct Seen<'a, 'b, X: Precision> {
+    settings: Settings,
+    job: Job<'a, X>,
+    see: &'b mut dyn FnMut(&Step) -> ControlFlow<()>,
+}
+
+impl Kernel for Seen<'_, '_, f64> {
+    type Output = Option<Step>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Option<Step> {
+        let Self { settings, job, see } = self;
+        match settings.parts.directions {
+            0 => drive_seen::<L, Alone<L, 0, 4>, 0>(settings, job, see),
+            1 => drive_seen::<L, Alone<L, 1, 8>, 1>(settings, job, see),
+            _ => drive_seen::<L, Alone<L, 3, 16>, 3>(settings, job, see),
+        }
+    }
+}
+
+impl Kernel for Seen<'_, '_, DoubleDouble> {
+    type Output = Option<Step>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Option<Step> {
+        let Self { settings, job, see } = self;
+        match settings.parts.directions {
+            0 => drive_seen::<Twofold<L>, Twin<L, 0, 4>, 0>(settings, job, see),
+            1 => drive_seen::<Twofold<L>, Twin<L, 1, 8>, 1>(settings, job, see),
+            _ => drive_seen::<Twofold<L>, Twin<L, 3, 16>, 3>(settings, job, see),
         }
     }
 }

@@ -5,7 +5,7 @@ use super::pack::Pack;
 use super::series::Series;
 use super::step::compensate;
 use super::twin;
-use crate::numerics::number::Number;
+use crate::numerics::number::{Number, Real};
 
 /// Position and velocity of the centre of mass in N, and the series of the acceleration in a step.
 #[derive(Clone, Debug)]
@@ -103,6 +103,21 @@ impl<L: Number, const R: usize> Push<Pack<L, R>> {
             place[i] = self.value[i].real(row);
         }
         place
+    }
+
+    /// The coefficients of position and velocity of one row in the step that began at `start`.
+    pub(super) fn path(&self, row: usize, order: usize, start: &[L::Real; 6]) -> Vec<[f64; 6]> {
+        let mut path = vec![[0.0; 6]; order + 2];
+        path[0] = start.map(L::Real::rounded);
+        for i in 0..3 {
+            path[1][i] = path[0][3 + i];
+            for k in 0..order {
+                let a = self.acceleration[k][i].get(row) * (1.0 / (k + 1) as f64);
+                path[k + 1][3 + i] = a;
+                path[k + 2][i] = a * (1.0 / (k + 2) as f64);
+            }
+        }
+        path
     }
 
     /// Position and velocity of one row moved by `increment`.
