@@ -196,6 +196,20 @@ class TestBeyondDoubles:
         with pytest.raises(ValueError, match=r"rtol must be between 1e-28 and 0.1"):
             BRICK.simulate([0.0, 1.0], (1.0, 0.0, 0.0), rtol=1e-29)
 
+    def test_events_are_those_of_doubles(self) -> None:
+        """A space torque on a brick: where ω₁ changes its sign."""
+        load, t = loads.constant_torque((0.1, 0.2, 0.3), "space"), [0.0, 20.0]
+
+        def changes(_t: float, omega: Any, _q: Any, _x: Any, _v: Any) -> float:
+            return float(omega[0])
+
+        times = [
+            BRICK.simulate(t, (0.5, -1.0, 0.25), load=load, events=changes, rtol=rtol).events.t
+            for rtol in (TIGHTEST_IN_DOUBLES, 1e-24)
+        ]
+        assert len(times[0]) > 3
+        np.testing.assert_allclose(times[0], times[1], rtol=1e-14)
+
     def test_samples_of_a_cubic_are_the_cubic(self) -> None:
         """N = t³ about an axis, in dyadic samples: ω = t⁴/4 I."""
         knots = np.arange(6.0)
