@@ -427,17 +427,11 @@ impl<'a, X: Precision> Course<'a, X> {
         field
     }
 
-    /// The directions in N that the torques of what is fixed in space are made of: that of the only such vector, or all.
+    /// The directions in N that the torques of what is fixed in space are made of: the vertical axis, or all.
     pub(super) fn directions<const B: usize>(&self) -> [[X; 3]; B] {
         let (zero, one) = (X::zero(), X::one());
         let mut directions = [[zero, zero, one]; B];
-        if B == 1 {
-            let vector = self.linear.on_space.first().map(|(vector, _)| vector);
-            let unit = vector.and_then(unit_vector);
-            if let (Some(unit), [direction, ..]) = (unit, &mut directions[..]) {
-                *direction = unit.into();
-            }
-        } else {
+        if B > 1 {
             for (i, direction) in directions.iter_mut().enumerate() {
                 *direction = [zero; 3];
                 direction[i] = one;
@@ -528,18 +522,20 @@ impl<'a, X: Precision> Course<'a, X> {
     }
 }
 
-/// What kind of equations a sum of terms leads to. Apart from quadratic damping, which may be zero, it does not depend on
-/// the numbers in them.
+/// What kind of equations a sum of terms leads to. Apart from quadratic damping, which may be zero, and directions, which
+/// may all be vertical, it does not depend on the numbers in them.
 pub(super) fn parts(terms: &[Term], pivoted: bool) -> Parts {
     let mut parts = Parts::default();
-    let mut vectors = 0;
     let mut needs_all = false;
     for term in terms {
         let term = match term {
             Term::Scheduled { term, .. } => term,
             term => term,
         };
-        vectors += usize::from(turns(term, pivoted));
+        if turns(term, pivoted) {
+            parts.directions = 1;
+            needs_all |= !is_vertical(term);
+        }
         parts.is_pushed |= !pivoted && term.exerts_force();
         match term {
             Term::ConstantForce {
@@ -564,12 +560,20 @@ pub(super) fn parts(terms: &[Term], pivoted: bool) -> Parts {
             _ => {}
         }
     }
-    parts.directions = if needs_all {
-        3
-    } else {
-        [0, 1, 3][vectors.min(2)]
-    };
+    if needs_all {
+        parts.directions = 3;
+    }
     parts
+}
+
+/// Whether the vector of the term is along the axis 3 of its frame.
+fn is_vertical(term: &Term) -> bool {
+    match term {
+        Term::ConstantTorque { vector, .. }
+        | Term::ConstantForce { vector, .. }
+        | Term::UniformGravity { gravity: vector } => vector.x == 0.0 && vector.y == 0.0,
+        _ => false,
+    }
 }
 
 /// Whether the term exerts a torque through a vector fixed in space.
@@ -600,16 +604,6 @@ fn over<X: Real>(number: X, moment: X) -> X {
     } else {
         X::zero()
     }
-}
-
-/// The vector over its length, if it has one; first over the largest component, whose square may not be a number.
-fn unit_vector<X: Real>(vector: &Vector3<X>) -> Option<Vector3<X>> {
-    let largest = vector.map(X::rounded).amax();
-    if largest == 0.0 {
-        return None;
-    }
-    let near = vector / X::from(largest);
-    Some(near / near.dot(&near).root())
 }
 
 fn rows<X: Real>(matrix: &Matrix3<X>) -> [[X; 3]; 3] {

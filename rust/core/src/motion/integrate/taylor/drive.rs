@@ -333,8 +333,11 @@ where
         for k in 0..order {
             let sums = self.series.sums(k);
             let (spins, at) = (S::spins(&sums), self.series.get(k));
-            let more = self.extras.coefficient(k, &self.series, &self.field);
-            let acceleration = self.field.acceleration(parts, k, spins, &at, more);
+            let acceleration = self.field.acceleration(parts, k, spins, &at);
+            let (series, field) = (&self.series, &self.field);
+            let acceleration = self
+                .extras
+                .plus_coefficients(k, series, field, acceleration);
             self.series.extend(k, &sums, &acceleration);
         }
         if let Some(push) = &mut self.push {

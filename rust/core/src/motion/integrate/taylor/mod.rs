@@ -146,9 +146,7 @@ pub fn solve_many<'a>(
         let (count, example) = (runs.len(), task(first));
         let mut common = Parts::default();
         for row in first..first + count {
-            let quadratic = common.quadratic;
-            common = parts(terms(row), example.subject.pivoted);
-            common.quadratic |= quadratic;
+            common = common.with(&parts(terms(row), example.subject.pivoted));
         }
         let settings = settings(&example, common);
         let begin = |row: usize| {
@@ -271,9 +269,9 @@ impl Kernel for OneByOne<'_, '_> {
             watch,
         } = self;
         match settings.parts.directions {
-            0 => drive::<L, Alone<L, 0, 4>, 0, 1>(settings, jobs, watch),
-            1 => drive::<L, Alone<L, 1, 8>, 1, 1>(settings, jobs, watch),
-            _ => drive::<L, Alone<L, 3, 16>, 3, 1>(settings, jobs, watch),
+            0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch),
+            1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch),
+            _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch),
         }
     }
 }
@@ -292,9 +290,9 @@ impl Kernel for Seen<'_, '_, f64> {
     fn run<L: Lane>(self) -> Option<Step> {
         let Self { settings, job, see } = self;
         match settings.parts.directions {
-            0 => drive_seen::<L, Alone<L, 0, 4>, 0>(settings, job, see),
-            1 => drive_seen::<L, Alone<L, 1, 8>, 1>(settings, job, see),
-            _ => drive_seen::<L, Alone<L, 3, 16>, 3>(settings, job, see),
+            0 => drive_seen::<L, Alone<L, 0>, 0>(settings, job, see),
+            1 => drive_seen::<L, Alone<L, 1>, 1>(settings, job, see),
+            _ => drive_seen::<L, Alone<L, 3>, 3>(settings, job, see),
         }
     }
 }

@@ -93,7 +93,9 @@ impl<L: Number, const R: usize> Push<Pack<L, R>> {
 
     #[inline(always)]
     pub(super) fn add(&mut self, increment: &[Pack<L, R>; 6]) {
-        compensate(&mut self.value, &mut self.rest, increment);
+        for i in 0..6 {
+            compensate(&mut self.value[i], &mut self.rest[i], increment[i]);
+        }
     }
 
     /// Position and velocity of one row.
