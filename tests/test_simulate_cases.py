@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles import load_cases
+from oracles.by_scipy import by_dop853
 from oracles.motion_cases import MotionCase, angle, load_table, relative_error
 from polhode import RigidBody, Trajectory, loads
 
@@ -16,6 +17,8 @@ CASES = load_table(load_cases.NAME)
 MATRICES = ("matrix", "quadratic", "K", "D")
 EPSILON = float(np.finfo(float).eps)
 TIGHTEST = 2.3e-15
+ROUNDING = 4e-16
+"""Of four components of a quaternion, as an angle."""
 
 
 def load_of(case: MotionCase) -> Any:
@@ -90,6 +93,14 @@ def test_taylor(case: MotionCase) -> None:
         assert error <= 1e-13 + 30 * kappa * EPSILON
 
 
+@named(case for case in CASES if "sinusoidal" not in case.name)
+def test_taylor_to_the_last_digit(case: MotionCase) -> None:
+    """Beyond doubles the result is the exact one, rounded, while 28 digits are enough for the start."""
+    found = errors(case, simulated(case, "taylor", 1e-27))
+    for error, kappa in zip(found, case.kappa, strict=True):
+        assert error <= ROUNDING + 1e-28 * kappa
+
+
 # An explicit method on a stiff case stands at the limit of its stability: those are for "radau".
 SMOOTH = named(case for case in CASES if not is_stiff(case))
 
@@ -110,6 +121,24 @@ def assert_dop853(case: MotionCase, rtol: float) -> None:
     found = errors(case, simulated(case, "dop853", rtol))
     for t, error, kappa in zip(case.times, found, case.kappa, strict=True):
         assert error <= (1e-11 if t < 10.5 * rotation else 1e-9) + 100 * kappa * EPSILON
+
+
+@SMOOTH
+@pytest.mark.parametrize("rtol", [1e-8, 1e-11])
+def test_dop853_is_no_worse_than_that_of_scipy(case: MotionCase, rtol: float) -> None:
+    """At ten rotations; SciPy's tolerance is absolute besides relative to each component."""
+    last = max(i for i, t in enumerate(case.times) if t * np.linalg.norm(case.omega) < 21 * np.pi)
+    soon = case._replace(times=case.times[: last + 1], expected=case.expected[: last + 1])
+    ours = errors(soon, simulated(soon, "dop853", rtol))[-1]
+    peer, want = by_dop853(case, case.times[last], rtol=rtol, atol=rtol), case.expected[last]
+    theirs = [
+        angle(peer.quaternion, want.quaternion),
+        relative_error(peer.omega, want.omega, float(np.linalg.norm(case.omega))),
+    ]
+    if case.position:
+        theirs.append(relative_error(peer.position, want.position))
+        theirs.append(relative_error(peer.velocity, want.velocity))
+    assert ours <= max(theirs)
 
 
 class TestRadau:

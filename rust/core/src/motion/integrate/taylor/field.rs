@@ -2,7 +2,7 @@
 
 use super::pack::Pack;
 use super::series::Coefficient;
-use crate::numerics::lane::Lane;
+use crate::numerics::number::Number;
 
 type Square<T> = [[T; 3]; 3];
 
@@ -61,24 +61,10 @@ impl Parts {
     }
 }
 
-impl<const B: usize> Field<f64, B> {
+impl<T: Copy, const B: usize> Field<T, B> {
     /// Nothing turns.
-    pub(super) const NONE: Self = Self {
-        kappa: [0.0; 3],
-        constant: [0.0; 3],
-        on_omega: [[0.0; 3]; 3],
-        on_attitude: [[0.0; 4]; 3],
-        on_space: [[[0.0; 3]; 3]; B],
-        quadratic: [[0.0; 3]; 3],
-        force: [0.0; 3],
-        thrust: [0.0; 3],
-    };
-}
-
-impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     #[inline(always)]
-    pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
+    pub(super) fn none(zero: T) -> Self {
         Self {
             kappa: [zero; 3],
             constant: [zero; 3],
@@ -90,25 +76,27 @@ impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
             thrust: [zero; 3],
         }
     }
+}
 
+impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     /// Sets the field of one row.
     #[inline(always)]
-    pub(super) fn set(&mut self, row: usize, field: &Field<f64, B>) {
+    pub(super) fn set(&mut self, row: usize, field: &Field<L::Real, B>) {
         for n in 0..3 {
-            self.kappa[n].set(row, field.kappa[n]);
-            self.constant[n].set(row, field.constant[n]);
-            self.force[n].set(row, field.force[n]);
-            self.thrust[n].set(row, field.thrust[n]);
+            self.kappa[n].put(row, field.kappa[n]);
+            self.constant[n].put(row, field.constant[n]);
+            self.force[n].put(row, field.force[n]);
+            self.thrust[n].put(row, field.thrust[n]);
             for i in 0..3 {
-                self.on_omega[n][i].set(row, field.on_omega[n][i]);
-                self.quadratic[n][i].set(row, field.quadratic[n][i]);
+                self.on_omega[n][i].put(row, field.on_omega[n][i]);
+                self.quadratic[n][i].put(row, field.quadratic[n][i]);
             }
             for i in 0..4 {
-                self.on_attitude[n][i].set(row, field.on_attitude[n][i]);
+                self.on_attitude[n][i].put(row, field.on_attitude[n][i]);
             }
             for b in 0..B {
                 for i in 0..3 {
-                    self.on_space[b][n][i].set(row, field.on_space[b][n][i]);
+                    self.on_space[b][n][i].put(row, field.on_space[b][n][i]);
                 }
             }
         }
@@ -153,7 +141,7 @@ impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
 
 /// `sum + a·b`.
 #[inline(always)]
-fn plus_product<L: Lane, const R: usize, const N: usize>(
+fn plus_product<L: Number, const R: usize, const N: usize>(
     a: &[Pack<L, R>; N],
     b: &[Pack<L, R>; N],
     mut sum: Pack<L, R>,

@@ -8,8 +8,9 @@
 //! ```
 //!
 //! give the coefficients of order k + 1 from those up to k. Nearly all work is in these sums. There are two ways through
-//! them: [`Alone`] puts the components of one motion in the lanes, [`Abreast`] the same component of several. They add the
-//! same products in the same order, so a motion has the same bits either way.
+//! them in doubles: [`Alone`] puts the components of one motion in the lanes, [`Abreast`] the same component of several. They
+//! add the same products in the same order, so a motion has the same bits either way. In numbers of twice the precision
+//! there is [`Twin`](super::twin::Twin).
 //!
 //! That order takes the newest coefficients, on which the processor may still be busy, last: the products j = 2, 3, … up
 //! to k − 1 (for odd k up to k − 2), then j = 1, (k − 1), 0, k.
@@ -20,15 +21,16 @@
 use super::pack::Pack;
 use crate::numerics::lane::Lane;
 
-/// The highest order of a series, and the number of its coefficients. Even, since [`Alone`] sums two orders at a time.
+/// The highest order of a series in doubles, and the number of its coefficients. Even, since [`Alone`] sums two orders at a
+/// time.
 pub(super) const HIGHEST_ORDER: usize = 24;
-pub(super) const COUNT: usize = HIGHEST_ORDER + 1;
+const COUNT: usize = HIGHEST_ORDER + 1;
 
 /// 1/k.
-pub(super) const RECIPROCALS: [f64; COUNT + 2] = {
-    let mut reciprocals = [0.0; COUNT + 2];
+const RECIPROCALS: [f64; COUNT] = {
+    let mut reciprocals = [0.0; COUNT];
     let mut k = 1;
-    while k <= COUNT + 1 {
+    while k < COUNT {
         reciprocals[k] = 1.0 / k as f64;
         k += 1;
     }
@@ -105,20 +107,6 @@ impl<L: Lane, const R: usize> Sums<Pack<L, R>> {
             add_products(&self.q[2], w2, &a.q),
         ];
     }
-}
-
-/// `sum + a × b`.
-#[inline(always)]
-pub(super) fn cross_term<L: Lane, const R: usize>(
-    a: &[Pack<L, R>; 3],
-    b: &[Pack<L, R>; 3],
-    sum: [Pack<L, R>; 3],
-) -> [Pack<L, R>; 3] {
-    [
-        a[1].mul_add(b[2], (-a[2]).mul_add(b[1], sum[0])),
-        a[2].mul_add(b[0], (-a[0]).mul_add(b[2], sum[1])),
-        a[0].mul_add(b[1], (-a[1]).mul_add(b[0], sum[2])),
-    ]
 }
 
 #[inline(always)]

@@ -3,7 +3,7 @@
 use super::pack::Pack;
 use super::series::{Coefficient, Series};
 use crate::numerics::double_double::two_sum;
-use crate::numerics::lane::Lane;
+use crate::numerics::number::Number;
 
 /// ω in principal axes and (x, y, z, w) of the attitude, each with what rounding has left out of it so far.
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub(super) struct Compensated<T> {
     pub(super) rest: [T; 7],
 }
 
-impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
+impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         Self {
@@ -21,8 +21,8 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
         }
     }
 
-    /// Adds the increments of a step, then puts the quaternion back to unit length. That correction goes into the rest,
-    /// and the next increment takes it along: nothing is rounded for it.
+    /// Adds the increments of a step, then puts the quaternion back to unit length: at once, since in a step of more than
+    /// half a turn what is left of the length would grow, by `1 − cos(ω h/2)`.
     #[inline(always)]
     pub(super) fn add(&mut self, increment: &[Pack<L, R>; 7]) {
         // Written out, since a loop would be vectorised across the numbers instead of the rows.
@@ -43,34 +43,32 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
         }
         lack = lack * Pack::new(0.5);
         for i in 3..7 {
-            self.rest[i] = self.value[i].mul_add(lack, self.rest[i]);
+            let change = self.value[i] * lack;
+            compensate(&mut self.value[i], &mut self.rest[i], change);
         }
     }
 
     /// The state of one row.
-    pub(super) fn now(&self, row: usize) -> [f64; 7] {
-        let mut state = [0.0; 7];
+    pub(super) fn now(&self, row: usize) -> [L::Real; 7] {
+        let mut state = [L::Real::default(); 7];
         for i in 0..7 {
-            state[i] = self.value[i].get(row);
+            state[i] = self.value[i].real(row);
         }
         state
     }
 
-    /// The state of one row moved by `increment`.
+    /// The state of one row moved by `increment`: to the bit what [`Self::add`] would make of it.
     #[inline(always)]
-    pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [f64; 7] {
-        let mut state = [0.0; 7];
-        for i in 0..7 {
-            let change = increment[i].get(row) + self.rest[i].get(row);
-            state[i] = self.value[i].get(row) + change;
-        }
-        state
+    pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [L::Real; 7] {
+        let mut end = self.clone();
+        end.add(increment);
+        end.now(row)
     }
 }
 
 /// Adds an increment to a value and to what rounding has left out of it.
 #[inline(always)]
-pub(super) fn compensate<L: Lane, const R: usize>(
+pub(super) fn compensate<L: Number, const R: usize>(
     value: &mut Pack<L, R>,
     rest: &mut Pack<L, R>,
     increment: Pack<L, R>,
@@ -80,7 +78,7 @@ pub(super) fn compensate<L: Lane, const R: usize>(
 
 /// What the polynomials of a step add to the state within the time `h` (Horner).
 #[inline(always)]
-pub(super) fn increment<L: Lane, const R: usize, const B: usize>(
+pub(super) fn increment<L: Number, const R: usize, const B: usize>(
     series: &impl Series<Pack<L, R>, B>,
     order: usize,
     h: Pack<L, R>,
@@ -107,7 +105,7 @@ pub(super) fn increment<L: Lane, const R: usize, const B: usize>(
 /// Not finite where a coefficient is not.
 /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
 #[inline(always)]
-pub(super) fn longest<L: Lane, const R: usize, const B: usize>(
+pub(super) fn longest<L: Number, const R: usize, const B: usize>(
     series: &impl Series<Pack<L, R>, B>,
     order: usize,
     tolerance: f64,
@@ -125,7 +123,7 @@ pub(super) fn longest<L: Lane, const R: usize, const B: usize>(
 
 /// The logarithm of the step for which the term of this order is as large as allowed.
 #[inline(always)]
-fn limit<L: Lane, const R: usize, const B: usize>(
+fn limit<L: Number, const R: usize, const B: usize>(
     at: &Coefficient<Pack<L, R>, B>,
     row: usize,
     order: usize,
