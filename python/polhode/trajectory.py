@@ -500,7 +500,8 @@ class Trajectory:
             ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib;
             ``.mp4``: needs also the program ffmpeg, which the extra ``film`` brings.
         **options
-            `shape`, `frames`, `duration`, `title` and `time_unit`, see :func:`polhode.animation.animate`.
+            `shape`, `frames`, `duration`, `title`, `time_unit` and `progress`, see
+            :func:`polhode.animation.animate`.
 
         Returns
         -------
