@@ -21,6 +21,7 @@ __all__ = [
     "FreePrecession",
     "Invariants",
     "KineticEnergy",
+    "MotionSensitivity",
     "NearestValid",
     "Particles",
     "PrincipalAxes",
@@ -342,3 +343,35 @@ class Invariants(NamedTuple):
     angular_momentum: Floats | None
     energy_drift: Any
     angular_momentum_drift: Any
+
+
+class MotionSensitivity(NamedTuple):
+    """How a motion depends on what it is computed from: the derivatives of (δ, ω) at every time.
+
+    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
+
+    Attributes
+    ----------
+    state : numpy.ndarray, shape (..., T, 6, 6)
+        By (δ, ω) at the first time: the state-transition matrix.
+    moments : numpy.ndarray, shape (..., T, 6, 3)
+        By the principal moments about the point `about` of the motion, ascending, with principal axes, mass and centre
+        of mass held.
+    products : numpy.ndarray, shape (..., T, 6, 3)
+        By the elements 23, 31 and 12 of that tensor in its principal axes.
+    center_of_mass : numpy.ndarray, shape (..., T, 6, 3)
+        By the centre of mass in the body frame, with that tensor held.
+    mass : numpy.ndarray, shape (..., T, 6)
+        By the mass, with that tensor held.
+    load : tuple of dict
+        For each term of the load: by each argument of the function of :mod:`polhode.loads` that makes it, under its name,
+        shape (..., T, 6) and then that of the argument, a matrix in full. A target is varied by a small rotation, a term
+        that was multiplied by a factor after that.
+    """
+
+    state: Floats
+    moments: Floats
+    products: Floats
+    center_of_mass: Floats
+    mass: Floats
+    load: tuple[dict[str, Floats], ...]
