@@ -323,7 +323,7 @@ class Trajectory:
             raise ValueError("sensitivity: these are states of a FreeMotion, whose sensitivity(t) is exact")
         start = self.state(0)
         return _core.motion_sensitivity(
-            self.body, self.t, start.omega, start.quaternion, self.load, self._about_word()
+            self.body, self.t, start.omega, start.attitude, self.load, self._about_word()
         )
 
     def state(self, index: int = -1) -> State:

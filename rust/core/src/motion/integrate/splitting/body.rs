@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::scheme::Scheme;
 use crate::error::Error;
-use crate::motion::attitude::from_axes;
+use crate::motion::attitude::{from_axes, restored};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::free::{FreeMotion, RefinedPrincipal};
 use crate::motion::loads::Load;
@@ -155,15 +155,14 @@ impl Body {
     }
 
     fn drift(&self, point: &mut Point, time: f64) -> Result<(), Error> {
-        let mut attitude = if let Some(top) = self.symmetry {
+        let attitude = if let Some(top) = self.symmetry {
             top.turned(point, time)
         } else {
             let omega = self.omega(point);
             let motion = FreeMotion::refined(&self.principal, &omega, &point.attitude)?;
             motion.at(time).attitude
         };
-        attitude.renormalize();
-        point.attitude = attitude;
+        point.attitude = restored(&attitude);
         point.position.add(&(point.velocity.value * time));
         Ok(())
     }
