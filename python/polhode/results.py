@@ -355,8 +355,8 @@ class MotionSensitivity(NamedTuple):
     state : numpy.ndarray, shape (..., T, 6, 6)
         By (δ, ω) at the first time: the state-transition matrix.
     moments : numpy.ndarray, shape (..., T, 6, 3)
-        By the principal moments about the point `about` of the motion, ascending, with principal axes, mass and centre
-        of mass held.
+        By the principal moments about the point `about` of the motion, ascending, with principal axes, mass
+        and centre of mass held; not a number, as are `products`, for a body with a zero moment.
     products : numpy.ndarray, shape (..., T, 6, 3)
         By the elements 23, 31 and 12 of that tensor in its principal axes.
     center_of_mass : numpy.ndarray, shape (..., T, 6, 3)
@@ -364,9 +364,10 @@ class MotionSensitivity(NamedTuple):
     mass : numpy.ndarray, shape (..., T, 6)
         By the mass, with that tensor held.
     load : tuple of dict
-        For each term of the load: by each argument of the function of :mod:`polhode.loads` that makes it, under its name,
-        shape (..., T, 6) and then that of the argument, a matrix in full. A target is varied by a small rotation, a term
-        that was multiplied by a factor after that.
+        For each term of the load: by each argument of the function of :mod:`polhode.loads` that makes it,
+        under its name, shape (..., T, 6) and then that of the argument, a matrix in full. A target is varied
+        by a small rotation of it, a term that was multiplied by a factor as it is after that; frames, times
+        of samples, windows and epochs are held.
     """
 
     state: Floats

@@ -288,8 +288,8 @@ class Trajectory:
         Returns
         -------
         MotionSensitivity
-            Derivatives of attitude and angular velocity at every time: by attitude and angular velocity at the
-            first, by moments, products, centre of mass and mass, and by every argument of the load.
+            Derivatives of attitude and angular velocity at every time: by attitude and angular velocity at
+            the first, by moments, products, centre of mass and mass, and by every argument of the load.
 
         Raises
         ------
@@ -300,14 +300,14 @@ class Trajectory:
 
         Notes
         -----
-        The linearised equations are integrated beside the motion, by Taylor series in which every number carries its
-        derivatives, as accurately as the numbers can be and whatever method found this motion. Where a step of
-        a feedback or a schedule changes the torque, its derivatives jump as they must. For free bodies
+        The linearised equations are integrated beside the motion, by Taylor series in which every number
+        carries its derivatives, to the last digits whatever method and tolerance found this motion. Where a
+        feedback turns its torque round, half a turn from its target, they jump as they must. For free bodies
         :meth:`FreeMotion.sensitivity` is exact at any time.
 
         Examples
         --------
-        Where a top points after three seconds, by the height of its centre of mass:
+        How a top's spin after three seconds depends on where it pointed at the start, and on the weight:
 
         >>> import numpy as np
         >>> from polhode import RigidBody, loads

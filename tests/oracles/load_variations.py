@@ -1,8 +1,9 @@
 """Derivatives of motions under loads, by differences of Taylor series in 34 digits.
 
-A change of 1e-16 of one number leaves sixteen digits of the quotient. The variables are, in this order: a small rotation δ of
-the attitude, ``R → R exp(δ×)``, and the rates; the elements 11, 22, 33, 23, 31, 12 of the tensor about the point that the
-torques refer to; the centre of mass; the mass; and the numbers of the load, term by term and argument by argument.
+A change of 1e-16 of one number leaves sixteen digits of the quotient. The variables are, in this order: a
+small rotation δ of the attitude, ``R → R exp(δ×)``, and the rates; the elements 11, 22, 33, 23, 31, 12 of
+the tensor about the point that the torques refer to; the centre of mass; the mass; and the numbers of the
+load, term by term and argument by argument.
 
 ``python -m oracles.load_variations`` in the folder ``tests`` writes ``oracles/tables/variations.json``.
 """
@@ -59,7 +60,9 @@ def setting(name: str) -> Setting:
     """The motion of this name, for ten rotations at the first rate."""
     kind, short = name.split(": ")
     (body, omega, load), *_ = (case[2:5] for case in CASES if case[:2] == (kind, short))
-    return Setting(body, omega, load, kind in PIVOTED, TURNS * 2 * float(np.pi) / float(np.hypot.reduce(omega)))
+    return Setting(
+        body, omega, load, kind in PIVOTED, TURNS * 2 * float(np.pi) / float(np.hypot.reduce(omega))
+    )
 
 
 def table() -> dict[str, np.ndarray]:
