@@ -28,19 +28,20 @@ from oracles.taylor import steps
 
 __all__ = ["NAMES", "TURNS", "Setting", "jacobian", "setting", "table"]
 
-NAMES = (
-    "heavy asymmetric top: fast",
-    "Kovalevskaya top: generic",
-    "constant torque: body, full tensor",
-    "constant torque: space, full tensor",
-    "damping: both",
-    "gravity gradient: eccentric",
-    "feedback: matrices, a target",
-    "six degrees of freedom: force in space, at a point",
-    "six degrees of freedom: thrust",
-    "sum: weight, damping and torque on a pivot",
-)
-TURNS = 10
+# The cases and their rotations: the eccentric orbit is chaotic, and after ten no difference is small enough.
+TURNS = {
+    "heavy asymmetric top: fast": 10,
+    "Kovalevskaya top: generic": 10,
+    "constant torque: body, full tensor": 10,
+    "constant torque: space, full tensor": 10,
+    "damping: both": 10,
+    "gravity gradient: eccentric": 3,
+    "feedback: matrices, a target": 10,
+    "six degrees of freedom: force in space, at a point": 10,
+    "six degrees of freedom: thrust": 10,
+    "sum: weight, damping and torque on a pivot": 10,
+}
+NAMES = tuple(TURNS)
 DIGITS = 34
 CHANGE = mpf("1e-16")
 TABLE = TABLES / "variations.json"
@@ -57,12 +58,11 @@ class Setting(NamedTuple):
 
 
 def setting(name: str) -> Setting:
-    """The motion of this name, for ten rotations at the first rate."""
+    """The motion of this name, for its rotations at the first rate."""
     kind, short = name.split(": ")
     (body, omega, load), *_ = (case[2:5] for case in CASES if case[:2] == (kind, short))
-    return Setting(
-        body, omega, load, kind in PIVOTED, TURNS * 2 * float(np.pi) / float(np.hypot.reduce(omega))
-    )
+    rotation = 2 * float(np.pi) / float(np.hypot.reduce(omega))
+    return Setting(body, omega, load, kind in PIVOTED, TURNS[name] * rotation)
 
 
 def table() -> dict[str, np.ndarray]:
