@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -29,10 +29,10 @@ def racket() -> Trajectory:
     return box.simulate(np.linspace(0.0, 12.0, 481), omega=(0.05, 2.0, 0.02))
 
 
-def data(page: Path) -> dict[str, object]:
+def data(page: Path) -> dict[str, Any]:
     found = re.search(r'<script type="application/json" id="motion">(.*?)</script>', page.read_text("utf-8"))
     assert found
-    motion: dict[str, object] = json.loads(found[1])
+    motion: dict[str, Any] = json.loads(found[1])
     return motion
 
 

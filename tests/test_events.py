@@ -115,7 +115,7 @@ class TestEvents:
 class TestResume:
     def test_a_run_in_two_parts_is_the_run(self) -> None:
         load = loads.damping(0.05) + loads.uniform_gravity((0, 0, -1.0))
-        options = {"load": load, "rtol": 1e-13}
+        options: dict[str, Any] = {"load": load, "rtol": 1e-13}
         whole = BODY.simulate([0, 3, 8], (1, 0.5, 0.2), velocity=(1, 0, 0), **options)
         half = BODY.simulate([0, 3], (1, 0.5, 0.2), velocity=(1, 0, 0), **options)
         rest = half.resume([3, 8], rtol=1e-13)

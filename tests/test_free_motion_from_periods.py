@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from scipy.integrate import quad
 from scipy.special import ellipk
 
 APOPHIS = (0.61, 0.965, 1.0)
+Mode: TypeAlias = Literal["long-axis", "short-axis"]
 
 
 def test_toutatis(shared_data: Path) -> None:
@@ -86,7 +88,7 @@ def test_periods_lead_back_to_the_motion(body: Body, omega: tuple[float, ...], s
 
 @pytest.mark.parametrize("mode", ["long-axis", "short-axis"])
 @pytest.mark.parametrize("sense", [1, -1])
-def test_phase_sense_and_direction(mode: str, sense: int) -> None:
+def test_phase_sense_and_direction(mode: Mode, sense: int) -> None:
     body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
     periods = (9.0, 5.0)
     start = body.free_motion_from_periods(*periods, mode, sense)
@@ -143,7 +145,10 @@ def test_what_no_motion_has_is_refused_with_the_reach() -> None:
         radar.free_motion_from_periods(6.0, 1.0, mode="short-axis")
     # In closed form: 1/√(α₁α₂), and 1/√(α₂α₃) − 1.
     first, second, third = 0.035 / 0.61, 0.39 / 0.965, 0.355
-    limits = {"short-axis": (first * second) ** -0.5, "long-axis": (second * third) ** -0.5 - 1}
+    limits: dict[Mode, float] = {
+        "short-axis": (first * second) ** -0.5,
+        "long-axis": (second * third) ** -0.5 - 1,
+    }
     for mode, least in limits.items():
         body.free_motion_from_periods(least * (1 + 1e-9), 1.0, mode=mode)
         with pytest.raises(PolhodeError, match=f"{mode} motion"):

@@ -24,7 +24,7 @@ class Start(NamedTuple):
 def starts(count: int) -> list[Start]:
     """Second moments over three decades, rates over two; the first `count` of one endless sequence."""
     rng = np.random.default_rng(SEED)
-    drawn = []
+    drawn: list[Start] = []
     while len(drawn) < count:
         x, y, z = 10.0 ** rng.uniform(-3.0, 0.0, 3)
         moments = np.sort([y + z, z + x, x + y])

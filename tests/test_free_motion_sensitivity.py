@@ -19,7 +19,7 @@ def scaled(slopes: np.ndarray, moments: np.ndarray, speed: float) -> np.ndarray:
     """Rates in units of the speed, moments in units of themselves."""
     rows = np.array([1, 1, 1, 1 / speed, 1 / speed, 1 / speed])
     columns = np.array([1, 1, 1, speed, speed, speed, *moments])
-    return rows[:, None] * slopes * columns
+    return np.asarray(rows[:, None] * slopes * columns)
 
 
 def whole(found: Sensitivity) -> np.ndarray:

@@ -25,11 +25,11 @@ SOON = (
 )
 
 
-def named(cases: Any) -> Any:
+def named(cases: Any) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("case", tuple(cases), ids=lambda case: case.name)
 
 
-def of_kind(*kinds: str) -> Any:
+def of_kind(*kinds: str) -> pytest.MarkDecorator:
     return named(case for case in CASES if case.kind in kinds)
 
 
@@ -72,13 +72,13 @@ def wrench(
 
 
 def _matrix(x: Any) -> np.ndarray:
-    return x * np.eye(3) if np.ndim(x) == 0 else np.array(x)
+    return np.array(x * np.eye(3) if np.ndim(x) == 0 else x)
 
 
 def tensor(case: MotionCase) -> np.ndarray:
     """About the reference point, rounded."""
     I = np.array([[float(x) for x in row] for row in full_tensor(case)])
-    return (I + I.T) / 2
+    return np.asarray((I + I.T) / 2)
 
 
 def full_tensor(case: MotionCase) -> list[list[Any]]:
@@ -114,7 +114,7 @@ def by_dop853(case: MotionCase, t: float, omega: Any = None, attitude: Any = Non
 def test_scipy_agrees(case: MotionCase) -> None:
     got, want = by_dop853(case, case.times[0]), case.expected[0]
     assert angle(got.quaternion, want.quaternion) < 1e-9
-    assert relative_error(got.omega, want.omega, at_least=np.linalg.norm(case.omega)) < 1e-9
+    assert relative_error(got.omega, want.omega, at_least=float(np.linalg.norm(case.omega))) < 1e-9
     if case.position:
         assert relative_error(got.position, want.position) < 1e-9
         assert relative_error(got.velocity, want.velocity) < 1e-9

@@ -21,7 +21,7 @@ FREE = load_table(free_cases.NAME)
 TOPS = load_table(top_cases.NAME)
 
 
-def named(cases: tuple[MotionCase, ...]) -> Any:
+def named(cases: tuple[MotionCase, ...]) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("case", cases, ids=lambda case: case.name)
 
 

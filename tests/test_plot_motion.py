@@ -58,20 +58,20 @@ def test_it_draws_where_it_is_told(name: str) -> None:
 def test_the_momentum_of_a_free_body_is_a_constant_in_space() -> None:
     ax = plot.angular_momentum(MOTION, Figure().add_subplot())
     for line, component in zip(ax.lines, FREE.angular_momentum, strict=True):
-        np.testing.assert_allclose(line.get_ydata(), component, rtol=1e-13)
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), component, rtol=1e-13)
 
 
 def test_euler_angles_break_where_they_wrap() -> None:
     ax = plot.euler_angles(MOTION, Figure().add_subplot())
     for line in ax.lines:
-        steps = np.abs(np.diff(line.get_ydata()))
+        steps = np.abs(np.diff(np.asarray(line.get_ydata())))
         assert np.nanmax(steps) < 180.0
 
 
 def test_the_level_of_a_top_ends_on_its_potential() -> None:
     ax = plot.effective_potential(TOP, Figure().add_subplot())
-    ends = np.deg2rad(ax.lines[1].get_xdata())
-    np.testing.assert_allclose(TOP.effective_potential(ends), ax.lines[1].get_ydata(), rtol=1e-12)
+    ends, level = np.deg2rad(ax.lines[1].get_xdata()), np.asarray(ax.lines[1].get_ydata())
+    np.testing.assert_allclose(TOP.effective_potential(ends), level, rtol=1e-12)
 
 
 def test_what_cannot_be_drawn_is_told() -> None:

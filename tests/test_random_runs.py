@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -87,8 +87,12 @@ def outcome(rng: np.random.Generator, method: Any) -> str:
     size = moment * rate**2 * strength
     span = rng.uniform(0.01, 1.0) / (rate * max(1.0, strength))
     kind = str(rng.choice(KINDS))
-    path = {"position": rng.normal(size=3), "velocity": rng.normal(size=3)} if rng.random() < 0.3 else {}
-    about = "origin" if kind == "weight" or (not path and rng.random() < 0.3) else "center_of_mass"
+    path: dict[str, Any] = (
+        {"position": rng.normal(size=3), "velocity": rng.normal(size=3)} if rng.random() < 0.3 else {}
+    )
+    about: Literal["origin", "center_of_mass"] = (
+        "origin" if kind == "weight" or (not path and rng.random() < 0.3) else "center_of_mass"
+    )
     if about == "origin":
         path = {}
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import doctest
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import pytest
@@ -62,13 +62,22 @@ PLAIN |= {"center": "0 0 0.1", "degrees": "0 0 30"}
 FORMATS = {"URDF": URDF, "SDF": SDF, "MJCF": MJCF}
 
 
+T = TypeVar("T")
+
+
+def there(value: T | None) -> T:
+    """What is there."""
+    assert value is not None
+    return value
+
+
 def fixed_axes(roll: float, pitch: float, yaw: float) -> np.ndarray:
     """Turns about x, then y, then z of the fixed frame, written out."""
     (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
     about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
     about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
     about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
-    return about_z @ about_y @ about_x
+    return np.asarray(about_z @ about_y @ about_x)
 
 
 def true_l() -> tuple[np.ndarray, np.ndarray]:
@@ -109,11 +118,11 @@ class TestThreeFormats:
         robot = written(format_name, center, turn.T @ tensor @ turn)
         (link,), (verdict,) = robot.links, robots.check(robot)
         assert (robot.format, robot.name, link.name) == (format_name, "l", "arm")
-        np.testing.assert_allclose(link.inertial.inertia, tensor, rtol=0, atol=1e-14)
-        np.testing.assert_allclose(link.inertial.center_of_mass, center, rtol=0, atol=1e-16)
+        np.testing.assert_allclose(there(link.inertial).inertia, tensor, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(there(link.inertial).center_of_mass, center, rtol=0, atol=1e-16)
         assert verdict.verdict == "good"
         assert verdict.factor == pytest.approx(1.0, rel=1e-12)
-        np.testing.assert_allclose(verdict.shape_moments, np.linalg.eigvalsh(tensor), rtol=1e-12)
+        np.testing.assert_allclose(there(verdict.shape_moments), np.linalg.eigvalsh(tensor), rtol=1e-12)
 
     def test_wrong_values_are_put_right(self, format_name: str) -> None:
         center, tensor = true_l()
@@ -122,8 +131,8 @@ class TestThreeFormats:
         assert verdict.verdict == "placeholder"
         better = robots.fixed(robot, [verdict])
         again = robots.parse_robot(better, name="better", folder=".")
-        np.testing.assert_allclose(again.links[0].inertial.inertia, tensor, rtol=0, atol=1e-9)
-        np.testing.assert_allclose(again.links[0].inertial.center_of_mass, center, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(there(again.links[0].inertial).inertia, tensor, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(there(again.links[0].inertial).center_of_mass, center, rtol=0, atol=1e-9)
         (verdict,) = robots.check(again)
         assert verdict.verdict == "good"
 
@@ -131,7 +140,7 @@ class TestThreeFormats:
         (verdict,) = robots.check(written(format_name, (0, 0.05, 0), np.diag([0.1, 0.1, 0.3])))
         assert verdict.verdict == "impossible"
         assert "I1 + I2" in verdict.reason or "triangle" in verdict.reason
-        np.testing.assert_allclose(verdict.moments, [0.1, 0.1, 0.3], rtol=1e-13)
+        np.testing.assert_allclose(there(verdict.moments), [0.1, 0.1, 0.3], rtol=1e-13)
 
     def test_what_no_body_of_its_size_has(self, format_name: str) -> None:
         (verdict,) = robots.check(written(format_name, (0.1, 0, 0), np.diag([0.9, 0.8, 0.7])))
@@ -171,12 +180,14 @@ class TestFix:
         robot = robots.parse_robot(text.encode(), name="r", folder=".")
         (verdict,) = robots.check(robot)
         assert verdict.verdict == "impossible"
-        np.testing.assert_allclose(verdict.moments, [7.8627e-5, 1.47497e-4, 2.31876e-4], rtol=1e-5)
+        np.testing.assert_allclose(there(verdict.moments), [7.8627e-5, 1.47497e-4, 2.31876e-4], rtol=1e-5)
         again = robots.parse_robot(robots.fixed(robot, [verdict]), name="r", folder=".")
         (better,) = robots.check(again)
         assert better.verdict == "good"
         deficit = 2.31876e-4 - 7.8627e-5 - 1.47497e-4
-        distance = np.linalg.norm(again.links[0].inertial.inertia - robot.links[0].inertial.inertia)
+        distance = np.linalg.norm(
+            there(again.links[0].inertial).inertia - there(robot.links[0].inertial).inertia
+        )
         assert distance == pytest.approx(deficit / np.sqrt(3), rel=1e-3)
 
     def test_elements_that_are_absent_are_added(self) -> None:
@@ -186,7 +197,8 @@ class TestFix:
         robot = robots.parse_robot(text, name="r", folder=".")
         (verdict,) = robots.check(robot)
         assert verdict.verdict == "placeholder"  # what the format takes where nothing stands
-        again = robots.parse_robot(robots.fixed(robot, [verdict]), name="r", folder=".").links[0].inertial
+        fixed = robots.parse_robot(robots.fixed(robot, [verdict]), name="r", folder=".")
+        again = there(fixed.links[0].inertial)
         np.testing.assert_allclose(again.inertia, np.diag([2.5, 2.5, 1.0]), rtol=1e-9)
         np.testing.assert_allclose(again.center_of_mass, [0, 0, 1], rtol=1e-12)
 
@@ -206,7 +218,7 @@ class TestTutorial:
         height, radius = Fraction("0.1"), Fraction("0.035")
         across, along = (3 * radius**2 + height**2) / 12, radius**2 / 2
         np.testing.assert_allclose(
-            wheel.shape_moments, [float(along), float(across), float(across)], rtol=1e-12
+            there(wheel.shape_moments), [float(along), float(across), float(across)], rtol=1e-12
         )
         assert wheel.factor == pytest.approx(1632.65, abs=0.01)
         assert with_shape["gripper_pole"].factor == pytest.approx(400_000, rel=1e-9)
@@ -238,7 +250,7 @@ class TestMeshes:
         text = self.TEXT.format(0.5, address.format(folder / "part.obj"), "0.5 0.5 0.5")
         (folder / "r.urdf").write_text(text)
         (verdict,) = robots.check(robots.read_robot(folder / "r.urdf"))
-        np.testing.assert_allclose(verdict.shape_moments, [1 / 3, 1 / 3, 1 / 3], rtol=1e-14)
+        np.testing.assert_allclose(there(verdict.shape_moments), [1 / 3, 1 / 3, 1 / 3], rtol=1e-14)
         assert verdict.verdict == "good"
 
     def test_packages_elsewhere(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -265,7 +277,7 @@ class TestMeshes:
         ):
             text = self.TEXT.format(1.0, name, scale).encode()
             (verdict,) = robots.check(robots.parse_robot(text, name="r", folder=tmp_path))
-            np.testing.assert_allclose(verdict.shape_moments, want, rtol=1e-13)
+            np.testing.assert_allclose(there(verdict.shape_moments), want, rtol=1e-13)
             assert (note is None) == (not verdict.notes)
             if note is not None:
                 assert note in verdict.notes[0]
@@ -286,7 +298,7 @@ class TestMuJoCo:
 
     def test_lengths_are_halves(self) -> None:
         np.testing.assert_allclose(
-            self.read('<geom type="cylinder" size="0.5 1"/>').shape_moments,
+            there(self.read('<geom type="cylinder" size="0.5 1"/>').shape_moments),
             solids.cylinder(0.5, 2.0, mass=1.0).principal_moments,
             rtol=1e-14,
         )
@@ -300,7 +312,9 @@ class TestMuJoCo:
             '<geom type="capsule" size="0.5 1.5" xyaxes="0 1 0 1 1 0"/>',
             '<geom type="capsule" size="0.5 1.5" quat="2 1 0 0"/>',
         ):
-            np.testing.assert_allclose(self.read(geom).shape_moments, capsule.principal_moments, rtol=1e-13)
+            np.testing.assert_allclose(
+                there(self.read(geom).shape_moments), capsule.principal_moments, rtol=1e-13
+            )
 
     def test_masses_and_densities_weigh(self) -> None:
         two = '<geom size="0.1" mass="{}"/><geom size="0.2" pos="1 0 0" {}/>'
@@ -309,8 +323,8 @@ class TestMuJoCo:
             verdict = self.read(two.format(1.0, second))
             total = 1.0 + share
             along = (0.4 * 0.01 * 1 + 0.4 * 0.04 * share) / total
-            np.testing.assert_allclose(verdict.shape_moments[0], along, rtol=1e-13)
-            np.testing.assert_allclose(verdict.shape_moments[2], along + share / total**2, rtol=1e-13)
+            np.testing.assert_allclose(there(verdict.shape_moments)[0], along, rtol=1e-13)
+            np.testing.assert_allclose(there(verdict.shape_moments)[2], along + share / total**2, rtol=1e-13)
 
     def test_default_angles_are_degrees_of_the_turning_frame(self) -> None:
         text = b"""<mujoco><worldbody><body name="b"><inertial mass="1" pos="0 0 0" euler="10 20 30"
@@ -319,7 +333,7 @@ class TestMuJoCo:
         x, y, z = (fixed_axes(*row) for row in np.diag(np.deg2rad([10, 20, 30])))
         turn = x @ y @ z
         np.testing.assert_allclose(
-            link.inertial.inertia, turn @ np.diag([1, 2, 2.5]) @ turn.T, rtol=0, atol=1e-14
+            there(link.inertial).inertia, turn @ np.diag([1, 2, 2.5]) @ turn.T, rtol=0, atol=1e-14
         )
 
     def test_frames_and_classes(self) -> None:
@@ -331,7 +345,7 @@ class TestMuJoCo:
         assert [shape.size for shape in robot.links[0].shapes] == [(0.5,), (0.5,)]
         np.testing.assert_allclose(robot.links[0].shapes[1].place.position, [0, 0, 4], atol=1e-15)
         (verdict,) = robots.check(robot)
-        np.testing.assert_allclose(verdict.shape_moments, [0.1, 4.1, 4.1], rtol=1e-14)
+        np.testing.assert_allclose(there(verdict.shape_moments), [0.1, 4.1, 4.1], rtol=1e-14)
 
     def test_nothing_declared_is_inferred(self) -> None:
         text = b'<mujoco><worldbody><body name="b"><geom size="1"/><body/></body></worldbody></mujoco>'
@@ -395,7 +409,7 @@ def test_what_is_put_right_is_a_body(moments: list[float], size: list[float]) ->
     again = robots.parse_robot(robots.fixed(robot, verdicts), name="r", folder=".")
     (verdict,) = robots.check(again)
     assert verdict.verdict in {"good", "suspect"}
-    inertial = again.links[0].inertial
+    inertial = there(again.links[0].inertial)
     RigidBody(inertial.mass, inertial.inertia, inertial.center_of_mass)
 
 

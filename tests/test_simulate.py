@@ -262,16 +262,51 @@ class TestOutput:
 
     def test_a_method_that_cannot_says_which_can(self) -> None:
         call = loads.torque_callback(lambda _t, w, _q: -w)
-        for method, load, events, word in (
+        refused: tuple[tuple[Any, ...], ...] = (
             ("exact", loads.damping(1.0), (), 'method="taylor" can'),
             ("exact", call, (), 'method="dop853" can'),
             ("taylor", call, (), 'method="dop853" can'),
             ("taylor", loads.damping(1.0), (lambda t, *_: t,), "a run without events"),
-        ):
+        )
+        for method, load, events, word in refused:
             with pytest.raises(PolhodeError, match=word):
                 BRICK.simulate(TIMES, START, load=load, method=method, events=events)
         with pytest.raises(ValueError, match='method: expected one of "auto", "exact", "taylor", "dop853"'):
             BRICK.simulate(TIMES, START, method="euler")  # type: ignore[arg-type]
+
+
+class TestArguments:
+    @pytest.mark.parametrize("kind", [list, tuple, np.array])
+    def test_numbers_in_any_sequence(self, kind: Any) -> None:
+        want = BRICK.simulate(np.array([0.0, 2.0]), np.array([1.0, 0.0, 2.0]), np.array([0.0, 0.6, 0.0, 0.8]))
+        got = BRICK.simulate(kind([0, 2]), kind([np.float64(1), 0, 2.0]), kind([0, 0.6, 0, np.float64(0.8)]))
+        assert np.array_equal(got.omega, want.omega)
+        assert np.array_equal(got.quaternion, want.quaternion)
+
+    @pytest.mark.parametrize(
+        ("t", "error", "message"),
+        [
+            ([], PolhodeError, "t"),
+            ([0.0, True, 2.0], None, ""),
+            ([0, 2**70], TypeError, "t: expected real numbers"),
+            ([0.0, "1"], TypeError, "t: expected real numbers"),
+            ([0.0, 1j], TypeError, "t: expected real numbers"),
+            ([0.0, None], TypeError, "t: expected real numbers"),
+            ([[0.0, 1.0]], ValueError, r"t: expected shape \(T,\), got \(1, 2\)"),
+            (1.0, ValueError, r"t: expected shape \(T,\), got \(\)"),
+        ],
+    )
+    def test_what_numpy_makes_of_others(self, t: Any, error: Any, message: str) -> None:
+        if error is None:
+            assert len(BRICK.simulate(t, START)) == len(t)
+            return
+        with pytest.raises(error, match=message):
+            BRICK.simulate(t, START)
+
+    def test_vectors_have_three_components(self) -> None:
+        for omega, shape in (([1, 2], r"\(2,\)"), ((1.0, 2.0, 3.0, 4.0), r"\(4,\)"), ([], r"\(0,\)")):
+            with pytest.raises(ValueError, match=rf"omega: expected shape \(\.\.\., 3\), got {shape}"):
+                BRICK.simulate(TIMES, omega)
 
 
 class TestStacks:

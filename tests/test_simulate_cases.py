@@ -40,7 +40,7 @@ def body_of(case: MotionCase) -> RigidBody:
 
 
 def simulated(case: MotionCase, method: Any, rtol: float) -> Trajectory:
-    path = {"position": case.position, "velocity": case.velocity} if case.position else {}
+    path: dict[str, Any] = {"position": case.position, "velocity": case.velocity} if case.position else {}
     return body_of(case).simulate(
         [0.0, *case.times],
         case.omega,
@@ -69,7 +69,7 @@ def errors(case: MotionCase, trajectory: Trajectory) -> list[float]:
     return found
 
 
-def named(cases: Any) -> Any:
+def named(cases: Any) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("case", tuple(cases), ids=lambda case: case.name)
 
 
@@ -101,7 +101,7 @@ def test_dop853(case: MotionCase) -> None:
 
 @SMOOTH
 def test_dop853_holds_its_bar_soon_at_a_looser_tolerance(case: MotionCase) -> None:
-    soon = {"times": case.times[:2], "expected": case.expected[:2], "kappa": case.kappa[:2]}
+    soon: dict[str, Any] = {"times": case.times[:2], "expected": case.expected[:2], "kappa": case.kappa[:2]}
     assert_dop853(case._replace(**soon), 1e-13)
 
 
@@ -123,13 +123,24 @@ class TestRadau:
         (term,) = case.load
         matrix = np.array(term["matrix"])
         strong = matrix > 1.0
-        t = [0.0, 6 * np.pi / np.linalg.norm(case.omega)]
+        t = [0.0, 6 * np.pi / float(np.linalg.norm(case.omega))]
         body, steps = body_of(case), []
         for factor in (1.0, 1e2, 1e4, 1e6):
             load = loads.damping(np.where(strong, factor * matrix, matrix))
             run = body.simulate(t, case.omega, case.attitude, load=load, method="radau", rtol=1e-10)
             steps.append(run.steps)
         assert max(steps) <= 1.05 * steps[0]
+
+
+    @pytest.mark.parametrize("rtol", [1e-14, 1e-8])
+    def test_a_push_on_a_body_at_rest(self, rtol: float) -> None:
+        """Place and velocity begin at zero, and have no size there that errors could be relative to."""
+        body, force = RigidBody.from_principal(2.0, (1.0, 2.0, 2.5)), np.array([0.3, -0.2, 0.1])
+        load = loads.constant_force(force, "space", point=(0.5, 0.0, 0.0))
+        run = body.simulate([0.0, 3.0], (0.3, 0.2, 1.1), load=load, method="radau", rtol=rtol)
+        np.testing.assert_allclose(run.velocity[-1], 3.0 * force / 2.0, rtol=1e-13)
+        np.testing.assert_allclose(run.position[-1], 4.5 * force / 2.0, rtol=1e-13)
+        assert run.steps < 100 * (1e-8 / rtol) ** 0.2
 
 
 def drifts(case: MotionCase, rotations: float) -> tuple[float, float]:

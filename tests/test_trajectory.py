@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import csv
+import pickle
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -227,3 +229,40 @@ def test_missing_library_is_named_with_its_remedy(
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(ModuleNotFoundError, match=remedy):
         call(Swarm(rng, ()).trajectory)
+
+
+class TestWhatARunHasReady:
+    """Arrays that a run does not make until they are asked for."""
+
+    RACKET = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5), center_of_mass=(0.1, 0.0, 0.3))
+    NAMES = ("t", "omega", "quaternion", "position", "velocity", "about", "steps", "evaluations", "status")
+
+    def motion(self) -> Trajectory:
+        starts = [[0.1, 1.0, 0.2], [0.3, -1.0, 0.1]]
+        return self.RACKET.simulate(
+            [0, 2.5, 5], starts, velocity=(1, 0, 0), method="dop853", events=lambda _t, w, *_: w[0]
+        )
+
+    @pytest.mark.parametrize(
+        "copied", [copy.copy, copy.deepcopy, lambda motion: pickle.loads(pickle.dumps(motion))]
+    )
+    def test_copies_have_all_of_it(self, copied: Any) -> None:
+        motion, other = self.motion(), copied(self.motion())
+        for name in self.NAMES:
+            assert np.array_equal(getattr(other, name), getattr(motion, name)), name
+        for ours, theirs in zip(motion.events, other.events, strict=True):
+            assert len(ours) > 0
+            assert np.array_equal(ours, theirs)
+        assert other.body == motion.body
+        assert (other.load, other.failures, other.pivoted) == (None, (), False)
+
+    def test_each_is_made_once(self) -> None:
+        motion = self.motion()
+        for name in ("t", "about", "steps", "evaluations", "events"):
+            assert getattr(motion, name) is getattr(motion, name)
+        assert motion.steps.shape == motion.evaluations.shape == motion.status.shape == (2,)
+        assert motion.status.dtype == np.dtype("<U8")
+
+    def test_no_others(self) -> None:
+        with pytest.raises(AttributeError, match="'Trajectory' object has no attribute 'omegas'"):
+            self.motion().omegas  # type: ignore[attr-defined]  # noqa: B018

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -75,6 +75,27 @@ class Trajectory:
     events: Events = field(default_factory=Events.none)
     failures: tuple[IntegrationError | PolhodeError, ...] = ()
     pivoted: bool = False
+
+    @classmethod
+    def _of_run(cls, known: dict[str, Any]) -> Trajectory:
+        """Make the motion of a run: what is not `known` yet, its ``_outcome`` has ready for those who ask."""
+        motion = object.__new__(cls)
+        motion.__dict__.update(known)
+        return motion
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Get of the outcome of a run what few ask for."""
+            outcome = self.__dict__.get("_outcome")
+            if outcome is None or name not in type(self).__dataclass_fields__:
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            value = self.__dict__[name] = getattr(outcome, name)
+            return value
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Give all attributes, for copy and pickle."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     def __len__(self) -> int:
         """Count the times."""

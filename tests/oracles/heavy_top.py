@@ -14,7 +14,8 @@ gravity against the third axis of space,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import mpmath
 from mpmath import mp, mpc, mpf
@@ -33,7 +34,7 @@ class HeavyTop:
         transverse: float,
         mass_moment: float,
         omega: Sequence[float],
-        attitude: Sequence[float],
+        attitude: Iterable[float],
         gravity: float,
         *,
         about_center: tuple[float, float] | None = None,
@@ -64,8 +65,11 @@ class HeavyTop:
                 series, step = self._series(state)
                 now, later = self._rate(state), self._rate(_sum(series, step))
                 if mpmath.sign(now) * mpmath.sign(later) < 0:
-                    zero = _zero(lambda h, s=series: self._rate(_sum(s, h)), step)
-                    times.append(t + zero)
+
+                    def rate(h: mpf, series: Any = series) -> mpf:
+                        return self._rate(_sum(series, h))
+
+                    times.append(t + _zero(rate, step))
                 state, t = _sum(series, step), t + step
             self.period = times[2] - times[0]
             early = self._advance(self.start, self.period / 7)
@@ -103,7 +107,10 @@ class HeavyTop:
         a, b, w = ([x] for x in state)
         a_, w_ = [mpmath.conj(state[0])], [mpmath.conj(state[2])]
         for n in range(self.order):
-            dot = lambda x, y, n=n: mpmath.fdot(x[: n + 1], y[n::-1])  # noqa: E731
+
+            def dot(x: list[mpc], y: list[mpc], n: int = n) -> mpc:
+                return mpmath.fdot(x[: n + 1], y[n::-1])
+
             half = mpf(1) / (2 * (n + 1))
             next_a = (1j * self.w3 * a[n] - dot(b, w_)) * half
             next_b = (dot(a, w) - 1j * self.w3 * b[n]) * half

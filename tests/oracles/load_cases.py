@@ -183,7 +183,7 @@ def solve(
         path = (case.position, case.velocity) if case.position else None
         start = body.begin(omega or case.omega, attitude or unit(case.attitude), path)
         ends = [body.fixed(t) for t in case.times]
-        states = []
+        states: list[State] = []
         for step in steps(body, start, max(ends)):
             for end in ends[len(states) :]:
                 if end <= step.end:

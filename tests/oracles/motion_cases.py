@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import mpmath
 from mpmath import mp, mpf
@@ -86,7 +86,7 @@ class MotionCase(NamedTuple):
     times: Floats
     expected: tuple[State, ...] = ()
     load: tuple[dict[str, Any], ...] = ()
-    about: str = "center_of_mass"
+    about: Literal["center_of_mass", "origin"] = "center_of_mass"
     kappa: Floats = ()
     gravity: Floats = ()
     position: Floats = ()

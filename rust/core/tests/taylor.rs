@@ -354,7 +354,7 @@ fn a_motion_has_the_same_bits_alone_in_a_stack_on_any_threads_and_at_any_level()
                 for count in [2, 21] {
                     let mut runs = vec![None; count];
                     let go_on = |_| ControlFlow::Continue(());
-                    solve_many(&|row| (task(row), &terms[..]), &mut runs, &go_on);
+                    solve_many(&task, &|_| &terms[..], &mut runs, &go_on);
                     for (row, (run, alone)) in runs.iter().zip(&alone).enumerate() {
                         let run = run.as_ref().expect("begun");
                         assert_eq!(run.end, End::Complete);
@@ -392,7 +392,7 @@ fn runs_stop_when_told() {
     assert_eq!(stopped.end, End::Stopped);
     assert!(stopped.time > 0.0 && stopped.effort.steps == 192);
     let mut runs = vec![None; 300];
-    solve_many(&|_| (task, &[]), &mut runs, &|_| ControlFlow::Break(()));
+    solve_many(&|_| task, &|_| &[], &mut runs, &|_| ControlFlow::Break(()));
     let ends: Vec<_> = runs.iter().flatten().map(|run| &run.end).collect();
     assert!(!ends.is_empty() && ends.iter().all(|end| **end == End::Stopped));
 }

@@ -3,15 +3,22 @@
 use std::convert::Infallible;
 
 use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, UnitQuaternion, Vector3, Vector6};
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::ndarray::ArrayViewD;
+use numpy::{
+    IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
 use polhode::motion::attitude;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyModule;
+use pyo3::types::{PyFloat, PyInt, PyList, PyModule, PyTuple};
 
 use crate::errors::{at_row, to_py, wrong_shape};
 use crate::stack::{Stack, tuple};
+
+/// Numbers that are sooner copied than handed over.
+const FEW: usize = 1024;
 
 /// An argument with a default that is not None: None is a mistake, and read as one.
 #[derive(Default)]
@@ -139,21 +146,43 @@ impl Item for Vector6<f64> {
 
 /// Items over the last axes and a stack over the leading ones.
 pub(crate) fn read<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Stack<T>> {
+    if let Some(numbers) = plain(object) {
+        return stacked(name, &[numbers.len()], &numbers);
+    }
     let array = floats(object, name)?;
-    let (shape, tail) = (array.shape(), T::TAIL);
-    let Some(depth) = shape
-        .len()
-        .checked_sub(tail.len())
-        .filter(|&depth| shape[depth..] == *tail)
-    else {
-        return Err(wrong_shape(name, tail, shape));
-    };
-    let numbers = array.as_slice()?;
-    let size: usize = tail.iter().product();
+    stacked(name, array.shape(), array.as_slice()?)
+}
+
+/// The items of an array with these numbers.
+fn stacked<T: Item>(name: &str, shape: &[usize], numbers: &[f64]) -> PyResult<Stack<T>> {
+    let depth = (shape.len().checked_sub(T::TAIL.len()))
+        .filter(|&depth| shape[depth..] == *T::TAIL)
+        .ok_or_else(|| wrong_shape(name, T::TAIL, shape))?;
     Ok(Stack {
         shape: shape[..depth].to_vec(),
-        rows: numbers.chunks_exact(size).map(T::read).collect(),
+        rows: numbers.chunks_exact(size::<T>()).map(T::read).collect(),
     })
+}
+
+/// The numbers of a list or tuple that holds floats and integers alone, as NumPy would read them and much sooner.
+fn plain(object: &Bound<'_, PyAny>) -> Option<Vec<f64>> {
+    let number = |item: Bound<'_, PyAny>| {
+        if let Ok(float) = item.cast::<PyFloat>() {
+            return Some(float.value());
+        }
+        let integer = item.cast_exact::<PyInt>().ok()?;
+        Some(integer.extract::<i64>().ok()? as f64)
+    };
+    if let Ok(list) = object.cast_exact::<PyList>() {
+        list.iter().map(number).collect()
+    } else {
+        object
+            .cast_exact::<PyTuple>()
+            .ok()?
+            .iter()
+            .map(number)
+            .collect()
+    }
 }
 
 /// As [`read`] for items in a row, shape (n, tail) or (..., n, tail): `leading` names the axes before the tail.
@@ -227,12 +256,19 @@ fn size<T: Item>() -> usize {
     T::TAIL.iter().product()
 }
 
-fn shaped<'py, T: Item>(
+/// An array of items with these numbers: in the memory they are in, or, as is sooner done with few, in its own.
+pub(crate) fn shaped<'py, T: Item>(
     py: Python<'py>,
     numbers: Vec<f64>,
     shape: &[usize],
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    numbers.into_pyarray(py).reshape([shape, T::TAIL].concat())
+    let shape = [shape, T::TAIL].concat();
+    if numbers.len() <= FEW
+        && let Ok(view) = ArrayViewD::from_shape(&shape[..], &numbers)
+    {
+        return Ok(PyArrayDyn::from_array(py, &view));
+    }
+    numbers.into_pyarray(py).reshape(shape)
 }
 
 /// A float for one value, an array for a stack.
@@ -367,6 +403,12 @@ pub(crate) fn try_rows<T, R>(
 
 /// What `as_quat()` returns, where there is such a method.
 fn as_quaternion<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let has_none = object.is_exact_instance_of::<PyUntypedArray>()
+        || object.is_exact_instance_of::<PyTuple>()
+        || object.is_exact_instance_of::<PyList>();
+    if has_none {
+        return Ok(None);
+    }
     object
         .getattr_opt("as_quat")?
         .map(|method| method.call0())

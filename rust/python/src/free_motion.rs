@@ -5,15 +5,14 @@ mod from_periods;
 mod in_time;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::RigidBody;
 use polhode::motion::attitude::components;
-use polhode::motion::free::{FreeMotion, RefinedPrincipal, sample_many};
+use polhode::motion::free::{FreeMotion, RefinedPrincipal};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{floats, numpy, read, read_attitude, write, write_of};
-use crate::interrupt::Interrupt;
+use crate::arrays::{read, read_attitude, write_of};
+use crate::closed_form::trajectory;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack, tuple};
 
@@ -174,45 +173,8 @@ impl PyFreeMotion {
     ///        [ 0. ,  0.1, 10. ],
     ///        [-0.1,  0. , 10. ]])
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let times = floats(t, "t")?;
-        let shape = [&self.motions.shape[..], times.shape()].concat();
-        // NumPy's own memory, in large pages: the pages of a plain vector take longer to come by than the states.
-        let array = |components: usize| {
-            PyArrayDyn::<f64>::zeros(py, [&shape[..], &[components]].concat(), false)
-        };
-        let (quaternion, omega) = (array(4), array(3));
-        let interrupt = Interrupt::new(None);
-        {
-            let (mut quaternion, mut omega) = (quaternion.readwrite(), omega.readwrite());
-            let (attitudes, omegas) = (quaternion.as_slice_mut()?, omega.as_slice_mut()?);
-            let times = times.as_slice()?;
-            let outcome = py.detach(|| {
-                sample_many(
-                    &self.motions.rows,
-                    times,
-                    attitudes.as_chunks_mut().0,
-                    omegas.as_chunks_mut().0,
-                    &mut |_| interrupt.poll(None),
-                )
-            });
-            interrupt.finish(py, outcome.is_ok())?;
-        }
-        let np = numpy(py)?;
-        let still = np.call_method1("zeros", ([&shape[..], &[3]].concat(),))?;
-        let none = np.call_method1("zeros", (self.motions.shape.clone(), "int64"))?;
         let fields = PyDict::new(py);
-        fields.set_item("body", &self.body)?;
-        fields.set_item("t", np.call_method1("array", (&*times,))?)?;
-        fields.set_item("omega", omega)?;
-        fields.set_item("quaternion", quaternion)?;
-        fields.set_item("position", &still)?;
-        fields.set_item("velocity", &still)?;
-        fields.set_item("about", write(py, &self.centers())?)?;
-        fields.set_item("steps", &none)?;
-        fields.set_item("evaluations", &none)?;
-        py.import("polhode.trajectory")?
-            .getattr("Trajectory")?
-            .call((), Some(&fields))
+        trajectory(py, &self.body, &self.motions, t, &self.centers(), fields)
     }
 
     fn __reduce__<'py>(

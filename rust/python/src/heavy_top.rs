@@ -1,16 +1,15 @@
 //! The class `HeavyTop`: exact motions of heavy symmetric tops about a fixed point.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use numpy::{PyArray1, PyArrayMethods};
 use polhode::RigidBody;
 use polhode::motion::attitude::{components, from_components};
-use polhode::motion::heavy_top::{HeavyTop, Nutation, PivotedTop, sample_many};
+use polhode::motion::heavy_top::{HeavyTop, Nutation, PivotedTop};
 use polhode::principal::TOP_RTOL;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::arrays::{numpy, read, read_quaternion, try_rows, write, write_numbers};
-use crate::interrupt::Interrupt;
+use crate::closed_form::trajectory;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack, tuple};
 
@@ -359,46 +358,13 @@ impl PyHeavyTop {
     /// array([[ 0.      ,  0.841471, -0.540302],
     ///        [ 0.      , -0.841471, -0.540302]])
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> Array<'py> {
-        let times: Stack<f64> = read(t, "t")?;
-        let shape = [&self.motions.shape[..], &times.shape].concat();
-        let count = self.motions.rows.len() * times.rows.len();
-        let (mut attitudes, mut omegas) = (vec![0.0; 4 * count], vec![0.0; 3 * count]);
-        let interrupt = Interrupt::new(None);
-        let outcome = py.detach(|| {
-            sample_many(
-                &self.motions.rows,
-                &times.rows,
-                attitudes.as_chunks_mut().0,
-                omegas.as_chunks_mut().0,
-                &mut |_| interrupt.poll(None),
-            )
-        });
-        interrupt.finish(py, outcome.is_ok())?;
-        let array = |numbers: Vec<f64>, components: usize| {
-            PyArray1::from_vec(py, numbers).reshape([&shape[..], &[components]].concat())
-        };
-        let np = numpy(py)?;
-        let still = np.call_method1("zeros", ([&shape[..], &[3]].concat(),))?;
-        let none = np.call_method1("zeros", (self.motions.shape.clone(), "int64"))?;
-        let origins = self.body.get().bodies.map(|_: &RigidBody| Vector3::zeros());
+        let gravity =
+            (py.import("polhode.loads")?).call_method1("uniform_gravity", (self.gravity(py)?,))?;
         let fields = PyDict::new(py);
-        fields.set_item("body", &self.body)?;
-        fields.set_item("t", write(py, &times)?)?;
-        fields.set_item("omega", array(omegas, 3)?)?;
-        fields.set_item("quaternion", array(attitudes, 4)?)?;
-        fields.set_item("position", &still)?;
-        fields.set_item("velocity", &still)?;
-        fields.set_item("about", write(py, &origins)?)?;
-        fields.set_item("steps", &none)?;
-        fields.set_item("evaluations", &none)?;
-        let gravity = py
-            .import("polhode.loads")?
-            .call_method1("uniform_gravity", (self.gravity(py)?,))?;
         fields.set_item("load", gravity)?;
         fields.set_item("pivoted", true)?;
-        py.import("polhode.trajectory")?
-            .getattr("Trajectory")?
-            .call((), Some(&fields))
+        let origins = (self.body.get().bodies).map(|_: &RigidBody| Vector3::zeros());
+        trajectory(py, &self.body, &self.motions, t, &origins, fields)
     }
 
     fn __reduce__<'py>(

@@ -6,6 +6,7 @@
 //! | `stack` | shape arithmetic |
 //! | `errors` | which exception an error of the core becomes |
 //! | `interrupt` | Ctrl-C and progress |
+//! | `closed_form` | exact motions at many times |
 //! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
 
@@ -14,6 +15,7 @@
 
 mod accumulator;
 mod arrays;
+mod closed_form;
 mod environment;
 mod equimomental;
 mod errors;

@@ -1,6 +1,11 @@
-//! The state of motion of a rigid body.
+//! The state of motion of a rigid body, and motions whose state is known at any time.
+
+use std::convert::Infallible;
+use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use crate::numerics::threads::{Halt, fill_blocks};
 
 /// Attitude `R_NB` and angular velocity of B relative to N, components in B.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,3 +82,63 @@ impl Phase {
         ]
     }
 }
+
+/// A motion in closed form: its state at any time costs the same.
+pub trait ClosedForm: Sync {
+    /// Attitudes as (x, y, z, w) and ω at many times, on the calling thread; one of each for every time.
+    fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]);
+}
+
+/// The states of many motions at many times, all times of the first motion first, on several threads when there are many;
+/// quaternions as (x, y, z, w). Each state has the bits of [`ClosedForm::sample`].
+///
+/// About every 20 ms `watch` gets the fraction done; [`ControlFlow::Break`] ends the job.
+///
+/// # Errors
+/// [`Halt::Stopped`] if `watch` said so; the states are then unspecified.
+///
+/// # Panics
+/// If the number of attitudes or of angular velocities is not that of motions times that of times.
+pub fn sample_many<M: ClosedForm>(
+    motions: &[M],
+    times: &[f64],
+    attitudes: &mut [[f64; 4]],
+    omegas: &mut [[f64; 3]],
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<(), Halt<Infallible>> {
+    let count = motions.len() * times.len();
+    assert_eq!(
+        attitudes.len(),
+        count,
+        "an attitude for each motion and time"
+    );
+    assert_eq!(
+        omegas.len(),
+        count,
+        "an angular velocity for each motion and time"
+    );
+    let mut blocks: Vec<_> = attitudes
+        .chunks_mut(BLOCK)
+        .zip(omegas.chunks_mut(BLOCK))
+        .collect();
+    fill_blocks(&mut blocks, 1, watch, |block, states| {
+        for (attitudes, omegas) in states {
+            let (mut at, mut done) = (block * BLOCK, 0);
+            while done < attitudes.len() {
+                let (row, first) = (at / times.len(), at % times.len());
+                let span = (times.len() - first).min(attitudes.len() - done);
+                motions[row].sample(
+                    &times[first..first + span],
+                    &mut attitudes[done..done + span],
+                    &mut omegas[done..done + span],
+                );
+                at += span;
+                done += span;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// States that one thread computes at a time.
+const BLOCK: usize = 4096;

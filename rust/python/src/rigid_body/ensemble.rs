@@ -6,7 +6,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::integrate::taylor;
 use polhode::motion::loads::Term;
-use polhode::motion::simulate::{End, Events, Method, NoEvents, Run, Task, Tolerance, simulate};
+use polhode::motion::simulate::{
+    End, Events, Footing, Method, NoEvents, Run, Task, Tolerance, simulate,
+};
 use polhode::motion::state::Phase;
 use polhode::numerics::threads::fill_blocks;
 use pyo3::prelude::*;
@@ -43,10 +45,21 @@ impl Start<'_> {
     }
 }
 
+/// That of a body for motions from the first of `times` on.
+pub(super) fn footing(body: &RigidBody, times: &[f64], pivoted: bool) -> Footing {
+    if pivoted {
+        Footing::pivoted(body, times[0])
+    } else {
+        Footing::free(body, times[0])
+    }
+}
+
 /// All that a run needs.
 pub(super) struct Ensemble<'a> {
     pub(super) start: &'a Start<'a>,
     pub(super) grid: Broadcast<6>,
+    /// Of the body, where there is one alone.
+    pub(super) footing: Option<Footing>,
     pub(super) times: &'a [f64],
     pub(super) pivoted: bool,
     pub(super) method: Method,
@@ -136,12 +149,13 @@ impl Ensemble<'_> {
         let mut runs: Vec<Option<Run<polhode::Error>>> = (0..count).map(|_| None).collect();
         py.detach(|| {
             if count == 1 {
-                let (task, terms) = self.task(0);
                 let mut watch = |part| interrupt.poll(Some(part));
-                runs[0] = Some(taylor::solve_one(&task, terms, &mut watch));
+                let run = taylor::solve_one(&self.task(0), self.terms(0), &mut watch);
+                runs[0] = Some(run);
             } else {
                 let poll = |begun| interrupt.poll(Some(begun));
-                taylor::solve_many(&|row| self.task(row), &mut runs, &poll);
+                let (task, terms) = (|row| self.task(row), |row| self.terms(row));
+                taylor::solve_many(&task, &terms, &mut runs, &poll);
             }
         });
         (runs.into_iter())
@@ -164,27 +178,38 @@ impl Ensemble<'_> {
         events: &mut dyn Events<Error = Fault>,
         mut watch: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Run<Fault> {
-        let (task, terms) = self.task(row);
-        let mut load = Acting::new(self.load, terms, task.subject, py);
+        let task = self.task(row);
+        let mut load = Acting::new(self.load, self.terms(row), task.subject, py);
         simulate(&task, &mut load, events, &mut watch)
     }
 
-    /// What is to be simulated in a row, and the analytic terms of the load.
-    fn task(&self, row: usize) -> (Task<'_>, &[Term]) {
-        let [b, w, q, r, v, l] = self.grid.operands(row);
+    /// The analytic terms of the load in a row.
+    fn terms(&self, row: usize) -> &[Term] {
+        let [.., l] = self.grid.operands(row);
+        &self.start.terms[l]
+    }
+
+    /// What is to be simulated in a row.
+    fn task(&self, row: usize) -> Task<'_> {
+        let [b, w, q, r, v, _] = self.grid.operands(row);
         let initial = Phase {
             attitude: self.start.attitude[q],
             omega: self.start.omega[w],
             position: self.start.position[r],
             velocity: self.start.velocity[v],
         };
-        let of = if self.pivoted {
-            Task::pivoted
-        } else {
-            Task::free
-        };
         let body = &self.start.bodies[b];
-        let task = of(body, initial, self.times, self.method, self.tolerance);
-        (task, &self.start.terms[l])
+        let footing = match &self.footing {
+            Some(footing) => footing,
+            None => &footing(body, self.times, self.pivoted),
+        };
+        Task::on(
+            footing,
+            body,
+            initial,
+            self.times,
+            self.method,
+            self.tolerance,
+        )
     }
 }

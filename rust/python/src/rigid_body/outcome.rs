@@ -1,68 +1,147 @@
 //! What the runs of `simulate` gave, as arrays, tables and exceptions.
 
 use nalgebra::Vector3;
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode};
 use polhode::motion::attitude::components;
 use polhode::motion::simulate::{Crossing, Effort, End, Run};
 use polhode::motion::state::Phase;
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple};
 
 use super::PyRigidBody;
 use super::ensemble::{Ensemble, Runs};
-use crate::arrays::{numpy, write, write_of};
+use crate::arrays::{shaped, write, write_of};
 use crate::errors::at_row;
 use crate::loads::Fault;
 use crate::stack::Stack;
 
+/// What a run gave besides the states: as arrays and tables for those who ask.
+#[pyclass(frozen)]
+pub(crate) struct Outcome {
+    times: Vec<f64>,
+    shape: Vec<usize>,
+    about: Stack<Vector3<f64>>,
+    efforts: Vec<Effort>,
+    /// Each with its row.
+    crossings: Vec<(usize, Crossing)>,
+}
+
+impl Outcome {
+    fn counts<'py>(&self, py: Python<'py>, of: fn(&Effort) -> u64) -> PyResult<Bound<'py, PyAny>> {
+        let count = |effort| i64::try_from(of(effort)).unwrap_or(i64::MAX);
+        let counts = self.efforts.iter().map(count).collect();
+        let counts = PyArray1::from_vec(py, counts).reshape(self.shape.clone())?;
+        Ok(counts.into_any())
+    }
+}
+
+#[pymethods]
+impl Outcome {
+    #[getter]
+    fn t<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        PyArray1::from_slice(py, &self.times).into_any()
+    }
+
+    #[getter]
+    fn about<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(write(py, &self.about)?.into_any())
+    }
+
+    #[getter]
+    fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.counts(py, |effort| effort.steps)
+    }
+
+    #[getter]
+    fn evaluations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.counts(py, |effort| effort.evaluations)
+    }
+
+    /// The events of all rows, one after the other.
+    #[getter]
+    fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let found = Stack {
+            shape: vec![self.crossings.len()],
+            rows: self.crossings.iter().collect(),
+        };
+        let counts = |of: fn(&(usize, Crossing)) -> usize| {
+            let numbers = self.crossings.iter().map(of);
+            let numbers: Vec<i64> = numbers.filter_map(|n| i64::try_from(n).ok()).collect();
+            PyArray1::from_vec(py, numbers)
+        };
+        let columns = (
+            counts(|found| found.0),
+            counts(|found| found.1.event),
+            write_of(py, &found, |found| found.1.time)?,
+            write_of(py, &found, |found| found.1.phase.omega)?,
+            write_of(py, &found, |found| components(&found.1.phase.attitude))?,
+            write_of(py, &found, |found| found.1.phase.position)?,
+            write_of(py, &found, |found| found.1.phase.velocity)?,
+        );
+        py.import("polhode.events")?
+            .getattr("Events")?
+            .call1(columns)
+    }
+}
+
 impl Ensemble<'_> {
-    /// The results as a `polhode.Trajectory`.
+    /// The results as a `polhode.Trajectory`, and whether a row failed.
     pub(super) fn trajectory<'py>(
         &self,
         py: Python<'py>,
         body: &Bound<'py, PyRigidBody>,
         load: Option<&Bound<'py, PyAny>>,
-        runs: &Runs,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let unknown = vec![Phase::nan(); self.times.len()];
-        let samples = Stack {
-            shape: [&self.grid.shape[..], &[self.times.len()]].concat(),
-            rows: (runs.iter())
-                .flat_map(|run| run.as_ref().map_or(&unknown, |run| &run.samples))
-                .copied()
-                .collect(),
-        };
-        let about = if self.pivoted {
-            Stack::one(Vector3::zeros())
-        } else {
-            self.start.bodies.map(polhode::RigidBody::center_of_mass)
-        };
-        let effort = |f: fn(&Effort) -> u64| {
-            let count = |run: &Run<Fault>| i64::try_from(f(&run.effort)).unwrap_or(i64::MAX);
-            let counts = (runs.iter().map(|run| run.as_ref().map_or(0, count))).collect();
-            PyArray1::from_vec(py, counts).reshape(self.grid.shape.clone())
-        };
+        runs: Runs,
+    ) -> PyResult<(Bound<'py, PyAny>, bool)> {
+        let failures = self.failures(py, &runs)?;
         let fields = PyDict::new(py);
-        fields.set_item("body", body)?;
-        fields.set_item("t", PyArray1::from_slice(py, self.times))?;
-        fields.set_item("omega", write_of(py, &samples, |phase| phase.omega)?)?;
-        fields.set_item(
-            "quaternion",
-            write_of(py, &samples, |phase| components(&phase.attitude))?,
-        )?;
-        fields.set_item("position", write_of(py, &samples, |phase| phase.position)?)?;
-        fields.set_item("velocity", write_of(py, &samples, |phase| phase.velocity)?)?;
-        fields.set_item("about", write(py, &about)?)?;
-        fields.set_item("load", load)?;
-        fields.set_item("steps", effort(|effort| effort.steps)?)?;
-        fields.set_item("evaluations", effort(|effort| effort.evaluations)?)?;
-        fields.set_item("status", self.status(py, runs)?)?;
-        fields.set_item("events", table(py, runs)?)?;
-        fields.set_item("pivoted", self.pivoted)?;
-        fields.set_item("failures", self.failures(py, runs)?)?;
-        py.import("polhode.trajectory")?
-            .getattr("Trajectory")?
-            .call((), Some(&fields))
+        fields.set_item(intern!(py, "body"), body)?;
+        fields.set_item(intern!(py, "status"), self.status(py, &runs)?)?;
+        fields.set_item(intern!(py, "failures"), &failures)?;
+        fields.set_item(intern!(py, "load"), load)?;
+        fields.set_item(intern!(py, "pivoted"), self.pivoted)?;
+        let unknown = vec![Phase::nan(); self.times.len()];
+        let count = runs.len() * self.times.len();
+        let (mut omega, mut quaternion) =
+            (Vec::with_capacity(3 * count), Vec::with_capacity(4 * count));
+        let (mut position, mut velocity) =
+            (Vec::with_capacity(3 * count), Vec::with_capacity(3 * count));
+        let mut efforts = Vec::with_capacity(runs.len());
+        let mut crossings = Vec::new();
+        for (row, run) in runs.into_iter().enumerate() {
+            for phase in run.as_ref().map_or(&unknown, |run| &run.samples) {
+                omega.extend_from_slice(phase.omega.as_slice());
+                quaternion.extend_from_slice(&components(&phase.attitude));
+                position.extend_from_slice(phase.position.as_slice());
+                velocity.extend_from_slice(phase.velocity.as_slice());
+            }
+            efforts.push(run.as_ref().map_or_else(Effort::default, |run| run.effort));
+            let found = run.into_iter().flat_map(|run| run.crossings);
+            crossings.extend(found.map(|crossing| (row, crossing)));
+        }
+        let shape = [&self.grid.shape[..], &[self.times.len()]].concat();
+        let quaternion = shaped::<[f64; 4]>(py, quaternion, &shape)?;
+        let vectors = |numbers| shaped::<Vector3<f64>>(py, numbers, &shape);
+        fields.set_item(intern!(py, "omega"), vectors(omega)?)?;
+        fields.set_item(intern!(py, "quaternion"), quaternion)?;
+        fields.set_item(intern!(py, "position"), vectors(position)?)?;
+        fields.set_item(intern!(py, "velocity"), vectors(velocity)?)?;
+        let outcome = Outcome {
+            times: self.times.to_vec(),
+            shape: self.grid.shape.clone(),
+            about: if self.pivoted {
+                Stack::one(Vector3::zeros())
+            } else {
+                self.start.bodies.map(polhode::RigidBody::center_of_mass)
+            },
+            efforts,
+            crossings,
+        };
+        fields.set_item(intern!(py, "_outcome"), Bound::new(py, outcome)?)?;
+        let motion = of_run(py)?.call1((fields,))?;
+        Ok((motion, !failures.is_empty()))
     }
 
     /// A word for each row: how its run ended.
@@ -77,23 +156,22 @@ impl Ensemble<'_> {
         if let ([], [run]) = (&self.grid.shape[..], &runs[..]) {
             return Ok(word(run).into_pyobject(py)?.into_any());
         }
-        let words: Vec<_> = runs.iter().map(word).collect();
-        numpy(py)?
-            .call_method1("array", (words, "<U8"))?
-            .call_method1("reshape", (PyTuple::new(py, &self.grid.shape)?,))
+        let words = runs.iter().map(|run| fixed(word(run))).collect();
+        let words = PyArray1::from_vec(py, words).reshape(self.grid.shape.clone())?;
+        Ok(words.into_any())
     }
 
     /// An exception, not raised, for each row that failed.
     fn failures<'py>(&self, py: Python<'py>, runs: &Runs) -> PyResult<Bound<'py, PyTuple>> {
-        let failures = PyList::empty(py);
+        let mut failures = Vec::new();
         for (row, run) in runs.iter().enumerate() {
             if let Some(run) = run
                 && let End::Failed(fault) = &run.end
             {
-                failures.append(self.exception(py, row, run, fault)?.value(py))?;
+                failures.push(self.exception(py, row, run, fault)?.value(py).clone());
             }
         }
-        Ok(failures.to_tuple())
+        PyTuple::new(py, failures)
     }
 
     /// The exception of a row that failed, with its number, the time and the state.
@@ -117,32 +195,21 @@ impl Ensemble<'_> {
     }
 }
 
-/// The events of all rows, one after the other.
-fn table<'py>(py: Python<'py>, runs: &Runs) -> PyResult<Bound<'py, PyAny>> {
-    let found: Vec<(usize, &Crossing)> = (runs.iter().enumerate())
-        .flat_map(|(row, run)| {
-            (run.iter().flat_map(|run| &run.crossings)).map(move |crossing| (row, crossing))
-        })
-        .collect();
-    let found = Stack {
-        shape: vec![found.len()],
-        rows: found,
-    };
-    let counts = |f: fn(&(usize, &Crossing)) -> usize| {
-        let numbers = found.rows.iter().map(f);
-        let numbers: Vec<i64> = numbers.filter_map(|n| i64::try_from(n).ok()).collect();
-        PyArray1::from_vec(py, numbers)
-    };
-    let columns = (
-        counts(|found| found.0),
-        counts(|found| found.1.event),
-        write_of(py, &found, |found| found.1.time)?,
-        write_of(py, &found, |found| found.1.phase.omega)?,
-        write_of(py, &found, |found| components(&found.1.phase.attitude))?,
-        write_of(py, &found, |found| found.1.phase.position)?,
-        write_of(py, &found, |found| found.1.phase.velocity)?,
-    );
-    py.import("polhode.events")?
-        .getattr("Events")?
-        .call1(columns)
+/// `polhode.trajectory.Trajectory._of_run`.
+fn of_run(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
+    static FUNCTION: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let function = FUNCTION.get_or_try_init(py, || {
+        let class = py.import("polhode.trajectory")?.getattr("Trajectory")?;
+        class.getattr("_of_run").map(Bound::unbind)
+    })?;
+    Ok(function.bind(py))
+}
+
+/// A word of at most eight letters as NumPy's `<U8`.
+fn fixed(word: &str) -> PyFixedUnicode<8> {
+    let mut letters = [0; 8];
+    for (letter, code) in letters.iter_mut().zip(word.chars()) {
+        *letter = u32::from(code);
+    }
+    letters.into()
 }

@@ -1,17 +1,17 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
-use polhode::motion::simulate::{End, Method, Run, Tolerance, check_times};
+use polhode::motion::simulate::{Method, Tolerance, check_times};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::PyRigidBody;
-use super::ensemble::{Ensemble, Start};
+use super::ensemble::{Ensemble, Start, footing};
 use crate::arrays::{read, read_attitude};
 use crate::errors::to_py;
 use crate::events::Functions;
 use crate::interrupt::Interrupt;
-use crate::loads::{Fault, PyLoad, is_pivot};
+use crate::loads::{PyLoad, is_pivot};
 use crate::stack::Stack;
 
 /// An optional argument of any array-like kind.
@@ -167,6 +167,10 @@ impl PyRigidBody {
         let ensemble = Ensemble {
             start: &start,
             grid: start.grid()?,
+            footing: match &start.bodies.rows[..] {
+                [body] => Some(footing(body, &times, pivoted)),
+                _ => None,
+            },
             times: &times,
             pivoted,
             method,
@@ -178,17 +182,8 @@ impl PyRigidBody {
         ensemble.check(py)?;
         let interrupt = Interrupt::new(progress);
         let runs = ensemble.all(py, &interrupt)?;
-        let failed = |run: &Option<Run<Fault>>| {
-            matches!(
-                run,
-                Some(Run {
-                    end: End::Failed(_),
-                    ..
-                })
-            )
-        };
-        let failure = raises && runs.iter().any(failed);
-        let trajectory = ensemble.trajectory(py, slf, load, &runs)?;
+        let (trajectory, has_failures) = ensemble.trajectory(py, slf, load, runs)?;
+        let failure = raises && has_failures;
         if let Err(stop) = interrupt.finish(py, !failure) {
             stop.value(py).setattr("partial", trajectory)?;
             return Err(stop);

@@ -34,17 +34,13 @@ pub mod refined;
 mod sensitivity;
 mod tumbling;
 
-use std::convert::Infallible;
-use std::ops::ControlFlow;
-
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
-use crate::motion::simulate::State;
+use crate::motion::state::{ClosedForm, State};
 use crate::numerics::dispatch::dispatch;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::threads::{Halt, fill_blocks};
 pub use conditioning::ErrorBar;
 pub use from_periods::{Circled, FromPeriods, attitude_about};
 pub use invariants::Invariants;
@@ -193,59 +189,12 @@ impl FreeMotion {
     }
 }
 
-/// The states of many motions at many times, all times of the first motion first, on several threads when there are many;
-/// quaternions as (x, y, z, w). Each state has the bits of [`FreeMotion::at`].
-///
-/// About every 20 ms `watch` gets the fraction done; [`ControlFlow::Break`] ends the job.
-///
-/// # Errors
-/// [`Halt::Stopped`] if `watch` said so; the states are then unspecified.
-///
-/// # Panics
-/// If the number of attitudes or of angular velocities is not that of motions times that of times.
-pub fn sample_many(
-    motions: &[FreeMotion],
-    times: &[f64],
-    attitudes: &mut [[f64; 4]],
-    omegas: &mut [[f64; 3]],
-    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-) -> Result<(), Halt<Infallible>> {
-    let count = motions.len() * times.len();
-    assert_eq!(
-        attitudes.len(),
-        count,
-        "an attitude for each motion and time"
-    );
-    assert_eq!(
-        omegas.len(),
-        count,
-        "an angular velocity for each motion and time"
-    );
-    let mut blocks: Vec<_> = attitudes
-        .chunks_mut(BLOCK)
-        .zip(omegas.chunks_mut(BLOCK))
-        .collect();
-    fill_blocks(&mut blocks, 1, watch, |block, states| {
-        for (attitudes, omegas) in states {
-            let (mut at, mut done) = (block * BLOCK, 0);
-            while done < attitudes.len() {
-                let (row, first) = (at / times.len(), at % times.len());
-                let span = (times.len() - first).min(attitudes.len() - done);
-                motions[row].sample(
-                    &times[first..first + span],
-                    &mut attitudes[done..done + span],
-                    &mut omegas[done..done + span],
-                );
-                at += span;
-                done += span;
-            }
-        }
-        Ok(())
-    })
+impl ClosedForm for FreeMotion {
+    fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        Self::sample(self, times, attitudes, omegas);
+    }
 }
 
-/// States that one thread computes at a time.
-const BLOCK: usize = 4096;
 /// Fewer times than this are done one by one.
 const FEW: usize = 8;
 

@@ -9,7 +9,8 @@ use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
 use crate::numerics::double_double::DoubleDouble;
 
-type Vector = [DoubleDouble; 3];
+/// Three components to twice the precision.
+pub type Vector = [DoubleDouble; 3];
 
 /// The principal moments, ascending, with their axes, to twice the precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +52,12 @@ impl RefinedPrincipal {
                 orthonormal(&columns)
             },
         }
+    }
+
+    /// The axis of the k-th moment.
+    #[must_use]
+    pub fn axis(&self, k: usize) -> Vector {
+        self.axes[k]
     }
 
     /// The axes as columns, rounded.

@@ -20,14 +20,10 @@ mod sampling;
 mod tests;
 mod turning_points;
 
-use std::convert::Infallible;
-use std::ops::ControlFlow;
-
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::error::{Error, all_finite};
-use crate::motion::simulate::State;
-use crate::numerics::threads::{Halt, fill_blocks};
+use crate::motion::state::{ClosedForm, State};
 pub use nutation::{Nutation, Path};
 pub use pivoted_top::PivotedTop;
 use sampling::Course;
@@ -92,42 +88,8 @@ impl HeavyTop {
     }
 }
 
-/// The states of many tops at many times, all times of the first top first, on several threads when there are many;
-/// quaternions as (x, y, z, w). Each state has the bits of [`HeavyTop::at`].
-///
-/// About every 20 ms `watch` gets the fraction done; [`ControlFlow::Break`] ends the job.
-///
-/// # Errors
-/// [`Halt::Stopped`] if `watch` said so; the states are then unspecified.
-pub fn sample_many(
-    tops: &[HeavyTop],
-    times: &[f64],
-    attitudes: &mut [[f64; 4]],
-    omegas: &mut [[f64; 3]],
-    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-) -> Result<(), Halt<Infallible>> {
-    let mut blocks: Vec<_> = attitudes
-        .chunks_mut(BLOCK)
-        .zip(omegas.chunks_mut(BLOCK))
-        .collect();
-    fill_blocks(&mut blocks, 1, watch, |block, states| {
-        for (attitudes, omegas) in states {
-            let (mut at, mut done) = (block * BLOCK, 0);
-            while done < attitudes.len() {
-                let (row, first) = (at / times.len(), at % times.len());
-                let span = (times.len() - first).min(attitudes.len() - done);
-                tops[row].sample(
-                    &times[first..first + span],
-                    &mut attitudes[done..done + span],
-                    &mut omegas[done..done + span],
-                );
-                at += span;
-                done += span;
-            }
-        }
-        Ok(())
-    })
+impl ClosedForm for HeavyTop {
+    fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        Self::sample(self, times, attitudes, omegas);
+    }
 }
-
-/// States that one thread computes at a time.
-const BLOCK: usize = 4096;

@@ -2,9 +2,11 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::reduced::norm;
+use super::reduced::{near_one, sum_of_squares, times};
 use crate::error::Error;
 use crate::mass::RigidBody;
+use crate::mass::provenance::MomentsFrom;
+use crate::motion::free::RefinedPrincipal;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::principal::SymmetricTop;
@@ -29,11 +31,11 @@ pub struct PivotedTop {
 struct Source {
     mass: f64,
     /// A vector along the axis, of any length.
-    direction: Vector3<f64>,
+    direction: [DoubleDouble; 3],
     center_of_mass: Vector3<f64>,
-    axial: f64,
+    axial: DoubleDouble,
     /// The two moments across the axis, about C.
-    lateral: [f64; 2],
+    lateral: [DoubleDouble; 2],
 }
 
 /// A top in units of its own mass and of a length `2^(exponent/2)`.
@@ -61,7 +63,7 @@ impl PivotedTop {
         let principal = body.principal();
         let (m, c) = (body.mass(), body.center_of_mass());
         let top = SymmetricTop::of(&principal, rtol)?;
-        let [i1, i2, i3] = principal.moments;
+        let [i1, _, i3] = principal.moments;
         let is_spherical = i3 - i1 <= rtol * i3;
         let axis = match c.try_normalize(0.0) {
             Some(to_center) if is_spherical => to_center,
@@ -86,7 +88,24 @@ impl PivotedTop {
                 allowed: rtol,
             });
         }
-        let lateral = if top.axial == i3 { [i1, i2] } else { [i2, i3] };
+        let (axial, lateral) = if top.axial == i3 {
+            (2, [0, 1])
+        } else {
+            (0, [1, 2])
+        };
+        let is_tensor = body.provenance().moments == MomentsFrom::Tensor;
+        let (moments, direction) = if is_tensor && !is_spherical {
+            let refined = RefinedPrincipal::of(body);
+            let direction = refined.axis(axial);
+            let cosine = (direction.iter().zip(axis.iter())).map(|(a, b)| a.high * b);
+            let is_opposite = cosine.sum::<f64>() < 0.0;
+            let turned = |x: DoubleDouble| if is_opposite { -x } else { x };
+            (refined.moments, direction.map(turned))
+        } else {
+            let direction = if is_spherical && arm > 0.0 { c } else { axis };
+            let exact = |numbers: [f64; 3]| numbers.map(DoubleDouble::from);
+            (exact(principal.moments), exact(direction.into()))
+        };
         Ok(Self {
             axis,
             axial: top.axial,
@@ -94,10 +113,10 @@ impl PivotedTop {
             mass_moment: m * arm,
             source: Source {
                 mass: m,
-                direction: if is_spherical && arm > 0.0 { c } else { axis },
+                direction,
                 center_of_mass: c,
-                axial: top.axial,
-                lateral,
+                axial: moments[axial],
+                lateral: lateral.map(|k| moments[k]),
             },
         })
     }
@@ -129,7 +148,7 @@ impl PivotedTop {
     }
 
     /// A vector along the axis toward C, of any length.
-    pub(super) fn direction(&self) -> Vector3<f64> {
+    pub(super) fn direction(&self) -> [DoubleDouble; 3] {
         self.source.direction
     }
 
@@ -144,31 +163,24 @@ impl PivotedTop {
         } = self.source;
         let mass_exponent = exponent(mass);
         let mass = DoubleDouble::from(times_power_of_two(mass, -mass_exponent));
-        let (length, _) = norm(&direction);
-        let e = [direction.amax(), c.amax()].map(exponent);
-        let (n, c) = (
-            direction.map(|x| times_power_of_two(x, -e[0])),
-            c.map(|x| times_power_of_two(x, -e[1])),
-        );
+        let n = near_one(&direction);
+        let length = sum_of_squares(&n).sqrt();
+        let size = exponent(c.amax());
+        let c = c.map(|x| times_power_of_two(x, -size));
         let along = (n.iter().zip(c.iter())).fold(DoubleDouble::default(), |sum, (&a, &b)| {
-            sum + DoubleDouble::product(a, b)
+            sum + a * DoubleDouble::from(b)
         });
         let arm = not_negative(along / length);
         // The larger of arm and radii of gyration is of the order of one.
         let [i1, i2] = lateral;
-        let largest = exponent(axial.max(i1).max(i2)) - mass_exponent;
-        let exponent = largest.max(if arm.high == 0.0 { largest } else { 2 * e[1] });
-        let moment =
-            |i: f64| DoubleDouble::from(times_power_of_two(i, -mass_exponent - exponent)) / mass;
-        let squared = arm * arm;
-        let squared = DoubleDouble {
-            high: times_power_of_two(squared.high, 2 * e[1] - exponent),
-            low: times_power_of_two(squared.low, 2 * e[1] - exponent),
-        };
+        let largest = exponent(axial.high.max(i1.high).max(i2.high)) - mass_exponent;
+        let exponent = largest.max(if arm.high == 0.0 { largest } else { 2 * size });
+        let moment = |i: DoubleDouble| times(i, -mass_exponent - exponent) / mass;
+        let squared = times(arm * arm, 2 * size - exponent);
         Sizes {
             transverse: (moment(i1) + moment(i2)).scaled(0.5) + squared,
             axial: moment(axial),
-            arm: (arm, e[1]),
+            arm: (arm, size),
             exponent,
         }
     }

@@ -74,7 +74,9 @@ impl Reduced {
         let scaled = omega.map(|x| times_power_of_two(x, -exponent));
 
         let aligning = to_third_axis(&top.direction());
-        let upward = conjugate(&to_third_axis(&-gravity));
+        let upward = conjugate(&to_third_axis(
+            &[-gravity.x, -gravity.y, -gravity.z].map(DoubleDouble::from),
+        ));
         let [w1, w2, w3, _] = turned(&aligning, &scaled);
         let given = components(attitude).map(DoubleDouble::from);
         let relative = product(&product(&conjugate(&upward), &given), &conjugate(&aligning));
@@ -143,30 +145,33 @@ pub(super) fn times(x: DoubleDouble, e: i32) -> DoubleDouble {
 }
 
 /// Length of a vector, as a number of the order of one and a power of two.
-pub(super) fn norm(vector: &Vector3<f64>) -> (DoubleDouble, i32) {
-    let exponent = exponent(vector.amax());
-    let scaled = vector.map(|x| times_power_of_two(x, -exponent));
-    let square = sum_of_squares(&[scaled.x, scaled.y, scaled.z, 0.0].map(DoubleDouble::from));
-    (square.sqrt(), exponent)
+fn norm(vector: &Vector3<f64>) -> (DoubleDouble, i32) {
+    let scaled = near_one(&[vector.x, vector.y, vector.z].map(DoubleDouble::from));
+    (sum_of_squares(&scaled).sqrt(), exponent(vector.amax()))
+}
+
+/// The vector times a power of two that makes its largest component one or somewhat more.
+pub(super) fn near_one(vector: &[DoubleDouble; 3]) -> [DoubleDouble; 3] {
+    let largest = (vector.iter()).fold(0.0_f64, |most, x| most.max(x.high.abs()));
+    vector.map(|x| times(x, -exponent(largest)))
 }
 
 /// The shortest rotation from `direction` to the third axis; from below the horizontal after half a turn about the first axis.
-fn to_third_axis(direction: &Vector3<f64>) -> Quaternion2 {
+fn to_third_axis(direction: &[DoubleDouble; 3]) -> Quaternion2 {
     let (zero, one) = (DoubleDouble::default(), DoubleDouble::from(1.0));
     let identity = [zero, zero, zero, one];
     let flipped = [one, zero, zero, zero];
-    let e = exponent(direction.amax());
-    let mut n = direction.map(|x| times_power_of_two(x, -e));
-    let is_below = n.z < 0.0;
+    let [x, mut y, mut z] = near_one(direction);
+    let is_below = z.high < 0.0;
     if is_below {
-        n = Vector3::new(n.x, -n.y, -n.z);
+        (y, z) = (-y, -z);
     }
     let first = if is_below { flipped } else { identity };
-    if n.x == 0.0 && n.y == 0.0 {
+    if x.high == 0.0 && y.high == 0.0 {
         return first;
     }
-    let length = sum_of_squares(&[n.x, n.y, n.z, 0.0].map(DoubleDouble::from)).sqrt();
-    let arc = [n.y.into(), (-n.x).into(), zero, length + n.z.into()];
+    let length = sum_of_squares(&[x, y, z]).sqrt();
+    let arc = [y, -x, zero, length + z];
     let norm = sum_of_squares(&arc).sqrt();
     product(&arc.map(|x| x / norm), &first)
 }
@@ -196,7 +201,6 @@ fn conjugate(q: &Quaternion2) -> Quaternion2 {
     [-q[0], -q[1], -q[2], q[3]]
 }
 
-fn sum_of_squares(q: &Quaternion2) -> DoubleDouble {
-    q.iter()
-        .fold(DoubleDouble::default(), |sum, &x| sum + x * x)
+pub(super) fn sum_of_squares(numbers: &[DoubleDouble]) -> DoubleDouble {
+    (numbers.iter()).fold(DoubleDouble::default(), |sum, &x| sum + x * x)
 }

@@ -62,7 +62,7 @@ struct Closed {
 impl Closed {
     fn new(task: &Task<'_>, phase: &Phase) -> Result<Self, Error> {
         Ok(Self {
-            motion: FreeMotion::of(&task.body, &phase.omega, &phase.attitude)?,
+            motion: FreeMotion::of(task.body, &phase.omega, &phase.attitude)?,
             position: phase.position,
             velocity: phase.velocity,
         })

@@ -63,11 +63,41 @@ impl Tolerance {
     }
 }
 
+/// A body and the point its motion refers to: what all motions of the body have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct Footing {
+    /// The body and its reference point, as a load sees them.
+    pub subject: Subject,
+    /// Euler's equations about the reference point.
+    pub euler: EulerEquations,
+}
+
+impl Footing {
+    /// `body` free, its centre of mass the reference point, from the time `start` on.
+    #[must_use]
+    pub fn free(body: &RigidBody, start: f64) -> Self {
+        Self::of(body, Subject::free(body, start))
+    }
+
+    /// `body` with the origin of its frame fixed in N, from the time `start` on.
+    #[must_use]
+    pub fn pivoted(body: &RigidBody, start: f64) -> Self {
+        Self::of(body, Subject::pivoted(body, start))
+    }
+
+    fn of(body: &RigidBody, subject: Subject) -> Self {
+        Self {
+            subject,
+            euler: EulerEquations::refined_about(body, &subject.point),
+        }
+    }
+}
+
 /// What is to be simulated: a body from a state through times, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
     /// The body.
-    pub body: RigidBody,
+    pub body: &'a RigidBody,
     /// The body and its reference point, as a load sees them.
     pub subject: Subject,
     /// Euler's equations about the reference point.
@@ -86,38 +116,49 @@ impl<'a> Task<'a> {
     /// `body` free, its centre of mass the reference point.
     #[must_use]
     pub fn free(
-        body: &RigidBody,
+        body: &'a RigidBody,
         initial: Phase,
         times: &'a [f64],
         method: Method,
         tolerance: Tolerance,
     ) -> Self {
-        let subject = Subject::free(body, times.first().copied().unwrap_or_default());
-        Self {
-            body: *body,
-            subject,
-            euler: EulerEquations::refined_about(body, &subject.point),
-            initial,
-            times,
-            method,
-            tolerance,
-        }
+        let start = times.first().copied().unwrap_or_default();
+        let footing = Footing::free(body, start);
+        Self::on(&footing, body, initial, times, method, tolerance)
     }
 
     /// `body` with the origin of its frame fixed in N.
     #[must_use]
     pub fn pivoted(
-        body: &RigidBody,
+        body: &'a RigidBody,
         initial: Phase,
         times: &'a [f64],
         method: Method,
         tolerance: Tolerance,
     ) -> Self {
-        let subject = Subject::pivoted(body, times.first().copied().unwrap_or_default());
+        let start = times.first().copied().unwrap_or_default();
+        let footing = Footing::pivoted(body, start);
+        Self::on(&footing, body, initial, times, method, tolerance)
+    }
+
+    /// `body` on a footing of its own, which starts at the first time.
+    #[must_use]
+    pub fn on(
+        footing: &Footing,
+        body: &'a RigidBody,
+        initial: Phase,
+        times: &'a [f64],
+        method: Method,
+        tolerance: Tolerance,
+    ) -> Self {
         Self {
-            subject,
-            euler: EulerEquations::refined_about(body, &subject.point),
-            ..Self::free(body, initial, times, method, tolerance)
+            body,
+            subject: footing.subject,
+            euler: footing.euler,
+            initial,
+            times,
+            method,
+            tolerance,
         }
     }
 }
@@ -378,13 +419,8 @@ mod tests {
             omega,
         });
         let tolerance = Tolerance::new(rtol, 0.0).expect("tolerance");
-        let task = Task::free(
-            &body.expect("body"),
-            initial,
-            times,
-            Method::Dop853,
-            tolerance,
-        );
+        let body = body.expect("body");
+        let task = Task::free(&body, initial, times, Method::Dop853, tolerance);
         let mut load = Analytic::new(load, task.subject);
         let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut watch);
         assert_eq!(run.end, End::Complete);

@@ -79,14 +79,15 @@ pub fn solve_one(
 /// The motions of many tasks, each under its own terms, into `runs`; on all cores, eight side by side in the lanes of each.
 /// Every motion has the bits of [`solve_one`].
 ///
-/// `task` gives the tasks and their terms. They may differ in body, state and numbers; times, tolerance, whether the body is
+/// `task` gives the tasks and `terms` what acts in each. They may differ in body, state and numbers; times, tolerance, whether the body is
 /// pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
 /// motions that were begun; it may stop the run.
 ///
 /// # Panics
 /// As [`solve_one`].
 pub fn solve_many<'a>(
-    task: &(dyn Fn(usize) -> (Task<'a>, &'a [Term]) + Sync),
+    task: &(dyn Fn(usize) -> Task<'a> + Sync),
+    terms: &(dyn Fn(usize) -> &'a [Term] + Sync),
     runs: &mut [Option<Run<Error>>],
     watch: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
 ) {
@@ -102,19 +103,18 @@ pub fn solve_many<'a>(
     };
     // Where a run is stopped, what was done by then is kept.
     let _ended = fill_blocks(runs, BLOCK, &mut |_| ask(), |first, runs| {
-        let count = runs.len();
+        let (count, example) = (runs.len(), task(first));
         let mut common = Parts::default();
         for row in first..first + count {
-            let (task, terms) = task(row);
             let quadratic = common.quadratic;
-            common = parts(terms, task.subject.pivoted);
+            common = parts(terms(row), example.subject.pivoted);
             common.quadratic |= quadratic;
         }
-        let settings = settings(&task(first).0, common);
+        let settings = settings(&example, common);
         let mut jobs = (first..).zip(runs.iter_mut()).filter_map(|(row, run)| {
             begun.fetch_add(1, Ordering::Relaxed);
-            let (task, terms) = task(row);
-            job(&task, terms, run.insert(unborn(&task)))
+            let task = task(row);
+            job(&task, terms(row), run.insert(unborn(&task)))
         });
         let jobs = &mut jobs;
         let watch = &mut |_| ask();

@@ -1,0 +1,63 @@
+//! Motions in closed form at the times asked for, as a `Trajectory`.
+
+use nalgebra::Vector3;
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use polhode::motion::state::{ClosedForm, sample_many};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{floats, numpy, write};
+use crate::interrupt::Interrupt;
+use crate::rigid_body::PyRigidBody;
+use crate::stack::Stack;
+
+/// The trajectory of `body` that moves as `motions` say, through the times `t`, whose axes follow those of the stack.
+///
+/// `about`: the reference points, in B. `fields`: what else the trajectory is to know.
+pub(crate) fn trajectory<'py, M: ClosedForm>(
+    py: Python<'py>,
+    body: &Py<PyRigidBody>,
+    motions: &Stack<M>,
+    t: &Bound<'py, PyAny>,
+    about: &Stack<Vector3<f64>>,
+    fields: Bound<'py, PyDict>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let times = floats(t, "t")?;
+    let shape = [&motions.shape[..], times.shape()].concat();
+    // NumPy's own memory, in large pages: the pages of a plain vector take longer to come by than the states.
+    let array = |components: usize| {
+        PyArrayDyn::<f64>::zeros(py, [&shape[..], &[components]].concat(), false)
+    };
+    let (quaternion, omega) = (array(4), array(3));
+    let interrupt = Interrupt::new(None);
+    {
+        let (mut quaternion, mut omega) = (quaternion.readwrite(), omega.readwrite());
+        let (attitudes, omegas) = (quaternion.as_slice_mut()?, omega.as_slice_mut()?);
+        let times = times.as_slice()?;
+        let outcome = py.detach(|| {
+            sample_many(
+                &motions.rows,
+                times,
+                attitudes.as_chunks_mut().0,
+                omegas.as_chunks_mut().0,
+                &mut |_| interrupt.poll(None),
+            )
+        });
+        interrupt.finish(py, outcome.is_ok())?;
+    }
+    let np = numpy(py)?;
+    let still = np.call_method1("zeros", ([&shape[..], &[3]].concat(),))?;
+    let none = np.call_method1("zeros", (motions.shape.clone(), "int64"))?;
+    fields.set_item("body", body)?;
+    fields.set_item("t", np.call_method1("array", (&*times,))?)?;
+    fields.set_item("omega", omega)?;
+    fields.set_item("quaternion", quaternion)?;
+    fields.set_item("position", &still)?;
+    fields.set_item("velocity", &still)?;
+    fields.set_item("about", write(py, about)?)?;
+    fields.set_item("steps", &none)?;
+    fields.set_item("evaluations", &none)?;
+    py.import("polhode.trajectory")?
+        .getattr("Trajectory")?
+        .call((), Some(&fields))
+}
