@@ -45,20 +45,20 @@ pub(super) enum Act {
     /// A vector v constant in N, `Rᵀ v`, or `a×Rᵀ v` with an arm a.
     Space {
         vector: Vector,
-        arm: Option<Vector>,
+        arm: Option<Box<Vector>>,
         seen: Rows<3>,
     },
     /// `−D ω`.
-    Linear(Matrix),
+    Linear(Box<Matrix>),
     /// `−E |ω| ω`, with series of ω·ω and |ω|.
     Quadratic {
-        matrix: Matrix,
+        matrix: Box<Matrix>,
         squares: Row,
         speeds: Row,
     },
     /// `−K s vec(e)` of `e = q_target⁻¹∘q`, which is linear in q, s the sign that its scalar part has.
     Feedback {
-        stiffness: Matrix,
+        stiffness: Box<Matrix>,
         target: Quadruple,
         sign: f64,
     },
@@ -93,9 +93,9 @@ impl Place<'_> {
             ..
         } = *self;
         let over_torque = units.over_torque();
-        let in_space = |vector: &Vector, arm| Act::Space {
+        let in_space = |vector: &Vector, arm: Option<Vector>| Act::Space {
             vector: times(vector, over_torque),
-            arm,
+            arm: Option::map(arm, Box::new),
             seen: Rows::default(),
         };
         Ok(match term {
@@ -106,7 +106,11 @@ impl Place<'_> {
                     Frame::Space => in_space(&vector, None),
                 }]
             }
-            Term::ConstantForce { point: None, .. } if !subject.pivoted => Vec::new(),
+            Term::ConstantForce { point: None, .. } | Term::UniformGravity { .. }
+                if !subject.pivoted =>
+            {
+                Vec::new()
+            }
             Term::ConstantForce {
                 vector,
                 frame,
@@ -131,7 +135,6 @@ impl Place<'_> {
                     Frame::Space => in_space(&vector, Some(arm)),
                 }]
             }
-            Term::UniformGravity { .. } if !subject.pivoted => Vec::new(),
             Term::UniformGravity { gravity } => {
                 let lever = inertia.arm.map(|x| x * inertia.mass);
                 vec![in_space(&block.vector(gravity, first), Some(lever))]
@@ -143,7 +146,7 @@ impl Place<'_> {
                 let mut acts = vec![Act::Linear(linear)];
                 // E varies also where it is zero.
                 let varies = |x: &Number| *x != ZERO;
-                if quadratic.iter().flatten().any(varies) {
+                if quadratic.as_flattened().iter().any(varies) {
                     acts.push(Act::Quadratic {
                         matrix: quadratic,
                         squares: Row::new(),
@@ -172,9 +175,9 @@ impl Place<'_> {
     }
 
     /// A matrix of variables, in principal axes.
-    fn matrix(&self, matrix: &Matrix3<f64>, first: usize, factor: f64) -> Matrix {
+    fn matrix(&self, matrix: &Matrix3<f64>, first: usize, factor: f64) -> Box<Matrix> {
         let varied = self.block.matrix(matrix, first);
-        between(&self.inertia.axes, &varied).map(|row| times(&row, factor))
+        Box::new(between(&self.inertia.axes, &varied).map(|row| times(&row, factor)))
     }
 
     /// `(q_target exp(δ))⁻¹`, then to principal axes: δ the variable.

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::numerics::double_double::two_sum;
 use crate::numerics::jet::Jet;
 
 /// How many variables are varied at a time.
@@ -30,7 +31,7 @@ pub(super) struct Block {
 
 impl Block {
     /// The variable of a column, at its value.
-    pub(super) fn variable(&self, value: f64, column: usize) -> Number {
+    pub(super) fn variable(self, value: f64, column: usize) -> Number {
         match column.checked_sub(self.first) {
             Some(index) if index < WIDTH => Number::variable(value, index),
             _ => Number::constant(value),
@@ -38,12 +39,12 @@ impl Block {
     }
 
     /// A vector whose components are variables, from the column `first` on.
-    pub(super) fn vector(&self, value: &Vector3<f64>, first: usize) -> Vector {
+    pub(super) fn vector(self, value: &Vector3<f64>, first: usize) -> Vector {
         [0, 1, 2].map(|i| self.variable(value[i], first + i))
     }
 
     /// A matrix whose elements are variables, row by row from the column `first` on.
-    pub(super) fn matrix(&self, value: &Matrix3<f64>, first: usize) -> Matrix {
+    pub(super) fn matrix(self, value: &Matrix3<f64>, first: usize) -> Matrix {
         [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.variable(value[(i, j)], first + 3 * i + j)))
     }
 }
@@ -157,4 +158,15 @@ pub(super) fn seen(q: &Quadruple, v: &Vector) -> Vector {
     let t = times(&cross(&u, v), 2.0);
     let again = cross(&u, &t);
     [0, 1, 2].map(|i| v[i] - q[3] * t[i] + again[i])
+}
+
+/// Adds to numbers, with what rounding leaves out beside them.
+pub(super) fn add<const N: usize>([values, rests]: &mut [[Number; N]; 2], changes: &[Number; N]) {
+    for ((value, rest), change) in values.iter_mut().zip(rests).zip(changes) {
+        (value.value, rest.value) = two_sum(value.value, rest.value + change.value);
+        for i in 0..WIDTH {
+            let change = rest.slopes[i] + change.slopes[i];
+            (value.slopes[i], rest.slopes[i]) = two_sum(value.slopes[i], change);
+        }
+    }
 }

@@ -176,7 +176,7 @@ impl<'a> Orbiting<'a> {
             pace,
             ..
         } = self;
-        pace.longest(position.iter().chain(velocity.iter()))
+        pace.longest(&[position, velocity])
     }
 
     /// By the time `h`.

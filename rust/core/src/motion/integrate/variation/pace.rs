@@ -18,15 +18,15 @@ impl Pace {
     /// where they are not. Rounded to a few bits, so that it is the same on every machine.
     ///
     /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
-    pub(super) fn longest<'a>(&mut self, rows: impl Iterator<Item = &'a Row> + Clone) -> f64 {
+    pub(super) fn longest(&mut self, rows: &[&[Row]]) -> f64 {
         for k in 0..FIRST {
-            for (most, size) in self.sizes.iter_mut().zip(sizes(rows.clone(), k)) {
+            for (most, size) in self.sizes.iter_mut().zip(sizes(rows, k)) {
                 *most = most.max(size);
             }
         }
         let mut exponent = f64::INFINITY;
         for k in [ORDER - 1, ORDER] {
-            for (scale, size) in self.sizes.iter().zip(sizes(rows.clone(), k)) {
+            for (scale, size) in self.sizes.iter().zip(sizes(rows, k)) {
                 if !size.is_finite() {
                     return f64::NAN;
                 }
@@ -40,9 +40,9 @@ impl Pace {
 }
 
 /// The sums of magnitudes of the coefficients of order `k`: of the values, and of each derivative.
-fn sizes<'a>(rows: impl Iterator<Item = &'a Row>, k: usize) -> [f64; WIDTH + 1] {
+fn sizes(rows: &[&[Row]], k: usize) -> [f64; WIDTH + 1] {
     let mut sizes = [0.0; WIDTH + 1];
-    for row in rows {
+    for row in rows.iter().copied().flatten() {
         let (values, slopes) = sizes.split_at_mut(1);
         values[0] += row[k].value.abs();
         for (size, slope) in slopes.iter_mut().zip(&row[k].slopes) {

@@ -45,8 +45,9 @@ pub fn parameters(term: &Term) -> Vec<Parameter> {
         parts.iter().map(part).collect()
     };
     match term {
-        Term::ConstantTorque { .. } => list(&[("vector", &[3])]),
-        Term::ConstantForce { point: None, .. } => list(&[("vector", &[3])]),
+        Term::ConstantTorque { .. } | Term::ConstantForce { point: None, .. } => {
+            list(&[("vector", &[3])])
+        }
         Term::ConstantForce { .. } => list(&[("vector", &[3]), ("point", &[3])]),
         Term::UniformGravity { .. } => list(&[("gravity", &[3])]),
         Term::GravityGradient(_) => list(&[("mu", &[]), ("position", &[3]), ("velocity", &[3])]),

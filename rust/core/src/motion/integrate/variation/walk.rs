@@ -7,15 +7,15 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector6};
 use super::acts::{Act, Motion, Place, Units};
 use super::inertia::{Inertia, power_of_two};
 use super::numbers::{
-    Block, Number, ORDER, Quadruple, Vector, WIDTH, ZERO, apply, begin, dot, extend, increment,
-    plus, quaternion_product, times, turn_product,
+    Block, Number, ORDER, Quadruple, Vector, WIDTH, ZERO, add, apply, begin, dot, extend,
+    increment, plus, quaternion_product, times, turn_product,
 };
 use super::orbit::Orbiting;
 use super::pace::Pace;
 use super::parameters::{ATTITUDE, LOAD, RATES, count};
 use crate::error::Error;
 use crate::motion::attitude::from_axes;
-use crate::motion::loads::Term;
+use crate::motion::loads::{GravityGradient, Term};
 use crate::motion::simulate::{Task, spans};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
@@ -284,10 +284,10 @@ impl<'a> Walk<'a> {
     /// How long the step is, at most `left`, and whether the law changes at its end.
     fn length(&mut self, left: f64) -> Result<(f64, bool), Error> {
         let [pace, turning] = &mut self.paces;
-        let mut h = pace.longest(self.motion.omega.iter());
+        let mut h = pace.longest(&[&self.motion.omega]);
         // Not a number wherever one of them is not.
         let mut within = |other: f64| h = if other >= h { h } else { other };
-        within(turning.longest(self.motion.attitude.iter()));
+        within(turning.longest(&[&self.motion.attitude]));
         for (_, _, orbit) in &mut self.orbits {
             within(orbit.longest());
         }
@@ -387,19 +387,8 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Adds to numbers, with what rounding leaves out beside them.
-fn add<const N: usize>([values, rests]: &mut [[Number; N]; 2], changes: &[Number; N]) {
-    for ((value, rest), change) in values.iter_mut().zip(rests).zip(changes) {
-        (value.value, rest.value) = two_sum(value.value, rest.value + change.value);
-        for i in 0..WIDTH {
-            let change = rest.slopes[i] + change.slopes[i];
-            (value.slopes[i], rest.slopes[i]) = two_sum(value.slopes[i], change);
-        }
-    }
-}
-
 /// The gravity gradient that a term is, or would be when it is switched on.
-fn gradient(term: &Term) -> Option<&crate::motion::loads::GravityGradient> {
+fn gradient(term: &Term) -> Option<&GravityGradient> {
     match term {
         Term::GravityGradient(gradient) => Some(gradient),
         Term::Scheduled { term, .. } => gradient(term),
