@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import mpmath
 import numpy as np
@@ -19,7 +19,8 @@ BRICK = RigidBody.from_principal(2.0, (1.0, 2.0, 2.5))
 OMEGA = (0.3, 0.2, 1.1)
 
 
-def load_of(terms: list[dict[str, Any]]) -> loads.Load:
+def load_of(terms: list[dict[str, Any]]) -> Any:
+    """The sum of the terms."""
     made = []
     for term in terms:
         arguments = {name: value for name, value in term.items() if name != "kind"}
@@ -31,7 +32,7 @@ def load_of(terms: list[dict[str, Any]]) -> loads.Load:
 def columns(case: Setting) -> np.ndarray:
     """Derivatives at the end in the oracle's order, (6, variables)."""
     body = RigidBody.from_principal(**case.body) if "moments" in case.body else RigidBody(**case.body)
-    about = "origin" if case.pivoted else "center_of_mass"
+    about: Literal["origin", "center_of_mass"] = "origin" if case.pivoted else "center_of_mass"
     run = body.simulate([0.0, case.time], case.omega, ATTITUDE, load=load_of(case.load), about=about)
     found = run.sensitivity()
     V = body.principal_about(about).axes
@@ -99,7 +100,7 @@ def test_volumes_shrink_by_the_damping_alone(seed: int) -> None:
     rng = np.random.default_rng(seed)
     body = RigidBody.from_principal(1.0, (0.8, 1.0, 1.3), center_of_mass=rng.normal(size=3) / 4)
     D = rng.normal(size=(3, 3)) / 20
-    about = "origin" if seed % 2 else "center_of_mass"
+    about: Literal["origin", "center_of_mass"] = "origin" if seed % 2 else "center_of_mass"
     load = (
         loads.feedback(rng.normal(size=(3, 3)), D, rng.normal(size=4) / 1e9 + (0, 0, 0, 1))
         + loads.uniform_gravity(rng.normal(size=3))
@@ -128,7 +129,8 @@ def test_a_larger_world_turns_alike(seed: int) -> None:
 
 def about_third(found: MotionSensitivity) -> np.ndarray:
     """(angle, ω₃) by (angle, ω₃)."""
-    return found.state[-1][np.ix_((2, 5), (2, 5))]
+    slopes: np.ndarray = found.state[-1][np.ix_((2, 5), (2, 5))]
+    return slopes
 
 
 def swinging(moment: Any, k: Any, start: Any, speed: Any, t: Any) -> np.ndarray:

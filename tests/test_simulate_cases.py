@@ -131,7 +131,6 @@ class TestRadau:
             steps.append(run.steps)
         assert max(steps) <= 1.05 * steps[0]
 
-
     @pytest.mark.parametrize("rtol", [1e-14, 1e-8])
     def test_a_push_on_a_body_at_rest(self, rtol: float) -> None:
         """Place and velocity begin at zero, and have no size there that errors could be relative to."""

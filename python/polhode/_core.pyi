@@ -62,6 +62,7 @@ __all__ = [
     "inertia_from_center_of_mass",
     "inertia_to_center_of_mass",
     "least_spin",
+    "motion_sensitivity",
     "nearest_valid",
     "polygon",
     "principal_axes",
@@ -250,6 +251,10 @@ class RigidBody:
         density: float | None = None,
         mass: float | None = None,
         length_unit: str | None = None,
+        weld: float = 0.0,
+        closure: Literal["caps", "hull"] | None = None,
+        orient: bool = False,
+        index_base: Literal[0, 1] = 1,
         progress: Callable[[float], object] | None = None,
     ) -> RigidBody: ...
     @staticmethod
@@ -264,6 +269,7 @@ class RigidBody:
     def stack(bodies: Iterable[RigidBody]) -> RigidBody: ...
     def save(self, path: str | PathLike[str]) -> None: ...
     def plot(self, ax: Any = None, **options: Any) -> Any: ...
+    def view(self, plotter: Any = None, **options: Any) -> Any: ...
     def _repr_html_(self) -> str: ...
     @staticmethod
     def _from_numbers(numbers: ArrayLike) -> RigidBody: ...

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from polhode import _core
+from polhode._repr import one_line, short
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
@@ -31,7 +33,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrincipalAxes:
     """Principal moments and axes of one tensor or of a stack.
 
@@ -46,6 +48,12 @@ class PrincipalAxes:
 
     moments: Floats
     axes: Floats
+
+    def __repr__(self) -> str:
+        shape = self.moments.shape[:-1]
+        if shape:
+            return f"<PrincipalAxes stack of shape {shape}>"
+        return one_line(self, {"moments": self.moments, "axes": self.axes, "top": self.top})
 
     @cached_property
     def quaternion(self) -> Floats:
@@ -152,6 +160,9 @@ class PrincipalDerivative(NamedTuple):
     axes: Floats
     degenerate: NDArray[np.bool_]
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class KineticEnergy(NamedTuple):
     """Kinetic energy in its three parts, T = ½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω."""
@@ -159,6 +170,9 @@ class KineticEnergy(NamedTuple):
     translational: Floats
     mixed: Floats
     rotational: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
 
     @property
     def total(self) -> Floats:
@@ -173,6 +187,9 @@ class AngularMomentum(NamedTuple):
     mixed: Floats
     spin: Floats
 
+    def __repr__(self) -> str:
+        return short(self)
+
     @property
     def total(self) -> Floats:
         """The sum of the three parts."""
@@ -184,6 +201,9 @@ class NearestValid(NamedTuple):
 
     inertia: Floats
     distance: Any
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class BoxFit(NamedTuple):
@@ -204,6 +224,9 @@ class BoxFit(NamedTuple):
     margin: Any
     axes: Any
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class ErrorBound(NamedTuple):
     """What rounding can have done to a body's numbers, against exact arithmetic on what was given.
@@ -222,8 +245,11 @@ class ErrorBound(NamedTuple):
     center_of_mass: Any
     inertia: Any
 
+    def __repr__(self) -> str:
+        return short(self)
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Provenance:
     """Where a body's numbers come from; for a stack each field is an array of the stack's shape.
 
@@ -260,6 +286,10 @@ class Provenance:
     moments: Any
     rounded_to_zero: Any
 
+    def __repr__(self) -> str:
+        shape = np.shape(self.source)
+        return f"<Provenance stack of shape {shape}>" if shape else one_line(self, vars(self))
+
     def __str__(self) -> str:
         """Tell it in one line, for one body."""
         made = self.source if self.elements == 1 else f"{self.source} of {self.elements} elements"
@@ -281,6 +311,9 @@ class Particles(NamedTuple):
 
     masses: Floats
     positions: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class FreePrecession(NamedTuple):
@@ -307,6 +340,9 @@ class FreePrecession(NamedTuple):
     space_cone: Any
     nutation: Any
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class State(NamedTuple):
     """A state of motion, in the words of `simulate`: ``body.simulate(t, **state._asdict())``.
@@ -322,6 +358,9 @@ class State(NamedTuple):
     attitude: Floats
     position: Floats
     velocity: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class Invariants(NamedTuple):
@@ -343,6 +382,9 @@ class Invariants(NamedTuple):
     angular_momentum: Floats | None
     energy_drift: Any
     angular_momentum_drift: Any
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class MotionSensitivity(NamedTuple):
@@ -376,3 +418,7 @@ class MotionSensitivity(NamedTuple):
     center_of_mass: Floats
     mass: Floats
     load: tuple[dict[str, Floats], ...]
+
+    def __repr__(self) -> str:
+        # Of the load the names of what varies.
+        return one_line(self, self._asdict() | {"load": [list(term) for term in self.load]})

@@ -15,6 +15,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyInt, PyList, PyModule, PyTuple};
 
 use crate::errors::{at_row, to_py, wrong_shape};
+use crate::hints;
 use crate::stack::{Stack, tuple};
 
 /// Numbers that are sooner copied than handed over.
@@ -297,7 +298,8 @@ pub(crate) fn floats<'py>(
     if !"biuf".contains(&kind) {
         let dtype = array.getattr("dtype")?;
         return Err(PyTypeError::new_err(format!(
-            "{name}: expected real numbers, got dtype {dtype}"
+            "{name}: expected real numbers, got dtype {dtype}{}",
+            hints::for_kind(&kind)
         )));
     }
     let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "float64"))?;

@@ -2,14 +2,16 @@
 
 use nalgebra::Vector3;
 use polhode::motion::simulate::{Method, Tolerance, check_times};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::PyRigidBody;
 use super::ensemble::{Ensemble, Start, footing};
 use crate::arrays::{read, read_attitude};
 use crate::errors::to_py;
 use crate::events::Functions;
+use crate::hints;
 use crate::interrupt::Interrupt;
 use crate::loads::{PyLoad, is_pivot};
 use crate::stack::Stack;
@@ -94,8 +96,9 @@ impl PyRigidBody {
     #[pyo3(
         signature = (
             t, omega, attitude=None, *, load=None, position=None, velocity=None, about="center_of_mass",
-            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None
-        )
+            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None, **unknown
+        ),
+        text_signature = "($self, t, omega, attitude=None, *, load=None, position=None, velocity=None, about=\"center_of_mass\", method=\"auto\", rtol=1e-10, atol=None, events=None, on_failure=\"raise\", progress=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
     fn simulate<'py>(
@@ -114,7 +117,9 @@ impl PyRigidBody {
         events: Given<'_, 'py>,
         on_failure: &str,
         progress: Option<Py<PyAny>>,
+        unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
         let pivoted = is_pivot(about)?;
         if pivoted && velocity.is_some() {
             return Err(PyValueError::new_err(
@@ -139,12 +144,7 @@ impl PyRigidBody {
             None => &nothing,
             Some(load) => load
                 .cast::<PyLoad>()
-                .map_err(|_| {
-                    let kind = load.get_type();
-                    PyTypeError::new_err(format!(
-                        "load: expected a Load from polhode.loads, got {kind}; wrap a function in loads.torque_callback"
-                    ))
-                })?
+                .map_err(|_| hints::not_a_load(load))?
                 .get(),
         };
         let start = Start {
@@ -197,6 +197,22 @@ impl PyRigidBody {
     }
 }
 
+const KEYWORDS: [&str; 13] = [
+    "t",
+    "omega",
+    "attitude",
+    "load",
+    "position",
+    "velocity",
+    "about",
+    "method",
+    "rtol",
+    "atol",
+    "events",
+    "on_failure",
+    "progress",
+];
+
 const METHODS: [Method; 6] = [
     Method::Auto,
     Method::Exact,
@@ -229,7 +245,7 @@ fn read_times(py: Python<'_>, t: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let times: Stack<f64> = read(t, "t")?;
     if times.shape.len() != 1 {
         return Err(PyValueError::new_err(format!(
-            "t: expected shape (T,), got {}",
+            "t: expected shape (T,), got {}; the first time is the start: [0, 10], or numpy.linspace(0, 10, 1001)",
             crate::stack::tuple(&times.shape)
         )));
     }
