@@ -63,9 +63,7 @@ fn part(kappa: &[f64; 3], w: &Vector3<f64>) -> ([f64; 4], Vector3<f64>) {
             ws[count][i] = kappa[i] * bent[i] * over;
         }
         qs[count] = turned.map(|x| 0.5 * x * over);
-        let size: f64 = (ws[count].iter().chain(&qs[count]))
-            .map(|x| x.abs())
-            .sum();
+        let size: f64 = (ws[count].iter().chain(&qs[count])).map(|x| x.abs()).sum();
         count += 1;
         if size + last < REST {
             break;
