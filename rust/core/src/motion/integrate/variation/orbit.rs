@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use super::inertia::{Inertia, power_of_two};
 use super::numbers::{
-    Block, Number, ORDER, Quadruple, Row, Rows, Vector, ZERO, at, begin, cross_product, extend,
-    increment, plus, product, seen, times,
+    Block, Number, ORDER, Quadruple, Row, Rows, Vector, ZERO, at, begin, cross_product, dot,
+    extend, increment, plus, product, seen, times,
 };
 use super::pace::Pace;
 use crate::motion::loads::{GravityGradient, Subject};
@@ -38,7 +38,7 @@ pub(super) struct Orbiting<'a> {
 }
 
 impl<'a> Orbiting<'a> {
-    /// At the start of the motion in the attitude q; `first` is the column of μ, `rate` the unit of rates.
+    /// At the start of the motion, components in N; `first` is the column of μ, `rate` the unit of rates.
     pub(super) fn new(
         gradient: &'a GravityGradient,
         subject: &Subject,
@@ -74,10 +74,28 @@ impl<'a> Orbiting<'a> {
         orbiting
     }
 
-    /// From the epoch to the start, in N.
+    /// From the epoch to the start, in N: whole revolutions at once, of which only their number times the change of the period
+    /// remains, the rest step by step.
     fn roll(&mut self, time: f64) {
-        let still: Rows<3> = std::array::from_fn(|_| vec![ZERO; ORDER]);
         let mut left = time;
+        if let Some(period) = self.period() {
+            let revolutions = (time / period.value).round();
+            left -= revolutions * period.value;
+            let r = at(&self.position, 0);
+            let cube = dot(&r, &r).value.powf(-1.5);
+            for (i, x) in r.iter().enumerate() {
+                let rates = [self.velocity[i][0].value, -self.mu.value * cube * x.value];
+                for (row, rate) in [&mut self.position, &mut self.velocity]
+                    .into_iter()
+                    .zip(rates)
+                {
+                    for (slope, longer) in row[i][0].slopes.iter_mut().zip(period.slopes) {
+                        *slope -= revolutions * longer * rate;
+                    }
+                }
+            }
+        }
+        let still: Rows<3> = std::array::from_fn(|_| vec![ZERO; ORDER]);
         while left != 0.0 {
             self.start();
             for k in 0..ORDER {
@@ -93,6 +111,18 @@ impl<'a> Orbiting<'a> {
             self.step(h);
             left -= h;
         }
+    }
+
+    /// `2π μ/β^{3/2}`, `β = 2μ/r − v²`, of an ellipse.
+    fn period(&self) -> Option<Number> {
+        let (r, v) = (at(&self.position, 0), at(&self.velocity, 0));
+        let to_the = |a: f64, base: Number| {
+            let mut powers = Row::new();
+            power(a, &[base], &mut powers);
+            powers[0]
+        };
+        let beta = self.mu * to_the(-0.5, dot(&r, &r)) * 2.0 - dot(&v, &v);
+        (beta.value > 0.0).then(|| self.mu * to_the(-1.5, beta) * std::f64::consts::TAU)
     }
 
     /// From components in N to those as seen in the attitude q.

@@ -106,3 +106,40 @@ fn two_spans_make_one() {
     }
     assert_eq!(whole[0].state, Matrix6::identity());
 }
+
+#[test]
+fn an_orbit_known_many_revolutions_ago() {
+    // The epoch moved along the orbit by one revolution: the same motion, and derivatives that differ by the change of the period.
+    let orbit = |epoch: f64| {
+        let (r, v) = (Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0));
+        Term::GravityGradient(GravityGradient::new(1.0, &r, &v, Some(epoch)).expect("orbit"))
+    };
+    let start = State {
+        attitude: attitude(),
+        omega: Vector3::new(0.3, 0.2, 1.1),
+    };
+    let body = body([1.0, 2.0, 2.5]);
+    let slopes = |epoch: f64| {
+        varied(&body, &start, &[0.0, 3.0], &[orbit(epoch)])[1]
+            .load
+            .clone()
+    };
+    let turn = std::f64::consts::TAU;
+    let (near, once, often) = (
+        slopes(-0.3),
+        slopes(-0.3 - turn),
+        slopes(-0.3 - 1000.0 * turn),
+    );
+    for k in 0..near.len() {
+        let (one, many) = (once[k] - near[k], often[k] - near[k]);
+        assert!(
+            (many - one * 1000.0).norm() < 1e-10 * (1.0 + many.norm()),
+            "{k}"
+        );
+    }
+    // A circle of unit radius and speed: T = 2π μ/(2μ − 1)^{3/2} by μ is −4π; later phases have the derivative of a shifted
+    // epoch, found from the speeds along the orbit.
+    let by_phase = near[2] * 1.0 - near[4] * 1.0;
+    let expected = by_phase * (2.0 * turn);
+    assert!((once[0] - near[0] - expected).norm() < 1e-11 * (1.0 + expected.norm()));
+}
