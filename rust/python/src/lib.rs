@@ -16,6 +16,7 @@
 
 mod accumulator;
 mod arrays;
+mod attitudes;
 mod closed_form;
 mod environment;
 mod equimomental;

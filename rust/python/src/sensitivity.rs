@@ -13,7 +13,8 @@ use polhode::numerics::threads::fill_blocks;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{read, read_attitude, write_of};
+use crate::arrays::{read, write_of};
+use crate::attitudes::read_attitude;
 use crate::errors::{at_row, new, to_py};
 use crate::interrupt::Interrupt;
 use crate::loads::{PyLoad, is_pivot};

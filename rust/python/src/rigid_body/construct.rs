@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::PyRigidBody;
-use crate::arrays::{Argument, read, read_or, read_rotation};
+use crate::arrays::{Argument, read, read_or};
+use crate::attitudes::read_rotation;
 use crate::hints::refuse_unknown;
 use crate::stack::{Broadcast, Stack};
 

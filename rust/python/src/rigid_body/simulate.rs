@@ -1,14 +1,15 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
-use polhode::motion::simulate::{Method, Tolerance, check_times};
+use polhode::motion::simulate::{Method, Tolerance, check_times, closed_top};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::PyRigidBody;
 use super::ensemble::{Ensemble, Start, footing};
-use crate::arrays::{read, read_attitude};
+use crate::arrays::read;
+use crate::attitudes::read_attitude_exactly;
 use crate::errors::to_py;
 use crate::events::Functions;
 use crate::hints;
@@ -44,9 +45,10 @@ impl PyRigidBody {
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.
     /// method : {"auto", "exact", "taylor", "dop853", "radau", "splitting"}, optional
-    ///     "exact" is the closed form of a free body without a load, whose cost and error do not grow with time.
+    ///     "exact" is the closed form of a free body without a load, and of a symmetric top under uniform gravity
+    ///     whose axis passes through the fixed origin; its cost and error do not grow with time.
     ///     "taylor" sums Taylor series of the order at which the work is least, 22 at the tightest `rtol`:
-    ///     any load without callbacks, in runs without events. "dop853" is the explicit Runge-Kutta method
+    ///     any load without callbacks. "dop853" is the explicit Runge-Kutta method
     ///     of order 8 by Dormand and Prince with a dense output of order 7: any load. "auto" takes the first
     ///     of these that can serve the run. "radau" is the implicit Runge-Kutta method Radau IIA of order 5:
     ///     any load, for those that are stiff, such as strong damping. "splitting" kicks the body between
@@ -150,19 +152,22 @@ impl PyRigidBody {
         let start = Start {
             bodies: &slf.get().bodies,
             omega: read(omega, "omega")?,
-            attitude: read_attitude(attitude, "attitude")?,
+            attitude: read_attitude_exactly(attitude, "attitude")?,
             position: at_start(position, "position")?,
             velocity: at_start(velocity, "velocity")?,
             terms: acts.terms()?,
         };
         let events = Functions::read(events)?;
         let of_first = start.terms.rows.first().map_or(&[][..], Vec::as_slice);
+        let are_tops = || {
+            start
+                .bodies
+                .rows
+                .iter()
+                .all(|body| closed_top(body).is_ok())
+        };
         let method = parse_method(method)?
-            .serving(
-                pivoted,
-                acts.is_analytic().then_some(of_first),
-                !events.is_empty(),
-            )
+            .serving(pivoted, acts.is_analytic().then_some(of_first), are_tops)
             .map_err(|error| to_py(py, &error))?;
         let ensemble = Ensemble {
             start: &start,

@@ -30,6 +30,7 @@ struct Linear<'a> {
 }
 
 /// A motion on its way.
+#[derive(Clone, Debug)]
 pub(super) struct Course<'a> {
     task: Task<'a>,
     terms: &'a [Term],
@@ -318,6 +319,14 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// ω and (x, y, z, w) in body axes and real units of a state, or of a coefficient of its series.
+    pub(super) fn in_body(&self, state: &[f64; 7]) -> [f64; 7] {
+        let [x, y, z, i, j, k, w] = *state;
+        let omega = self.axes * Vector3::new(x, y, z) * self.unit;
+        let q = Quaternion::new(w, i, j, k) * self.q_bp.conjugate().into_inner();
+        [omega.x, omega.y, omega.z, q.i, q.j, q.k, q.w]
+    }
+
     /// Takes the power of two at or below the fastest rate of the motion at ω (in principal axes) as the unit of rates.
     pub(super) fn choose_unit(&mut self, omega: &[f64; 3]) -> f64 {
         let (linear, over_moment) = (&self.linear, self.inverse_moments.amax());
@@ -390,16 +399,10 @@ impl<'a> Course<'a> {
         field
     }
 
-    /// The directions in N that the torques of what is fixed in space are made of: that of the only such vector, or all.
+    /// The directions in N that the torques of what is fixed in space are made of: the vertical axis, or all.
     pub(super) fn directions<const B: usize>(&self) -> [[f64; 3]; B] {
         let mut directions = [[0.0, 0.0, 1.0]; B];
-        if B == 1 {
-            let vector = self.linear.on_space.first().map(|(vector, _)| vector);
-            let unit = vector.and_then(|vector| vector.try_normalize(0.0));
-            if let (Some(unit), [direction, ..]) = (unit, &mut directions[..]) {
-                *direction = unit.into();
-            }
-        } else {
+        if B > 1 {
             for (i, direction) in directions.iter_mut().enumerate() {
                 *direction = [0.0; 3];
                 direction[i] = 1.0;
@@ -471,6 +474,11 @@ impl<'a> Course<'a> {
         self.task.times[0] + (now.0 + now.1) / self.unit
     }
 
+    /// The whole length of the motion.
+    pub(super) fn last_elapsed(&self) -> f64 {
+        self.last_time() - self.task.times[0]
+    }
+
     pub(super) fn last_time(&self) -> f64 {
         self.task.times[self.task.times.len() - 1]
     }
@@ -482,18 +490,20 @@ impl<'a> Course<'a> {
     }
 }
 
-/// What kind of equations a sum of terms leads to. Apart from quadratic damping, which may be zero, it does not depend on
-/// the numbers in them.
+/// What kind of equations a sum of terms leads to. Apart from quadratic damping, which may be zero, and directions, which
+/// may all be vertical, it does not depend on the numbers in them.
 pub(super) fn parts(terms: &[Term], pivoted: bool) -> Parts {
     let mut parts = Parts::default();
-    let mut vectors = 0;
     let mut needs_all = false;
     for term in terms {
         let term = match term {
             Term::Scheduled { term, .. } => term,
             term => term,
         };
-        vectors += usize::from(turns(term, pivoted));
+        if turns(term, pivoted) {
+            parts.directions = 1;
+            needs_all |= !is_vertical(term);
+        }
         parts.is_pushed |= !pivoted && term.exerts_force();
         match term {
             Term::ConstantForce {
@@ -518,12 +528,20 @@ pub(super) fn parts(terms: &[Term], pivoted: bool) -> Parts {
             _ => {}
         }
     }
-    parts.directions = if needs_all {
-        3
-    } else {
-        [0, 1, 3][vectors.min(2)]
-    };
+    if needs_all {
+        parts.directions = 3;
+    }
     parts
+}
+
+/// Whether the vector of the term is along the axis 3 of its frame.
+fn is_vertical(term: &Term) -> bool {
+    match term {
+        Term::ConstantTorque { vector, .. }
+        | Term::ConstantForce { vector, .. }
+        | Term::UniformGravity { gravity: vector } => vector.x == 0.0 && vector.y == 0.0,
+        _ => false,
+    }
 }
 
 /// Whether the term exerts a torque through a vector fixed in space.

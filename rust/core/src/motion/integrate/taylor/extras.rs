@@ -80,15 +80,15 @@ impl<L: Lane, const R: usize> Extras<Pack<L, R>> {
         }
     }
 
-    /// The coefficient of order `k` of the angular acceleration by all of them.
+    /// `sum` and the coefficients of order `k` of the angular acceleration by all of them.
     #[inline(always)]
-    pub(super) fn coefficient<const B: usize>(
+    pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
         k: usize,
         series: &impl Series<Pack<L, R>, B>,
         field: &Field<Pack<L, R>, B>,
+        mut sum: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
-        let mut sum = [Pack::new(0.0); 3];
         if self.is_empty {
             return sum;
         }

@@ -25,7 +25,16 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
     /// and the next increment takes it along: nothing is rounded for it.
     #[inline(always)]
     pub(super) fn add(&mut self, increment: &[Pack<L, R>; 7]) {
-        compensate(&mut self.value, &mut self.rest, increment);
+        // Written out, since a loop would be vectorised across the numbers instead of the rows.
+        let [v0, v1, v2, v3, v4, v5, v6] = &mut self.value;
+        let [r0, r1, r2, r3, r4, r5, r6] = &mut self.rest;
+        compensate(v0, r0, increment[0]);
+        compensate(v1, r1, increment[1]);
+        compensate(v2, r2, increment[2]);
+        compensate(v3, r3, increment[3]);
+        compensate(v4, r4, increment[4]);
+        compensate(v5, r5, increment[5]);
+        compensate(v6, r6, increment[6]);
         // ½ (1 − |q|²), with the rest: the first-order correction.
         let mut lack = Pack::new(1.0);
         for i in 3..7 {
@@ -59,19 +68,14 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
     }
 }
 
-/// Adds increments to values and to what rounding has left out of them.
+/// Adds an increment to a value and to what rounding has left out of it.
 #[inline(always)]
-pub(super) fn compensate<L: Lane, const R: usize, const N: usize>(
-    values: &mut [Pack<L, R>; N],
-    rests: &mut [Pack<L, R>; N],
-    increments: &[Pack<L, R>; N],
+pub(super) fn compensate<L: Lane, const R: usize>(
+    value: &mut Pack<L, R>,
+    rest: &mut Pack<L, R>,
+    increment: Pack<L, R>,
 ) {
-    for i in 0..N {
-        for row in 0..R {
-            let change = increments[i].0[row] + rests[i].0[row];
-            (values[i].0[row], rests[i].0[row]) = two_sum(values[i].0[row], change);
-        }
-    }
+    (*value, *rest) = two_sum(*value, increment + *rest);
 }
 
 /// What the polynomials of a step add to the state within the time `h` (Horner).
