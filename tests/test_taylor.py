@@ -81,7 +81,7 @@ GROWTH = {
 }
 
 
-def named(cases: Any) -> Any:
+def named(cases: Any) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("case", tuple(cases), ids=lambda case: case.name)
 
 
