@@ -399,7 +399,7 @@ impl<E> Run<E> {
 }
 
 /// The ends of the spans into which `breaks` cut the time from the first to the last of `times`.
-fn spans(times: &[f64], mut breaks: Vec<f64>) -> Vec<f64> {
+pub(in crate::motion) fn spans(times: &[f64], mut breaks: Vec<f64>) -> Vec<f64> {
     let (start, end) = (times[0], times[times.len() - 1]);
     if start == end {
         return vec![start];
