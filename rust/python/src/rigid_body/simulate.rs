@@ -57,8 +57,8 @@ impl PyRigidBody {
     /// rtol : float, optional
     ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
     ///     distance and speed so far; from 2.3e-15 to 0.1, and for "taylor" from 1e-28. Below 2.3e-15 (ten units
-    ///     of rounding) it sums its series in numbers of twice the precision and rounds the result once: some forty
-    ///     times as costly, for motions whose rounding errors grow on the way, such as those close by a
+    ///     of rounding) it sums its series in numbers of twice the precision and rounds the result once: forty to
+    ///     ninety times as costly, for motions whose rounding errors grow on the way, such as those close by a
     ///     separatrix, and for reference solutions. "auto" then takes "taylor" where "exact" would serve.
     /// atol : float, optional
     ///     Error of the angular velocity allowed besides; none by default.
