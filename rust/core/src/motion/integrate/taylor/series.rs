@@ -17,6 +17,8 @@
 //! A direction e_n of space as seen from the body would obey `γ̇ = γ × ω`, six products of series. With |q| = 1 it is made
 //! of squares, and the sum for a square is only half as long: see [`ROOTS`].
 
+use std::hint::black_box;
+
 use super::pack::Pack;
 use crate::numerics::lane::Lane;
 
@@ -309,22 +311,13 @@ fn from_squares<L: Lane, const R: usize>(n: usize, halves: [Pack<L, R>; 3]) -> [
 
 /// `W` numbers in the lanes.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
+#[repr(align(64))]
 struct Components<L, const W: usize>([L; W]);
 
 impl<L: Lane, const W: usize> Components<L, W> {
     #[inline(always)]
     fn new() -> Self {
         Self([L::new(0.0); W])
-    }
-
-    /// `self + factor · other`.
-    #[inline(always)]
-    fn plus_product(mut self, factor: L, other: &Self) -> Self {
-        for i in 0..W {
-            self.0[i] = factor.mul_add(other.0[i], self.0[i]);
-        }
-        self
     }
 
     /// `self + one · other`, each number by itself.
@@ -348,10 +341,10 @@ impl<L: Lane, const W: usize> Components<L, W> {
 impl<L: Lane> Components<L, 4> {
     /// `other`, its lanes put in another order and given signs, added to `self`.
     #[inline(always)]
-    fn plus_turned(mut self, turn: &Turn, other: &Self) -> Self {
+    fn plus_turned(mut self, turn: &Turn, other: &[L]) -> Self {
         for i in 0..4 {
             let factor = L::new(turn.signs[i]);
-            self.0[i] = factor.mul_add(other.0[turn.from[i]], self.0[i]);
+            self.0[i] = factor.mul_add(other[turn.from[i]], self.0[i]);
         }
         self
     }
@@ -396,33 +389,31 @@ const TURNS: [Turn; 3] = [
     },
 ];
 
-/// One order of [`Alone`].
+/// One order of [`Alone`]: two rows of factors, so that products of two orders are a row of one by the other of the other:
+/// q by each component of ω, then (ω₂, ω₃, ω₁) by (ω₃, ω₁, ω₂), then a square that is not used.
 #[derive(Clone, Copy, Debug)]
 struct Order<L, const B: usize> {
-    q: Components<L, 4>,
+    left: Components<L, 16>,
+    right: Components<L, 16>,
     roots: [Components<L, 8>; B],
     g: [[L; 3]; B],
-    w: [L; 4],
-    /// (ω₂, ω₃, ω₁) and (ω₃, ω₁, ω₂).
-    next_w: [L; 4],
-    last_w: [L; 4],
 }
 
 impl<L: Lane, const B: usize> Order<L, B> {
     #[inline(always)]
     fn new([w0, w1, w2]: [L; 3], q: Components<L, 4>) -> Self {
-        let zero = L::new(0.0);
+        let [x, y, z, w] = q.0;
         let mut roots = [Components::new(); B];
         for b in 0..B {
             roots[b] = q.roots(axis::<B>(b));
         }
         Self {
-            q,
+            left: Components([x, y, z, w, x, y, z, w, x, y, z, w, w1, w2, w0, w0]),
+            right: Components([
+                w0, w0, w0, w0, w1, w1, w1, w1, w2, w2, w2, w2, w2, w0, w1, w0,
+            ]),
             roots,
-            g: [[zero; 3]; B],
-            w: [w0, w1, w2, zero],
-            next_w: [w1, w2, w0, zero],
-            last_w: [w2, w0, w1, zero],
+            g: [[L::new(0.0); 3]; B],
         }
     }
 }
@@ -431,15 +422,14 @@ impl<L: Lane, const B: usize> Order<L, B> {
 #[derive(Clone, Debug)]
 pub(super) struct Alone<L, const B: usize> {
     orders: [Order<L, B>; COUNT],
-    /// The sums of an odd order as far as they go before its forerunner is known.
-    ahead: LaneSums<L, B>,
+    /// The sums of an even order and of the odd one after it, as far as they go before its forerunner is known.
+    begun: [LaneSums<L, B>; 2],
 }
 
 /// The sums of products of [`Alone`]: of ω with itself, of each component of ω with q, and of the [`ROOTS`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LaneSums<L, const B: usize> {
-    w: [L; 4],
-    q: [Components<L, 4>; 3],
+    products: Components<L, 16>,
     squares: [Components<L, 8>; B],
 }
 
@@ -447,22 +437,14 @@ impl<L: Lane, const B: usize> LaneSums<L, B> {
     #[inline(always)]
     fn new() -> Self {
         Self {
-            w: [L::new(0.0); 4],
-            q: [Components::new(); 3],
+            products: Components::new(),
             squares: [Components::new(); B],
         }
     }
 
     #[inline(always)]
     fn add(&mut self, a: &Order<L, B>, b: &Order<L, B>) {
-        self.q = [
-            self.q[0].plus_product(b.w[0], &a.q),
-            self.q[1].plus_product(b.w[1], &a.q),
-            self.q[2].plus_product(b.w[2], &a.q),
-        ];
-        for i in 0..4 {
-            self.w[i] = a.next_w[i].mul_add(b.last_w[i], self.w[i]);
-        }
+        self.products = self.products.plus_products(&a.left, &b.right);
     }
 
     #[inline(always)]
@@ -487,7 +469,7 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
         let zero = L::new(0.0);
         Self {
             orders: [Order::new([zero; 3], Components::new()); COUNT],
-            ahead: LaneSums::new(),
+            begun: [LaneSums::new(); 2],
         }
     }
 
@@ -508,14 +490,15 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
 
     #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<Pack<L, 1>, B> {
-        let Order { w, q, g, .. } = &self.orders[k];
+        let Order { left, right, g, .. } = &self.orders[k];
+        let w = &right.0;
         let mut at = Coefficient {
-            w: [Pack([w[0]]), Pack([w[1]]), Pack([w[2]])],
+            w: [Pack([w[0]]), Pack([w[4]]), Pack([w[8]])],
             q: [Pack::new(0.0); 4],
             g: [[Pack::new(0.0); 3]; B],
         };
         for i in 0..4 {
-            at.q[i] = Pack([q.0[i]]);
+            at.q[i] = Pack([left.0[i]]);
         }
         for b in 0..B {
             for i in 0..3 {
@@ -530,9 +513,8 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
         let orders = &self.orders;
-        let mut sums = self.ahead;
         if k.is_multiple_of(2) {
-            sums = LaneSums::new();
+            let mut sums = LaneSums::new();
             let mut ahead = LaneSums::new();
             if k > 2 {
                 let partners = orders[2..k].iter().rev().zip(orders[1..k - 1].iter().rev());
@@ -554,8 +536,10 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
                 ahead.add(&orders[1], &orders[k]);
                 ahead.add(&orders[k], &orders[1]);
             }
-            self.ahead = ahead;
+            self.begun = [sums, ahead];
         }
+        // The compiler is not to know which: it would take apart the sums, which are whole registers.
+        let mut sums = self.begun[black_box(k % 2)];
         sums.add(&orders[0], &orders[k]);
         if k > 0 {
             sums.add(&orders[k], &orders[0]);
@@ -572,7 +556,7 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
 
     #[inline(always)]
     fn spins(sums: &Self::Sums) -> [Pack<L, 1>; 3] {
-        let [w0, w1, w2, _] = sums.w;
+        let [.., w0, w1, w2, _] = sums.products.0;
         [Pack([w0]), Pack([w1]), Pack([w2])]
     }
 
@@ -581,8 +565,8 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
         let reciprocal = L::new(RECIPROCALS[k + 1]);
         let half = L::new(0.5 * RECIPROCALS[k + 1]);
         let mut q = Components::new();
-        for (turn, sum) in TURNS.iter().zip(&sums.q) {
-            q = q.plus_turned(turn, sum);
+        for (n, turn) in TURNS.iter().enumerate() {
+            q = q.plus_turned(turn, &sums.products.0[4 * n..]);
         }
         for i in 0..4 {
             q.0[i] = q.0[i] * half;
