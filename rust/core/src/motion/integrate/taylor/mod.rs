@@ -6,7 +6,9 @@
 //! | `field` | the equations that are linear in the coefficients of one order |
 //! | `terms`, `extras` | the recurrences of terms that are not |
 //! | `moment` | what depends on time alone |
-//! | `series` | the sums of products, the lanes over components or over motions |
+//! | `series` | the coefficients, and what is asked of the sums of their products |
+//! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
+//! | `directions` | directions of space as seen from the body |
 //! | `push` | the path of a body that forces act on |
 //! | `step` | the length of a step, the state at its end or within |
 //! | `drive` | steps, outputs, breaks, until all motions are done |
@@ -19,7 +21,10 @@
     reason = "rows and components are indices of several arrays at once"
 )]
 
+mod abreast;
+mod alone;
 mod course;
+mod directions;
 mod drive;
 mod extras;
 mod field;
@@ -33,10 +38,11 @@ mod terms;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use abreast::Abreast;
+use alone::Alone;
 use course::{Course, parts};
 use drive::{Job, Settings, drive};
 use field::Parts;
-use series::{Abreast, Alone};
 
 use crate::error::Error;
 use crate::motion::loads::Term;
