@@ -44,8 +44,20 @@ MODULES = [
     "polhode.robots",
     "polhode.tops",
     "polhode.trajectory",
+    "polhode.view",
 ]
-HEAVY = ("matplotlib", "trimesh", "scipy", "rich", "cyclopts", "periodictable", "pint", "pandas", "PIL")
+HEAVY = (
+    "matplotlib",
+    "trimesh",
+    "scipy",
+    "rich",
+    "cyclopts",
+    "periodictable",
+    "pint",
+    "pandas",
+    "PIL",
+    "pyvista",
+)
 
 
 def public_objects() -> Iterator[tuple[str, Any]]:
@@ -90,7 +102,7 @@ class TestNames:
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
         known = {"animation", "cli", "events", "free_motion", "io", "molecules", "plot", "results", "robots"}
-        known |= {"files", "trajectory", "units"}
+        known |= {"files", "trajectory", "units", "view"}
         assert internal <= known
 
     @pytest.mark.parametrize("name", MODULES)

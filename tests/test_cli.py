@@ -63,7 +63,7 @@ def test_report_of_a_mesh_in_si_units(slab: Path) -> None:
     np.testing.assert_allclose(report["in_file_unit"]["moments_per_mass"], moments / mass * 1e6, rtol=1e-14)
     assert report["units"]["inertia_about_origin"] == "kg m^2"
     assert report["units"]["in_file_unit"]["volume"] == "mm^3"
-    assert report["notes"] == []
+    assert report["notes"] == ["--density 2000 has no unit: kg/m^3 was taken"]
 
 
 def test_report_is_what_from_file_gives(slab: Path) -> None:

@@ -31,6 +31,8 @@ def commands(page: Path) -> list[str]:
 @pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: p.name)
 def test_commands_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_stl(tmp_path / "part.stl", *t_handle())
+    (tmp_path / "polhode-demo").mkdir()
+    write_stl(tmp_path / "polhode-demo" / "t-handle.stl", *t_handle())  # as `make demo` leaves it
     (tmp_path / "robot.urdf").write_text(ROBOT.format(1))
     (tmp_path / "water.xyz").write_text("3\nwater\nO 0 0 0\nH 0.757 0 0.587\nH -0.757 0 0.587\n")
     monkeypatch.chdir(tmp_path)
@@ -39,6 +41,9 @@ def test_commands_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         name, *arguments = shlex.split(command)
         if name == "make":
             assert set(arguments) <= set(targets)  # `.ci/run` runs them
+            continue
+        if name == ".":
+            assert arguments == [".venv/bin/activate"]
             continue
         assert name == "polhode"
         code, out, err = run(*arguments)

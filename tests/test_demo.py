@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import re
 import sys
-from typing import TYPE_CHECKING, TypeAlias
+from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import pytest
+from markdown_code import blocks
 from polhode import RigidBody
 from polhode.cli import brick, main
 from polhode.cli.t_handle import t_handle
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
+README = Path(__file__).resolve().parents[1] / "README.md"
 Capture: TypeAlias = pytest.CaptureFixture[str]
 
 
@@ -43,6 +43,10 @@ def test_demo(tmp_path: Path, capsys: Capture) -> None:
     assert (folder / "t-handle.stl").stat().st_size == 84 + 50 * 28
     assert "verdict: good" in out
     assert "polhode report" in out
+    # What the README shows of it is what it prints.
+    shown = [code for language, code in blocks(README) if language == "text" and "NASA" in code]
+    assert len(shown) == 1
+    assert [line for line in shown[0].splitlines() if line not in out.splitlines()] == []
     # The flips come at equal intervals: the zeros of an elliptic cosine.
     (line,) = (line for line in out.splitlines() if line.strip().startswith("flips"))
     times = [float(time) for time in re.findall(r"\d+\.\d+", line)]

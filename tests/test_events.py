@@ -86,6 +86,86 @@ class TestEvents:
         assert fall.events.t[0] == pytest.approx(np.sqrt(2 * 5 / 9.81), rel=1e-14)
         assert abs(fall.events.position[0, 2]) < 1e-14
 
+    LOADS = (
+        loads.constant_torque((0.1, 0.0, 0.2)) + loads.damping(0.1, 0.02),
+        loads.schedule(loads.constant_torque((0.3, 0.1, 0.0), "space"), [(1.0, 2.5), (4.0, 5.0)]),
+        loads.feedback(2.0, 0.3),
+        loads.uniform_gravity((0, 0, -1.0))
+        + loads.constant_force((0.3, 0.2, 0.1), "body", point=(0.1, 0, 0)),
+        loads.sampled(np.linspace(0, 8, 9), np.cos(np.arange(27.0)).reshape(9, 3), "body"),
+        loads.gravity_gradient(1.0, (1, 0, 0), (0, 1, 0)),
+    )
+
+    @pytest.mark.parametrize("load", LOADS)
+    @pytest.mark.parametrize("t", [np.linspace(0, 8, 33), np.linspace(7.5, 0.5, 5)])
+    def test_along_taylor_series(self, load: Any, t: Any) -> None:
+        """They leave the samples as they are, and lie where DOP853 sees them."""
+        events = [
+            Event(lambda _t, omega, *_: omega[1] - 0.1),
+            Event(lambda _t, _omega, q, *_: 2 * (q[0] * q[3] + q[1] * q[2])),
+            Event(lambda _t, _w, _q, position, velocity: position[2] + velocity[0]),
+        ]
+        start: dict[str, Any] = {"omega": (3.0, 1.2, -2.4), "velocity": (0.1, 0.0, 0.2), "load": load}
+        run = BODY.simulate(t, events=events, method="taylor", rtol=1e-13, **start)
+        plain = BODY.simulate(t, method="taylor", rtol=1e-13, **start)
+        assert np.array_equal(run.omega, plain.omega)
+        assert np.array_equal(run.quaternion, plain.quaternion)
+        assert np.array_equal(run.position, plain.position)
+        assert run.steps == plain.steps
+        other = BODY.simulate(t, events=events, method="dop853", rtol=1e-13, **start)
+        assert np.array_equal(run.events.event, other.events.event)
+        assert len(run.events.t) >= 3
+        for ours, theirs in zip(run.events[2:], other.events[2:], strict=True):
+            assert np.abs(ours - theirs).max() < 1e-9
+        auto = BODY.simulate(t, events=events, rtol=1e-13, **start)
+        assert np.array_equal(auto.events.t, run.events.t)
+
+    def test_a_terminal_event_along_taylor_series(self) -> None:
+        t = np.linspace(0, 20, 201)
+        load = loads.damping(0.05)
+        event = Event(lambda _t, omega, *_: omega[1], terminal=2)
+        run = BODY.simulate(t, (3.0, 1.2, -2.4), load=load, events=event)
+        end = run.events.t[-1]
+        assert run.status == "event"
+        assert len(run.events.t) == 2
+        assert np.isfinite(run.omega[t <= end]).all()
+        assert np.isnan(run.quaternion[t > end]).all()
+        plain = BODY.simulate(t, (3.0, 1.2, -2.4), load=load)
+        assert np.array_equal(run.omega[t <= end], plain.omega[t <= end])
+        on_time = Event(lambda t, *_: t - 3.0, terminal=True)
+        run = BODY.simulate(t, (3.0, 1.2, -2.4), load=load, events=on_time)
+        assert np.isnan(run.omega[:, 0]).tolist() == (t > 3.0).tolist()
+
+    def test_an_exception_along_taylor_series(self) -> None:
+        error = ZeroDivisionError("mine")
+
+        def fail(t: float, *_: Any) -> float:
+            if t > 3:
+                raise error
+            return 1.0
+
+        with pytest.raises(ZeroDivisionError) as caught:
+            BODY.simulate([0, 10], (1.0, 0.4, -0.8), load=loads.damping(0.05), events=fail)
+        assert caught.value is error
+
+    def test_ctrl_c_along_taylor_series(self) -> None:
+        def interrupt(fraction: float) -> None:
+            if fraction > 0.001:
+                raise KeyboardInterrupt
+
+        with pytest.raises(KeyboardInterrupt) as caught:
+            BODY.simulate(
+                np.linspace(0, 1e6, 1001),
+                (1, 0.2, 1),
+                progress=interrupt,
+                load=loads.constant_torque((0, 0, 1e-9)),
+                events=lambda t, *_: t + 1.0,
+            )
+        partial = caught.value.partial  # type: ignore[attr-defined]
+        assert partial.status == "stopped"
+        assert np.isfinite(partial.omega[1]).all()
+        assert np.isnan(partial.omega[-1]).all()
+
     def test_mistakes(self) -> None:
         def run(events: Any) -> Trajectory:
             return BALL.simulate([0, 10], (0, 0, 1), events=events)

@@ -122,7 +122,7 @@ def test_it_is_the_motion_to_the_last_digits(name: str) -> None:
 
 
 def test_an_axis_that_is_tilted_in_the_body() -> None:
-    """Along (1, −4, 8)/9, the tensor and the centre exact in doubles: as good after a million rotations as after one."""
+    """Along (1, −4, 8)/9, tensor and centre exact in doubles: a million rotations on as after one."""
     tilt = np.array([1.0, -4.0, 8.0])
     across, difference, length, gravity = 1.25, -0.6328125, 0.5625, 9.75
     body = RigidBody(1.0, across * np.eye(3) + difference / 81 * np.outer(tilt, tilt), tilt / 16)
@@ -131,7 +131,7 @@ def test_an_axis_that_is_tilted_in_the_body() -> None:
     times = [2 * math.pi / rate * n for n in (1.0, 10.0, 1e3, 1e6)]
     motion = body.heavy_top(omega, attitude, (0, 0, -gravity)).at(times)
     with mp.workdps(60):
-        # The shortest turn that takes the axis to the third one: about (−4, −1, 0), and 1 + 8/9 in place of the cosine.
+        # The shortest turn from the axis to the third one: about (−4, −1, 0), 1 + 8/9 for the cosine.
         turn = [mpf(-4) / 9, mpf(-1) / 9, mpf(0), mpf(17) / 9]
         turn = [x / mp.norm(turn) for x in turn]
         oracle = Series(

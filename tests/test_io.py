@@ -219,7 +219,7 @@ def test_corners_that_nearly_coincide_are_welded_on_request_only(write: Any) -> 
     corners[corners == 0.0] = np.resize([0.0, 1e-17, -3e-17], (corners == 0.0).sum())
     path = write("frayed.stl", binary_stl(corners, np.arange(len(corners)).reshape(-1, 3)))
     with pytest.raises(
-        MeshError, match=r"not closed.* corners lie within 2e-07 of another: weld=2e-07 or --weld"
+        MeshError, match=r"not closed.* corners lie within 2e-07 of another: weld=2e-07 joins"
     ):
         RigidBody.from_file(path, density=1.0)
     mesh = read_mesh(path, weld=1e-12)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from command_line import run, write_obj
-from oracles.meshes import box, cube
+from oracles.meshes import box, cube, icosphere
+from PIL import Image
 from polhode.cli import brick
+from polhode.cli.t_handle import t_handle, write_stl
 
 
 @pytest.fixture
@@ -81,6 +84,60 @@ def test_spin_saves_by_suffix(slab: Path, tmp_path: Path) -> None:
     with np.load(names[-1]) as file:
         assert file["t"].tolist() == np.linspace(0, 5, 11).tolist()
         assert file["omega"].shape == (11, 3)
+
+
+def drawn(page: Path) -> np.ndarray:
+    """The triangles in an animation's page, shape (m, 3, 3)."""
+    found = re.search(r'id="motion">(.*?)</script>', page.read_text("utf-8"))
+    assert found
+    shape = json.loads(found[1])["shape"]
+    return np.asarray(np.array(shape["vertices"])[np.array(shape["faces"])])
+
+
+def volume(triangles: np.ndarray) -> float:
+    """What closed, outward oriented triangles hold."""
+    return float(np.einsum("ni,ni->n", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2])).sum() / 6)
+
+
+def test_the_part_itself_is_drawn(tmp_path: Path) -> None:
+    """Not the box of its inertia: about C, with its own outline, and its own volume."""
+    write_stl(tmp_path / "t.stl", *t_handle())
+    saves = [argument for name in ("t.html", "t.png") for argument in ("--save", tmp_path / name)]
+    turn = ("--omega", 0, 0, 1, "--until", 1, "--samples", 11)
+    code, out, err = run("spin", tmp_path / "t.stl", "--length-unit", "mm", *turn, *saves)
+    assert (code, err) == (0, "")
+    assert "coarser" not in out
+    triangles = drawn(tmp_path / "t.html")
+    extent = np.ptp(triangles.reshape(-1, 3), axis=0)
+    np.testing.assert_allclose(extent / extent[0], (1.0, 0.16, 0.66), rtol=1e-5)
+    assert volume(triangles) / extent.prod() == pytest.approx(38.4 / (100 * 16 * 66 / 1000), rel=1e-5)
+    with Image.open(tmp_path / "t.png") as picture:
+        left = np.asarray(picture.convert("L"))[:, : picture.width // 3]
+    assert (left < 235).mean() > 0.05
+
+
+def test_a_large_mesh_is_drawn_coarser_and_said_to_be(tmp_path: Path) -> None:
+    vertices, faces = icosphere(5)
+    path = write_obj(tmp_path / "ball.obj", vertices * (3.0, 2.0, 1.0), faces)
+    turn = ("--omega", 0, 0, 1, "--until", 1, "--samples", 3)
+    out = run("spin", path, *turn, "--save", tmp_path / "ball.html")[1]
+    found = re.search(r"drawn coarser: (\d+) triangles for 20480, corners within cells of (\S+) unit", out)
+    assert found
+    triangles = drawn(tmp_path / "ball.html")
+    assert 5000 < len(triangles) == int(found[1]) <= 10_000
+    extent = np.ptp(triangles.reshape(-1, 3), axis=0)
+    np.testing.assert_allclose(extent, (1.6, 1.6 * 2 / 3, 1.6 / 3), atol=2 * float(found[2]))
+    assert volume(triangles) == pytest.approx(0.8**3 * 4 * np.pi / 3 * 2 / 9, rel=0.02)
+
+
+def test_an_open_mesh_is_drawn_from_both_sides(tmp_path: Path) -> None:
+    vertices, faces = cube(2.0)
+    path = write_obj(tmp_path / "open.obj", vertices, faces[2:])
+    turn = ("--omega", 0, 0, 1, "--until", 1, "--samples", 3, "--save", tmp_path / "open.html")
+    code, out, _ = run("spin", path, "--closure", "caps", *turn)
+    assert code == 0
+    assert "the mesh is open; --closure caps closed it, which changed its volume by" in out
+    assert volume(drawn(tmp_path / "open.html")) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_toutatis(shared_data: Path) -> None:

@@ -131,10 +131,6 @@ class TestChoice:
         callback = loads.torque_callback(lambda _t, _omega, _quaternion: np.zeros(3))
         with pytest.raises(ValueError, match=r'method="taylor".*callbacks.*method="dop853"'):
             BRICK.simulate([0.0, 1.0], (1.0, 0.0, 0.0), load=callback, method="taylor")
-        with pytest.raises(ValueError, match=r'method="taylor".*without events'):
-            BRICK.simulate(
-                [0.0, 1.0], (1.0, 0.0, 0.0), events=lambda _t, w, _q, _x, _v: w[0], method="taylor"
-            )
 
 
 @pytest.mark.parametrize("count", [1, 3000])

@@ -79,6 +79,13 @@ class Events(NamedTuple):
     position: Floats
     velocity: Floats
 
+    def __repr__(self) -> str:
+        count = len(self.t)
+        if not count:
+            return "<Events: none>"
+        span = f" from {self.t.min():.6g} to {self.t.max():.6g}" if count > 1 else f" at {self.t[0]:.6g}"
+        return f"<Events: {count}{span}>"
+
     @classmethod
     def none(cls) -> Events:
         """Make the table of a run without events."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from polhode._repr import short
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -40,6 +42,9 @@ class Periods(NamedTuple):
     flip: Any
     rates: Floats
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class Cones(NamedTuple):
     """Body cone and space cone, half their openings in radians; round for a symmetric body.
@@ -57,6 +62,9 @@ class Cones(NamedTuple):
     axis: Any
     body: Floats
     space: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class Poinsot(NamedTuple):
@@ -82,6 +90,9 @@ class Poinsot(NamedTuple):
     radii: Floats
     contact: Floats
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class Sensitivity(NamedTuple):
     """Derivatives of the state of a free body.
@@ -100,6 +111,9 @@ class Sensitivity(NamedTuple):
     state: Floats
     moments: Floats
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class ErrorBar(NamedTuple):
     """Bounds on the error of a state, to first order, from errors of what it is computed from.
@@ -114,3 +128,6 @@ class ErrorBar(NamedTuple):
 
     attitude: Any
     omega: Any
+
+    def __repr__(self) -> str:
+        return short(self)

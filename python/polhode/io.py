@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -57,7 +57,7 @@ class MeshSolid(NamedTuple):
     faces : int
         How many triangles.
     volume, area : float
-        In units of the result.
+        In units of the result; the area is that of the file's triangles, without what closed them.
     welded : int
         Corners that were joined to others within the length asked for.
     """
@@ -77,6 +77,10 @@ def body_from_file(
     density: float | None = None,
     mass: float | None = None,
     length_unit: str | None = None,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    index_base: int = 1,
     progress: Callable[[float], object] | None = None,
 ) -> _core.RigidBody:
     """Read the body a file describes: what ``RigidBody.from_file`` does.
@@ -91,6 +95,8 @@ def body_from_file(
     length_unit : str, optional
         Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's
         masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
+    weld, closure, orient, index_base
+        Of a mesh; see :func:`solid_from_file`.
     progress : callable, optional
         Is told the fraction of a large mesh file done, now and then; an exception it raises ends the reading.
 
@@ -107,14 +113,31 @@ def body_from_file(
     OSError
         If the file cannot be read.
     """
+    for name, value in (("density", density), ("mass", mass)):
+        _check_amount(name, value, path)
     scale = 1.0 if length_unit is None else metres_per(length_unit)
     if not _is_molecule(path):
-        return solid_from_file(path, density=density, mass=mass, scale=scale, progress=progress).body
-    if density is not None or mass is not None:
-        given = "density" if density is not None else "mass"
-        raise PolhodeError(
-            f"{given}: {os.fspath(path)} is a molecule, whose atoms have their own masses; leave it out"
-        )
+        return solid_from_file(
+            path,
+            density=density,
+            mass=mass,
+            scale=scale,
+            weld=weld,
+            closure=closure,
+            orient=orient,
+            index_base=index_base,
+            progress=progress,
+        ).body
+    for name, is_given, reason in (
+        ("density", density is not None, "whose atoms have their own masses"),
+        ("mass", mass is not None, "whose atoms have their own masses"),
+        ("weld", weld != 0.0, "not a mesh"),
+        ("closure", closure is not None, "not a mesh"),
+        ("orient", orient, "not a mesh"),
+        ("index_base", index_base != 1, "not a mesh"),
+    ):
+        if is_given:
+            raise PolhodeError(f"{name}: {os.fspath(path)} is a molecule, {reason}; leave it out")
     molecule = read_xyz(path)
     masses = np.array([isotope.mass for isotope in molecule_isotopes(path, molecule)])
     if length_unit is not None:
@@ -168,6 +191,7 @@ def solid_from_file(
     mass: float | None = None,
     scale: float = 1.0,
     weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
     index_base: int = 1,
     progress: Callable[[float], object] | None = None,
@@ -175,8 +199,8 @@ def solid_from_file(
     """Make the solid that the mesh in a file bounds, naming the file in what is wrong with it.
 
     Binary STL and PLY go through memory block by block, whatever their size, but for the vertices of a
-    PLY, which its faces name in any order; other formats, and files whose corners are to be welded within
-    a length, are read whole. A stream is gone through again for every eight million triangles, to look for
+    PLY, which its faces name in any order; other formats, and files that are to be welded within a length
+    or closed, are read whole. A stream is gone through again for every eight million triangles, to look for
     faces that stand twice; that components wound inward are cavities, inside others, is checked of a
     quarter of a million triangles at most. `provenance` lists what was checked.
 
@@ -190,6 +214,8 @@ def solid_from_file(
         Unit of the coordinates, in the unit of the result.
     weld, index_base
         See :func:`read_mesh`.
+    closure : {"caps", "hull"}, optional
+        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`; without it, it is an error.
     orient : bool
         Turn triangles that face inward; without it they are an error.
     progress : callable, optional
@@ -209,7 +235,7 @@ def solid_from_file(
         If the file cannot be read.
     """
     file = Path(path)
-    streamed = _stream_format(file) if weld == 0.0 and index_base == 1 else None
+    streamed = _stream_format(file) if weld == 0.0 and index_base == 1 and closure is None else None
     if streamed is not None:
         try:
             body, faces, volume, area = _core.stream_solid(
@@ -227,7 +253,9 @@ def solid_from_file(
     vertices = mesh.vertices * scale
 
     def solid(density: float | None, mass: float | None = None) -> _core.RigidBody:
-        return _core.RigidBody.from_mesh(vertices, mesh.faces, density=density, mass=mass, orient=orient)
+        return _core.RigidBody.from_mesh(
+            vertices, mesh.faces, density=density, mass=mass, closure=closure, orient=orient
+        )
 
     try:
         body = solid(density, mass)
@@ -300,7 +328,16 @@ def _weld_hint(mesh: Mesh) -> str:
         return ""
     if near == 0:
         return ""
-    return f" ({near} corners lie within {resolution:g} of another: weld={resolution:g} or --weld joins them)"
+    lie, them = ("corner lies", "it") if near == 1 else ("corners lie", "them")
+    return f" ({near} {lie} within {resolution:g} of another: weld={resolution:g} joins {them})"
+
+
+def _check_amount(name: str, value: object, path: str | os.PathLike[str]) -> None:
+    if isinstance(value, str):
+        raise TypeError(
+            f"{name}: expected a number, got {value!r}; units are read on the command line: "
+            f'polhode report {os.fspath(path)} --{name} "{value}"'
+        )
 
 
 def _is_molecule(path: str | os.PathLike[str]) -> bool:

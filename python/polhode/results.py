@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from polhode import _core
+from polhode._repr import one_line, short
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
@@ -30,7 +32,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrincipalAxes:
     """Principal moments and axes of one tensor or of a stack.
 
@@ -45,6 +47,12 @@ class PrincipalAxes:
 
     moments: Floats
     axes: Floats
+
+    def __repr__(self) -> str:
+        shape = self.moments.shape[:-1]
+        if shape:
+            return f"<PrincipalAxes stack of shape {shape}>"
+        return one_line(self, {"moments": self.moments, "axes": self.axes, "top": self.top})
 
     @cached_property
     def quaternion(self) -> Floats:
@@ -151,6 +159,9 @@ class PrincipalDerivative(NamedTuple):
     axes: Floats
     degenerate: NDArray[np.bool_]
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class KineticEnergy(NamedTuple):
     """Kinetic energy in its three parts, T = ½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω."""
@@ -158,6 +169,9 @@ class KineticEnergy(NamedTuple):
     translational: Floats
     mixed: Floats
     rotational: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
 
     @property
     def total(self) -> Floats:
@@ -172,6 +186,9 @@ class AngularMomentum(NamedTuple):
     mixed: Floats
     spin: Floats
 
+    def __repr__(self) -> str:
+        return short(self)
+
     @property
     def total(self) -> Floats:
         """The sum of the three parts."""
@@ -183,6 +200,9 @@ class NearestValid(NamedTuple):
 
     inertia: Floats
     distance: Any
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class BoxFit(NamedTuple):
@@ -203,6 +223,9 @@ class BoxFit(NamedTuple):
     margin: Any
     axes: Any
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class ErrorBound(NamedTuple):
     """What rounding can have done to a body's numbers, against exact arithmetic on what was given.
@@ -221,8 +244,11 @@ class ErrorBound(NamedTuple):
     center_of_mass: Any
     inertia: Any
 
+    def __repr__(self) -> str:
+        return short(self)
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Provenance:
     """Where a body's numbers come from; for a stack each field is an array of the stack's shape.
 
@@ -259,6 +285,10 @@ class Provenance:
     moments: Any
     rounded_to_zero: Any
 
+    def __repr__(self) -> str:
+        shape = np.shape(self.source)
+        return f"<Provenance stack of shape {shape}>" if shape else one_line(self, vars(self))
+
     def __str__(self) -> str:
         """Tell it in one line, for one body."""
         made = self.source if self.elements == 1 else f"{self.source} of {self.elements} elements"
@@ -280,6 +310,9 @@ class Particles(NamedTuple):
 
     masses: Floats
     positions: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class FreePrecession(NamedTuple):
@@ -306,6 +339,9 @@ class FreePrecession(NamedTuple):
     space_cone: Any
     nutation: Any
 
+    def __repr__(self) -> str:
+        return short(self)
+
 
 class State(NamedTuple):
     """A state of motion, in the words of `simulate`: ``body.simulate(t, **state._asdict())``.
@@ -321,6 +357,9 @@ class State(NamedTuple):
     attitude: Floats
     position: Floats
     velocity: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class Invariants(NamedTuple):
@@ -342,3 +381,6 @@ class Invariants(NamedTuple):
     angular_momentum: Floats | None
     energy_drift: Any
     angular_momentum_drift: Any
+
+    def __repr__(self) -> str:
+        return short(self)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
+    from pyvista import Plotter
     from scipy.spatial.transform import Rotation
     from xarray import Dataset
 
@@ -106,7 +107,9 @@ class Trajectory:
         bodies = f"{'x'.join(map(str, shape))} bodies, " if shape else ""
         count = self.t.size
         span = f" from {self.t.flat[0]:.6g} to {self.t.flat[-1]:.6g}" if count else ""
-        return f"Trajectory({bodies}{count} times{span})"
+        ends = np.unique(self.status).tolist()
+        ended = f", {' or '.join(ends)}" if ends != ["complete"] else ""
+        return f"Trajectory({bodies}{count} times{span}{ended})"
 
     @cached_property
     def rotation(self) -> Rotation:
@@ -469,6 +472,25 @@ class Trajectory:
 
         return angular_velocity(self, ax)
 
+    def view(self, plotter: Plotter | None = None, **options: Any) -> Plotter:
+        """Show the motion of one body in a window; needs pyvista.
+
+        Parameters
+        ----------
+        plotter : pyvista.Plotter, optional
+            Where to show it; a new one by default.
+        **options
+            `at`, `shape`, `duration`, `title` and `time_unit`, see :func:`polhode.view.motion`.
+
+        Returns
+        -------
+        pyvista.Plotter
+            Its ``show()`` opens the window.
+        """
+        from polhode.view import motion
+
+        return motion(self, plotter, **options)
+
     def animate(self, path: str | PathLike[str], **options: Any) -> Path:
         """Write the motion of one body as a moving picture.
 
@@ -476,7 +498,7 @@ class Trajectory:
         ----------
         path : str or os.PathLike
             ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib;
-            ``.mp4``: needs also the program ffmpeg.
+            ``.mp4``: needs also the program ffmpeg, which the extra ``film`` brings.
         **options
             `shape`, `frames`, `duration`, `title` and `time_unit`, see :func:`polhode.animation.animate`.
 

@@ -29,6 +29,7 @@ EXPECTED_CONTENT: Final = {
 _STL_HEADER = 84
 _STL_TRIANGLE = 50
 _PLATE_KEYWORDS = frozenset({"v", "vn", "vt", "vp", "f", "o", "g", "s", "l", "mtllib", "usemtl"})
+_ROBOT_ROOTS = ((b"<robot", "URDF"), (b"<sdf", "SDF"), (b"<mujoco", "MJCF"))
 _CONTROL = bytes(set(range(32)) - set(b"\t\n\v\f\r\x1a"))
 
 
@@ -76,6 +77,9 @@ def checked_format(file: Path) -> str | None:
         size = os.fstat(stream.fileno()).st_size
     if not head:
         raise FileFormatError(f"{file}: the file is empty")
+    robot = next((name for root, name in _ROBOT_ROOTS if root in head), None)
+    if robot is not None and head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
+        raise FileFormatError(f"{file}: is a robot ({robot}); polhode check judges its links")
     suffix = file.suffix.lower()
     actual, is_text = content_format(head, size)
     expected = EXPECTED_CONTENT.get(suffix)

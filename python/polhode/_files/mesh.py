@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from polhode._repr import short
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -31,6 +33,9 @@ class Mesh(NamedTuple):
     vertices: Floats
     faces: Integers
     format: str
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 def weld(vertices: Floats, faces: Integers, name: str) -> Mesh:

@@ -37,6 +37,8 @@ class Element:
         three are the same for ``<tag/>``.
     text : str
         Its own characters, those of its children left out.
+    file : str
+        The file that it stands in, where that is included by another one.
     """
 
     tag: str
@@ -48,6 +50,12 @@ class Element:
     end: int = 0
     text: str = ""
     children: list[Element] = field(default_factory=list)
+    file: str = ""
+
+    @property
+    def where(self) -> str:
+        """The line, and the file unless it is the one that was asked for."""
+        return f"line {self.line} of {self.file}" if self.file else f"line {self.line}"
 
     def find(self, tag: str) -> Element | None:
         """Find the first child of that name."""
@@ -73,7 +81,7 @@ class Edit(NamedTuple):
     text: str
 
 
-def parse_xml(source: bytes, name: str) -> Element:
+def parse_xml(source: bytes, name: str, *, file: str = "") -> Element:
     """Parse a document.
 
     Parameters
@@ -82,6 +90,8 @@ def parse_xml(source: bytes, name: str) -> Element:
         In UTF-8, so that the elements' places are those of the text.
     name : str
         Of the file, for what is wrong with it.
+    file : str
+        What the elements say they stand in.
 
     Returns
     -------
@@ -103,7 +113,7 @@ def parse_xml(source: bytes, name: str) -> Element:
         at = parser.CurrentByteIndex
         match = _START_TAG.match(source, at)
         inside = match.end() if match else at
-        element = Element(tag, attributes, parser.CurrentLineNumber, at, inside)
+        element = Element(tag, attributes, parser.CurrentLineNumber, at, inside, file=file)
         (stack[-1].children if stack else root).append(element)
         stack.append(element)
         if len(stack) > _TOO_DEEP:

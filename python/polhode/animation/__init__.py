@@ -39,7 +39,8 @@ def animate(
     path : str or os.PathLike
         ``.html`` is an interactive page that needs no network: the body, its principal axes, ω, L and their
         paths in space, and the path of ω on the ellipsoid of inertia in the body; with a slider for time, and
-        views that turn with the pointer. ``.gif`` and ``.mp4`` need matplotlib, the latter also ffmpeg.
+        views that turn with the pointer. ``.gif`` and ``.mp4`` need matplotlib, the latter also ffmpeg, which
+        the extra ``film`` brings.
     shape : (vertices, faces), optional
         A mesh of the body in its frame, (n, 3) and (m, 3). By default the uniform box that has its inertia.
     frames : int, optional

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -31,26 +32,43 @@ def film(scene: Scene, file: Path) -> None:
     scene : Scene
         What is shown.
     file : pathlib.Path
-        Ends in ``.gif`` or ``.mp4``; the latter needs the program ffmpeg.
+        Ends in ``.gif`` or ``.mp4``; the latter needs the program ffmpeg, which the extra ``film`` brings.
     """
     animation: Any = require("matplotlib.animation", extra="plot", purpose="a film")
     figures: Any = require("matplotlib.figure", extra="plot", purpose="a film")
     rate = max(1.0, len(scene.t) / scene.duration)
     if file.suffix.lower() == ".gif":
         writer = animation.PillowWriter(fps=rate)
-    elif animation.writers.is_available("ffmpeg"):
-        writer = animation.FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
+        program = "ffmpeg"
     else:
-        raise FileNotFoundError(
-            f"path: {file} needs the program ffmpeg, which was not found; a .gif or .html does not"
-        )
+        program = _ffmpeg(file)
+        writer = animation.FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
     figure = figures.Figure(figsize=(_SIZE, _SIZE), dpi=_DPI)
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", computed_zorder=False)
-    with writer.saving(figure, str(file), dpi=_DPI):
+    settings: Any = require("matplotlib", extra="plot", purpose="a film")
+    with (
+        settings.rc_context({"animation.ffmpeg_path": program}),
+        writer.saving(figure, str(file), dpi=_DPI),
+    ):
         for frame in range(len(scene.t)):
             ax.clear()
             _draw(ax, scene, frame)
             writer.grab_frame()
+
+
+def _ffmpeg(file: Path) -> str:
+    """Find the program ffmpeg: that of the system, or the one that the extra brings."""
+    found = shutil.which("ffmpeg")
+    if found is not None:
+        return found
+    try:
+        carrier: Any = require("imageio_ffmpeg", extra="film", purpose=f"path: {file}")
+        return str(carrier.get_ffmpeg_exe())
+    except (ModuleNotFoundError, RuntimeError):
+        raise FileNotFoundError(
+            f'path: {file} needs the program ffmpeg: pip install "polhode[film]" brings it; '
+            "a .gif or .html needs none"
+        ) from None
 
 
 def _draw(ax: Any, scene: Scene, frame: int) -> None:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode.plot._triangles import cut
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
@@ -19,6 +21,10 @@ __all__ = ["Shape", "equivalent_box", "given_shape"]
 _LIGHT_TINTS = ((158, 197, 224), (240, 190, 150), (158, 214, 196))
 _DARK_TINTS = ((110, 160, 200), (222, 150, 96), (98, 178, 150))
 _PLAIN = (199, 212, 230)
+_PIECES = 24
+"""Of the size of a mesh: triangles are cut to that, for their order by depth."""
+_MOST = 10_000
+"""Pieces that a browser still turns smoothly."""
 # The corners of a face of the unit cube whose normal is +e3, counterclockwise seen from outside.
 _FACE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
@@ -82,4 +88,7 @@ def given_shape(vertices: ArrayLike, faces: ArrayLike, about: Floats) -> Shape:
     if corners.size and not 0 <= corners.min() <= corners.max() < len(points):
         wrong = corners.min() if corners.min() < 0 else corners.max()
         raise ValueError(f"shape: a face names vertex {wrong}, but they run from 0 to {len(points) - 1}")
-    return Shape(points - about, corners.astype(np.int64), np.tile(_PLAIN, (len(corners), 1)))
+    size = max(float(np.ptp(points, axis=0).max(initial=0.0)), float(np.finfo(float).tiny))
+    pieces, _ = cut(points[corners.astype(np.int64)], size / _PIECES, at_most=max(_MOST, len(corners)))
+    corner, index = np.unique(pieces.reshape(-1, 3), axis=0, return_inverse=True)
+    return Shape(corner - about, index.reshape(-1, 3), np.tile(_PLAIN, (len(pieces), 1)))

@@ -37,7 +37,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
         Whether no link fails; of the fixed file where one is written.
     """
     _check_options(file, options)
-    robot = _read(file)
+    robot = _read(file, options)
     failing = robots.FAILURES | ({"suspect"} if options.strict else frozenset())
     verdicts = robots.check(robot, options.packages)
     report = Report()
@@ -78,19 +78,20 @@ def _check_options(file: Path, options: CheckOptions) -> None:
         raise PolhodeError(f"--fix: {options.fix} is the file that is read; write to another one")
 
 
-def _read(file: Path) -> robots.Robot:
+def _read(file: Path, options: CheckOptions) -> robots.Robot:
     if file != STDIN:
-        return robots.read_robot(file)
+        return robots.read_robot(file, options.packages)
     source = sys.stdin.buffer.read()
     if not source:
         raise FileFormatError("-: nothing came on standard input; send a file into it")
-    return robots.parse_robot(source, name=shown(file), folder=Path.cwd())
+    return robots.parse_robot(source, name=shown(file), folder=Path.cwd(), packages=options.packages)
 
 
 def _row(verdict: robots.Verdict) -> dict[str, Any]:
     return {
         "link": verdict.name,
         "line": verdict.line,
+        "file": verdict.file,
         "mass": verdict.mass,
         "moments": verdict.moments,
         "shape_moments": verdict.shape_moments,
@@ -114,12 +115,15 @@ def _fix(
         return False
     source = robots.fixed(robot, verdicts, failing)
     path.write_bytes(source)
-    rows, left = [], []
+    rows, left, elsewhere = [], [], []
     for link, verdict in zip(robot.links, verdicts, strict=True):
         if verdict.verdict not in failing:
             continue
         if verdict.better is None or link.inertial is None:
             left.append(verdict.name)
+            continue
+        if link.rewrite is None:
+            elsewhere.append(f"{verdict.name} ({verdict.file})")
             continue
         rows.append(
             {
@@ -143,5 +147,8 @@ def _fix(
     report.notes.append(f"wrote {path}: {len(rows)} links changed, everything else as it stands")
     if left:
         report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(left)}")
-    again = robots.check(robots.parse_robot(source, name=str(path), folder=robot.folder), options.packages)
+    if elsewhere:
+        report.notes.append(f"left as they are, to be fixed in their own files: {', '.join(elsewhere)}")
+    fixed = robots.parse_robot(source, name=str(path), folder=robot.folder, packages=options.packages)
+    again = robots.check(fixed, options.packages)
     return not any(verdict.verdict in failing for verdict in again)

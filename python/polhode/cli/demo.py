@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 __all__ = ["run"]
 
-# One turn a second about the stem, and a breath of spin about the other two axes. Steel, in kg/m^3.
+# One turn a second about the stem, and a breath of spin about the other two axes. Steel.
 SPIN = (0.01, 2.0 * np.pi, 0.0)
 DURATION = 20.0
 SAMPLES = 2001
-STEEL = "7850"
+STEEL = "7850 kg/m^3"
 
 GOOD, BAD = 0, 1
 
@@ -77,8 +77,8 @@ def run(directory: Path, console: Console) -> int:
         'polhode report part.stl --length-unit mm --density "2.7 g/cm^3"',
         "polhode check robot.urdf --fix better.urdf",
         "polhode molecule water.xyz",
-        "polhode spin part.stl --length-unit mm --axes principal --omega 0.01 6 0 --until 20 --save spin.png",
-        f"polhode spin {mesh_file} --length-unit mm --omega 0 1 5 --until 10 --save spin.csv",
+        f"polhode spin {mesh_file} --length-unit mm --axes principal --omega 0.01 6 0 --until 20 "
+        "--save racket.html",
         "polhode --help",
     ):
         write(console, f"  {command}")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +12,15 @@ from polhode import RigidBody
 from polhode.cli.progress import reading_progress
 from polhode.cli.quantities import has_unit, quantity
 from polhode.cli.source import as_file
-from polhode.errors import PolhodeError
-from polhode.io import MOLECULE_SUFFIX, MeshSolid, molecule_isotopes, read_xyz, solid_from_file
+from polhode.errors import MeshError, PolhodeError
+from polhode.io import MOLECULE_SUFFIX, MeshSolid, molecule_isotopes, read_mesh, read_xyz, solid_from_file
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from polhode.cli.options import BodyOptions
+    from polhode.io import Mesh
     from polhode.molecules import Isotope
 
 __all__ = ["LoadedBody", "in_file_unit", "load_body"]
@@ -45,7 +47,9 @@ class LoadedBody:
     assumed : bool
         Whether neither density nor mass was given, and density 1 was taken.
     notes : tuple of str
-        What was done to the mesh on request.
+        How what was asked for was understood, and what was done to the mesh.
+    shape : Mesh or None
+        The mesh in the unit of `body`, where it was asked for.
     """
 
     body: RigidBody
@@ -57,6 +61,7 @@ class LoadedBody:
     volume: float = float("nan")
     assumed: bool = False
     notes: tuple[str, ...] = ()
+    shape: Mesh | None = None
 
     @property
     def moment_unit(self) -> str:
@@ -69,12 +74,17 @@ class LoadedBody:
         return float(np.linalg.norm(self.body.center_of_mass) + self.body.radii_of_gyration.max())
 
 
-def load_body(file: Path, options: BodyOptions) -> LoadedBody:
-    """Read the body in a file; ``-`` is standard input."""
+def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
+    """Read the body in a file; ``-`` is standard input. A shape is kept where it is to be drawn."""
     with as_file(file) as path:
         if path.suffix.lower() == MOLECULE_SUFFIX:
             return _load_molecule(path, options)
-        return _load_mesh(path, options)
+        loaded = _load_mesh(path, options)
+        if not with_shape:
+            return loaded
+        mesh = read_mesh(path, index_base=options.index_base, weld=_weld(options))
+        scale = 1.0 if options.length_unit is None else metres_per(options.length_unit)
+        return replace(loaded, shape=mesh._replace(vertices=mesh.vertices * scale))
 
 
 def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
@@ -87,27 +97,21 @@ def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
     assumed = options.density is None and options.mass is None
     density = 1.0 if assumed else _amount(options.density, "kg/m^3", "--density", unit)
     mass = _amount(options.mass, "kg", "--mass", unit)
-    weld = 0.0
-    if options.weld is not None:
-        weld = in_file_unit(options.weld, "--weld", unit)
-        if not weld > 0.0:
-            raise PolhodeError(
-                f"--weld: {weld:g} is not a positive length; leave it out to join equal corners"
-            )
-    with reading_progress(file) as tell:
-        solid = solid_from_file(
-            file,
-            density=density,
-            mass=mass,
-            scale=scale,
-            weld=weld,
-            orient=options.orient,
-            index_base=options.index_base,
-            progress=tell,
-        )
-    notes: tuple[str, ...] = ()
+    weld = _weld(options)
+    try:
+        solid = _solid(file, options, density, mass, scale, weld)
+    except MeshError as error:
+        raise MeshError(_in_options(str(error))) from None
+    provenance = solid.body.provenance
+    notes = _taken(options, unit)
     if weld != 0.0:
-        notes = (f"{solid.welded} corners were joined to others within {weld:g} (--weld)",)
+        notes.append(f"{solid.welded} corners were joined to others within {weld:g} (--weld)")
+    if provenance.closure:
+        share = 100.0 * float(provenance.volume_change) / solid.volume
+        notes.append(
+            f"the mesh is open; --closure {provenance.closure} closed it, which changed its volume by "
+            f"{share:.3g} %; the area is that of the file's triangles"
+        )
     return LoadedBody(
         body=solid.body,
         source=solid,
@@ -116,8 +120,56 @@ def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
         density=float(solid.body.mass) / solid.volume if density is None else density,
         volume=solid.volume,
         assumed=assumed,
-        notes=notes,
+        notes=tuple(notes),
     )
+
+
+def _solid(
+    file: Path, options: BodyOptions, density: float | None, mass: float | None, scale: float, weld: float
+) -> MeshSolid:
+    with reading_progress(file) as tell:
+        return solid_from_file(
+            file,
+            density=density,
+            mass=mass,
+            scale=scale,
+            weld=weld,
+            closure=options.closure,
+            orient=options.orient,
+            index_base=options.index_base,
+            progress=tell,
+        )
+
+
+def _weld(options: BodyOptions) -> float:
+    """Read the length within which corners are joined, in the unit of the file; 0 for equal ones alone."""
+    if options.weld is None:
+        return 0.0
+    weld = in_file_unit(options.weld, "--weld", options.length_unit)
+    if not weld > 0.0:
+        raise PolhodeError(f"--weld: {weld:g} is not a positive length; leave it out to join equal corners")
+    return weld
+
+
+def _taken(options: BodyOptions, unit: str | None) -> list[str]:
+    """Say in which unit bare numbers were taken."""
+    if unit is None:
+        return []  # the report says that no unit is known
+    return [
+        f"{option} {text.strip()} has no unit: {si} was taken"
+        for option, text, si in (("--density", options.density, "kg/m^3"), ("--mass", options.mass, "kg"))
+        if text is not None and not has_unit(text)
+    ]
+
+
+def _in_options(message: str) -> str:
+    """Name the way out as the command line has it."""
+    for argument, option in (
+        ('closure="caps" or "hull"', "--closure caps or --closure hull"),
+        ("pass orient=True", "pass --orient"),
+    ):
+        message = message.replace(argument, option)
+    return re.sub(r"\bweld=(?=\S+ joins)", "--weld ", message)
 
 
 def in_file_unit(text: str, option: str, unit: str | None) -> float:
@@ -146,6 +198,7 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         ("--density", options.density is not None, "whose atoms have their own masses"),
         ("--mass", options.mass is not None, "whose atoms have their own masses"),
         ("--weld", options.weld is not None, "not a mesh"),
+        ("--closure", options.closure is not None, "not a mesh"),
         ("--orient", options.orient, "not a mesh"),
         ("--index-base", options.index_base != 1, "not a mesh"),
     ):

@@ -46,15 +46,19 @@ class BodyOptions:
     Attributes
     ----------
     density
-        Density, as in "2.7 g/cm^3"; a bare number is kg/m^3.
+        Density, as in "2.7 g/cm^3"; a bare number is kg/m^3 where --length-unit is given, which the report
+        says, else per the file's own unit of volume.
     mass
-        Mass instead of density, as in "0.3 lb"; a bare number is kg.
+        Mass instead of density, as in "0.3 lb"; a bare number is kg where --length-unit is given.
     length_unit
         Unit of the file's coordinates; results are then in SI units. Without it all is in the file's own
         unit, and numbers on the command line are bare.
     weld
         Make corners at most this far apart one; a bare number is in the unit of the file. Without it only
         equal ones are.
+    closure
+        Close an open mesh: caps closes each hole by a fan of triangles, hull takes the convex hull. The
+        report says by how much that changes the volume; without it an open mesh is an error.
     orient
         Turn triangles that face inward; without it they are an error.
     index_base
@@ -65,6 +69,7 @@ class BodyOptions:
     mass: Annotated[str | None, Parameter(name="--mass")] = None
     length_unit: Annotated[LengthUnit | None, Parameter(name="--length-unit")] = None
     weld: Annotated[str | None, Parameter(name="--weld")] = None
+    closure: Annotated[Literal["caps", "hull"] | None, Parameter(name="--closure")] = None
     orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
     index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
 
@@ -164,7 +169,8 @@ class SpinOptions:
         Number of times, start and end included.
     save
         Where to write the motion: a picture (.png, .pdf, .svg), an animation (.html, .gif, .mp4) or its
-        numbers (.csv, .npz, .json). May be repeated.
+        numbers (.csv, .npz, .json). May be repeated. A mesh is drawn as it is, of more than 10 000
+        triangles a coarser one of it; what has none as the box of the same inertia.
     """
 
     moments: Annotated[

@@ -71,7 +71,7 @@ def quantity(text: str, unit: str, option: str) -> float:
             f"{option}: {text!r} is not a number with or without a unit; write {_example(unit)}"
         )
     value = float(match["number"])
-    if match["unit"] is not None:
+    if match["unit"] not in (None, unit):
         value = float(Decimal(match["number"]) * _factor(match["unit"], unit, option))
     if not math.isfinite(value):
         raise PolhodeError(f"{option}: {text!r} is beyond the range of numbers; check the exponent")

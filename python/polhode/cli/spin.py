@@ -13,7 +13,7 @@ from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.quantities import quantities, quantity, vector
 from polhode.cli.source import shown
 from polhode.cli.spin_kinds import FreeKind, TopKind
-from polhode.cli.spin_output import check_paths, save
+from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
 
@@ -76,8 +76,13 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     )
     if np.isnan(angles).any():
         report.notes.append("at the end theta is 0 or 180 deg, where phi and psi are not defined one by one")
+    if not spin.save:
+        return report
+    part, note = drawable(loaded, options)
+    report.notes += [note] if note else []
+    title = "" if file is None else Path(shown(file)).name
     for path in spin.save:
-        save(trajectory, path, spin, title="" if file is None else Path(shown(file)).name)
+        save(trajectory, path, spin, title=title, part=part)
         report.notes.append(f"saved {path}")
     return report
 
@@ -113,7 +118,7 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
     if file is not None:
         if spin.center:
             raise PolhodeError("--center: the file tells where the centre of mass is; leave it out")
-        return load_body(file, options)
+        return load_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
     if spin.gravity is not None and (options.mass is None or not spin.center):
         raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
     moments = vector(spin.moments, "kg m^2", "--moments")

@@ -2,25 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+import numpy as np
 
 from polhode._extras import require
 from polhode._files.trajectory import TRAJECTORY_SUFFIXES
 from polhode.animation import ANIMATION_SUFFIXES, animate
 from polhode.cli.progress import progress
 from polhode.errors import PolhodeError
+from polhode.plot._triangles import joined
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from polhode import Trajectory
-    from polhode.cli.options import SpinOptions
+    from numpy.typing import NDArray
 
-__all__ = ["check_paths", "save"]
+    from polhode import Trajectory
+    from polhode.cli.loading import LoadedBody
+    from polhode.cli.options import BodyOptions, SpinOptions
+
+    Part: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64]]
+
+__all__ = ["DRAWN", "check_paths", "drawable", "save"]
 
 PICTURE_SUFFIXES: Final = (".png", ".pdf", ".svg")
 _SUFFIXES: Final = (*PICTURE_SUFFIXES, *ANIMATION_SUFFIXES, *TRAJECTORY_SUFFIXES)
+DRAWN: Final = (*PICTURE_SUFFIXES, *ANIMATION_SUFFIXES)
+"""Of files that show the body itself."""
+_MOST: Final = 10_000
+"""Triangles that are drawn of a mesh."""
 _FRAMES: Final = 300
 """Pictures of an animation: ten seconds at thirty a second."""
 
@@ -34,8 +46,24 @@ def check_paths(paths: Sequence[Path]) -> None:
             raise PolhodeError(f"--save: there is no directory {path.parent}; create it first")
 
 
-def save(trajectory: Trajectory, path: Path, spin: SpinOptions, *, title: str) -> None:
-    """Write a motion in the form that the name asks for."""
+def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:
+    """Give the mesh as it is drawn, if there is one, and what is to be said of it."""
+    if loaded.shape is None:
+        return None, ""
+    vertices, faces, side = joined(loaded.shape.vertices, loaded.shape.faces, _MOST)
+    note = ""
+    if side > 0.0:
+        note = (
+            f"drawn coarser: {len(faces)} triangles for {len(loaded.shape.faces)}, corners within cells of "
+            f"{side:.3g} {loaded.length} joined; the numbers are those of the whole mesh"
+        )
+    if options.orient or options.closure is not None:  # a triangle is seen from its outside alone
+        faces = np.concatenate([faces, faces[:, ::-1]])
+    return (vertices, faces), note
+
+
+def save(trajectory: Trajectory, path: Path, spin: SpinOptions, *, title: str, part: Part | None) -> None:
+    """Write a motion in the form that the name asks for, the body drawn as `part` or as a box."""
     suffix = path.suffix.lower()
     if suffix in TRAJECTORY_SUFFIXES:
         trajectory.save(path)
@@ -46,18 +74,28 @@ def save(trajectory: Trajectory, path: Path, spin: SpinOptions, *, title: str) -
                 path,
                 frames=min(_FRAMES, len(trajectory)),
                 title=title or "Motion of a rigid body",
+                shape=part,
             )
     else:
-        _draw(trajectory, path, spin, title)
+        _draw(trajectory, path, spin, title, part)
 
 
-def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str) -> None:
+def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, part: Part | None) -> None:
     figure_module = require("matplotlib.figure", extra="plot", purpose=f"--save {path}:")
-    from polhode.plot import angular_velocity
+    from polhode.plot import angular_velocity, body, principal_axes
 
     # A figure of its own, outside pyplot: no window system is asked for.
-    figure = figure_module.Figure(figsize=(8.0, 4.5), layout="constrained")
+    figure = figure_module.Figure(figsize=(8.0 if part is None else 12.0, 4.5), layout="constrained")
+    place = figure.add_subplot() if part is None else figure.add_subplot(1, 3, (2, 3))
+    if part is not None:
+        vertices = part[0] - trajectory.body.center_of_mass
+        picture = figure.add_subplot(1, 3, 1, projection="3d", computed_zorder=False)
+        body(vertices, part[1], picture)
+        length = 1.06 * float(np.linalg.norm(vertices[part[1]], axis=-1).max())
+        principal_axes(trajectory.body, picture, length=length, center=np.zeros(3))
+        for name in "xyz":
+            getattr(picture, f"set_{name}lim")(-0.9 * length, 0.9 * length)
     frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
-    ax = angular_velocity(trajectory, figure.add_subplot(), frame=frame, degrees=spin.degrees)
+    ax = angular_velocity(trajectory, place, frame=frame, degrees=spin.degrees)
     ax.set_title(title, loc="left")
     figure.savefig(path, dpi=160)

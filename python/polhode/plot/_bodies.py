@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode._extras import require
-from polhode.plot._style import AXIS_COLORS, OUTLINE_COLOR, new_axes3d
+from polhode.plot._style import AXIS_COLORS, OUTLINE_COLOR, axes_3d
+from polhode.plot._triangles import cut
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -53,13 +54,12 @@ def body(
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
     art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="drawing")
-    if ax is None:
-        ax = new_axes3d()
+    ax = axes_3d(ax)
     points = np.asarray(vertices, dtype=np.float64)
     corners = np.asarray(faces, dtype=np.int64)
     size = max(float(np.ptp(points, axis=0).max()), float(np.finfo(float).tiny))
     normals = _unit_normals(points[corners])
-    pieces, owner = _cut(points[corners], size / _PIECES)
+    pieces, owner = cut(points[corners], size / _PIECES)
     brightness = 0.66 + 0.42 * (normals @ (_LIGHT / np.linalg.norm(_LIGHT)))
     colors = np.clip(brightness[:, np.newaxis] * _SURFACE, 0.0, 1.0)[owner]
     outline = _outline(points, corners, normals, size)
@@ -141,26 +141,6 @@ def _unit_normals(triangles: Floats) -> Floats:
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     unit: Floats = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
     return unit
-
-
-def _cut(triangles: Floats, longest: float) -> tuple[Floats, NDArray[np.int64]]:
-    """Triangles halved until no edge is longer than `longest`, and the triangle each piece comes from.
-
-    Matplotlib sorts polygons by the depth of their middles, which puts large ones in the wrong order.
-    """
-    owner = np.arange(len(triangles))
-    while True:
-        lengths = np.linalg.norm(triangles[:, [1, 2, 0]] - triangles, axis=2)
-        long = lengths.max(axis=1) > longest
-        if not long.any():
-            return triangles, owner
-        edge = lengths[long].argmax(axis=1)
-        row = np.arange(len(edge))
-        a, b, c = (triangles[long][row, (edge + k) % 3] for k in range(3))
-        middle = (a + b) / 2
-        halves = [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
-        triangles = np.concatenate([triangles[~long], *halves])
-        owner = np.concatenate([owner[~long], owner[long], owner[long]])
 
 
 def _outline(points: Floats, faces: NDArray[np.int64], normals: Floats, size: float) -> Floats:

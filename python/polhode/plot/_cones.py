@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _core
 from polhode.plot._ellipsoid import _beside, _one, _upright
-from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, new_axes3d
+from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_3d
 from polhode.plot._surfaces import arrow, fan, plain_frame
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     size = float(np.linalg.norm(momentum))
     if not size > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
-    ax = new_axes3d() if ax is None else ax
+    ax = axes_3d(ax)
     times = np.asarray(t, dtype=np.float64).reshape(-1)
     upright = _upright(momentum / size)
     now = motion.at(times[-1:])

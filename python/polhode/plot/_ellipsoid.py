@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _core
 from polhode.plot._bodies import principal_axes
-from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, new_axes3d
+from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_3d
 from polhode.plot._surfaces import arrow, curve_on, inertia_semi_axes, plain_frame, solid_ellipsoid
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def ellipsoid(
     """
     _one(body.shape, "body")
     new = ax is None
-    ax = new_axes3d() if ax is None else ax
+    ax = axes_3d(ax)
     middle = np.asarray(body.center_of_mass if center is None else center, dtype=np.float64)
     semi_axes = inertia_semi_axes(body.principal.moments)
     semi_axes *= size / semi_axes.max()
@@ -106,7 +106,7 @@ def polhodes(
         raise ValueError("body: its least moment is zero, so that its ellipsoid of inertia has no end")
     if not energy > 0.0:
         raise ValueError(f"energy: {energy} is not positive")
-    ax = new_axes3d() if ax is None else ax
+    ax = axes_3d(ax)
     ax.view_init(elev=18.0, azim=42.0)
     free = _core.RigidBody.from_principal(body.mass, moments)
     semi_axes = np.sqrt(2.0 * energy) * inertia_semi_axes(moments)
@@ -173,7 +173,7 @@ def poinsot(
         raise ValueError("motion: the body has a zero moment, and its ellipsoid no end")
     if not np.linalg.norm(motion.angular_momentum) > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
-    ax = new_axes3d() if ax is None else ax
+    ax = axes_3d(ax)
     upright = _upright(found.normal)
     herpolhode = found.contact @ upright.T
     ax.view_init(elev=17.0, azim=_beside(herpolhode[-1]))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from polhode.plot._style import AXIS_COLORS, AXIS_DASHES, new_axes, tidy
+from polhode.plot._style import AXIS_COLORS, AXIS_DASHES, axes_2d, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,8 +46,7 @@ def angular_velocity(
     -------
     matplotlib.axes.Axes
     """
-    if ax is None:
-        ax = new_axes()
+    ax = axes_2d(ax)
     omega = trajectory.omega
     if frame == "principal":
         omega = np.einsum("...ij,...ti->...tj", trajectory.body.principal.axes, omega)
@@ -87,8 +86,7 @@ def angular_momentum(
     -------
     matplotlib.axes.Axes
     """
-    if ax is None:
-        ax = new_axes()
+    ax = axes_2d(ax)
     spin = trajectory.angular_momentum(frame).spin
     _components(ax, trajectory, spin, [rf"$L_{i}$" for i in "xyz"])
     return _over_time(ax, time_unit, f"angular momentum in {frame} ({unit})")
@@ -121,8 +119,7 @@ def euler_angles(
     -------
     matplotlib.axes.Axes
     """
-    if ax is None:
-        ax = new_axes()
+    ax = axes_2d(ax)
     angles = np.rad2deg(trajectory.euler_angles(sequence, "nan", unwrap=unwrap))
     if not unwrap:
         jumps = np.abs(np.diff(angles, axis=-2)) > 180.0
@@ -160,8 +157,7 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
         raise ValueError(
             "trajectory: its load keeps neither the energy nor a component of the angular momentum"
         )
-    if ax is None:
-        ax = new_axes()
+    ax = axes_2d(ax)
     size = np.linalg.norm(trajectory.angular_momentum().spin, axis=-1)
     shown = [
         (kept.energy, None if kept.energy is None else np.abs(kept.energy), "energy", 0),

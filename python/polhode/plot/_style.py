@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, cast
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from polhode._extras import require
 
@@ -16,11 +17,13 @@ __all__ = [
     "MOMENTUM_COLOR",
     "OMEGA_COLOR",
     "OUTLINE_COLOR",
+    "axes_2d",
+    "axes_3d",
     "matplotlib",
-    "new_axes",
-    "new_axes3d",
     "tidy",
 ]
+
+_Given = TypeVar("_Given")
 
 AXIS_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
 """Blue, vermilion and bluish green: first, second and third axis."""
@@ -39,15 +42,28 @@ def matplotlib(module: str) -> Any:
     return require(f"matplotlib.{module}", extra="plot", purpose="drawing")
 
 
-def new_axes() -> Axes:
-    """Make axes in a new figure."""
+def axes_2d(ax: Axes | None) -> Axes:
+    """Give the axes to draw in, in a new figure where there are none."""
+    if ax is not None:
+        return _checked(ax)
     return cast("Axes", matplotlib("pyplot").subplots(layout="constrained")[1])
 
 
-def new_axes3d() -> Axes3D:
-    """Make axes of three dimensions in a new figure."""
+def axes_3d(ax: Axes3D | None) -> Axes3D:
+    """Give the axes of three dimensions to draw in, in a new figure where there are none."""
+    if ax is not None:
+        return _checked(ax)
     figure = matplotlib("pyplot").figure(layout="constrained")
     return cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
+
+
+def _checked(ax: _Given) -> _Given:
+    if isinstance(ax, str | PathLike):
+        raise TypeError(
+            f"ax: expected axes of matplotlib, got {str(ax)!r}; draw first and save the figure: "
+            f".figure.savefig({str(ax)!r}) of what this returns"
+        )
+    return ax
 
 
 def tidy(ax: Axes) -> Axes:

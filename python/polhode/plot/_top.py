@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode.plot._ellipsoid import _one, _upright
-from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, new_axes, new_axes3d, tidy
+from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_2d, axes_3d, tidy
 from polhode.plot._surfaces import arrow, curve_on, plain_frame, solid_ellipsoid
 
 if TYPE_CHECKING:
@@ -41,8 +41,7 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
     matplotlib.axes.Axes
     """
     _one(top.shape, "top")
-    if ax is None:
-        ax = new_axes()
+    ax = axes_2d(ax)
     low, high = top.nutation_limits
     inclination = np.linspace(0.0, np.pi, _SAMPLES + 2)[1:-1]
     potential = top.effective_potential(inclination)
@@ -98,8 +97,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
         raise ValueError(
             "top: without weight, or with its centre of mass at the fixed point, it does not nutate"
         )
-    if ax is None:
-        ax = new_axes3d()
+    ax = axes_3d(ax)
     ax.view_init(elev=40.0, azim=-55.0)
     path = top.at(t).point("center_of_mass") / arm @ _upright(-top.gravity / weight).T
     solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.35)

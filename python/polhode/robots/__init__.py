@@ -11,11 +11,13 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from polhode._files.content import content_format
 from polhode._files.xml_source import Edit, Element, edited, parse_xml
 from polhode.errors import FileFormatError
 from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.geometry import GeometryReader
 from polhode.robots.model import Inertial, Link, Place, Robot, Shape
+from polhode.robots.sources import Addresses, Sources
 from polhode.robots.verdict import FAILURES, Verdict, judge
 
 if TYPE_CHECKING:
@@ -38,14 +40,17 @@ __all__ = [
 _FORMATS = {"robot": ("URDF", urdf), "sdf": ("SDF", sdf), "mujoco": ("MJCF", mjcf)}
 
 
-def read_robot(path: str | os.PathLike[str]) -> Robot:
+def read_robot(path: str | os.PathLike[str], packages: Sequence[str | os.PathLike[str]] = ()) -> Robot:
     """Read a robot file.
 
     Parameters
     ----------
     path : str or os.PathLike
         URDF, SDF or MJCF; its root element tells which. Declarations of entities and document types are
-        refused.
+        refused. Files that it includes, and models that it attaches, are read too; nothing is fetched from
+        a network.
+    packages : sequence of str or os.PathLike
+        Folders that hold the packages of ``package://`` and ``model://`` addresses, see :func:`check`.
 
     Returns
     -------
@@ -61,10 +66,16 @@ def read_robot(path: str | os.PathLike[str]) -> Robot:
     file = Path(path)
     if file.is_dir():
         raise FileFormatError(f"{file}: is a directory; name a file in it")
-    return parse_robot(file.read_bytes(), name=str(file), folder=file.absolute().parent)
+    return parse_robot(file.read_bytes(), name=str(file), folder=file.absolute().parent, packages=packages)
 
 
-def parse_robot(source: bytes, *, name: str, folder: str | os.PathLike[str]) -> Robot:
+def parse_robot(
+    source: bytes,
+    *,
+    name: str,
+    folder: str | os.PathLike[str],
+    packages: Sequence[str | os.PathLike[str]] = (),
+) -> Robot:
     """Read a robot from the bytes of its file.
 
     Parameters
@@ -74,7 +85,9 @@ def parse_robot(source: bytes, *, name: str, folder: str | os.PathLike[str]) -> 
     name : str
         For what is wrong with it.
     folder : str or os.PathLike
-        Where relative addresses of meshes start.
+        Where relative addresses of meshes and included files start.
+    packages : sequence of str or os.PathLike
+        See :func:`check`.
 
     Returns
     -------
@@ -91,6 +104,9 @@ def parse_robot(source: bytes, *, name: str, folder: str | os.PathLike[str]) -> 
     """
     if not source.strip():
         raise FileFormatError(f"{name}: the file is empty")
+    body_format, _ = content_format(source[:4096], len(source))
+    if body_format is not None:
+        raise FileFormatError(f"{name}: is {body_format}, not a robot; polhode report reads it")
     root = parse_xml(source, name)
     if root.tag not in _FORMATS:
         raise FileFormatError(
@@ -100,14 +116,17 @@ def parse_robot(source: bytes, *, name: str, folder: str | os.PathLike[str]) -> 
     unexpanded = next((e for e in _walk(root) if e.startswith("xacro:")), None)
     if unexpanded is not None:
         raise FileFormatError(f"{name}: holds <{unexpanded}>; expand it first: xacro {name} > out.urdf")
+    sources = Sources(Path(folder), Addresses(Path(folder), [Path(package) for package in packages]))
     try:
-        links = tuple(reader.links(root))
+        links = tuple(reader.links(root, sources))
     except ValueError as error:
         raise FileFormatError(f"{name}: {error}") from None
+    except RecursionError:
+        raise FileFormatError(f"{name}: its parts are nested beyond reason; check the file") from None
     if not links:
         raise FileFormatError(f"{name}: holds no link; check the file")
-    included = sum(1 for tag in _walk(root) if tag in ("include", "attach", "replicate"))
-    notes = (f"{included} included or attached parts are not followed",) if included else ()
+    read = [f"read too: {', '.join(sources.names)}"] if sources.names else []
+    notes = (*read, *sources.notes)
     model = root if format_name != "SDF" else next(root.descendants("model"), root)
     title = model.attributes.get("name", model.attributes.get("model", ""))
     return Robot(format_name, title, links, Path(folder), source, notes)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -12,9 +10,11 @@ import numpy as np
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
 from polhode.io import read_mesh
+from polhode.robots.sources import Addresses
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -32,7 +32,6 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
     "capsule": lambda size: solids.capsule(size[0], size[1], density=1.0),
     "ellipsoid": lambda size: solids.ellipsoid(size, density=1.0),
 }
-_SEARCH_PATHS: Final = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH")
 
 
 @dataclass(frozen=True)
@@ -71,24 +70,18 @@ class GeometryReader:
     """
 
     def __init__(self, folder: Path, packages: Sequence[Path] = ()) -> None:
-        from_environment = [
-            Path(entry)
-            for name in _SEARCH_PATHS
-            for entry in os.environ.get(name, "").split(os.pathsep)
-            if entry
-        ]
-        self._folder = folder
-        self._roots = [*packages, *from_environment, folder, *folder.parents]
-        self._meshes: dict[str, Mesh | str] = {}
+        self._folder, self._addresses = folder, Addresses(folder, packages)
+        self._meshes: dict[tuple[Path, str], Mesh | str] = {}
 
     def read(self, link: Link) -> Geometry:
         """Take the shapes of a link together."""
         notes: dict[str, None] = {}
-        boxes = [self._box(shape, notes) for shape in link.shapes]
+        folder = link.folder or self._folder
+        boxes = [self._box(shape, folder, notes) for shape in link.shapes]
         body, role = None, ""
         for role in ("collision", "visual"):
             shapes = [shape for shape in link.shapes if shape.role == role]
-            bodies = [self._body(shape, notes) for shape in shapes]
+            bodies = [self._body(shape, folder, notes) for shape in shapes]
             parts = [part for part in bodies if part is not None]
             if parts and len(parts) == len(bodies):
                 body = sum(parts[1:], start=parts[0])
@@ -100,10 +93,10 @@ class GeometryReader:
         high = np.max([box[1] for box in known], axis=0)
         return Geometry(body, role, low, high, tuple(notes))
 
-    def _body(self, shape: Shape, notes: dict[str, None]) -> RigidBody | None:
+    def _body(self, shape: Shape, folder: Path, notes: dict[str, None]) -> RigidBody | None:
         solid: RigidBody | None
         if shape.kind == "mesh":
-            solid = self._mesh_body(shape, notes)
+            solid = self._mesh_body(shape, folder, notes)
         elif shape.kind in _SOLIDS:
             try:
                 solid = _SOLIDS[shape.kind](shape.size)
@@ -121,8 +114,8 @@ class GeometryReader:
         placed = solid.rotated(_quaternion(shape.place.rotation)).translated(shape.place.position)
         return placed.scaled(mass=weight)
 
-    def _mesh_body(self, shape: Shape, notes: dict[str, None]) -> RigidBody | None:
-        mesh = self._mesh(shape, notes)
+    def _mesh_body(self, shape: Shape, folder: Path, notes: dict[str, None]) -> RigidBody | None:
+        mesh = self._mesh(shape, folder, notes)
         if mesh is None:
             return None
         vertices = mesh.vertices * np.array(shape.size)
@@ -138,45 +131,30 @@ class GeometryReader:
         notes[f"mesh {shape.mesh} does not bound a solid: its convex hull was taken"] = None
         return hull
 
-    def _mesh(self, shape: Shape, notes: dict[str, None]) -> Mesh | None:
-        if shape.mesh not in self._meshes:
-            self._meshes[shape.mesh] = self._load(shape.mesh)
-        found = self._meshes[shape.mesh]
+    def _mesh(self, shape: Shape, folder: Path, notes: dict[str, None]) -> Mesh | None:
+        key = (folder, shape.mesh)
+        if key not in self._meshes:
+            self._meshes[key] = self._load(shape.mesh, folder)
+        found = self._meshes[key]
         if isinstance(found, str):
             notes[found] = None
             return None
         return found
 
-    def _load(self, address: str) -> Mesh | str:
-        path = self._path(address)
-        if path is None:
+    def _load(self, address: str, folder: Path) -> Mesh | str:
+        path = self._addresses.find(address, folder)
+        if path is None or not path.is_file():
             return f"mesh {address or '(without a name)'} was not found"
         try:
             return read_mesh(path)
         except (PolhodeError, OSError, ModuleNotFoundError) as error:
             return f"mesh {address}: {error}"
 
-    def _path(self, address: str) -> Path | None:
-        scheme, separator, rest = address.partition("://")
-        if not address:
-            candidates = []
-        elif not separator:
-            candidates = [self._folder / address]
-        elif scheme == "file":
-            candidates = [Path(rest)]
-        elif scheme in ("package", "model"):
-            name, _, inside = rest.partition("/")
-            candidates = [root / name / inside for root in self._roots]
-            candidates += [root / inside for root in self._roots if root.name == name]
-        else:
-            candidates = []
-        return next((path for path in candidates if path.is_file()), None)
-
-    def _box(self, shape: Shape, notes: dict[str, None]) -> tuple[Floats, Floats] | None:
+    def _box(self, shape: Shape, folder: Path, notes: dict[str, None]) -> tuple[Floats, Floats] | None:
         """Opposite corners of the box along the axes of the link around a shape."""
         rotation, position = shape.place
         if shape.kind == "mesh":
-            mesh = self._mesh(shape, notes)
+            mesh = self._mesh(shape, folder, notes)
             if mesh is None or not len(mesh.faces):
                 return None
             corners = mesh.vertices[np.unique(mesh.faces)] * np.array(shape.size) @ rotation.T

@@ -15,10 +15,14 @@ from polhode import euler_angles
 from polhode._core import rotate
 from polhode._files.xml_source import Edit, Element, remove_attribute, set_attribute
 from polhode.errors import FileFormatError
+from polhode.robots.mjcf_parts import copies, expand_includes
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
+
+    from polhode.robots.sources import Sources
 
 __all__ = ["links"]
 
@@ -27,32 +31,46 @@ _HALF_LENGTHS = {"sphere": 1, "ellipsoid": 3, "box": 3, "cylinder": 2, "capsule"
 _WATER = "1000"
 
 
-def links(root: Element) -> Iterator[Link]:
-    """Read every body below the world."""
-    reader = _Reader(root)
+def links(root: Element, sources: Sources) -> Iterator[Link]:
+    """Read every body below the world, those of included files and attached models too."""
+    reader = _Reader(root, sources.folder, sources)
+    made = sum(1 for tag in ("composite", "flexcomp") for _ in root.descendants(tag))
+    if made:
+        sources.notes[f"{made} composite or flexcomp parts make bodies that are not judged"] = None
     for world in root.all("worldbody"):
-        for body, _, inherited in reader.members(world, "body", Place.here(), None):
-            yield from reader.bodies(body, inherited)
+        yield from reader.below(world, None)
 
 
 class _Reader:
-    """A document's compiler settings, default classes and meshes."""
+    """A model's compiler settings, default classes and meshes."""
 
-    def __init__(self, root: Element) -> None:
+    def __init__(self, root: Element, folder: Path, sources: Sources, prefix: str = "") -> None:
+        expand_includes(root, folder, sources)
+        self.root, self.folder, self.sources, self.prefix = root, folder, sources, prefix
         settings = {k: v for compiler in root.all("compiler") for k, v in compiler.attributes.items()}
         self.in_radians = settings.get("angle", "degree") == "radian"
         self.sequence = settings.get("eulerseq", "xyz").swapcase()
         self.infers_always = settings.get("inertiafromgeom", "auto") == "true"
-        self.folder = settings.get("meshdir", settings.get("assetdir", ""))
+        self.mesh_folder = settings.get("meshdir", settings.get("assetdir", ""))
         self.geoms: dict[str, dict[str, str]] = {"main": {}}
         for default in root.all("default"):
             self._add_class(default, {}, default.attributes.get("class", "main"))
         self.meshes: dict[str, Element] = {}
+        self.models: dict[str, str] = {}
         for asset in root.all("asset"):
             for mesh in asset.all("mesh"):
                 file = mesh.attributes.get("file", "")
                 name = mesh.attributes.get("name", file.rpartition("/")[2].rpartition(".")[0])
                 self.meshes[name] = mesh
+            for model in asset.all("model"):
+                self._add_model(model)
+
+    def below(self, parent: Element, inherited: str | None) -> Iterator[Link]:
+        """Read the bodies and the attached models that hang on a body or the world."""
+        for child, _, name in self.members(parent, "body", Place.here(), inherited):
+            yield from self.bodies(child, name)
+        for attach, _, _ in self.members(parent, "attach", Place.here(), inherited):
+            yield from self._attached(attach)
 
     def bodies(self, body: Element, inherited: str | None) -> Iterator[Link]:
         """Read a body and those that hang on it."""
@@ -65,7 +83,7 @@ class _Reader:
             except FileFormatError as error:
                 problem = str(error)
         yield Link(
-            name=body.attributes.get("name", f"(body of line {body.line})"),
+            name=self.prefix + body.attributes.get("name", f"(body of {body.where})"),
             line=body.line,
             inertial=inertial,
             problem=problem,
@@ -74,10 +92,11 @@ class _Reader:
                 for geom, place, name in self.members(body, "geom", Place.here(), inherited)
             ),
             inferred=declared is None or self.infers_always,
-            rewrite=partial(_rewrite, declared) if declared is not None else None,
+            rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
+            file=body.file,
+            folder=self.folder,
         )
-        for child, _, name in self.members(body, "body", Place.here(), inherited):
-            yield from self.bodies(child, name)
+        yield from self.below(body, inherited)
 
     def members(
         self, parent: Element, tag: str, place: Place, inherited: str | None
@@ -89,6 +108,64 @@ class _Reader:
             elif child.tag == "frame":
                 inside = place.then(self._place(child, child.attributes))
                 yield from self.members(child, tag, inside, child.attributes.get("childclass", inherited))
+            elif child.tag == "replicate":
+                yield from self._copied(child, tag, place, inherited)
+
+    def _copied(
+        self, replicate: Element, tag: str, place: Place, inherited: str | None
+    ) -> Iterator[tuple[Element, Place, str | None]]:
+        """Give the elements of every copy; bodies once, as they are the same in all."""
+        attributes = replicate.attributes
+        turn = {"pos": attributes.get("offset", "0 0 0"), "euler": attributes.get("euler", "0 0 0")}
+        step = self._place(replicate, turn)
+        for copy in copies(replicate, step, place, self.sources):
+            inside = list(self.members(replicate, tag, copy, inherited))
+            yield from inside
+            if tag != "geom":
+                if inside:
+                    self.sources.notes["bodies within <replicate> are judged once, their copies not"] = None
+                return
+
+    def _add_model(self, model: Element) -> None:
+        file = model.attributes.get("file", "")
+        name = model.attributes.get("name")
+        if name is None:  # then it goes by the name that its own file gives it
+            name = self.sources.read(self.folder / file, file, model).attributes.get("model", "")
+        self.models[name] = file
+
+    def _attached(self, attach: Element) -> Iterator[Link]:
+        """Read what an ``<attach>`` brings: a body of another model with all below it, or all its bodies."""
+        name = attach.attributes.get("model", "")
+        if name not in self.models:
+            raise FileFormatError(
+                f"{attach.where}: <attach> of model {name!r}, which no <model> of the assets names; add it"
+            )
+        file = self.models[name]
+        path = self.folder / file
+        prefix = self.prefix + attach.attributes.get("prefix", "")
+        root = self.sources.read(path, file, attach)
+        with self.sources.inside(path, file, attach):
+            model = _Reader(root, path.parent, self.sources, prefix)
+            wanted = attach.attributes.get("body")
+            for world in root.all("worldbody"):
+                if wanted is None:
+                    yield from model.below(world, None)
+                    continue
+                found = [
+                    each for each in model.everything(world, None) if each[0].attributes.get("name") == wanted
+                ]
+                for body, inherited in found:
+                    yield from model.bodies(body, inherited)
+                if found:
+                    return
+            if wanted is not None:
+                raise FileFormatError(f"{attach.where}: {file} has no body {wanted!r}; correct the name")
+
+    def everything(self, parent: Element, inherited: str | None) -> Iterator[tuple[Element, str | None]]:
+        """Give every body below a body or the world, with the class it inherits."""
+        for body, _, name in self.members(parent, "body", Place.here(), inherited):
+            yield body, name
+            yield from self.everything(body, body.attributes.get("childclass", name))
 
     def _add_class(self, default: Element, inherited: dict[str, str], name: str) -> None:
         own = dict(inherited)
@@ -147,7 +224,7 @@ class _Reader:
                 return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass)
             scale = tuple(numbers(mesh, mesh.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
             file = mesh.attributes.get("file", "")
-            address = f"{self.folder.rstrip('/')}/{file}" if self.folder and file else file
+            address = f"{self.mesh_folder.rstrip('/')}/{file}" if self.mesh_folder and file else file
             return Shape("mesh", scale, place, "collision", address, density, mass)
         place, size = self._sized(geom, attributes, kind)
         return Shape(kind, size, frame.then(place), "collision", "", density, mass)
@@ -166,7 +243,7 @@ class _Reader:
             half = float(np.linalg.norm(along)) / 2.0
             size = [size[0], half] if needed == 2 else [size[0], size[min(1, len(size) - 1)], half]
         if len(size) < needed:
-            raise FileFormatError(f"line {geom.line}: a geom of type {kind} needs {needed} numbers of size")
+            raise FileFormatError(f"{geom.where}: a geom of type {kind} needs {needed} numbers of size")
         if kind == "box":
             return place, tuple(2.0 * x for x in size[:3])
         if kind in ("cylinder", "capsule"):
@@ -181,7 +258,7 @@ def _matrix(quaternion: Any) -> Any:
 def _unit(element: Element, vector: Any) -> Any:
     length = np.linalg.norm(vector)
     if not length > 0.0:
-        raise FileFormatError(f"line {element.line}: a direction of length zero; give one")
+        raise FileFormatError(f"{element.where}: a direction of length zero; give one")
     return vector / length
 
 

@@ -102,7 +102,12 @@ class Link:
     inferred : bool
         Whether a simulator takes the inertia from the geometry (MJCF without any, SDF where it says so).
     rewrite : callable, optional
-        Given the source and other mass properties, the edits that write them.
+        Given the source and other mass properties, the edits that write them; None where another file
+        declares them.
+    file : str
+        The file that it stands in, where that is included by the robot's own.
+    folder : pathlib.Path, optional
+        Where the relative addresses of its meshes start; that of the robot by default.
     """
 
     name: str
@@ -112,6 +117,8 @@ class Link:
     shapes: tuple[Shape, ...] = ()
     inferred: bool = False
     rewrite: Callable[[bytes, Inertial], list[Edit]] | None = field(default=None, compare=False)
+    file: str = ""
+    folder: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -157,5 +164,5 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
         wanted = (
             "a finite number" if count == 1 else f"{count or ''} finite numbers".replace("  ", " ").strip()
         )
-        raise FileFormatError(f"line {element.line}: {what} is {text!r} where {wanted} has to stand")
+        raise FileFormatError(f"{element.where}: {what} is {text!r} where {wanted} has to stand")
     return values

@@ -11,10 +11,14 @@ from polhode._core import rotate
 from polhode._files.xml_source import Edit, Element, set_text
 from polhode.errors import FileFormatError
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers
+from polhode.robots.sdf_include import included
 from polhode.robots.urdf import roll_pitch_yaw, tensor_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
+
+    from polhode.robots.sources import Sources
 
 __all__ = ["links"]
 
@@ -28,9 +32,19 @@ _SIZES = {
 }
 
 
-def links(root: Element) -> Iterator[Link]:
-    """Read the links of every model."""
-    for element in root.descendants("link"):
+def links(root: Element, sources: Sources) -> Iterator[Link]:
+    """Read the links of every model, those of included files too."""
+    return _below(root, sources, sources.folder, "")
+
+
+def _below(parent: Element, sources: Sources, folder: Path, prefix: str) -> Iterator[Link]:
+    for element in parent.children:
+        if element.tag == "include" and element.find("uri") is not None:
+            yield from included(element, sources, folder, prefix, _below)
+            continue
+        if element.tag != "link":
+            yield from _below(element, sources, folder, prefix)
+            continue
         inertial, problem = None, ""
         declared = element.find("inertial")
         inferred = declared is not None and declared.attributes.get("auto", "false").lower() in ("true", "1")
@@ -40,13 +54,15 @@ def links(root: Element) -> Iterator[Link]:
             except FileFormatError as error:
                 problem = str(error)
         yield Link(
-            name=element.attributes.get("name", "(without a name)"),
+            name=prefix + element.attributes.get("name", "(without a name)"),
             line=element.line,
             inertial=inertial,
             problem=problem,
             shapes=tuple(_shapes(element)),
             inferred=inferred,
-            rewrite=partial(_rewrite, declared) if declared is not None else None,
+            rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
+            file=element.file,
+            folder=folder,
         )
 
 
@@ -55,7 +71,7 @@ def _pose(element: Element | None) -> Place:
         return Place.here()
     if element.attributes.get("relative_to"):
         raise FileFormatError(
-            f"line {element.line}: a pose relative to {element.attributes['relative_to']!r} is not followed; "
+            f"{element.where}: a pose relative to {element.attributes['relative_to']!r} is not followed; "
             "give it in the link"
         )
     if element.attributes.get("rotation_format", "euler_rpy") == "quat_xyzw":
@@ -71,7 +87,7 @@ def _pose(element: Element | None) -> Place:
 def _value(parent: Element, name: str, count: int, default: str | None = None) -> tuple[float, ...]:
     element = parent.find(name)
     if element is None and default is None:
-        raise FileFormatError(f"line {parent.line}: <{parent.tag}> without <{name}>; add it")
+        raise FileFormatError(f"{parent.where}: <{parent.tag}> without <{name}>; add it")
     text = default if element is None else element.text
     values: tuple[float, ...] = tuple(numbers(element or parent, text, count, name).tolist())
     return values

@@ -19,12 +19,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from polhode.robots.sources import Sources
+
 __all__ = ["links", "roll_pitch_yaw", "tensor_text"]
 
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
-def links(root: Element) -> Iterator[Link]:
+def links(root: Element, sources: Sources) -> Iterator[Link]:
     """Read the links of a robot."""
     for element in root.all("link"):
         inertial, problem = None, ""
@@ -40,7 +42,9 @@ def links(root: Element) -> Iterator[Link]:
             inertial=inertial,
             problem=problem,
             shapes=tuple(_shapes(element)),
-            rewrite=partial(_rewrite, declared) if declared is not None else None,
+            rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
+            file=element.file,
+            folder=sources.folder,
         )
 
 
@@ -71,7 +75,7 @@ def _inertial(element: Element) -> Inertial:
     mass, inertia = element.find("mass"), element.find("inertia")
     if mass is None or inertia is None:
         missing = "mass" if mass is None else "inertia"
-        raise FileFormatError(f"line {element.line}: <inertial> without <{missing}>; add it")
+        raise FileFormatError(f"{element.where}: <inertial> without <{missing}>; add it")
     (value,) = numbers(mass, mass.attributes.get("value"), 1, "mass value")
     xx, yy, zz, xy, xz, yz = (numbers(inertia, inertia.attributes.get(name), 1, name)[0] for name in _MOMENTS)
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

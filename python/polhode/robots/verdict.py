@@ -63,6 +63,8 @@ class Verdict(NamedTuple):
         What could not be told about the geometry.
     better : Inertial or None
         What to declare instead: that of the shape, or the nearest tensor that a body has.
+    file : str
+        The file that the link stands in, where that is included by the robot's own.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Verdict(NamedTuple):
     shapes: str = ""
     notes: tuple[str, ...] = ()
     better: Inertial | None = None
+    file: str = ""
 
 
 def judge(links: Sequence[Link], geometry: GeometryReader) -> list[Verdict]:
@@ -92,7 +95,7 @@ def judge(links: Sequence[Link], geometry: GeometryReader) -> list[Verdict]:
         In the order of the links.
     """
     copied = _placeholders(links)
-    return [_judge(link, geometry.read(link), copied) for link in links]
+    return [_judge(link, geometry.read(link), copied)._replace(file=link.file) for link in links]
 
 
 def _placeholders(links: Sequence[Link]) -> dict[float, int]:

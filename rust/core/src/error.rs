@@ -489,6 +489,19 @@ pub enum Error {
         /// A method that can.
         instead: &'static str,
     },
+    /// A body whose motion about its fixed origin is not known in closed form.
+    #[error(
+        "method=\"exact\" needs a symmetric top whose axis passes through the origin: {lack}, by {relative:.2e} where \
+         {allowed:.1e} is rounding; method=\"taylor\" can serve this run, and heavy_top(rtol=) takes a body for symmetric"
+    )]
+    NoClosedForm {
+        /// What it lacks.
+        lack: &'static str,
+        /// By how much: of the largest moment, or of the radius of gyration.
+        relative: f64,
+        /// What is allowed.
+        allowed: f64,
+    },
     /// A gravity gradient on a body whose origin is fixed.
     #[error(
         "the gravity gradient acts on a body in orbit, whose centre of mass is free: simulate it with \

@@ -2,19 +2,16 @@
 
 use std::convert::Infallible;
 
-use nalgebra::{Matrix3, Matrix4, Matrix6, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3};
 use numpy::ndarray::ArrayViewD;
-use numpy::{
-    IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
-    PyUntypedArrayMethods,
-};
-use polhode::motion::attitude;
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyInt, PyList, PyModule, PyTuple};
 
 use crate::errors::{at_row, to_py, wrong_shape};
+use crate::hints;
 use crate::stack::{Stack, tuple};
 
 /// Numbers that are sooner copied than handed over.
@@ -273,7 +270,8 @@ pub(crate) fn floats<'py>(
     if !"biuf".contains(&kind) {
         let dtype = array.getattr("dtype")?;
         return Err(PyTypeError::new_err(format!(
-            "{name}: expected real numbers, got dtype {dtype}"
+            "{name}: expected real numbers, got dtype {dtype}{}",
+            hints::for_kind(&kind)
         )));
     }
     let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "float64"))?;
@@ -324,42 +322,6 @@ pub(crate) fn read_indices<const N: usize>(
     Ok(Ok(rows))
 }
 
-/// Attitudes: quaternions (..., 4) as (x, y, z, w), or whatever has `as_quat()`; nothing is the identity.
-pub(crate) fn read_attitude(
-    object: Option<&Bound<'_, PyAny>>,
-    name: &'static str,
-) -> PyResult<Stack<UnitQuaternion<f64>>> {
-    let Some(object) = object.filter(|object| !object.is_none()) else {
-        return Ok(Stack::one(UnitQuaternion::identity()));
-    };
-    let components = read_quaternion(object, name)?;
-    try_rows(object.py(), &components, |q| {
-        attitude::from_components(name, q)
-    })
-}
-
-/// Quaternions (..., 4), unchecked, or what `as_quat()` returns.
-pub(crate) fn read_quaternion(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Stack<[f64; 4]>> {
-    match as_quaternion(object)? {
-        Some(quaternion) => read(&quaternion, name),
-        None => read(object, name),
-    }
-}
-
-/// Rotation matrices: (..., 3, 3), quaternions (..., 4), or whatever has `as_quat()`.
-pub(crate) fn read_rotation(
-    object: &Bound<'_, PyAny>,
-    name: &'static str,
-) -> PyResult<Stack<Matrix3<f64>>> {
-    if as_quaternion(object)?.is_none() {
-        let shape: Vec<usize> = as_array(object, name)?.getattr("shape")?.extract()?;
-        if !matches!(shape[..], [.., 4]) {
-            return read(object, name);
-        }
-    }
-    Ok(read_attitude(Some(object), name)?.map(|q| q.to_rotation_matrix().into_inner()))
-}
-
 /// `f` of each row, naming the row that fails.
 pub(crate) fn try_rows<T, R>(
     py: Python<'_>,
@@ -375,20 +337,6 @@ pub(crate) fn try_rows<T, R>(
         shape: stack.shape.clone(),
         rows,
     })
-}
-
-/// What `as_quat()` returns, where there is such a method.
-fn as_quaternion<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let has_none = object.is_exact_instance_of::<PyUntypedArray>()
-        || object.is_exact_instance_of::<PyTuple>()
-        || object.is_exact_instance_of::<PyList>();
-    if has_none {
-        return Ok(None);
-    }
-    object
-        .getattr_opt("as_quat")?
-        .map(|method| method.call0())
-        .transpose()
 }
 
 pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {

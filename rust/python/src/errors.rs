@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
+use crate::hints;
 use crate::stack::tuple;
 
 /// The exception for an error of the core.
@@ -65,7 +66,8 @@ pub(crate) fn wrong_shape(name: &str, expected: &[usize], got: &[usize]) -> PyEr
         format!("(..., {})", tail.join(", "))
     };
     PyValueError::new_err(format!(
-        "{name}: expected shape {expected}, got {}",
-        tuple(got)
+        "{name}: expected shape {expected}, got {}{}",
+        tuple(got),
+        hints::for_shape(name, got)
     ))
 }

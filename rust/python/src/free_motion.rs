@@ -11,7 +11,8 @@ use polhode::motion::free::{FreeMotion, RefinedPrincipal};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{read, read_attitude, write_of};
+use crate::arrays::{read, write_of};
+use crate::attitudes::read_attitude;
 use crate::closed_form::trajectory;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack, tuple};

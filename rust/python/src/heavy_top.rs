@@ -2,13 +2,14 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::RigidBody;
-use polhode::motion::attitude::{components, from_components};
+use polhode::motion::attitude::components;
 use polhode::motion::heavy_top::{HeavyTop, Nutation, PivotedTop};
 use polhode::principal::TOP_RTOL;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{numpy, read, read_quaternion, try_rows, write, write_numbers};
+use crate::arrays::{numpy, read, write, write_numbers};
+use crate::attitudes::read_attitude_exactly;
 use crate::closed_form::trajectory;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack, tuple};
@@ -129,22 +130,6 @@ impl PyHeavyTop {
     }
 }
 
-/// Attitudes to their last bit: normalising them in double precision would be another top, 1e-10 rad away after a million turns.
-fn read_exactly(
-    py: Python<'_>,
-    attitude: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Stack<UnitQuaternion<f64>>> {
-    let Some(attitude) = attitude else {
-        return Ok(Stack::one(UnitQuaternion::identity()));
-    };
-    let given = read_quaternion(attitude, "attitude")?;
-    try_rows(py, &given, |q| {
-        from_components("attitude", q)?;
-        let [x, y, z, w] = *q;
-        Ok(UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)))
-    })
-}
-
 #[pymethods]
 impl PyRigidBody {
     /// The motion of a symmetric top about the origin of the body frame, fixed in space, in uniform gravity: exact at any time.
@@ -199,7 +184,7 @@ impl PyRigidBody {
         rtol: f64,
     ) -> PyResult<PyHeavyTop> {
         let (omega, gravity) = (read(omega, "omega")?, read(gravity, "gravity")?);
-        let attitude = read_exactly(py, attitude)?;
+        let attitude = read_attitude_exactly(attitude, "attitude")?;
         PyHeavyTop::new(py, slf, &omega, &attitude, &gravity, rtol)
     }
 }

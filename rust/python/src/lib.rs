@@ -5,6 +5,7 @@
 //! | `arrays`, `meshes` | NumPy layout |
 //! | `stack` | shape arithmetic |
 //! | `errors` | which exception an error of the core becomes |
+//! | `hints` | the way out of mistakes that many make |
 //! | `interrupt` | Ctrl-C and progress |
 //! | `closed_form` | exact motions at many times |
 //! | `environment` | the variables that limit threads and name the instruction set |
@@ -15,6 +16,7 @@
 
 mod accumulator;
 mod arrays;
+mod attitudes;
 mod closed_form;
 mod environment;
 mod equimomental;
@@ -25,6 +27,7 @@ mod files;
 mod forms;
 mod free_motion;
 mod heavy_top;
+mod hints;
 mod interrupt;
 mod kinematics;
 mod laminae;

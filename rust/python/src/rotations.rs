@@ -8,7 +8,8 @@ use polhode::motion::euler_angles::Sequence;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{read, read_quaternion, try_rows, write};
+use crate::arrays::{read, try_rows, write};
+use crate::attitudes::read_quaternion;
 use crate::errors::to_py;
 use crate::stack::{Broadcast, Stack};
 

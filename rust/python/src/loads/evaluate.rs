@@ -10,7 +10,8 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::{Acting, Fault, PyLoad, is_pivot};
-use crate::arrays::{read, read_quaternion, write, write_of};
+use crate::arrays::{read, write, write_of};
+use crate::attitudes::read_quaternion;
 use crate::errors::{at_row, to_py};
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};

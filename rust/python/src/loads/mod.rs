@@ -26,12 +26,12 @@ use self::address::Compiled;
 pub(crate) use self::address::compiled;
 use self::called::Callback;
 pub(crate) use self::called::{callback, torque_callback};
-use self::part::{Acts, Part, made, recipe};
+use self::part::{Acts, Part, described, made, recipe};
 pub(crate) use self::terms::{
     constant_force, constant_torque, damping, feedback, gravity_gradient, sampled, schedule,
     uniform_gravity,
 };
-use crate::stack::{Broadcast, Stack};
+use crate::stack::{Broadcast, Stack, tuple};
 
 /// What acts on a body: a sum of terms. Made by the functions of :mod:`polhode.loads`.
 ///
@@ -42,7 +42,7 @@ use crate::stack::{Broadcast, Stack};
 /// --------
 /// >>> from polhode import loads
 /// >>> loads.constant_torque((0, 0, 1)) + 2 * loads.constant_torque((0, 2, 0), frame="space")
-/// <Load of 2 terms>
+/// <Load: constant_torque + 2.0 * constant_torque>
 #[pyclass(name = "Load", module = "polhode.loads", frozen)]
 #[derive(Default)]
 pub(crate) struct PyLoad {
@@ -257,17 +257,17 @@ impl PyLoad {
         Ok(sum)
     }
 
-    fn __repr__(&self) -> PyResult<String> {
+    /// The functions that made its terms; a stack also by its shape.
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let shape = self.stack_shape()?;
-        let stack = if shape.is_empty() {
-            String::new()
+        let terms = (self.parts.iter())
+            .map(|part| described(part.recipe.bind(py)))
+            .collect::<PyResult<Vec<_>>>()?
+            .join(" + ");
+        Ok(if shape.is_empty() {
+            format!("<Load: {terms}>")
         } else {
-            let lengths: Vec<_> = shape.iter().map(ToString::to_string).collect();
-            format!("{} stack of ", lengths.join("x"))
-        };
-        Ok(match self.parts.len() {
-            1 => format!("<{stack}Load of 1 term>"),
-            count => format!("<{stack}Load of {count} terms>"),
+            format!("<Load stack of shape {}: {terms}>", tuple(&shape))
         })
     }
 }

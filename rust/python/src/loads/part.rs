@@ -113,6 +113,22 @@ pub(super) fn recipe<'py>(
     Ok((name, arguments).into_pyobject(py)?.unbind())
 }
 
+/// A recipe in words: the function that made the term, and what was done to it.
+pub(super) fn described(recipe: &Bound<'_, PyTuple>) -> PyResult<String> {
+    let (name, arguments): (String, Bound<'_, PyTuple>) = recipe.extract()?;
+    let inner = || described(&arguments.get_item(0)?.cast_into::<PyTuple>()?);
+    Ok(match name.as_str() {
+        "_scaled" => {
+            let factor: f64 = arguments.get_item(1)?.extract()?;
+            format!("{factor:?} * {}", inner()?)
+        }
+        "_scheduled" => format!("schedule({})", inner()?),
+        "_picked" | "_anchored" => inner()?,
+        "_unpicklable" => "compiled".to_owned(),
+        _ => name,
+    })
+}
+
 /// The load of one recipe.
 pub(super) fn made(py: Python<'_>, name: &str, arguments: &Bound<'_, PyTuple>) -> PyResult<PyLoad> {
     let inner = || -> PyResult<PyLoad> {

@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 
 use super::PyLoad;
 use super::part::{Acts, recipe, schedule_load};
-use crate::arrays::{as_array, list_floats, read, read_attitude, try_rows, write};
+use crate::arrays::{as_array, list_floats, read, try_rows, write};
+use crate::attitudes::read_attitude;
 use crate::errors::to_py;
 use crate::kinematics::parse_frame;
 use crate::stack::{Broadcast, Stack};

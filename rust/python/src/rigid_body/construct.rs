@@ -7,7 +7,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::PyRigidBody;
-use crate::arrays::{Argument, read, read_or, read_rotation};
+use crate::arrays::{Argument, read, read_or};
+use crate::attitudes::read_rotation;
+use crate::hints::refuse_unknown;
 use crate::stack::{Broadcast, Stack};
 
 /// An optional argument of any array-like kind.
@@ -20,7 +22,7 @@ type FromTensor = fn(f64, &Matrix3<f64>, &Vector3<f64>, f64) -> Result<RigidBody
 impl PyRigidBody {
     #[new]
     #[pyo3(
-        signature = (mass, inertia=None, center_of_mass=Argument::default(), *, inertia_about_origin=None, rtol=None),
+        signature = (mass, inertia=None, center_of_mass=Argument::default(), *, inertia_about_origin=None, rtol=None, **unknown),
         text_signature = "(mass, inertia=None, center_of_mass=(0.0, 0.0, 0.0), *, inertia_about_origin=None, rtol=None)"
     )]
     fn new(
@@ -30,7 +32,16 @@ impl PyRigidBody {
         center_of_mass: Argument<'_>,
         inertia_about_origin: Given<'_, '_>,
         rtol: Option<f64>,
+        unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        let known = [
+            "mass",
+            "inertia",
+            "center_of_mass",
+            "inertia_about_origin",
+            "rtol",
+        ];
+        refuse_unknown("RigidBody", &known, unknown)?;
         let (name, tensor, from): (_, _, FromTensor) = match (inertia, inertia_about_origin) {
             (Some(tensor), None) => ("inertia", tensor, RigidBody::new),
             (None, Some(tensor)) => (
@@ -90,7 +101,7 @@ impl PyRigidBody {
     /// 'oblate'
     #[staticmethod]
     #[pyo3(
-        signature = (mass, moments, axes=None, center_of_mass=Argument::default(), *, rtol=None),
+        signature = (mass, moments, axes=None, center_of_mass=Argument::default(), *, rtol=None, **unknown),
         text_signature = "(mass, moments, axes=None, center_of_mass=(0.0, 0.0, 0.0), *, rtol=None)"
     )]
     fn from_principal(
@@ -100,7 +111,10 @@ impl PyRigidBody {
         axes: Given<'_, '_>,
         center_of_mass: Argument<'_>,
         rtol: Option<f64>,
+        unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        let known = ["mass", "moments", "axes", "center_of_mass", "rtol"];
+        refuse_unknown("RigidBody.from_principal", &known, unknown)?;
         let mass: Stack<f64> = read(mass, "mass")?;
         let moments: Stack<[f64; 3]> = read(moments, "moments")?;
         let axes = match axes {
@@ -130,6 +144,13 @@ impl PyRigidBody {
     /// length_unit : str, optional
     ///     Unit of the coordinates, such as ``"mm"``: they are converted to metres. Without it the
     ///     numbers stay as they are stored.
+    /// weld : float, optional
+    ///     Corners at most this far from each other, in the unit of the file, are one; by default equal ones
+    ///     alone. Some exporters leave a mesh open by the last digits of its corners.
+    /// closure, orient
+    ///     As of `from_mesh`, for a mesh that is open or wound inward.
+    /// index_base : {1, 0}, optional
+    ///     What the faces of an OBJ or plate file count vertices from.
     /// progress : callable, optional
     ///     Is told the fraction of a large mesh file done, now and then; an exception it raises ends the
     ///     reading. Binary STL and PLY go through memory block by block, whatever their size.
@@ -149,19 +170,28 @@ impl PyRigidBody {
     /// --------
     /// polhode.io : the reader, which also returns vertices and faces.
     #[staticmethod]
-    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, progress=None))]
+    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, index_base=1, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
     fn from_file<'py>(
         py: Python<'py>,
         path: &Bound<'py, PyAny>,
-        density: Option<f64>,
-        mass: Option<f64>,
+        density: Option<&Bound<'py, PyAny>>,
+        mass: Option<&Bound<'py, PyAny>>,
         length_unit: Option<&str>,
+        weld: f64,
+        closure: Option<&str>,
+        orient: bool,
+        index_base: i64,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let options = PyDict::new(py);
         options.set_item("density", density)?;
         options.set_item("mass", mass)?;
         options.set_item("length_unit", length_unit)?;
+        options.set_item("weld", weld)?;
+        options.set_item("closure", closure)?;
+        options.set_item("orient", orient)?;
+        options.set_item("index_base", index_base)?;
         options.set_item("progress", progress)?;
         py.import("polhode.io")?
             .call_method("body_from_file", (path,), Some(&options))

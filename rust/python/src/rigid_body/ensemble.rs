@@ -23,6 +23,7 @@ use crate::stack::{Broadcast, Stack};
 pub(super) struct Start<'a> {
     pub(super) bodies: &'a Stack<RigidBody>,
     pub(super) omega: Stack<Vector3<f64>>,
+    /// As given, to the last bit, and of unit length to rounding alone.
     pub(super) attitude: Stack<UnitQuaternion<f64>>,
     pub(super) position: Stack<Vector3<f64>>,
     pub(super) velocity: Stack<Vector3<f64>>,
@@ -192,8 +193,13 @@ impl Ensemble<'_> {
     /// What is to be simulated in a row.
     fn task(&self, row: usize) -> Task<'_> {
         let [b, w, q, r, v, _] = self.grid.operands(row);
+        let given = self.start.attitude[q];
         let initial = Phase {
-            attitude: self.start.attitude[q],
+            attitude: if self.method == Method::Exact && self.pivoted {
+                given
+            } else {
+                UnitQuaternion::new_normalize(given.into_inner())
+            },
             omega: self.start.omega[w],
             position: self.start.position[r],
             velocity: self.start.velocity[v],

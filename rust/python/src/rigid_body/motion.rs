@@ -9,7 +9,8 @@ use polhode::motion::stability::stability;
 use pyo3::prelude::*;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{Argument, read, read_or, read_quaternion, write};
+use crate::arrays::{Argument, read, read_or, write};
+use crate::attitudes::read_quaternion;
 use crate::stack::{Broadcast, Stack};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;

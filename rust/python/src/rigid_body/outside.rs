@@ -154,6 +154,30 @@ impl PyRigidBody {
             .call_method("ellipsoid", (slf, ax), options)
     }
 
+    /// Show the body with its principal axes and ellipsoid of inertia in a window; needs pyvista.
+    ///
+    /// Parameters
+    /// ----------
+    /// plotter : pyvista.Plotter, optional
+    ///     Where to show it; a new one by default.
+    /// **options
+    ///     As of `polhode.view.rigid_body`: `shape`, a mesh of the body, and `opacity` of the ellipsoid.
+    ///
+    /// Returns
+    /// -------
+    /// pyvista.Plotter
+    ///     Its ``show()`` opens the window.
+    #[pyo3(signature = (plotter=None, **options))]
+    fn view<'py>(
+        slf: &Bound<'py, Self>,
+        plotter: Option<&Bound<'py, PyAny>>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("polhode.view")?
+            .call_method("rigid_body", (slf, plotter), options)
+    }
+
     /// What a notebook shows: a table, and the ellipsoid of inertia as a drawing.
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py()

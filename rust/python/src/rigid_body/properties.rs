@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyNotImplemented;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{Argument, read, read_or, read_rotation, write, write_numbers, write_of};
+use crate::arrays::{Argument, read, read_or, write, write_numbers, write_of};
+use crate::attitudes::read_rotation;
 use crate::principal::{to_python, to_python_of};
 use crate::stack::{Broadcast, Stack};
 

@@ -1,15 +1,18 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
-use polhode::motion::simulate::{Method, Tolerance, check_times};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use polhode::motion::simulate::{Method, Tolerance, check_times, closed_top};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::PyRigidBody;
 use super::ensemble::{Ensemble, Start, footing};
-use crate::arrays::{read, read_attitude};
+use crate::arrays::read;
+use crate::attitudes::read_attitude_exactly;
 use crate::errors::to_py;
 use crate::events::Functions;
+use crate::hints;
 use crate::interrupt::Interrupt;
 use crate::loads::{PyLoad, is_pivot};
 use crate::stack::Stack;
@@ -42,9 +45,10 @@ impl PyRigidBody {
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.
     /// method : {"auto", "exact", "taylor", "dop853", "radau", "splitting"}, optional
-    ///     "exact" is the closed form of a free body without a load, whose cost and error do not grow with time.
+    ///     "exact" is the closed form of a free body without a load, and of a symmetric top under uniform gravity
+    ///     whose axis passes through the fixed origin; its cost and error do not grow with time.
     ///     "taylor" sums Taylor series of the order at which the work is least, 22 at the tightest `rtol`:
-    ///     any load without callbacks, in runs without events. "dop853" is the explicit Runge-Kutta method
+    ///     any load without callbacks. "dop853" is the explicit Runge-Kutta method
     ///     of order 8 by Dormand and Prince with a dense output of order 7: any load. "auto" takes the first
     ///     of these that can serve the run. "radau" is the implicit Runge-Kutta method Radau IIA of order 5:
     ///     any load, for those that are stiff, such as strong damping. "splitting" kicks the body between
@@ -94,8 +98,9 @@ impl PyRigidBody {
     #[pyo3(
         signature = (
             t, omega, attitude=None, *, load=None, position=None, velocity=None, about="center_of_mass",
-            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None
-        )
+            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None, **unknown
+        ),
+        text_signature = "($self, t, omega, attitude=None, *, load=None, position=None, velocity=None, about=\"center_of_mass\", method=\"auto\", rtol=1e-10, atol=None, events=None, on_failure=\"raise\", progress=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
     fn simulate<'py>(
@@ -114,7 +119,9 @@ impl PyRigidBody {
         events: Given<'_, 'py>,
         on_failure: &str,
         progress: Option<Py<PyAny>>,
+        unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
         let pivoted = is_pivot(about)?;
         if pivoted && velocity.is_some() {
             return Err(PyValueError::new_err(
@@ -139,30 +146,28 @@ impl PyRigidBody {
             None => &nothing,
             Some(load) => load
                 .cast::<PyLoad>()
-                .map_err(|_| {
-                    let kind = load.get_type();
-                    PyTypeError::new_err(format!(
-                        "load: expected a Load from polhode.loads, got {kind}; wrap a function in loads.torque_callback"
-                    ))
-                })?
+                .map_err(|_| hints::not_a_load(load))?
                 .get(),
         };
         let start = Start {
             bodies: &slf.get().bodies,
             omega: read(omega, "omega")?,
-            attitude: read_attitude(attitude, "attitude")?,
+            attitude: read_attitude_exactly(attitude, "attitude")?,
             position: at_start(position, "position")?,
             velocity: at_start(velocity, "velocity")?,
             terms: acts.terms()?,
         };
         let events = Functions::read(events)?;
         let of_first = start.terms.rows.first().map_or(&[][..], Vec::as_slice);
+        let are_tops = || {
+            start
+                .bodies
+                .rows
+                .iter()
+                .all(|body| closed_top(body).is_ok())
+        };
         let method = parse_method(method)?
-            .serving(
-                pivoted,
-                acts.is_analytic().then_some(of_first),
-                !events.is_empty(),
-            )
+            .serving(pivoted, acts.is_analytic().then_some(of_first), are_tops)
             .map_err(|error| to_py(py, &error))?;
         let ensemble = Ensemble {
             start: &start,
@@ -197,6 +202,22 @@ impl PyRigidBody {
     }
 }
 
+const KEYWORDS: [&str; 13] = [
+    "t",
+    "omega",
+    "attitude",
+    "load",
+    "position",
+    "velocity",
+    "about",
+    "method",
+    "rtol",
+    "atol",
+    "events",
+    "on_failure",
+    "progress",
+];
+
 const METHODS: [Method; 6] = [
     Method::Auto,
     Method::Exact,
@@ -229,7 +250,7 @@ fn read_times(py: Python<'_>, t: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let times: Stack<f64> = read(t, "t")?;
     if times.shape.len() != 1 {
         return Err(PyValueError::new_err(format!(
-            "t: expected shape (T,), got {}",
+            "t: expected shape (T,), got {}; the first time is the start: [0, 10], or numpy.linspace(0, 10, 1001)",
             crate::stack::tuple(&times.shape)
         )));
     }

@@ -1,11 +1,7 @@
 //! Events: the times at which a function of time and state passes through zero.
 
-use super::stepper::Stepper;
+use super::stepper::Dense;
 use crate::motion::state::Phase;
-
-/// The parts of a step at whose ends events are looked at: a function that passes through zero twice within one of them is
-/// not seen to.
-const PARTS: u32 = 4;
 
 /// Which passages through zero count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -113,23 +109,23 @@ impl<'a, E> Lookout<'a, E> {
     }
 
     /// Looks through the last step, which began at `from`; where the run is to end, if it is, as time since the span's
-    /// start and the state there.
+    /// start and the state there. A function that passes through zero twice within one of the step's parts is not seen to.
     pub(super) fn look(
         &mut self,
-        stepper: &mut dyn Stepper<Error = E>,
+        stepper: &mut dyn Dense<Error = E>,
         start: f64,
         from: f64,
     ) -> Result<Option<(f64, Phase)>, E> {
         if self.rules.is_empty() {
             return Ok(None);
         }
-        let to = stepper.elapsed();
+        let (to, parts) = (stepper.elapsed(), stepper.parts());
         let mut before = from;
-        for part in 1..=PARTS {
-            let (after, phase) = if part == PARTS {
+        for part in 1..=parts {
+            let (after, phase) = if part == parts {
                 (to, stepper.phase())
             } else {
-                let after = from + (to - from) * (f64::from(part) / f64::from(PARTS));
+                let after = from + (to - from) * (f64::from(part) / f64::from(parts));
                 (after, stepper.within(after)?)
             };
             let mut found = Vec::new();
@@ -188,12 +184,12 @@ impl<'a, E> Lookout<'a, E> {
     fn locate(
         &mut self,
         event: usize,
-        stepper: &mut dyn Stepper<Error = E>,
+        stepper: &mut dyn Dense<Error = E>,
         start: f64,
         [mut low, mut high]: [f64; 2],
         was: f64,
     ) -> Result<f64, E> {
-        let mut value = |x: f64, stepper: &mut dyn Stepper<Error = E>| {
+        let mut value = |x: f64, stepper: &mut dyn Dense<Error = E>| {
             let phase = stepper.within(x)?;
             self.events.value(event, start + x, &phase)
         };

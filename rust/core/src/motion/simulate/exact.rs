@@ -1,13 +1,16 @@
-//! Free bodies in closed form, as runs.
+//! Free bodies and heavy symmetric tops in closed form, as runs.
 
 use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::stepper::{Carry, Span, Stepper};
+use super::method::{closed_top, gravity_alone};
+use super::stepper::{Carry, Dense, Span, Stepper};
 use super::{Effort, End, Run, Task};
 use crate::error::Error;
 use crate::motion::free::FreeMotion;
+use crate::motion::heavy_top::HeavyTop;
+use crate::motion::loads::Term;
 use crate::motion::state::{Phase, State};
 
 /// States between two looks at the watch.
@@ -15,13 +18,16 @@ const PATIENCE: usize = 4096;
 /// Parts of a turn at whose ends events are looked for.
 const PARTS_OF_A_TURN: f64 = 16.0;
 
-/// The run of a free body without events.
+/// The run under `terms`, without events.
 pub(super) fn solve<E: From<Error>>(
     task: &Task<'_>,
+    terms: &[Term],
     run: &mut Run<E>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<End<E>, E> {
-    let closed = Closed::new(task, &task.initial)?;
+    let closed = Closed::new(task, terms, &task.initial)?;
+    // A top's attitude counts to its last bit, and may be a unit quaternion to rounding alone.
+    run.samples[0].attitude = UnitQuaternion::new_normalize(task.initial.attitude.into_inner());
     let start = task.times[0];
     let elapsed: Vec<f64> = task.times.iter().map(|t| t - start).collect();
     let count = elapsed.len();
@@ -30,7 +36,7 @@ pub(super) fn solve<E: From<Error>>(
     for from in (1..count).step_by(PATIENCE) {
         let times = &elapsed[from..count.min(from + PATIENCE)];
         let (attitudes, omegas) = (&mut attitudes[..times.len()], &mut omegas[..times.len()]);
-        closed.motion.sample(times, attitudes, omegas);
+        closed.sample(times, attitudes, omegas);
         let samples = run.samples[from..].iter_mut();
         for (((sample, &t), &[x, y, z, w]), &omega) in
             samples.zip(times).zip(&*attitudes).zip(&*omegas)
@@ -52,20 +58,51 @@ pub(super) fn solve<E: From<Error>>(
     Ok(End::Complete)
 }
 
-/// A free body and the uniform motion of its centre of mass.
+/// A body that turns as a closed form says, and the uniform motion of its reference point.
 struct Closed {
-    motion: FreeMotion,
+    motion: Motion,
+    /// What the angular speed does not exceed by much.
+    fastest: f64,
     position: Vector3<f64>,
     velocity: Vector3<f64>,
 }
 
+/// The closed form.
+enum Motion {
+    Free(FreeMotion),
+    Top(HeavyTop),
+}
+
 impl Closed {
-    fn new(task: &Task<'_>, phase: &Phase) -> Result<Self, Error> {
+    fn new(task: &Task<'_>, terms: &[Term], phase: &Phase) -> Result<Self, Error> {
+        let Phase {
+            attitude, omega, ..
+        } = phase;
+        let (motion, fastest) = if task.subject.pivoted {
+            let top = closed_top(task.body)?;
+            let gravity = gravity_alone(terms).unwrap_or_default();
+            // ½ I_t ω_t² grows by 2 m g l at most: from the highest point to the lowest.
+            let fall = top.mass_moment * gravity.norm() / top.transverse;
+            let fastest = (omega.norm_squared() + 4.0 * fall).sqrt();
+            let motion = HeavyTop::of(&top, omega, attitude, &gravity)?;
+            (Motion::Top(motion), fastest)
+        } else {
+            let motion = FreeMotion::of(task.body, omega, attitude)?;
+            (Motion::Free(motion), omega.norm())
+        };
         Ok(Self {
-            motion: FreeMotion::of(task.body, &phase.omega, &phase.attitude)?,
+            motion,
+            fastest,
             position: phase.position,
             velocity: phase.velocity,
         })
+    }
+
+    fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        match &self.motion {
+            Motion::Free(motion) => motion.sample(times, attitudes, omegas),
+            Motion::Top(motion) => motion.sample(times, attitudes, omegas),
+        }
     }
 
     fn placed(&self, elapsed: f64, state: State) -> Phase {
@@ -78,7 +115,11 @@ impl Closed {
     }
 
     fn at(&self, elapsed: f64) -> Phase {
-        self.placed(elapsed, self.motion.at(elapsed))
+        let state = match &self.motion {
+            Motion::Free(motion) => motion.at(elapsed),
+            Motion::Top(motion) => motion.at(elapsed),
+        };
+        self.placed(elapsed, state)
     }
 }
 
@@ -93,12 +134,13 @@ pub(super) struct Exact<E> {
 }
 
 impl<E: From<Error>> Exact<E> {
-    pub(super) fn new(task: &Task<'_>, span: &Span) -> Result<Self, E> {
+    pub(super) fn new(task: &Task<'_>, span: &Span, terms: Option<&[Term]>) -> Result<Self, E> {
+        let closed = Closed::new(task, terms.unwrap_or_default(), &span.phase)?;
         let length = span.to - span.from;
-        let turn = std::f64::consts::TAU / span.phase.omega.norm();
+        let turn = std::f64::consts::TAU / closed.fastest;
         let step = (turn / PARTS_OF_A_TURN).min(length.abs()).copysign(length);
         Ok(Self {
-            closed: Closed::new(task, &span.phase)?,
+            closed,
             length,
             step,
             elapsed: 0.0,
@@ -108,7 +150,7 @@ impl<E: From<Error>> Exact<E> {
     }
 }
 
-impl<E: From<Error>> Stepper for Exact<E> {
+impl<E: From<Error>> Dense for Exact<E> {
     type Error = E;
 
     fn elapsed(&self) -> f64 {
@@ -119,6 +161,12 @@ impl<E: From<Error>> Stepper for Exact<E> {
         self.closed.at(self.elapsed)
     }
 
+    fn within(&mut self, elapsed: f64) -> Result<Phase, E> {
+        Ok(self.closed.at(elapsed))
+    }
+}
+
+impl<E: From<Error>> Stepper for Exact<E> {
     fn advance(&mut self) -> Result<(), E> {
         self.steps += 1;
         let next = self.steps as f64 * self.step;
@@ -135,10 +183,6 @@ impl<E: From<Error>> Stepper for Exact<E> {
             next
         };
         Ok(())
-    }
-
-    fn within(&mut self, elapsed: f64) -> Result<Phase, E> {
-        Ok(self.closed.at(elapsed))
     }
 
     fn effort(&self) -> Effort {

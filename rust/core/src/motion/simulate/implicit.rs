@@ -1,7 +1,7 @@
 //! Radau IIA on the equations in principal axes.
 
 use super::equations::Equations;
-use super::stepper::{Carry, Span, Stepper};
+use super::stepper::{Carry, Dense, Span, Stepper};
 use super::{Effort, Task};
 use crate::motion::integrate::Radau;
 use crate::motion::loads::Load;
@@ -35,7 +35,7 @@ impl<'a, L: Load, const N: usize> Implicit<'a, L, N> {
     }
 }
 
-impl<L: Load, const N: usize> Stepper for Implicit<'_, L, N> {
+impl<L: Load, const N: usize> Dense for Implicit<'_, L, N> {
     type Error = L::Error;
 
     fn elapsed(&self) -> f64 {
@@ -47,13 +47,15 @@ impl<L: Load, const N: usize> Stepper for Implicit<'_, L, N> {
             .phase(self.start + self.elapsed(), self.stepper.state())
     }
 
-    fn advance(&mut self) -> Result<(), L::Error> {
-        self.stepper.advance(&mut self.equations)
-    }
-
     fn within(&mut self, elapsed: f64) -> Result<Phase, L::Error> {
         let y = (self.stepper.dense()).map_or(*self.stepper.state(), |dense| dense.at(elapsed));
         Ok(self.equations.phase(self.start + elapsed, &y))
+    }
+}
+
+impl<L: Load, const N: usize> Stepper for Implicit<'_, L, N> {
+    fn advance(&mut self) -> Result<(), L::Error> {
+        self.stepper.advance(&mut self.equations)
     }
 
     fn effort(&self) -> Effort {

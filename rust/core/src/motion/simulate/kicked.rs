@@ -1,6 +1,6 @@
 //! Splitting into kicks and free motions.
 
-use super::stepper::{Carry, Span, Stepper};
+use super::stepper::{Carry, Dense, Span, Stepper};
 use super::{Effort, Task};
 use crate::error::Error;
 use crate::motion::integrate::Splitting;
@@ -41,7 +41,7 @@ impl<'a, L: Load> Kicked<'a, L> {
     }
 }
 
-impl<L: Load> Stepper for Kicked<'_, L> {
+impl<L: Load> Dense for Kicked<'_, L> {
     type Error = L::Error;
 
     fn elapsed(&self) -> f64 {
@@ -52,12 +52,14 @@ impl<L: Load> Stepper for Kicked<'_, L> {
         self.stepper.phase()
     }
 
-    fn advance(&mut self) -> Result<(), L::Error> {
-        self.stepper.advance(self.load)
-    }
-
     fn within(&mut self, elapsed: f64) -> Result<Phase, L::Error> {
         self.stepper.within(elapsed, self.load)
+    }
+}
+
+impl<L: Load> Stepper for Kicked<'_, L> {
+    fn advance(&mut self) -> Result<(), L::Error> {
+        self.stepper.advance(self.load)
     }
 
     fn effort(&self) -> Effort {

@@ -1,6 +1,11 @@
 //! The methods, and which of them serves a run.
 
+use nalgebra::Vector3;
+
 use crate::error::Error;
+use crate::mass::RigidBody;
+use crate::mass::validity::ROUNDING;
+use crate::motion::heavy_top::PivotedTop;
 use crate::motion::loads::Term;
 
 /// How a motion is found.
@@ -10,9 +15,9 @@ pub enum Method {
     /// The first of exact, Taylor and DOP853 that can serve the run.
     #[default]
     Auto,
-    /// In closed form: a free body without a load.
+    /// In closed form: a free body without a load, and a symmetric top pivoted on its axis under uniform gravity.
     Exact,
-    /// Taylor series of the order at which the work is least: analytic loads, without events.
+    /// Taylor series of the order at which the work is least: analytic loads.
     Taylor,
     /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
     Dop853,
@@ -38,7 +43,8 @@ impl Method {
 
     /// The method that serves a run: itself, or what [`Self::Auto`] chooses.
     ///
-    /// `terms`: of the load, where it has analytic ones alone. `pivoted`: whether the origin of the body is fixed.
+    /// `terms`: of the load, where it has analytic ones alone. `pivoted`: whether the origin of the body is fixed. `is_top`
+    /// tells, where that matters, whether every body is a [`closed_top`].
     ///
     /// # Errors
     /// [`Error::MethodCannotServe`], which names one that can.
@@ -46,31 +52,71 @@ impl Method {
         self,
         pivoted: bool,
         terms: Option<&[Term]>,
-        has_events: bool,
+        is_top: impl FnOnce() -> bool,
     ) -> Result<Self, Error> {
-        let is_free = !pivoted && terms.is_some_and(<[Term]>::is_empty);
-        let chosen = if is_free {
-            Self::Exact
-        } else if terms.is_some() && !has_events {
+        let may_be_closed = terms.is_some_and(|terms| {
+            if pivoted {
+                gravity_alone(terms).is_some()
+            } else {
+                terms.is_empty()
+            }
+        });
+        let of_steps = if terms.is_some() {
             Self::Taylor
         } else {
             Self::Dop853
         };
         let needs = match self {
-            Self::Exact if !is_free => "a free body: no load, and about=\"center_of_mass\"",
+            Self::Auto if may_be_closed && (!pivoted || is_top()) => return Ok(Self::Exact),
+            Self::Auto => return Ok(of_steps),
+            Self::Exact if !may_be_closed => {
+                "a free body without a load, or with about=\"origin\" uniform gravity alone on a symmetric top"
+            }
             Self::Taylor if terms.is_none() => {
                 "the loads of polhode.loads other than callbacks and compiled functions"
             }
-            Self::Taylor if has_events => "a run without events",
-            Self::Auto => return Ok(chosen),
             method => return Ok(method),
         };
         Err(Error::MethodCannotServe {
             method: self.name(),
             needs,
-            instead: chosen.name(),
+            instead: of_steps.name(),
         })
     }
+}
+
+/// The top that `body` is to rounding about the origin of its frame: its motion under gravity is known in closed form.
+///
+/// # Errors
+/// [`Error::NoClosedForm`] when the moments across its axis differ, or the origin is off that axis;
+/// [`Error::OutOfDomain`] for a point at the origin.
+pub fn closed_top(body: &RigidBody) -> Result<PivotedTop, Error> {
+    PivotedTop::of(body, ROUNDING).map_err(|error| {
+        let (lack, relative) = match error {
+            Error::NotASymmetricTop { gap, .. } => {
+                ("no two of its principal moments are equal", gap)
+            }
+            Error::PivotOffAxis { relative, .. } => {
+                ("the origin is off the symmetry axis", relative)
+            }
+            other => return other,
+        };
+        Error::NoClosedForm {
+            lack,
+            relative,
+            allowed: ROUNDING,
+        }
+    })
+}
+
+/// The acceleration of free fall, of a load that is uniform gravity alone or nothing at all.
+pub(super) fn gravity_alone(terms: &[Term]) -> Option<Vector3<f64>> {
+    terms
+        .iter()
+        .try_fold(Vector3::zeros(), |sum, term| match term {
+            Term::UniformGravity { gravity } => Some(sum + gravity),
+            _ => None,
+        })
 }
 
 #[cfg(test)]
@@ -81,21 +127,21 @@ mod tests {
     #[test]
     fn auto_takes_the_first_that_can() {
         let weight = [Term::uniform_gravity(&Vector3::z()).expect("finite")];
-        let auto = |pivoted, terms, events| Method::Auto.serving(pivoted, terms, events);
-        assert_eq!(auto(false, Some(&[]), true), Ok(Method::Exact));
+        let auto = |pivoted, terms, is_top| Method::Auto.serving(pivoted, terms, || is_top);
+        assert_eq!(auto(false, Some(&[]), false), Ok(Method::Exact));
         assert_eq!(auto(true, Some(&[]), false), Ok(Method::Taylor));
+        assert_eq!(auto(true, Some(&weight), true), Ok(Method::Exact));
         assert_eq!(auto(true, Some(&weight), false), Ok(Method::Taylor));
-        assert_eq!(auto(true, Some(&weight), true), Ok(Method::Dop853));
-        assert_eq!(auto(false, None, false), Ok(Method::Dop853));
+        assert_eq!(auto(false, Some(&weight), true), Ok(Method::Taylor));
+        assert_eq!(auto(false, None, true), Ok(Method::Dop853));
         for (method, terms, instead) in [
             (Method::Exact, Some(&weight[..]), "taylor"),
             (Method::Taylor, None, "dop853"),
         ] {
-            let refused = method.serving(false, terms, false);
+            let refused = method.serving(false, terms, || true);
             assert!(
                 matches!(refused, Err(Error::MethodCannotServe { instead: named, .. }) if named == instead)
             );
         }
-        assert!(Method::Taylor.serving(true, Some(&weight), true).is_err());
     }
 }

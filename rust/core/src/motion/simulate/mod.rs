@@ -10,12 +10,13 @@ mod implicit;
 mod kicked;
 pub mod method;
 mod stepper;
+mod summed;
 
 use std::ops::ControlFlow;
 
 use self::events::Lookout;
 pub use self::events::{Crossing, Direction, Events, NoEvents, Rule};
-pub use self::method::Method;
+pub use self::method::{Method, closed_top};
 use self::stepper::{Carry, Span, Stepper};
 use super::euler_equations::EulerEquations;
 use super::integrate::taylor;
@@ -242,22 +243,17 @@ pub fn simulate<L: Load>(
     events: &mut dyn Events<Error = L::Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<L::Error> {
-    let start = task.times[0];
-    let mut run = Run {
-        samples: vec![Phase::nan(); task.times.len()],
-        crossings: Vec::new(),
-        effort: Effort::default(),
-        time: start,
-        phase: task.initial,
-        end: End::Complete,
-    };
-    run.samples[0] = task.initial;
+    let mut run = Run::at_start(task, End::Complete);
     let (terms, has_events) = (load.analytic(), !events.rules().is_empty());
-    let method = task.method.serving(task.subject.pivoted, terms, has_events);
+    let is_top = || closed_top(task.body).is_ok();
+    let method = (task.method).serving(task.subject.pivoted, terms, is_top);
     run.end = match (method, terms) {
         (Err(error), _) => End::Failed(error.into()),
-        (Ok(Method::Exact), _) if !has_events => {
-            exact::solve(task, &mut run, watch).unwrap_or_else(End::Failed)
+        (Ok(Method::Exact), Some(terms)) if !has_events => {
+            exact::solve(task, terms, &mut run, watch).unwrap_or_else(End::Failed)
+        }
+        (Ok(Method::Taylor), Some(terms)) if has_events => {
+            return summed::solve(task, terms, events, watch);
         }
         (Ok(Method::Taylor), Some(terms)) => {
             return taylor::solve_one(task, terms, watch).with_error(L::Error::from);
@@ -270,6 +266,20 @@ pub fn simulate<L: Load>(
 }
 
 impl<E> Run<E> {
+    /// One that has come no further than the first time.
+    pub(crate) fn at_start(task: &Task<'_>, end: End<E>) -> Self {
+        let mut samples = vec![Phase::nan(); task.times.len()];
+        samples[0] = task.initial;
+        Self {
+            samples,
+            crossings: Vec::new(),
+            effort: Effort::default(),
+            time: task.times[0],
+            phase: task.initial,
+            end,
+        }
+    }
+
     /// The same run, its error through `f`.
     #[must_use]
     pub fn with_error<F>(self, f: impl FnOnce(E) -> F) -> Run<F> {

@@ -6,27 +6,35 @@ use super::implicit::Implicit;
 use super::kicked::Kicked;
 use super::{Effort, Method, Task};
 use crate::motion::integrate::Dop853;
-use crate::motion::integrate::dop853::Dense;
+use crate::motion::integrate::dop853::Dense as Polynomial;
 use crate::motion::integrate::splitting::Scheme;
 use crate::motion::loads::Load;
 use crate::motion::state::Phase;
 
-/// A method under way through a span of time in which the load is smooth.
-pub(super) trait Stepper {
+/// The motion within the last step that was made.
+pub(super) trait Dense {
     /// As of the load.
     type Error;
 
-    /// Time since the start of the span; its whole length, to the bit, when it is over.
+    /// The end of the step: time since the start of the span; its whole length, to the bit, when it is over.
     fn elapsed(&self) -> f64;
 
-    /// The state now.
+    /// The state then.
     fn phase(&self) -> Phase;
 
+    /// The state at a time since the start of the span that is within the step.
+    fn within(&mut self, elapsed: f64) -> Result<Phase, Self::Error>;
+
+    /// The parts of the step at whose ends events are looked at.
+    fn parts(&self) -> u32 {
+        4
+    }
+}
+
+/// A method under way through a span of time in which the load is smooth.
+pub(super) trait Stepper: Dense {
     /// One step toward the end.
     fn advance(&mut self) -> Result<(), Self::Error>;
-
-    /// The state at a time since the start of the span that is within the last step.
-    fn within(&mut self, elapsed: f64) -> Result<Phase, Self::Error>;
 
     /// What the span has taken so far.
     fn effort(&self) -> Effort;
@@ -68,7 +76,7 @@ where
 {
     let moves = !task.subject.pivoted && load.exerts_force();
     Ok(match method {
-        Method::Exact => Box::new(Exact::<L::Error>::new(task, span)?),
+        Method::Exact => Box::new(Exact::<L::Error>::new(task, span, load.analytic())?),
         Method::Radau if moves => Box::new(Implicit::<L, MOVING>::new(task, span, load)?),
         Method::Radau => Box::new(Implicit::<L, TURNING>::new(task, span, load)?),
         Method::Splitting => Box::new(Kicked::new(task, span, load)?),
@@ -83,7 +91,7 @@ struct Explicit<'a, L, const N: usize> {
     start: f64,
     stepper: Dop853<N>,
     /// Of the last step, once it is asked for.
-    dense: Option<Dense<N>>,
+    dense: Option<Polynomial<N>>,
 }
 
 impl<'a, L: Load, const N: usize> Explicit<'a, L, N> {
@@ -108,7 +116,7 @@ impl<'a, L: Load, const N: usize> Explicit<'a, L, N> {
     }
 }
 
-impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
+impl<L: Load, const N: usize> Dense for Explicit<'_, L, N> {
     type Error = L::Error;
 
     fn elapsed(&self) -> f64 {
@@ -120,17 +128,19 @@ impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
             .phase(self.start + self.elapsed(), self.stepper.state())
     }
 
-    fn advance(&mut self) -> Result<(), L::Error> {
-        self.dense = None;
-        self.stepper.advance(&mut self.equations)
-    }
-
     fn within(&mut self, elapsed: f64) -> Result<Phase, L::Error> {
         if self.dense.is_none() {
             self.dense = Some(self.stepper.dense(&mut self.equations)?);
         }
         let y = (self.dense.as_ref()).map_or(*self.stepper.state(), |dense| dense.at(elapsed));
         Ok(self.equations.phase(self.start + elapsed, &y))
+    }
+}
+
+impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
+    fn advance(&mut self) -> Result<(), L::Error> {
+        self.dense = None;
+        self.stepper.advance(&mut self.equations)
     }
 
     fn effort(&self) -> Effort {

@@ -30,6 +30,7 @@ struct Linear<'a> {
 }
 
 /// A motion on its way.
+#[derive(Clone, Debug)]
 pub(super) struct Course<'a> {
     task: Task<'a>,
     terms: &'a [Term],
@@ -318,6 +319,14 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// ω and (x, y, z, w) in body axes and real units of a state, or of a coefficient of its series.
+    pub(super) fn in_body(&self, state: &[f64; 7]) -> [f64; 7] {
+        let [x, y, z, i, j, k, w] = *state;
+        let omega = self.axes * Vector3::new(x, y, z) * self.unit;
+        let q = Quaternion::new(w, i, j, k) * self.q_bp.conjugate().into_inner();
+        [omega.x, omega.y, omega.z, q.i, q.j, q.k, q.w]
+    }
+
     /// Takes the power of two at or below the fastest rate of the motion at ω (in principal axes) as the unit of rates.
     pub(super) fn choose_unit(&mut self, omega: &[f64; 3]) -> f64 {
         let (linear, over_moment) = (&self.linear, self.inverse_moments.amax());
@@ -463,6 +472,11 @@ impl<'a> Course<'a> {
 
     pub(super) fn time(&self, now: (f64, f64)) -> f64 {
         self.task.times[0] + (now.0 + now.1) / self.unit
+    }
+
+    /// The whole length of the motion.
+    pub(super) fn last_elapsed(&self) -> f64 {
+        self.last_time() - self.task.times[0]
     }
 
     pub(super) fn last_time(&self) -> f64 {

@@ -1,5 +1,7 @@
 //! Runs motions to their last output time, `R` at a time, each with its own steps.
 
+mod seen;
+
 use std::ops::ControlFlow;
 
 use super::course::Course;
@@ -14,6 +16,8 @@ use crate::motion::simulate::{Effort, End, Run};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::lane::Lane;
+pub(crate) use seen::Step;
+pub(super) use seen::drive_seen;
 
 /// Steps between two looks at the watch.
 const PATIENCE: u32 = 64;
@@ -176,21 +180,7 @@ pub(super) fn drive<L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: 
     jobs: &mut dyn Iterator<Item = Job<'_>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let zero = Pack::new(0.0);
-    let mut lanes = Lanes::<L, S, B, R> {
-        settings,
-        series: S::new(),
-        field: Field::new(),
-        extras: Extras::new(&settings.parts),
-        directions: [[zero; 3]; B],
-        state: Compensated::new(),
-        push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
-        leads: [const { None }; R],
-        now: [(0.0, 0.0); R],
-        stop: [(f64::INFINITY, 0.0); R],
-        fastest: [1.0; R],
-        direction: [1.0; R],
-    };
+    let mut lanes = Lanes::<L, S, B, R>::new(settings);
     let mut patience = PATIENCE;
     let mut idle = true;
     loop {
@@ -219,6 +209,25 @@ pub(super) fn drive<L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: 
 }
 
 impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lanes<'a, L, S, B, R> {
+    /// All empty.
+    #[inline(always)]
+    fn new(settings: Settings) -> Self {
+        Self {
+            settings,
+            series: S::new(),
+            field: Field::new(),
+            extras: Extras::new(&settings.parts),
+            directions: [[Pack::new(0.0); 3]; B],
+            state: Compensated::new(),
+            push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
+            leads: [const { None }; R],
+            now: [(0.0, 0.0); R],
+            stop: [(f64::INFINITY, 0.0); R],
+            fastest: [1.0; R],
+            direction: [1.0; R],
+        }
+    }
+
     /// One step of every motion; whether one has ended.
     #[inline(always)]
     fn step(&mut self) -> bool {

@@ -11,7 +11,7 @@
 //! | `directions` | directions of space as seen from the body |
 //! | `push` | the path of a body that forces act on |
 //! | `step` | the length of a step, the state at its end or within |
-//! | `drive` | steps, outputs, breaks, until all motions are done |
+//! | `drive` | steps, outputs, breaks, until all motions are done; `seen`: each step as it is made |
 //! | `pack` | one number of several motions |
 //!
 //! Sources: Jorba & Zou, Experimental Mathematics 14 (2005) 99; Hairer, Nørsett & Wanner, Solving ODEs I, §I.8.
@@ -41,13 +41,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use abreast::Abreast;
 use alone::Alone;
 use course::{Course, parts};
-use drive::{Job, Settings, drive};
+pub(crate) use drive::Step;
+use drive::{Job, Settings, drive, drive_seen};
 use field::Parts;
 
 use crate::error::Error;
 use crate::motion::loads::Term;
-use crate::motion::simulate::{Effort, End, Run, Task};
-use crate::motion::state::Phase;
+use crate::motion::simulate::{End, Run, Task};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 use crate::numerics::threads::fill_blocks;
@@ -70,7 +70,7 @@ pub fn solve_one(
     terms: &[Term],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<Error> {
-    let mut run = unborn(task);
+    let mut run = Run::at_start(task, End::Stopped);
     let settings = settings(task, parts(terms, task.subject.pivoted));
     let mut jobs = job(task, terms, &mut run).into_iter();
     let _ = dispatch(OneByOne {
@@ -79,6 +79,23 @@ pub fn solve_one(
         watch,
     });
     drop(jobs);
+    run
+}
+
+/// As [`solve_one`], with every step shown to `see`, which may stop the run, as soon as it is made.
+pub(crate) fn solve_seen(
+    task: &Task<'_>,
+    terms: &[Term],
+    see: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+) -> Run<Error> {
+    let mut run = Run::at_start(task, End::Stopped);
+    let settings = settings(task, parts(terms, task.subject.pivoted));
+    if let Some(job) = job(task, terms, &mut run)
+        && let Some(last) = dispatch(Seen { settings, job, see })
+        && run.end == End::Complete
+    {
+        let _over = see(&last);
+    }
     run
 }
 
@@ -118,7 +135,11 @@ pub fn solve_many<'a>(
         let mut jobs = (first..).zip(runs.iter_mut()).filter_map(|(row, run)| {
             begun.fetch_add(1, Ordering::Relaxed);
             let task = task(row);
-            job(&task, terms(row), run.insert(unborn(&task)))
+            job(
+                &task,
+                terms(row),
+                run.insert(Run::at_start(&task, End::Stopped)),
+            )
         });
         let jobs = &mut jobs;
         let watch = &mut |_| ask();
@@ -145,20 +166,6 @@ pub fn solve_many<'a>(
 
 fn settings(task: &Task<'_>, parts: Parts) -> Settings {
     Settings::new(task.tolerance.relative, task.tolerance.absolute, parts)
-}
-
-/// The run of a motion that has not begun.
-fn unborn(task: &Task<'_>) -> Run<Error> {
-    let mut samples = vec![Phase::nan(); task.times.len()];
-    samples[0] = task.initial;
-    Run {
-        samples,
-        crossings: Vec::new(),
-        effort: Effort::default(),
-        time: task.times[0],
-        phase: task.initial,
-        end: End::Stopped,
-    }
 }
 
 /// The job of a motion, if there is anything to do and nothing against it.
@@ -197,6 +204,27 @@ impl Kernel for OneByOne<'_, '_> {
             0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch),
             1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch),
             _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch),
+        }
+    }
+}
+
+/// One motion whose steps are shown as they are made.
+struct Seen<'a, 'b> {
+    settings: Settings,
+    job: Job<'a>,
+    see: &'b mut dyn FnMut(&Step) -> ControlFlow<()>,
+}
+
+impl Kernel for Seen<'_, '_> {
+    type Output = Option<Step>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Option<Step> {
+        let Self { settings, job, see } = self;
+        match settings.parts.directions {
+            0 => drive_seen::<L, Alone<L, 0>, 0>(settings, job, see),
+            1 => drive_seen::<L, Alone<L, 1>, 1>(settings, job, see),
+            _ => drive_seen::<L, Alone<L, 3>, 3>(settings, job, see),
         }
     }
 }

@@ -105,6 +105,21 @@ impl<L: Lane, const R: usize> Push<Pack<L, R>> {
         place
     }
 
+    /// The coefficients of position and velocity of one row in the step that began at `start`.
+    pub(super) fn path(&self, row: usize, order: usize, start: &[f64; 6]) -> Vec<[f64; 6]> {
+        let mut path = vec![[0.0; 6]; order + 2];
+        path[0] = *start;
+        for i in 0..3 {
+            path[1][i] = start[3 + i];
+            for k in 0..order {
+                let a = self.acceleration[k][i].get(row) * RECIPROCALS[k + 1];
+                path[k + 1][3 + i] = a;
+                path[k + 2][i] = a * RECIPROCALS[k + 2];
+            }
+        }
+        path
+    }
+
     /// Position and velocity of one row moved by `increment`.
     #[inline(always)]
     pub(super) fn moved(&self, increment: &[Pack<L, R>; 6], row: usize) -> [f64; 6] {

@@ -1,0 +1,67 @@
+"""What multiplies the elements of an MJCF model before it is read: ``<include>`` and ``<replicate>``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from polhode.errors import FileFormatError
+from polhode.robots.model import numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from polhode._files.xml_source import Element
+    from polhode.robots.model import Place
+    from polhode.robots.sources import Sources
+
+__all__ = ["copies", "expand_includes"]
+
+
+def expand_includes(root: Element, folder: Path, sources: Sources) -> None:
+    """Put the elements of included files where the ``<include>`` stands, as MuJoCo does before it reads.
+
+    Parameters
+    ----------
+    root : Element
+        Of the model; it is changed.
+    folder : pathlib.Path
+        Of the model's file, where the names of all its included files start.
+    sources : Sources
+    """
+    included: set[Path] = set()
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        children: list[Element] = []
+        unread = list(reversed(element.children))
+        while unread:
+            child = unread.pop()
+            if child.tag != "include":
+                children.append(child)
+                continue
+            name = child.attributes.get("file", "")
+            if not name:
+                raise FileFormatError(f"{child.where}: <include> without file; name one")
+            path = folder / name
+            if path.resolve() in included:
+                raise FileFormatError(f"{child.where}: {name} is included twice; MuJoCo allows it once")
+            included.add(path.resolve())
+            unread += reversed(sources.read(path, name, child).children)
+        element.children = children
+        waiting += children
+
+
+def copies(replicate: Element, step: Place, start: Place, sources: Sources) -> Iterator[Place]:
+    """Give the frame of each copy: each stands in that of the one before as the step says."""
+    text = replicate.attributes.get("count")
+    (count,) = numbers(replicate, text, 1, "count")
+    if count != int(count) or count < 1:
+        raise FileFormatError(
+            f"{replicate.where}: count is {text!r} where a whole number from 1 has to stand"
+        )
+    place = start
+    for _ in range(int(count)):
+        sources.count_copy(replicate)
+        yield place
+        place = place.then(step)

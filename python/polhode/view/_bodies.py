@@ -1,0 +1,234 @@
+"""A body in a window: its surface, its principal axes and its ellipsoid of inertia."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode.animation.shape import equivalent_box, given_shape
+from polhode.plot import AXIS_COLORS, OUTLINE_COLOR
+from polhode.plot._surfaces import inertia_semi_axes
+from polhode.view._style import AXIS_STYLE, add_name, line, new_plotter, pyvista, show_all, surface
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+    from pyvista import Plotter, PolyData
+
+    from polhode import RigidBody
+    from polhode.animation.shape import Shape
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["add_surface", "body", "ellipsoid", "principal_axes", "rigid_body"]
+
+_FEATURE_ANGLE: Final = 40.0
+_ELLIPSOID_COLOR: Final = "#9DB2CF"
+
+
+def body(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    plotter: Plotter | None = None,
+    *,
+    opacity: float = 1.0,
+    length_unit: str | None = None,
+    name: str = "body",
+) -> Plotter:
+    """Show a mesh as a shaded body with its sharp edges.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+        Corners.
+    faces : array_like of int, shape (m, 3)
+        Triangles, counted from 0.
+    plotter : pyvista.Plotter, optional
+        Where to show it; a new one by default.
+    opacity : float
+        Of the surface, from 0 to 1.
+    length_unit : str, optional
+        Name of the unit of the coordinates; without it the coordinate axes are not drawn.
+    name : str
+        Of the actors; another body of that name is replaced.
+
+    Returns
+    -------
+    pyvista.Plotter
+
+    Examples
+    --------
+    >>> from polhode import view
+    >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    >>> faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    >>> plotter = view.body(corners, faces)  # doctest: +SKIP
+    >>> plotter.show()  # doctest: +SKIP
+    """
+    plotter = new_plotter() if plotter is None else plotter
+    add_surface(plotter, given_shape(vertices, faces, np.zeros(3)), name, opacity)
+    if length_unit is not None:
+        titles = {f"{axis}title": f"{axis} ({length_unit})" for axis in "xyz"}
+        counts = {f"n_{axis}labels": 3 for axis in "xyz"}
+        plotter.show_bounds(grid="back", location="outer", color="#555555", font_size=12, **titles, **counts)
+    plotter.reset_camera()
+    return plotter
+
+
+def principal_axes(
+    rigid_body: RigidBody,
+    plotter: Plotter | None = None,
+    *,
+    length: float = 1.0,
+    center: ArrayLike | None = None,
+    labels: tuple[str, str, str] = ("e1", "e2", "e3"),
+    name: str = "axes",
+) -> Plotter:
+    """Show the principal axes of one body through its centre of mass.
+
+    Parameters
+    ----------
+    rigid_body : RigidBody
+        One body.
+    plotter : pyvista.Plotter, optional
+        Where to show them; a new one by default.
+    length : float
+        From the centre to each tip.
+    center : array_like, shape (3,), optional
+        Where to show the centre of mass; where it is by default.
+    labels : tuple of str
+        At the tips, in the order of ascending moments.
+    name : str
+        Of the actors; other axes of that name are replaced.
+
+    Returns
+    -------
+    pyvista.Plotter
+    """
+    _one(rigid_body)
+    plotter = new_plotter() if plotter is None else plotter
+    origin = np.asarray(rigid_body.center_of_mass if center is None else center, dtype=np.float64)
+    for k, (color, axis) in enumerate(zip(AXIS_COLORS, rigid_body.principal.axes.T, strict=True)):
+        mesh = line(origin - length * axis, origin + length * axis, 0.008 * length)
+        plotter.add_mesh(mesh, color=color, name=f"{name}-{k}", **AXIS_STYLE)
+        add_name(plotter, origin + 1.1 * length * axis, labels[k], color, f"{name}-label-{k}")
+    middle = pyvista().Sphere(radius=0.02 * length, center=origin)
+    plotter.add_mesh(middle, color="black", name=f"{name}-center", **AXIS_STYLE)
+    show_all(plotter)
+    return plotter
+
+
+def ellipsoid(
+    body: RigidBody,
+    plotter: Plotter | None = None,
+    *,
+    size: float = 1.0,
+    center: ArrayLike | None = None,
+    opacity: float = 1.0,
+    name: str = "ellipsoid",
+) -> Plotter:
+    """Show the ellipsoid of inertia about the centre of mass and the principal axes.
+
+    Parameters
+    ----------
+    body : RigidBody
+        One body.
+    plotter : pyvista.Plotter, optional
+        Where to show it; a new one by default.
+    size : float
+        Length of the longest semi-axis. They are as 1/√I_k; that of a zero moment has no end and is cut.
+    center : array_like, shape (3,), optional
+        Where to show the centre of mass; where it is by default.
+    opacity : float
+        Of the surface, from 0 to 1.
+    name : str
+        Of the actors; another ellipsoid of that name is replaced.
+
+    Returns
+    -------
+    pyvista.Plotter
+    """
+    _one(body)
+    plotter = new_plotter() if plotter is None else plotter
+    middle = np.asarray(body.center_of_mass if center is None else center, dtype=np.float64)
+    semi_axes = inertia_semi_axes(body.principal.moments)
+    semi_axes *= size / semi_axes.max()
+    placed = np.eye(4)
+    placed[:3, :3], placed[:3, 3] = body.principal.axes, middle
+    mesh = pyvista().ParametricEllipsoid(*semi_axes, u_res=121, v_res=61, w_res=61)
+    plotter.add_mesh(
+        mesh.transform(placed, inplace=False),
+        color=_ELLIPSOID_COLOR,
+        opacity=opacity,
+        smooth_shading=True,
+        ambient=0.3,
+        name=name,
+        reset_camera=False,
+    )
+    around = np.linspace(0.0, 2.0 * np.pi, 181)
+    for k in range(3):
+        ring = np.zeros((181, 3))
+        ring[:, (k + 1) % 3], ring[:, (k + 2) % 3] = np.cos(around), np.sin(around)
+        curve = pyvista().MultipleLines(1.002 * (ring * semi_axes) @ body.principal.axes.T + middle)
+        plotter.add_mesh(curve, color="#4A5568", line_width=1.5, name=f"{name}-ring-{k}", **AXIS_STYLE)
+    return principal_axes(body, plotter, length=1.25 * size, center=middle, name=f"{name}-axes")
+
+
+def rigid_body(
+    body: RigidBody,
+    plotter: Plotter | None = None,
+    *,
+    shape: tuple[ArrayLike, ArrayLike] | None = None,
+    opacity: float = 0.35,
+) -> Plotter:
+    """Show a body with its principal axes and, through it, its ellipsoid of inertia.
+
+    Parameters
+    ----------
+    body : RigidBody
+        One body.
+    plotter : pyvista.Plotter, optional
+        Where to show it; a new one by default.
+    shape : (vertices, faces), optional
+        A mesh of the body in its frame, (n, 3) and (m, 3). By default the uniform box that has its inertia.
+    opacity : float
+        Of the ellipsoid, from 0 to 1.
+
+    Returns
+    -------
+    pyvista.Plotter
+    """
+    _one(body)
+    plotter = new_plotter() if plotter is None else plotter
+    drawn = equivalent_box(body, np.zeros(3)) if shape is None else given_shape(*shape, np.zeros(3))
+    add_surface(plotter, drawn, "body", 1.0)
+    reach = float(np.linalg.norm(drawn.vertices - body.center_of_mass, axis=1).max()) or 1.0
+    return ellipsoid(body, plotter, size=reach, opacity=opacity)
+
+
+def _outline(mesh: PolyData) -> PolyData:
+    """Find the edges at which a surface turns sharply, or ends."""
+    edges: PolyData = mesh.clean().extract_feature_edges(
+        feature_angle=_FEATURE_ANGLE, boundary_edges=True, non_manifold_edges=False, manifold_edges=False
+    )
+    return edges
+
+
+def add_surface(plotter: Plotter, shape: Shape, name: str, opacity: float) -> list[Any]:
+    """Add a shaded surface in its colours with its outline; give the actors."""
+    mesh = surface(shape.vertices, shape.faces)
+    colors = shape.colors.astype(np.uint8)
+    actors = [
+        plotter.add_mesh(
+            mesh, scalars=colors, rgb=True, opacity=opacity, name=name, reset_camera=False, ambient=0.25
+        )
+    ]
+    edges = _outline(mesh)
+    if edges.n_points:
+        style = {**AXIS_STYLE, "line_width": 2.0, "name": f"{name}-outline"}
+        actors.append(plotter.add_mesh(edges, color=OUTLINE_COLOR, **style))
+    return actors
+
+
+def _one(body: RigidBody) -> None:
+    if body.shape:
+        raise ValueError(f"body: expected one body, got a stack of shape {body.shape}; index it")

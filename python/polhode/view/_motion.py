@@ -1,0 +1,196 @@
+"""A motion in a window: the moving body, ω and L, with a slider for time."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode import _core
+from polhode.animation.scene import Scene
+from polhode.plot import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
+from polhode.view._bodies import add_surface
+from polhode.view._style import AXIS_STYLE, add_name, arrow, line, new_plotter, pyvista, show_all
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+    from pyvista import Plotter
+
+    from polhode import Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["motion"]
+
+_ARROW: Final = 1.5
+"""Length of the longest ω and L, in those of the body."""
+_TICK: Final = 30
+"""Milliseconds between two pictures."""
+
+
+def motion(
+    trajectory: Trajectory,
+    plotter: Plotter | None = None,
+    *,
+    at: float | None = None,
+    shape: tuple[ArrayLike, ArrayLike] | None = None,
+    duration: float = 10.0,
+    title: str = "",
+    time_unit: str = "s",
+    name: str = "motion",
+) -> Plotter:
+    """Show the motion of one body about its point of reference, with ω, its path in space, and L.
+
+    In a window the slider chooses the time and the space bar lets the motion run and stop.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Of one body. What is shown are its samples: some hundred make it smooth.
+    plotter : pyvista.Plotter, optional
+        Where to show it; a new one by default. On one that shows the motion already, another `at` moves it.
+    at : float, optional
+        Time to begin with, as the nearest sample has it; the start by default.
+    shape : (vertices, faces), optional
+        A mesh of the body in its frame, (n, 3) and (m, 3). By default the uniform box that has its inertia.
+    duration : float
+        Seconds that the whole motion takes when it runs.
+    title, time_unit : str
+        As the viewer reads them.
+    name : str
+        Of the actors; another motion of that name is replaced.
+
+    Returns
+    -------
+    pyvista.Plotter
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from polhode import solids, view
+    >>> racket = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 20, 1001), omega=(0.01, 3, 0))
+    >>> view.motion(racket).show()  # doctest: +SKIP
+    """
+    scene = Scene.of(
+        trajectory, frames=None, duration=duration, shape=shape, title=title, time_unit=time_unit
+    )
+    first, last = float(scene.t.min()), float(scene.t.max())
+    start = float(scene.t[0]) if at is None else float(at)
+    if not first <= start <= last:
+        raise ValueError(f"at: {start:g} is not between {first:g} and {last:g}, the times of the motion")
+    is_new = plotter is None or f"{name}-body" not in plotter.actors
+    plotter = new_plotter() if plotter is None else plotter
+    player = _Player(plotter, scene, name)
+    player.seek(start)
+    if is_new:
+        show_all(plotter)
+        if not plotter.off_screen and plotter.iren is not None:
+            player.take_control()
+    return plotter
+
+
+class _Player:
+    """The actors of a motion, put where they are at a sample."""
+
+    def __init__(self, plotter: Plotter, scene: Scene, name: str) -> None:
+        self._plotter, self._scene, self._name = plotter, scene, name
+        self._reach = float(np.linalg.norm(scene.shape.vertices, axis=1).max()) or 1.0
+        self._thickness = 0.012 * self._reach
+        self._index, self._moved = 0, 0.0
+        self._is_running = False
+        self._slider: Any = None
+        self._tips = self._scaled(_core.rotate(scene.quaternion, scene.omega))
+        self._momenta = self._scaled(scene.momentum)
+        self._bodies = add_surface(plotter, scene.shape, f"{name}-body", 1.0)
+        for k, (color, axis) in enumerate(zip(AXIS_COLORS, scene.axes.T, strict=True)):
+            reach = 1.2 * self._reach
+            mesh = line(-reach * axis, reach * axis, 0.5 * self._thickness)
+            self._bodies.append(plotter.add_mesh(mesh, color=color, name=f"{name}-axis-{k}", **AXIS_STYLE))
+        self._add_space()
+
+    def seek(self, time: float) -> None:
+        """Show the sample nearest to a time."""
+        self._show(int(np.abs(self._scene.t - time).argmin()))
+
+    def take_control(self) -> None:
+        """Give the window a slider for time, and let the space bar start and stop the motion."""
+        t = self._scene.t
+        self._slider = self._plotter.add_slider_widget(
+            self.seek,
+            (float(t.min()), float(t.max())),
+            value=float(t[self._index]),
+            title=f"time ({self._scene.time_unit}), space bar to run",
+            pointa=(0.2, 0.08),
+            pointb=(0.8, 0.08),
+            color="#333333",
+            fmt="{:.4g}",
+            interaction_event="always",
+        )
+        self._plotter.add_key_event("space", self.toggle)
+        self._plotter.add_timer_event(max_steps=2**31 - 1, duration=_TICK, callback=self.tick)
+
+    def toggle(self) -> None:
+        """Let the motion run, or stop it; from its end it begins anew."""
+        self._is_running = not self._is_running
+        if self._index == len(self._scene.t) - 1:
+            self._index = 0
+        self._moved = perf_counter() - self._index / self._rate()
+
+    def tick(self, _step: int = 0) -> None:
+        """Show where the motion has got to by the clock."""
+        if not self._is_running:
+            return
+        last = len(self._scene.t) - 1
+        index = min(int((perf_counter() - self._moved) * self._rate()), last)
+        self._is_running = index < last
+        if self._slider is not None:
+            self._slider.GetRepresentation().SetValue(float(self._scene.t[index]))
+        self._show(index)
+        self._plotter.render()
+
+    def _rate(self) -> float:
+        """Give the samples a second."""
+        return len(self._scene.t) / self._scene.duration
+
+    def _scaled(self, vectors: Floats) -> Floats:
+        longest = float(np.linalg.norm(vectors, axis=1).max()) or 1.0
+        return vectors * (_ARROW * self._reach / longest)
+
+    def _add_space(self) -> None:
+        """Add what does not move: the axes of space, and the path of ω."""
+        reach = 1.15 * _ARROW * self._reach
+        for label, axis in zip("xyz", np.eye(3), strict=True):
+            name = f"{self._name}-space-{label}"
+            mesh = pyvista().Line((0.0, 0.0, 0.0), reach * axis)
+            self._plotter.add_mesh(mesh, color="#AAAAAA", line_width=1.5, name=name, **AXIS_STYLE)
+            add_name(self._plotter, 1.05 * reach * axis, label, "#888888", f"{name}-label")
+        if len(self._tips) > 1:
+            path = pyvista().MultipleLines(self._tips)
+            style = {**AXIS_STYLE, "line_width": 1.5, "opacity": 0.5, "name": f"{self._name}-path"}
+            self._plotter.add_mesh(path, color=OMEGA_COLOR, **style)
+
+    def _show(self, index: int) -> None:
+        self._index = index
+        placed = np.eye(4)
+        placed[:3, :3] = _core.rotate(self._scene.quaternion[index], np.eye(3)).T
+        for actor in self._bodies:
+            actor.user_matrix = placed
+        self._add_arrow("L  ", self._momenta[index], MOMENTUM_COLOR, "right")
+        self._add_arrow("  omega", self._tips[index], OMEGA_COLOR, "left")  # VTK's fonts have no ω
+        moment = f"t = {self._scene.t[index]:.4g} {self._scene.time_unit}"
+        text = f"{self._scene.title}\n{moment}" if self._scene.title else moment
+        self._plotter.add_text(
+            text, position="upper_left", font_size=11, color="#333333", name=f"{self._name}-time"
+        )
+
+    def _add_arrow(self, label: str, tip: Floats, color: str, side: str) -> None:
+        name = f"{self._name}-{label.strip()}"
+        length = float(np.linalg.norm(tip))
+        if length < 4.0 * self._thickness:
+            for gone in (name, f"{name}-label"):
+                self._plotter.remove_actor(gone, render=False)
+            return
+        mesh = arrow(tip, self._thickness)
+        self._plotter.add_mesh(mesh, color=color, name=name, **AXIS_STYLE)
+        add_name(self._plotter, tip, label, color, f"{name}-label", side=side)

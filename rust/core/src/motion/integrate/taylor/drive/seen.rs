@@ -1,0 +1,163 @@
+//! One motion with every step shown as it is made: for events.
+
+use std::ops::ControlFlow;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::{Job, Lanes, Settings};
+use crate::motion::integrate::taylor::course::Course;
+use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::series::{Coefficient, Series};
+use crate::motion::integrate::taylor::step::Compensated;
+use crate::motion::simulate::End;
+use crate::motion::state::Phase;
+use crate::numerics::lane::Lane;
+
+/// A step: polynomials in the time since its start, in body axes and real units.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    /// When it begins and ends, since the start of the motion.
+    pub(crate) ends: [f64; 2],
+    /// What rounding left out of its beginning.
+    rest: f64,
+    /// The unit of rates: its polynomials are in time times this.
+    unit: f64,
+    /// ω and (x, y, z, w), from order 1 on; before those the state at the start, and what rounding left out of it.
+    state: [f64; 7],
+    change: [f64; 7],
+    series: Vec<[f64; 7]>,
+    /// Position and velocity, where they do not go on evenly.
+    path: Vec<[f64; 6]>,
+    /// Position and velocity at the start of the motion.
+    initial: [Vector3<f64>; 2],
+}
+
+impl Step {
+    /// The state at a time since the start of the motion.
+    pub(crate) fn at(&self, elapsed: f64) -> Phase {
+        let within = ((elapsed - self.ends[0]) - self.rest) * self.unit;
+        let mut sum = [0.0; 7];
+        for order in self.series.iter().rev() {
+            for (sum, coefficient) in sum.iter_mut().zip(order) {
+                *sum = *sum * within + coefficient;
+            }
+        }
+        for ((sum, state), change) in sum.iter_mut().zip(&self.state).zip(&self.change) {
+            *sum = state + (*sum * within + change);
+        }
+        let [x, y, z, i, j, k, w] = sum;
+        let [position, velocity] = self.path_at(elapsed, within);
+        Phase {
+            attitude: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
+            omega: Vector3::new(x, y, z),
+            position,
+            velocity,
+        }
+    }
+
+    fn path_at(&self, elapsed: f64, within: f64) -> [Vector3<f64>; 2] {
+        if self.path.is_empty() {
+            let [position, velocity] = self.initial;
+            return [position + velocity * elapsed, velocity];
+        }
+        let mut sum = [0.0; 6];
+        for order in self.path.iter().rev() {
+            for (sum, coefficient) in sum.iter_mut().zip(order) {
+                *sum = *sum * within + coefficient;
+            }
+        }
+        let [x, y, z, u, v, w] = sum;
+        [Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit]
+    }
+
+    /// How far it turns, about, in radians.
+    pub(crate) fn turn(&self) -> f64 {
+        let speed = |phase: &Phase| phase.omega.norm();
+        let fastest = speed(&self.at(self.ends[0])).max(speed(&self.at(self.ends[1])));
+        (self.ends[1] - self.ends[0]).abs() * fastest
+    }
+}
+
+/// Runs one motion and shows each step; the last one, on which the run has ended by itself, comes back.
+#[inline(always)]
+pub(in crate::motion::integrate::taylor) fn drive_seen<
+    L: Lane,
+    S: Series<Pack<L, 1>, B>,
+    const B: usize,
+>(
+    settings: Settings,
+    job: Job<'_>,
+    see: &mut dyn FnMut(&Step) -> ControlFlow<()>,
+) -> Option<Step> {
+    let mut lanes = Lanes::<L, S, B, 1>::new(settings);
+    lanes.load(0, &mut std::iter::once(job));
+    loop {
+        let before = lanes.before()?;
+        lanes.step();
+        let step = lanes.seen(before);
+        if lanes.leads[0].is_none() {
+            return Some(step);
+        }
+        if see(&step).is_break() {
+            lanes.end(0, End::Stopped);
+            return None;
+        }
+    }
+}
+
+/// What a step begins with.
+struct Before<'a, T> {
+    course: Course<'a>,
+    now: (f64, f64),
+    state: Compensated<T>,
+    place: Option<[f64; 6]>,
+}
+
+impl<'a, L: Lane, S: Series<Pack<L, 1>, B>, const B: usize> Lanes<'a, L, S, B, 1> {
+    fn before(&self) -> Option<Before<'a, Pack<L, 1>>> {
+        let lead = self.leads[0].as_ref()?;
+        Some(Before {
+            course: lead.job.course.clone(),
+            now: self.now[0],
+            state: self.state.clone(),
+            place: self.push.as_ref().map(|push| push.now(0)),
+        })
+    }
+
+    /// The step that began with `before` and was the last one made.
+    #[inline(always)]
+    fn seen(&self, before: Before<'a, Pack<L, 1>>) -> Step {
+        let Before {
+            course,
+            now,
+            state,
+            place,
+        } = before;
+        let order = self.settings.order;
+        let mut series = Vec::with_capacity(order);
+        for k in 1..=order {
+            let Coefficient { w, q, .. } = self.series.get(k);
+            let [w0, w1, w2, x, y, z, s] = [w[0], w[1], w[2], q[0], q[1], q[2], q[3]];
+            let coefficient = [w0, w1, w2, x, y, z, s].map(|number| number.get(0));
+            series.push(course.in_body(&coefficient));
+        }
+        let unit = course.unit();
+        let end = self.leads[0].as_ref().map_or_else(
+            || course.last_elapsed(),
+            |lead| (self.now[0].0 + self.now[0].1) / lead.job.course.unit(),
+        );
+        let begin = (now.0 + now.1) / unit;
+        let initial = course.initial();
+        Step {
+            ends: [begin, end],
+            rest: ((now.0 - begin * unit) + now.1) / unit,
+            unit,
+            state: course.in_body(&state.value.map(|number| number.get(0))),
+            change: course.in_body(&state.rest.map(|number| number.get(0))),
+            series,
+            path: (self.push.as_ref().zip(place))
+                .map_or_else(Vec::new, |(push, place)| push.path(0, order, &place)),
+            initial: [initial.position, initial.velocity],
+        }
+    }
+}

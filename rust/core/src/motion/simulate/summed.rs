@@ -1,0 +1,88 @@
+//! Taylor series with events: each step is looked through as it is made.
+
+use std::marker::PhantomData;
+use std::ops::ControlFlow;
+
+use super::events::{Events, Lookout};
+use super::stepper::Dense;
+use super::{End, Run, Task};
+use crate::error::Error;
+use crate::motion::integrate::taylor::{Step, solve_seen};
+use crate::motion::loads::Term;
+use crate::motion::state::Phase;
+
+/// Looks at events in each radian.
+const LOOKS: f64 = 10.0;
+
+/// The motion of `task` under `terms`.
+pub(super) fn solve<E: From<Error>>(
+    task: &Task<'_>,
+    terms: &[Term],
+    events: &mut dyn Events<Error = E>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Run<E> {
+    let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
+    let mut halt = None;
+    let mut lookout = match Lookout::new(events, start, &task.initial, end > start) {
+        Ok(lookout) => lookout,
+        Err(error) => return Run::at_start(task, End::Failed(error)),
+    };
+    let mut run = solve_seen(task, terms, &mut |step| {
+        let mut summed = Summed {
+            step,
+            error: PhantomData,
+        };
+        halt = match lookout.look(&mut summed, start, step.ends[0]) {
+            Ok(None) => return watch(step.ends[1] / (end - start)),
+            Ok(Some((elapsed, phase))) => Some((elapsed, phase, End::Event)),
+            Err(error) => Some((step.ends[0], step.at(step.ends[0]), End::Failed(error))),
+        };
+        ControlFlow::Break(())
+    })
+    .with_error(E::from);
+    run.crossings = lookout.crossings;
+    if let Some((elapsed, phase, end)) = halt {
+        // The last step went further.
+        for (sample, t) in run.samples.iter_mut().zip(task.times) {
+            let since = t - start;
+            if since == elapsed && elapsed != 0.0 {
+                *sample = phase;
+            } else if since.abs() > elapsed.abs() {
+                *sample = Phase::nan();
+            }
+        }
+        (run.time, run.phase, run.end) = (start + elapsed, phase, end);
+    }
+    run
+}
+
+/// A step of Taylor series as events see it.
+struct Summed<'a, E> {
+    step: &'a Step,
+    error: PhantomData<E>,
+}
+
+impl<E> Dense for Summed<'_, E> {
+    type Error = E;
+
+    fn elapsed(&self) -> f64 {
+        self.step.ends[1]
+    }
+
+    fn phase(&self) -> Phase {
+        self.step.at(self.step.ends[1])
+    }
+
+    fn within(&mut self, elapsed: f64) -> Result<Phase, E> {
+        Ok(self.step.at(elapsed))
+    }
+
+    /// Steps of high order are long.
+    fn parts(&self) -> u32 {
+        let mut parts = 4;
+        while f64::from(parts) < LOOKS * self.step.turn() && parts < u32::MAX / 2 {
+            parts *= 2;
+        }
+        parts
+    }
+}

@@ -1,0 +1,167 @@
+"""Mistakes that many make in Python: each is refused with what to write instead."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from mesh_files import obj
+from oracles.meshes import cube
+from polhode import RigidBody, loads, solids
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+BODY: Any = solids.box((3.0, 2.0, 1.0), mass=1.0)
+TOP: Any = RigidBody.from_principal(1.0, (2.0, 2.0, 3.0), center_of_mass=(0.0, 0.0, 0.1))
+MADE: Any = RigidBody
+LOADS: Any = loads
+SPUN = ([0.0, 1.0], (0.0, 0.0, 1.0))
+
+MISTAKES: list[tuple[str, Callable[[], object], type[Exception], str]] = [
+    (
+        "three moments for a tensor",
+        lambda: MADE(1.0, (1, 2, 3)),
+        ValueError,
+        "inertia: expected shape (..., 3, 3), got (3,); RigidBody.from_principal takes",
+    ),
+    (
+        "a center",
+        lambda: MADE(1.0, np.eye(3), center=(0, 0, 1)),
+        TypeError,
+        "RigidBody() got an unexpected keyword argument 'center'; did you mean center_of_mass=?",
+    ),
+    (
+        "a centre of mass",
+        lambda: MADE(1.0, np.eye(3), centre_of_mass=(0, 0, 1)),
+        TypeError,
+        "'centre_of_mass'; did you mean center_of_mass=?",
+    ),
+    (
+        "the moments of a body",
+        lambda: MADE(1.0, inertia_about_orign=np.eye(3)),
+        TypeError,
+        "did you mean inertia_about_origin=?",
+    ),
+    (
+        "something else",
+        lambda: MADE(1.0, np.eye(3), colour="red"),
+        TypeError,
+        "'colour'; it takes mass, inertia, center_of_mass, inertia_about_origin, rtol",
+    ),
+    (
+        "a com of moments",
+        lambda: MADE.from_principal(1.0, (1, 1, 1), com=(0, 0, 1)),
+        TypeError,
+        "RigidBody.from_principal() got an unexpected keyword argument 'com'; did you mean center_of_mass=?",
+    ),
+    (
+        "a unit with omega",
+        lambda: BODY.simulate([0, 1], omega="30 deg/s"),
+        TypeError,
+        "omega: expected real numbers, got dtype <U8; convert units first: numpy.deg2rad(30) is 30 deg/s",
+    ),
+    (
+        "a rate for omega",
+        lambda: BODY.simulate([0, 1], 3.0),
+        ValueError,
+        "got (); a rate about z is (0, 0, rate)",
+    ),
+    (
+        "one time",
+        lambda: BODY.simulate(10, (1, 0, 0)),
+        ValueError,
+        "t: expected shape (T,), got (); the first time is the start: [0, 10]",
+    ),
+    (
+        "three angles",
+        lambda: BODY.simulate(*SPUN, attitude=(0, 0, 1)),
+        ValueError,
+        "got (3,); euler_angles.to_quaternion takes three angles",
+    ),
+    (
+        "a strength of gravity",
+        lambda: TOP.heavy_top((0, 0, 1), None, gravity=9.81),
+        ValueError,
+        "gravity: expected shape (..., 3), got (); a strength g that pulls along -z is (0, 0, -g)",
+    ),
+    ("a weight's strength", lambda: LOADS.uniform_gravity(9.81), ValueError, "is (0, 0, -g)"),
+    (
+        "a vector for a load",
+        lambda: TOP.simulate(*SPUN, load=(0, 0, -9.81), about="origin"),
+        TypeError,
+        "<class 'tuple'>; a weight is loads.uniform_gravity((0, 0, -9.81))",
+    ),
+    (
+        "a function for a load",
+        lambda: BODY.simulate(*SPUN, load=lambda _t, w, _q: w),
+        TypeError,
+        "<class 'function'>; wrap a function in loads.torque_callback",
+    ),
+    (
+        "gravity of a run",
+        lambda: BODY.simulate(*SPUN, gravity=(0, 0, -9.81)),
+        TypeError,
+        "'gravity'; it is a load: load=loads.uniform_gravity((0, 0, -9.81))",
+    ),
+    (
+        "a torque of a run",
+        lambda: BODY.simulate(*SPUN, torque=(0, 0, 1)),
+        TypeError,
+        "'torque'; did you mean load=?",
+    ),
+    (
+        "a picture's name",
+        lambda: BODY.simulate(*SPUN).plot("m.png"),
+        TypeError,
+        "got 'm.png'; draw first and save the figure: .figure.savefig('m.png') of what this returns",
+    ),
+    ("a body's picture", lambda: BODY.plot("b.png"), TypeError, ".figure.savefig('b.png')"),
+    (
+        "a density with a unit",
+        lambda: MADE.from_file("part.stl", density="2.7 g/cm^3"),
+        TypeError,
+        "units are read on the command line: polhode report part.stl --density \"2.7 g/cm^3\"",
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "says"), [row[1:] for row in MISTAKES], ids=[r[0] for r in MISTAKES]
+)
+def test_the_way_out_is_named(make: Callable[[], object], error: type[Exception], says: str) -> None:
+    with pytest.raises(error, match=re.escape(says)):
+        make()
+
+
+def test_a_file_is_closed_and_welded_on_request(tmp_path: Path) -> None:
+    vertices, faces = cube(2.0)
+    whole = tmp_path / "open.obj"
+    whole.write_bytes(obj(vertices, faces[1:]))
+    for closure in ("caps", "hull"):
+        body = RigidBody.from_file(whole, density=1.0, closure=closure)
+        assert body.mass == pytest.approx(8.0, rel=1e-14)
+        assert body.provenance.closure == closure
+    # A corner of one triangle strays by a hundred-millionth: the edges beside it are open.
+    strayed = np.vstack([vertices, vertices[faces[0, 0]] + 1e-8])
+    frayed = tmp_path / "frayed.obj"
+    frayed.write_bytes(obj(strayed, np.vstack([[len(vertices), *faces[0, 1:]], faces[1:]])))
+    with pytest.raises(ValueError, match="1 corner lies within 1e-07 of another: weld=1e-07 joins it"):
+        RigidBody.from_file(frayed, density=1.0)
+    body = RigidBody.from_file(frayed, density=1.0, weld=1e-7, length_unit="mm")
+    assert body.mass == pytest.approx(8e-9, rel=1e-7)
+    assert body.provenance.welded == 1
+    turned = tmp_path / "turned.obj"
+    turned.write_bytes(obj(vertices, faces[:, ::-1]))
+    assert RigidBody.from_file(turned, density=1.0, orient=True).mass == pytest.approx(8.0, rel=1e-14)
+
+
+@pytest.mark.parametrize("option", [{"weld": 0.1}, {"closure": "hull"}, {"orient": True}, {"index_base": 0}])
+def test_a_molecule_is_no_mesh(tmp_path: Path, option: dict[str, Any]) -> None:
+    neon = tmp_path / "neon.xyz"
+    neon.write_text("1\n\nNe 0 0 0\n")
+    with pytest.raises(ValueError, match=f"{next(iter(option))}: .* is a molecule, not a mesh; leave it out"):
+        RigidBody.from_file(neon, **option)

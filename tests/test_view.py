@@ -1,0 +1,162 @@
+"""Windows: what stands in them is what was computed, and a picture shows it. Skipped without pyvista."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from oracles.meshes import cube
+from polhode import RigidBody, Trajectory, solids, view
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+SIDES = np.array([1.0, 2.0, 3.0])
+MOMENTS = (SIDES @ SIDES - SIDES**2) / 12.0
+
+
+def test_without_pyvista_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    with pytest.raises(ModuleNotFoundError, match=r'a window needs pyvista: pip install "polhode\[view\]"'):
+        solids.cube(1.0, mass=1.0).view()
+
+
+@pytest.fixture
+def pyvista(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    library: Any = pytest.importorskip("pyvista", reason='pip install "polhode[view]"')
+    monkeypatch.setattr(library, "OFF_SCREEN", True)
+    yield library
+    library.close_all()
+
+
+@pytest.fixture(scope="module")
+def motion() -> Trajectory:
+    brick = solids.box(SIDES, mass=1.0).rotated((0.0, 0.0, 0.6, 0.8))
+    return brick.simulate(np.linspace(0.0, 5.0, 101), omega=(0.3, 2.0, 0.1))
+
+
+def pixels(plotter: Any) -> np.ndarray:
+    return np.asarray(plotter.screenshot(return_img=True)).astype(int)
+
+
+def colored(picture: np.ndarray, color: str) -> int:
+    """How many pixels have a colour, or nearly."""
+    wanted = np.array([int(color[i : i + 2], 16) for i in (1, 3, 5)])
+    return int((np.abs(picture - wanted).max(axis=-1) < 12).sum())
+
+
+class TestBodies:
+    def test_a_mesh_and_its_edges(self, pyvista: Any) -> None:
+        vertices, faces = cube(2.0)
+        plotter = view.body(vertices * SIDES, faces, length_unit="m")
+        drawn = plotter.actors["body"].mapper.dataset
+        np.testing.assert_allclose(drawn.bounds, np.outer(SIDES, (-1.0, 1.0)).reshape(-1))
+        assert drawn.volume == pytest.approx(48.0)
+        edges = plotter.actors["body-outline"].mapper.dataset
+        assert edges.compute_cell_sizes()["Length"].sum() == pytest.approx(4 * 2.0 * SIDES.sum())
+        shades = np.unique(pixels(plotter).reshape(-1, 3), axis=0)
+        assert len(shades) > 20
+        assert isinstance(plotter, pyvista.Plotter)
+
+    @pytest.mark.usefixtures("pyvista")
+    def test_axes_and_ellipsoid_lie_as_the_body_s(self) -> None:
+        body = solids.box(SIDES, mass=1.0).rotated((0.0, 0.0, 0.6, 0.8)).translated((1.0, 0.0, 2.0))
+        plotter = view.ellipsoid(body, size=2.0)
+        surface = np.asarray(plotter.actors["ellipsoid"].mapper.dataset.points)
+        arm = (surface - body.center_of_mass) @ body.principal.axes
+        # r·I r is the same everywhere on it: I₁ (longest semi-axis)².
+        np.testing.assert_allclose((arm**2) @ body.principal.moments, MOMENTS.min() * 4.0, rtol=1e-5)
+        for k, axis in enumerate(body.principal.axes.T):
+            tube = np.asarray(plotter.actors[f"ellipsoid-axes-{k}"].mapper.dataset.points)
+            along = (tube - body.center_of_mass) @ axis
+            across = np.linalg.norm(tube - body.center_of_mass - np.outer(along, axis), axis=1)
+            assert along.max() == pytest.approx(2.5)
+            assert across.max() < 0.05
+
+    @pytest.mark.usefixtures("pyvista")
+    def test_the_whole_picture_of_a_body(self) -> None:
+        plotter = solids.box(SIDES, mass=1.0).view()
+        picture = pixels(plotter)
+        for color in ("#0072B2", "#D55E00", "#009E73"):  # the axes, or their names
+            assert colored(picture, color) > 50
+        drawn = plotter.actors["body"].mapper.dataset  # the box of equal inertia is the box
+        np.testing.assert_allclose(drawn.bounds, np.outer(SIDES / 2, (-1.0, 1.0)).reshape(-1), rtol=1e-12)
+
+    def test_a_plotter_is_used_and_returned(self, pyvista: Any) -> None:
+        plotter = pyvista.Plotter()
+        body = solids.cube(1.0, mass=1.0)
+        assert view.body(*cube(), plotter) is plotter
+        assert view.principal_axes(body, plotter) is plotter
+        assert body.view(plotter, shape=cube()) is plotter
+        count = len(plotter.actors)
+        body.view(plotter, shape=cube())
+        assert len(plotter.actors) == count  # the same names are replaced
+
+    def test_stacks_are_refused(self) -> None:
+        many = RigidBody.from_principal(np.ones(2), MOMENTS)
+        with pytest.raises(ValueError, match=r"one body, got a stack of shape \(2,\)"):
+            many.view()
+
+
+class TestMotion:
+    @pytest.mark.usefixtures("pyvista")
+    @pytest.mark.parametrize("index", [0, 37, 100])
+    def test_the_body_stands_as_it_does_at_the_time(self, motion: Trajectory, index: int) -> None:
+        plotter = motion.view(at=float(motion.t[index]), shape=cube())
+        placed = plotter.actors["motion-body"].user_matrix
+        np.testing.assert_allclose(placed[:3, :3], motion.rotation[index].as_matrix(), atol=1e-12)
+        np.testing.assert_array_equal(placed[:3, 3], 0.0)
+        omega = motion.rotation[index].apply(motion.omega[index])
+        arrow = np.asarray(plotter.actors["motion-omega"].mapper.dataset.points)
+        tip = arrow[np.linalg.norm(arrow, axis=1).argmax()]
+        assert tip @ omega == pytest.approx(
+            np.linalg.norm(tip) * np.linalg.norm(omega), rel=1e-6
+        )  # in float32
+
+    @pytest.mark.usefixtures("pyvista")
+    def test_it_moves_on_the_same_plotter(self, motion: Trajectory) -> None:
+        plotter = view.motion(motion, at=0.0)
+        early, again = pixels(plotter), pixels(plotter)
+        count = len(plotter.actors)
+        assert view.motion(motion, plotter, at=2.0) is plotter
+        late = pixels(plotter)
+        assert len(plotter.actors) == count
+        assert np.array_equal(early, again)
+        assert (np.abs(late - early).max(axis=-1) > 30).mean() > 0.01
+
+    def test_the_slider_and_the_space_bar_move_it(
+        self, pyvista: Any, motion: Trajectory, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """In a window: here one without a screen."""
+        monkeypatch.setattr(pyvista, "OFF_SCREEN", False)
+        plotter = view.motion(motion, pyvista.Plotter(off_screen=False), duration=0.2)
+        slider = getattr(plotter, "widgets", plotter).slider_widgets[0]
+        slider.GetRepresentation().SetValue(float(motion.t[37]))
+        slider.InvokeEvent("InteractionEvent")
+        placed = plotter.actors["motion-body"].user_matrix
+        np.testing.assert_allclose(placed[:3, :3], motion.rotation[37].as_matrix(), atol=1e-12)
+        plotter.show(interactive=False, auto_close=False)
+        plotter.iren.interactor.SetKeySym("space")
+        plotter.iren.interactor.InvokeEvent("KeyPressEvent")
+        for _ in range(100):
+            plotter.iren.interactor.InvokeEvent("TimerEvent")
+        assert slider.GetRepresentation().GetValue() > motion.t[37]
+
+    @pytest.mark.usefixtures("pyvista")
+    def test_a_body_at_rest_has_no_arrows(self) -> None:
+        still = solids.cube(1.0, mass=1.0).simulate([0.0, 1.0], (0.0, 0.0, 0.0))
+        assert not {"motion-L", "motion-omega"} & set(view.motion(still).actors)
+
+    @pytest.mark.parametrize("at", [-0.1, 5.1, np.nan])
+    def test_times_beyond_the_motion(self, motion: Trajectory, at: float) -> None:
+        with pytest.raises(ValueError, match="is not between 0 and 5, the times of the motion"):
+            motion.view(at=at)
+
+
+def test_a_picture_is_saved(pyvista: Any, tmp_path: Path) -> None:
+    path = tmp_path / "body.png"
+    solids.cube(1.0, mass=1.0).view(pyvista.Plotter(off_screen=True)).screenshot(path)
+    assert path.stat().st_size > 1000
