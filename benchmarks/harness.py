@@ -94,12 +94,12 @@ def measure(row: Row, rounds: int = 9, least_seconds: float = 0.02) -> Result:
 def report(results: Iterable[Result], path: Path | None = None) -> None:
     """Print a table of ratios, and write everything as JSON if a path is given."""
     results = list(results)
-    print(f"{'what':46} {'peer':26} {'ours':>10} {'peer':>10} {'times faster':>26}  bar")
+    print(f"{'what':66} {'peer':28} {'ours':>10} {'peer':>10} {'times faster':>26}  bar")
     for result in results:
         ratio = "{:.3g} ({:.3g} to {:.3g})".format(*result.speedup)
         verdict = {True: "met", False: "NOT MET", None: ""}[result.met]
         print(
-            f"{result.name:46} {result.peer:26} {_human(result.ours[0]):>10} {_human(result.theirs[0]):>10}"
+            f"{result.name:66} {result.peer:28} {_human(result.ours[0]):>10} {_human(result.theirs[0]):>10}"
             f" {ratio:>26}  {result.bar} {verdict}"
         )
     if path is not None:

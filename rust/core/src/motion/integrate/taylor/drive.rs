@@ -25,7 +25,7 @@ const PATIENCE: u32 = 64;
 /// Relative to the tolerance of a step, the size of the last term of its series: the terms left out are a quarter of that,
 /// and at the tightest tolerance stay below the rounding of the state even where they all have the same sign.
 const LAST_TERM: f64 = 0.05;
-/// How far ω may outgrow the unit of rates before another is taken: far below where its 24th power overflows.
+/// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
 const OUTGROWN: f64 = 65_536.0;
 /// The halvings that find where within a step the law changes.
 const HALVINGS: u32 = 55;
@@ -47,7 +47,7 @@ impl Settings {
     /// `tolerance^(1/order)`. No order is above `highest`.
     pub(super) fn new(relative: f64, absolute: f64, highest: usize, parts: Parts) -> Self {
         let nats = -(LAST_TERM * relative).ln();
-        let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.3 * nats);
+        let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.36 * nats);
         let order = 2 * halves.next_back().map_or(4, |half| half + 1);
         Self {
             order,

@@ -7,8 +7,10 @@
 //! | `field` | the equations that are linear in the coefficients of one order |
 //! | `terms`, `extras` | the recurrences of terms that are not |
 //! | `moment` | what depends on time alone |
-//! | `series` | the sums of products, the lanes over components or over motions |
-//! | `twin` | those sums in numbers of twice the precision |
+//! | `series` | the coefficients, and what is asked of the sums of their products |
+//! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
+//! | `twin` | these sums in numbers of twice the precision |
+//! | `directions` | directions of space as seen from the body |
 //! | `push` | the path of a body that forces act on |
 //! | `step` | the length of a step, the state at its end or within |
 //! | `drive` | steps, outputs, breaks, until all motions are done; `seen`: each step as it is made |
@@ -21,7 +23,10 @@
     reason = "rows and components are indices of several arrays at once"
 )]
 
+mod abreast;
+mod alone;
 mod course;
+mod directions;
 mod drive;
 mod extras;
 mod field;
@@ -37,12 +42,13 @@ mod twin;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use abreast::Abreast;
+use alone::Alone;
 use course::{Course, parts};
 pub(crate) use drive::Step;
 use drive::{Job, Settings, drive, drive_seen};
 use field::Parts;
 use frame::Precision;
-use series::{Abreast, Alone};
 use twin::Twin;
 
 use crate::error::Error;
