@@ -88,7 +88,8 @@ class TestInTheBrowser:
 
     def test_the_clock_runs_by_itself(self, racket: Trajectory, tmp_path: Path) -> None:
         page = racket.animate(tmp_path / "racket.html")
-        assert 0.0 < clock(page, tmp_path) <= 12.0
+        # On a busy machine the browser may draw no frame within its time.
+        assert any(0.0 < clock(page, tmp_path) <= 12.0 for _ in range(4))
         assert clock(page, tmp_path, at=7.0) == 7.0
 
 
