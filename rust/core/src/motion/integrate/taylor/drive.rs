@@ -429,7 +429,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
             run.time = lead.job.course.last_time();
             run.phase = phase;
             run.end = End::Complete;
-            self.vacate(row);
+            self.leads[row] = None;
         } else {
             (self.stop[row], lead.stop) = next_stop(&lead.job.course, lead.next);
         }
@@ -459,11 +459,11 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         }
     }
 
-    /// The next motion into an empty lane.
+    /// The next motion into an empty lane, or none for ever.
     #[inline(never)]
     fn load(&mut self, row: usize, jobs: &mut dyn Iterator<Item = Job<'a>>) {
         let Some(job) = jobs.next() else {
-            return;
+            return self.vacate(row);
         };
         let start = job.course.start();
         for i in 0..7 {
@@ -539,7 +539,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
             run.phase = lead.job.course.phase(&state, place.as_ref(), self.now[row]);
             run.end = end;
         }
-        self.vacate(row);
+        self.leads[row] = None;
     }
 
     /// A lane without motion: at rest for ever.
@@ -553,7 +553,6 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         }
         self.field.set(row, &Field::NONE);
         self.extras.vacate(row);
-        self.leads[row] = None;
         self.now[row] = (0.0, 0.0);
         self.stop[row] = (f64::INFINITY, 0.0);
         self.fastest[row] = 1.0;
