@@ -118,7 +118,9 @@ def clock(page: Path, folder: Path, at: float | None = None) -> float:
 class TestFilm:
     def test_a_gif_has_its_frames_and_they_differ(self, racket: Trajectory, tmp_path: Path) -> None:
         pytest.importorskip("matplotlib")
-        path = racket.animate(tmp_path / "racket.GIF", frames=4, duration=2.0)
+        told: list[float] = []
+        path = racket.animate(tmp_path / "racket.GIF", frames=4, duration=2.0, progress=told.append)
+        assert told == [0.25, 0.5, 0.75, 1.0]
         with warnings.catch_warnings(), Image.open(path) as film:
             assert getattr(film, "n_frames", 1) == 4
             assert film.info["duration"] == 500

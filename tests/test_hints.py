@@ -149,7 +149,9 @@ def test_a_file_is_closed_and_welded_on_request(tmp_path: Path) -> None:
     strayed = np.vstack([vertices, vertices[faces[0, 0]] + 1e-8])
     frayed = tmp_path / "frayed.obj"
     frayed.write_bytes(obj(strayed, np.vstack([[len(vertices), *faces[0, 1:]], faces[1:]])))
-    with pytest.raises(ValueError, match="1 corner lies within 1e-07 of another: weld=1e-07 joins it"):
+    with pytest.raises(
+        ValueError, match="1 corner lies within 1e-07 of another, weld=1e-07 joins it; or close the mesh"
+    ):
         RigidBody.from_file(frayed, density=1.0)
     body = RigidBody.from_file(frayed, density=1.0, weld=1e-7, length_unit="mm")
     assert body.mass == pytest.approx(8e-9, rel=1e-7)

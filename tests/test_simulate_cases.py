@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles import load_cases
+from oracles.by_scipy import by_dop853
 from oracles.motion_cases import MotionCase, angle, load_table, relative_error
 from polhode import RigidBody, Trajectory, loads
 
@@ -16,6 +17,8 @@ CASES = load_table(load_cases.NAME)
 MATRICES = ("matrix", "quadratic", "K", "D")
 EPSILON = float(np.finfo(float).eps)
 TIGHTEST = 2.3e-15
+ROUNDING = 4e-16
+"""Of four components of a quaternion, as an angle."""
 
 
 def load_of(case: MotionCase) -> Any:
@@ -90,6 +93,14 @@ def test_taylor(case: MotionCase) -> None:
         assert error <= 1e-13 + 30 * kappa * EPSILON
 
 
+@named(case for case in CASES if "sinusoidal" not in case.name)
+def test_taylor_to_the_last_digit(case: MotionCase) -> None:
+    """Beyond doubles the result is the exact one, rounded, while 28 digits are enough for the start."""
+    found = errors(case, simulated(case, "taylor", 1e-27))
+    for error, kappa in zip(found, case.kappa, strict=True):
+        assert error <= ROUNDING + 1e-28 * kappa
+
+
 # An explicit method on a stiff case stands at the limit of its stability: those are for "radau".
 SMOOTH = named(case for case in CASES if not is_stiff(case))
 
@@ -112,6 +123,24 @@ def assert_dop853(case: MotionCase, rtol: float) -> None:
         assert error <= (1e-11 if t < 10.5 * rotation else 1e-9) + 100 * kappa * EPSILON
 
 
+@SMOOTH
+@pytest.mark.parametrize("rtol", [1e-8, 1e-11])
+def test_dop853_is_no_worse_than_that_of_scipy(case: MotionCase, rtol: float) -> None:
+    """At ten rotations; SciPy's tolerance is absolute besides relative to each component."""
+    last = max(i for i, t in enumerate(case.times) if t * np.linalg.norm(case.omega) < 21 * np.pi)
+    soon = case._replace(times=case.times[: last + 1], expected=case.expected[: last + 1])
+    ours = errors(soon, simulated(soon, "dop853", rtol))[-1]
+    peer, want = by_dop853(case, case.times[last], rtol=rtol, atol=rtol), case.expected[last]
+    theirs = [
+        angle(peer.quaternion, want.quaternion),
+        relative_error(peer.omega, want.omega, float(np.linalg.norm(case.omega))),
+    ]
+    if case.position:
+        theirs.append(relative_error(peer.position, want.position))
+        theirs.append(relative_error(peer.velocity, want.velocity))
+    assert ours <= max(theirs)
+
+
 class TestRadau:
     @named(case for case in CASES if is_stiff(case))
     def test_error(self, case: MotionCase) -> None:
@@ -131,19 +160,36 @@ class TestRadau:
             steps.append(run.steps)
         assert max(steps) <= 1.05 * steps[0]
 
+    @pytest.mark.parametrize("rtol", [1e-14, 1e-8])
+    def test_a_push_on_a_body_at_rest(self, rtol: float) -> None:
+        """Place and velocity begin at zero, and have no size there that errors could be relative to."""
+        body, force = RigidBody.from_principal(2.0, (1.0, 2.0, 2.5)), np.array([0.3, -0.2, 0.1])
+        load = loads.constant_force(force, "space", point=(0.5, 0.0, 0.0))
+        run = body.simulate([0.0, 3.0], (0.3, 0.2, 1.1), load=load, method="radau", rtol=rtol)
+        np.testing.assert_allclose(run.velocity[-1], 3.0 * force / 2.0, rtol=1e-13)
+        np.testing.assert_allclose(run.position[-1], 4.5 * force / 2.0, rtol=1e-13)
+        assert run.steps < 100 * (1e-8 / rtol) ** 0.25
 
-def drifts(case: MotionCase, rotations: float) -> tuple[float, float]:
-    """Largest |ΔE/E| in the first and in the second half of a run of a heavy top by splitting."""
+
+def changes(case: MotionCase, rotations: float, rtol: float = 1e-10) -> Any:
+    """ΔE/E of a heavy top by splitting, at four thousand times."""
     t = np.linspace(0.0, rotations * 2 * np.pi / np.linalg.norm(case.omega), 4001)
     body = body_of(case)
-    run = body.simulate(t, case.omega, case.attitude, load=load_of(case), about="origin", method="splitting")
+    run = body.simulate(
+        t, case.omega, case.attitude, load=load_of(case), about="origin", method="splitting", rtol=rtol
+    )
     (weight,) = case.load
     inertia = body.inertia_about((0.0, 0.0, 0.0))
     kinetic = 0.5 * np.einsum("ti,ij,tj->t", run.omega, inertia, run.omega)
     center = run.rotation.apply(body.center_of_mass)
     energy = kinetic - body.mass * center @ np.array(weight["gravity"])
-    drift = np.abs(energy / energy[0] - 1.0)
-    return float(drift[: len(t) // 2].max()), float(drift[len(t) // 2 :].max())
+    return energy[1:] / energy[0] - 1.0
+
+
+def drifts(case: MotionCase, rotations: float) -> tuple[float, float]:
+    """Largest |ΔE/E| in the first and in the second half of a run."""
+    first, second = np.abs(changes(case, rotations)).reshape(2, -1).max(axis=1)
+    return float(first), float(second)
 
 
 REGULAR = ("heavy symmetric top: nodding", "Kovalevskaya top: generic")
@@ -154,6 +200,13 @@ def test_splitting_keeps_the_energy_for_a_thousand_rotations(case: MotionCase) -
     first, second = drifts(case, 1e3)
     assert first <= 1e-9
     assert second <= 1.5 * first + 1e-11
+
+
+@named(case for case in CASES if case.name in REGULAR)
+def test_rounding_does_not_move_the_energy(case: MotionCase) -> None:
+    """What splitting swings by aside: its mean after ten thousand rotations is that of the first thousand."""
+    means = changes(case, 1e4, rtol=1e-12).reshape(10, -1).mean(axis=1)
+    assert np.abs(means - means[0]).max() < 2e-13
 
 
 @pytest.mark.long

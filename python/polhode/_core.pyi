@@ -14,6 +14,7 @@ from polhode.results import (
     ErrorBound,
     FreePrecession,
     KineticEnergy,
+    MotionSensitivity,
     Particles,
     PrincipalAxes,
     Provenance,
@@ -61,6 +62,7 @@ __all__ = [
     "inertia_from_center_of_mass",
     "inertia_to_center_of_mass",
     "least_spin",
+    "motion_sensitivity",
     "nearest_valid",
     "polygon",
     "principal_axes",
@@ -647,6 +649,14 @@ def euler_rates(
     singular: Literal["raise", "nan"] = "raise",
 ) -> _Floats: ...
 def transport(rate_in_frame: ArrayLike, vector: ArrayLike, frame_omega: ArrayLike) -> _Floats: ...
+def motion_sensitivity(
+    body: RigidBody,
+    t: ArrayLike,
+    omega: ArrayLike,
+    quaternion: ArrayLike,
+    load: Load | None,
+    about: Literal["center_of_mass", "origin"],
+) -> MotionSensitivity: ...
 def inertia_from_center_of_mass(inertia: ArrayLike, mass: ArrayLike, displacement: ArrayLike) -> _Floats: ...
 def inertia_to_center_of_mass(inertia: ArrayLike, mass: ArrayLike, displacement: ArrayLike) -> _Floats: ...
 def stick(mass: ArrayLike, inertia: ArrayLike, a: ArrayLike, b: ArrayLike) -> Particles: ...

@@ -243,8 +243,9 @@ def solid_from_file(
             )
         except MeshError as error:
             is_told = streamed == "PLY" or " is not closed" not in str(error)
-            hint = "" if is_told or file.stat().st_size > _SMALL_FILE else _weld_hint(read_mesh(file))
-            raise MeshError(f"{error}{hint}") from None
+            if is_told or file.stat().st_size > _SMALL_FILE:
+                raise
+            raise MeshError(_with_weld(str(error), read_mesh(file))) from None
         return MeshSolid(body, streamed, None, faces, volume, area, 0)
     mesh = read_mesh(file, index_base=index_base)
     corners = len(mesh.vertices)
@@ -261,7 +262,7 @@ def solid_from_file(
         body = solid(density, mass)
         volume = float(body.mass) / density if density is not None else float(solid(1.0).mass)
     except MeshError as error:
-        raise MeshError(f"{file}: {error}{_weld_hint(mesh)}") from None
+        raise MeshError(_with_weld(f"{file}: {error}", mesh)) from None
     area = _core.surface_area(vertices, mesh.faces)
     welded = corners - len(mesh.vertices)
     count = len(mesh.vertices)
@@ -315,21 +316,23 @@ def _stream_format(file: Path) -> str | None:
         return "PLY" if actual == "PLY" and b"\nformat binary" in stream.read(4096) else None
 
 
-def _weld_hint(mesh: Mesh) -> str:
-    """Tell of a bad mesh if some of its corners differ by less than 32-bit coordinates resolve."""
+def _with_weld(message: str, mesh: Mesh) -> str:
+    """Offer to weld, before all else, where corners differ by less than 32-bit coordinates resolve."""
     size = float(np.abs(mesh.vertices).max(initial=0.0))
     in_range = not mesh.faces.size or (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices))
     if not (np.isfinite(size) and size > 0.0 and in_range):
-        return ""
+        return message
     resolution = float(f"{size * 2.0**-23:.0e}")
     try:
         near = len(mesh.vertices) - len(meshes.weld_within(mesh, resolution).vertices)
     except ValueError:
-        return ""
+        return message
     if near == 0:
-        return ""
+        return message
     lie, them = ("corner lies", "it") if near == 1 else ("corners lie", "them")
-    return f" ({near} {lie} within {resolution:g} of another: weld={resolution:g} joins {them})"
+    hint = f"{near} {lie} within {resolution:g} of another, weld={resolution:g} joins {them}"
+    fault, others, remedies = message.partition("; close the mesh ")
+    return f"{fault}; {hint}; or close the mesh {remedies}" if others else f"{message} ({hint})"
 
 
 def _check_amount(name: str, value: object, path: str | os.PathLike[str]) -> None:

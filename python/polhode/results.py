@@ -23,6 +23,7 @@ __all__ = [
     "FreePrecession",
     "Invariants",
     "KineticEnergy",
+    "MotionSensitivity",
     "NearestValid",
     "Particles",
     "PrincipalAxes",
@@ -384,3 +385,40 @@ class Invariants(NamedTuple):
 
     def __repr__(self) -> str:
         return short(self)
+
+
+class MotionSensitivity(NamedTuple):
+    """How a motion depends on what it is computed from: the derivatives of (δ, ω) at every time.
+
+    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
+
+    Attributes
+    ----------
+    state : numpy.ndarray, shape (..., T, 6, 6)
+        By (δ, ω) at the first time: the state-transition matrix.
+    moments : numpy.ndarray, shape (..., T, 6, 3)
+        By the principal moments about the point `about` of the motion, ascending, with principal axes, mass
+        and centre of mass held; not a number, as are `products`, for a body with a zero moment.
+    products : numpy.ndarray, shape (..., T, 6, 3)
+        By the elements 23, 31 and 12 of that tensor in its principal axes.
+    center_of_mass : numpy.ndarray, shape (..., T, 6, 3)
+        By the centre of mass in the body frame, with that tensor held.
+    mass : numpy.ndarray, shape (..., T, 6)
+        By the mass, with that tensor held.
+    load : tuple of dict
+        For each term of the load: by each argument of the function of :mod:`polhode.loads` that makes it,
+        under its name, shape (..., T, 6) and then that of the argument, a matrix in full. A target is varied
+        by a small rotation of it, a term that was multiplied by a factor as it is after that; frames, times
+        of samples, windows and epochs are held.
+    """
+
+    state: Floats
+    moments: Floats
+    products: Floats
+    center_of_mass: Floats
+    mass: Floats
+    load: tuple[dict[str, Floats], ...]
+
+    def __repr__(self) -> str:
+        # Of the load the names of what varies.
+        return one_line(self, self._asdict() | {"load": [list(term) for term in self.load]})

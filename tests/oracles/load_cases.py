@@ -21,7 +21,7 @@ from oracles.returning import unit
 from oracles.rotation import Rotation, Term, conjugate, exponential, times
 from oracles.taylor import steps
 
-__all__ = ["NAME", "cases", "condition", "solve"]
+__all__ = ["NAME", "cases", "condition", "growth", "solve"]
 
 NAME = "simulate"
 ATTITUDE = unit_floats(0.3, -0.2, 0.4, 0.7)
@@ -72,14 +72,14 @@ THRUST = {
 A, B = (0.3, 0.7, -0.9), (0.1, 0.2, 1.5)
 CASES: list[tuple[str, str, dict[str, Any], Floats, list[dict[str, Any]], Floats]] = [
     ("heavy symmetric top", "nodding", SYMMETRIC, (0.7, 0.3, 5.0), [WEIGHT], (1, 10, 100)),
-    ("heavy asymmetric top", "fast", LOPSIDED, (0.3, 0.2, 6.0), [WEIGHT], (1, 3, 10)),
-    ("heavy asymmetric top", "swinging", LOPSIDED, (0.5, -0.3, 0.9), [WEIGHT], (1, 3, 10)),
+    ("heavy asymmetric top", "fast", LOPSIDED, (0.3, 0.2, 6.0), [WEIGHT], (1, 3, 10, 100)),
+    ("heavy asymmetric top", "swinging", LOPSIDED, (0.5, -0.3, 0.9), [WEIGHT], (1, 3, 10, 100)),
     ("heavy asymmetric top", "tumbling", LOPSIDED, (2.0, -1.0, 1.5), [WEIGHT], (1, 10)),
     ("heavy asymmetric top", "chaotic", LOPSIDED, (1.0, 0.5, -1.0), [WEIGHT], (1, 10, 30)),
-    ("Kovalevskaya top", "generic", KOVALEVSKAYA, (1.2, 0.4, 1.5), [WEIGHT], (1, 10)),
+    ("Kovalevskaya top", "generic", KOVALEVSKAYA, (1.2, 0.4, 1.5), [WEIGHT], (1, 10, 100)),
     ("Kovalevskaya top", "fast", KOVALEVSKAYA, (0.1, 3.0, 5.0), [WEIGHT], (1, 3, 10)),
-    ("constant torque", "body", FREE, A, [BODY_TORQUE], (1, 3, 10)),
-    ("constant torque", "body, full tensor", FULL, A, [STRONG_BODY_TORQUE], (1, 3, 10)),
+    ("constant torque", "body", FREE, A, [BODY_TORQUE], (1, 3, 10, 100)),
+    ("constant torque", "body, full tensor", FULL, A, [STRONG_BODY_TORQUE], (1, 3, 10, 100)),
     ("constant torque", "space", FREE, A, [SPACE_TORQUE], (1, 10, 100)),
     ("constant torque", "space, full tensor", FULL, (0.5, -1.0, 0.25), [STRONG_SPACE_TORQUE], (1, 3, 10)),
     ("spin-up", "about the axis of the largest moment", FREE, (0.01, 0.02, 1.0), [SPIN_UP_3], (1, 3, 10)),
@@ -92,9 +92,9 @@ CASES: list[tuple[str, str, dict[str, Any], Floats, list[dict[str, Any]], Floats
         (1, 3, 10),
     ),
     ("sinusoidal torque", "generic", FREE, A, [SINE], (1, 3, 10)),
-    ("damping", "mild", FREE, A, [DRAG], (1, 3, 10)),
+    ("damping", "mild", FREE, A, [DRAG], (1, 3, 10, 100)),
     ("damping", "quadratic", FULL, A, [{"kind": "damping", "matrix": 0.0, "quadratic": 0.03}], (1, 3, 10)),
-    ("damping", "both", FREE, A, [DRAG | {"quadratic": MILD}], (1, 3, 10)),
+    ("damping", "both", FREE, A, [DRAG | {"quadratic": MILD}], (1, 3, 10, 100)),
     ("damping", "stiff", FREE, A, [{"kind": "damping", "matrix": STIFF}], (0.5, 1)),
     ("damping", "stiff, coupled", FULL, A, [{"kind": "damping", "matrix": COUPLED}], (1, 3, 10)),
     ("gravity gradient", "circular", FREE, (0.1, 0.2, 1.0), [CIRCLE], (1, 3, 10)),
@@ -103,7 +103,7 @@ CASES: list[tuple[str, str, dict[str, Any], Floats, list[dict[str, Any]], Floats
     ("feedback", "generic", FREE, (0.3, 0.2, -0.1), [CONTROL], (0.25, 1, 3, 10)),
     ("feedback", "matrices, a target", FULL, (0.3, 0.2, -0.1), [AIM], (0.25, 1, 3, 10)),
     ("six degrees of freedom", "force in space, at a point", SHIFTED, A, [SPACE_FORCE], (1, 3, 10)),
-    ("six degrees of freedom", "thrust", SHIFTED, B, [THRUST], (1, 3, 10)),
+    ("six degrees of freedom", "thrust", SHIFTED, B, [THRUST], (1, 3, 10, 100)),
     ("six degrees of freedom", "thrust, weight, damping", SHIFTED, B, [THRUST, WEIGHT, DRAG], (1, 3, 10)),
     (
         "sum",
@@ -111,7 +111,7 @@ CASES: list[tuple[str, str, dict[str, Any], Floats, list[dict[str, Any]], Floats
         LOPSIDED,
         (0.3, 0.2, 3.0),
         [WEIGHT, DRAG, DRIVE],
-        (1, 3, 10),
+        (1, 3, 10, 100),
     ),
 ]
 PIVOTED = ("heavy symmetric top", "heavy asymmetric top", "Kovalevskaya top", "sum")
@@ -197,6 +197,17 @@ def solve(
 
 def condition(case: MotionCase, digits: int = 16) -> list[float]:
     """‖∂(attitude, ω/|ω₀|)(t)/∂(attitude, ω/|ω₀|)(0)‖₂, from differences too small to be seen."""
+    return [float(x) for x in np.linalg.norm(variations(case, digits), 2, axis=(1, 2))]
+
+
+def growth(case: MotionCase, digits: int) -> float:
+    """The largest ‖∂(attitude, ω/|ω₀|)(t)/∂(attitude, ω/|ω₀|)(s)‖₂ over the times s, t the last of them."""
+    *before, last = variations(case, digits)
+    return max(float(np.linalg.norm(np.linalg.solve(at.T, last.T), 2)) for at in before)
+
+
+def variations(case: MotionCase, digits: int) -> Any:
+    """∂(attitude, ω/|ω₀|)(t)/∂(attitude, ω/|ω₀|)(0) at each time, (T, 6, 6)."""
     with mp.workdps(digits + 20):
         small = mpf(10) ** -(digits // 2)
         rate = mpmath.norm([mpf(x) for x in case.omega])
@@ -211,8 +222,7 @@ def condition(case: MotionCase, digits: int = 16) -> list[float]:
                 shifted = [mpf(w) + rate * x for w, x in zip(case.omega, push, strict=True)]
                 moved = solve(case, digits, omega=shifted)
             columns.append([_difference(a, b, rate, small) for a, b in zip(base, moved, strict=True)])
-        matrices = np.array(columns).transpose(1, 2, 0)
-        return [float(x) for x in np.linalg.norm(matrices, 2, axis=(1, 2))]
+        return np.array(columns).transpose(1, 2, 0)
 
 
 def _difference(a: State, b: State, rate: Any, small: Any) -> list[float]:

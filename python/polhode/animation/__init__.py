@@ -9,6 +9,7 @@ from polhode.animation.page import page
 from polhode.animation.scene import Scene
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from os import PathLike
 
     from numpy.typing import ArrayLike
@@ -29,6 +30,7 @@ def animate(
     duration: float = 10.0,
     title: str = "Motion of a rigid body",
     time_unit: str = "s",
+    progress: Callable[[float], object] | None = None,
 ) -> Path:
     """Write the motion of one body as a moving picture: what ``Trajectory.animate`` does.
 
@@ -49,6 +51,8 @@ def animate(
         Seconds that the motion takes on the screen.
     title, time_unit : str, optional
         As the viewer reads them.
+    progress : callable, optional
+        Is told the fraction of a film that is drawn; an exception it raises ends the drawing.
 
     Returns
     -------
@@ -69,5 +73,5 @@ def animate(
     else:
         from polhode.animation.film import film
 
-        film(scene, file)
+        film(scene, file, progress)
     return file

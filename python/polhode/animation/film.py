@@ -12,6 +12,7 @@ from polhode._extras import require
 from polhode.plot import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from polhode.animation.scene import Scene
@@ -24,7 +25,7 @@ _BODY: Final = 0.8
 _AXIS_DASHES: Final = ("--", "-", ":")
 
 
-def film(scene: Scene, file: Path) -> None:
+def film(scene: Scene, file: Path, progress: Callable[[float], object] | None = None) -> None:
     """Draw every frame and write them as a film.
 
     Parameters
@@ -33,6 +34,8 @@ def film(scene: Scene, file: Path) -> None:
         What is shown.
     file : pathlib.Path
         Ends in ``.gif`` or ``.mp4``; the latter needs the program ffmpeg, which the extra ``film`` brings.
+    progress : callable, optional
+        Is told the fraction of the frames that are drawn.
     """
     animation: Any = require("matplotlib.animation", extra="plot", purpose="a film")
     figures: Any = require("matplotlib.figure", extra="plot", purpose="a film")
@@ -54,6 +57,8 @@ def film(scene: Scene, file: Path) -> None:
             ax.clear()
             _draw(ax, scene, frame)
             writer.grab_frame()
+            if progress is not None:
+                progress((frame + 1) / len(scene.t))
 
 
 def _ffmpeg(file: Path) -> str:

@@ -23,7 +23,7 @@ from polhode.cli.options import (
     ReportOptions,
     SpinOptions,
 )
-from polhode.cli.text import printable
+from polhode.cli.text import in_options, printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -223,7 +223,7 @@ def _as_value(argument: str) -> str:
 
 
 def _fail(message: str, code: int = BAD_INPUT) -> int:
-    print("polhode:", printable(" ".join(message.split())), file=sys.stderr)
+    print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr)
     return code
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from polhode import robots
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.source import STDIN, shown
+from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def _row(verdict: robots.Verdict) -> dict[str, Any]:
         "factor": verdict.factor,
         "shapes": verdict.shapes,
         "verdict": verdict.verdict,
-        "reason": verdict.reason,
+        "reason": in_options(verdict.reason),
     }
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ from polhode import RigidBody
 from polhode.cli.progress import reading_progress
 from polhode.cli.quantities import has_unit, quantity
 from polhode.cli.source import as_file
-from polhode.errors import MeshError, PolhodeError
+from polhode.errors import PolhodeError
 from polhode.io import MOLECULE_SUFFIX, MeshSolid, molecule_isotopes, read_mesh, read_xyz, solid_from_file
 from polhode.units import METRES, metres_per
 
@@ -98,10 +97,7 @@ def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
     density = 1.0 if assumed else _amount(options.density, "kg/m^3", "--density", unit)
     mass = _amount(options.mass, "kg", "--mass", unit)
     weld = _weld(options)
-    try:
-        solid = _solid(file, options, density, mass, scale, weld)
-    except MeshError as error:
-        raise MeshError(_in_options(str(error))) from None
+    solid = _solid(file, options, density, mass, scale, weld)
     provenance = solid.body.provenance
     notes = _taken(options, unit)
     if weld != 0.0:
@@ -160,16 +156,6 @@ def _taken(options: BodyOptions, unit: str | None) -> list[str]:
         for option, text, si in (("--density", options.density, "kg/m^3"), ("--mass", options.mass, "kg"))
         if text is not None and not has_unit(text)
     ]
-
-
-def _in_options(message: str) -> str:
-    """Name the way out as the command line has it."""
-    for argument, option in (
-        ('closure="caps" or "hull"', "--closure caps or --closure hull"),
-        ("pass orient=True", "pass --orient"),
-    ):
-        message = message.replace(argument, option)
-    return re.sub(r"\bweld=(?=\S+ joins)", "--weld ", message)
 
 
 def in_file_unit(text: str, option: str, unit: str | None) -> float:

@@ -68,13 +68,14 @@ def save(trajectory: Trajectory, path: Path, spin: SpinOptions, *, title: str, p
     if suffix in TRAJECTORY_SUFFIXES:
         trajectory.save(path)
     elif suffix in ANIMATION_SUFFIXES:
-        with progress(f"drawing {path.name}"):
+        with progress(f"drawing {path.name}", is_long=suffix != ".html") as tell:
             animate(
                 trajectory,
                 path,
                 frames=min(_FRAMES, len(trajectory)),
                 title=title or "Motion of a rigid body",
                 shape=part,
+                progress=tell,
             )
     else:
         _draw(trajectory, path, spin, title, part)

@@ -2,12 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import re
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-__all__ = ["printable", "write"]
+__all__ = ["in_options", "printable", "write"]
+
+_WAYS_OUT: Final = (
+    ('closure="caps" or "hull"', "--closure caps or --closure hull"),
+    ("pass orient=True", "pass --orient"),
+    ("pass rtol= if the table was printed to few digits", "give more digits"),
+    ("pass rtol= for a table printed to few digits", "give more digits"),
+    ("pass rtol= to take them as equal", "give equal moments"),
+    ("move the body with translated()", "correct --center"),
+    ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
+)
+_WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")
+
+
+def in_options(message: str) -> str:
+    """Name the ways out that Python's arguments offer as the command line has them."""
+    for argument, option in _WAYS_OUT:
+        message = message.replace(argument, option)
+    return _WELD.sub("--weld ", message)
 
 
 def printable(text: str) -> str:

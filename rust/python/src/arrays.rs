@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3};
+use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, Vector3, Vector6};
 use numpy::ndarray::ArrayViewD;
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -116,6 +116,30 @@ macro_rules! square_matrix {
     )*};
 }
 square_matrix!(Matrix3 3 Matrix4 4 Matrix6 6);
+
+impl Item for Matrix6x3<f64> {
+    const TAIL: &'static [usize] = &[6, 3];
+
+    fn read(numbers: &[f64]) -> Self {
+        Self::from_row_slice(numbers)
+    }
+
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend_from_slice(self.transpose().as_slice()); // nalgebra stores columns
+    }
+}
+
+impl Item for Vector6<f64> {
+    const TAIL: &'static [usize] = &[6];
+
+    fn read(numbers: &[f64]) -> Self {
+        Self::from_row_slice(numbers)
+    }
+
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend_from_slice(self.as_slice());
+    }
+}
 
 /// Items over the last axes and a stack over the leading ones.
 pub(crate) fn read<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Stack<T>> {

@@ -41,6 +41,7 @@ mod regions;
 mod rigid_body;
 mod rods;
 mod rotations;
+mod sensitivity;
 mod solids;
 mod stack;
 mod tops;
@@ -100,6 +101,8 @@ mod _core {
     use crate::rotations::{
         euler_angles_from_quaternion, quaternion_from_euler_angles, quaternion_from_matrix, rotate,
     };
+    #[pymodule_export]
+    use crate::sensitivity::motion_sensitivity;
     #[pymodule_export]
     use crate::solids::{
         capsule, cone, cube, cuboid, cylinder, ellipsoid, frustum, hemisphere, hollow_sphere,

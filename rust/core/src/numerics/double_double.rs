@@ -1,6 +1,8 @@
 //! Error-free transformations, and numbers of twice the precision: a rounded value plus the rest.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use num_traits::{One, Zero};
 
 /// `a + b = s + e` exactly, s the rounded sum (Knuth); for doubles and for [lanes](super::lane::Lane).
 #[inline(always)]
@@ -14,7 +16,7 @@ pub fn two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T
 /// `a + b = s + e` exactly when |a| ≥ |b| or a is zero (Dekker).
 #[inline(always)]
 #[must_use]
-pub fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
+pub fn fast_two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T) {
     let s = a + b;
     (s, b - (s - a))
 }
@@ -189,6 +191,40 @@ impl Div for DoubleDouble {
         // self.high − p is exact, as the digit is within a rounding of the quotient.
         let rest = (self.high - p) + ((self.low - e) - digit * other.low);
         Self::renormalized(digit, rest / other.high)
+    }
+}
+
+macro_rules! assign {
+    ($operator:ident, $method:ident, $symbol:tt) => {
+        impl $operator for DoubleDouble {
+            #[inline]
+            fn $method(&mut self, other: Self) {
+                *self = *self $symbol other;
+            }
+        }
+    };
+}
+assign!(AddAssign, add_assign, +);
+assign!(SubAssign, sub_assign, -);
+assign!(MulAssign, mul_assign, *);
+assign!(DivAssign, div_assign, /);
+
+impl Zero for DoubleDouble {
+    #[inline]
+    fn zero() -> Self {
+        Self::default()
+    }
+
+    #[inline]
+    fn is_zero(&self) -> bool {
+        self.high == 0.0
+    }
+}
+
+impl One for DoubleDouble {
+    #[inline]
+    fn one() -> Self {
+        Self::from(1.0)
     }
 }
 

@@ -12,6 +12,15 @@ pub struct Jet<const N: usize> {
 }
 
 impl<const N: usize> Jet<N> {
+    /// A number that depends on none of the variables.
+    #[must_use]
+    pub const fn constant(value: f64) -> Self {
+        Self {
+            value,
+            slopes: [0.0; N],
+        }
+    }
+
     /// Variable number `index`.
     #[must_use]
     pub fn variable(value: f64, index: usize) -> Self {
@@ -67,6 +76,18 @@ impl<const N: usize> Mul for Jet<N> {
     }
 }
 
+impl<const N: usize> Mul<f64> for Jet<N> {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self {
+            value: self.value * factor,
+            slopes: self.slopes.map(|slope| slope * factor),
+        }
+    }
+}
+
 impl<const N: usize> Div for Jet<N> {
     type Output = Self;
 
@@ -86,6 +107,7 @@ mod tests {
         assert_eq!((x + y).slopes, [1.0, 1.0]);
         assert_eq!((x - y).slopes, [1.0, -1.0]);
         assert_eq!((-x).slopes, [-1.0, -0.0]);
+        assert_eq!((x * 5.0 - Jet::constant(1.0)).slopes, [5.0, 0.0]);
         assert_eq!((x * x * y).slopes, [12.0, 9.0]);
         assert_eq!((x / y).slopes, [0.5, -0.75]);
         let composed = Jet::chain(7.0, [(2.0, &(x * y)), (5.0, &y)]);

@@ -7,6 +7,8 @@
 //! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
+//! | [`twofold`] | numbers of twice the precision in kernels |
+//! | [`number`] | one algorithm for doubles and for numbers of twice the precision |
 //! | [`power_of_two`] | scales that keep all digits |
 //! | [`split_vector`] | differences, scalar products and determinants that survive cancellation |
 //! | [`elliptic`] | elliptic integrals by means and duplication |
@@ -28,6 +30,7 @@ pub mod elliptic;
 pub mod jacobi;
 pub mod jet;
 pub mod lane;
+pub mod number;
 pub mod planes;
 pub mod power_of_two;
 pub mod quadrature;
@@ -36,3 +39,4 @@ pub mod split_vector;
 pub mod theta;
 pub mod threads;
 pub mod turns;
+pub mod twofold;

@@ -1,6 +1,6 @@
 //! What a free motion tells at a time: herpolhode, Poinsot's picture, derivatives, error bars.
 
-use nalgebra::{Matrix6, Matrix6x3, Vector3};
+use nalgebra::{Matrix6, Vector3};
 use numpy::PyArrayDyn;
 use polhode::motion::free::{FreeMotion, Invariants};
 use pyo3::exceptions::PyValueError;
@@ -8,23 +8,8 @@ use pyo3::prelude::*;
 
 use super::PyFreeMotion;
 use super::constants::tuple;
-use crate::arrays::{Item, read, write, write_numbers, write_of};
+use crate::arrays::{read, write, write_numbers, write_of};
 use crate::stack::{Broadcast, Stack};
-
-/// A matrix with six rows and three columns.
-struct Columns(Matrix6x3<f64>);
-
-impl Item for Columns {
-    const TAIL: &'static [usize] = &[6, 3];
-
-    fn read(numbers: &[f64]) -> Self {
-        Self(Matrix6x3::from_row_slice(numbers))
-    }
-
-    fn write(&self, out: &mut Vec<f64>) {
-        out.extend_from_slice(self.0.transpose().as_slice()); // nalgebra stores columns
-    }
-}
 
 impl PyFreeMotion {
     /// `f` of every motion at every time, under the shape of the stack and then that of the times.
@@ -164,7 +149,7 @@ impl PyFreeMotion {
         let found = self.each_time(py, t, FreeMotion::sensitivity)?;
         let parts = (
             write(py, &found.map(|at| Matrix6::from(at.state)))?,
-            write(py, &found.map(|at| Columns(at.moments)))?,
+            write(py, &found.map(|at| at.moments))?,
         );
         tuple(py, "Sensitivity", parts)
     }

@@ -224,8 +224,10 @@ impl Ensemble<'_> {
     fn task(&self, row: usize) -> Task<'_> {
         let [b, w, q, r, v, _] = self.grid.operands(row);
         let given = self.start.attitude[q];
+        let is_exact =
+            self.method == Method::Exact && self.pivoted || self.tolerance.is_beyond_doubles();
         let initial = Phase {
-            attitude: if self.method == Method::Exact && self.pivoted {
+            attitude: if is_exact {
                 given
             } else {
                 UnitQuaternion::new_normalize(given.into_inner())

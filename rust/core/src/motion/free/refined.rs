@@ -28,15 +28,59 @@ impl RefinedPrincipal {
         let principal = body.principal();
         let mut refined = Self::given(&principal.moments, &principal.axes);
         if body.provenance().moments == MomentsFrom::Tensor {
-            refined.refine(&body.inertia());
-            // What the body was found to have no moment about has none.
-            for (moment, known) in refined.moments.iter_mut().zip(principal.moments) {
-                if known == 0.0 {
-                    *moment = DoubleDouble::default();
-                }
-            }
+            let rows = body.inertia().transpose().data.0;
+            refined.refine(&rows.map(|row| row.map(DoubleDouble::from)));
+            refined.clear(&principal.moments);
         }
         refined
+    }
+
+    /// Of a body about the point P (from the origin of B): `I_P = I_C + m(d² 1 − d dᵀ)` with d = C − P.
+    #[must_use]
+    pub fn about(body: &RigidBody, point: &Vector3<f64>) -> Self {
+        let central = Self::of(body);
+        let center = body.center_of_mass();
+        let d = [0, 1, 2].map(|i| DoubleDouble::sum(center[i], -point[i]));
+        if d.iter().all(|x| x.rounded() == 0.0) {
+            return central;
+        }
+        let mass = DoubleDouble::from(body.mass());
+        let square = dot(&d, &d);
+        let tensor: [Vector; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let lever = if i == j {
+                    square - d[i] * d[j]
+                } else {
+                    -(d[i] * d[j])
+                };
+                central.element(body, i, j) + mass * lever
+            })
+        });
+        let about = body.principal_about(point);
+        let mut refined = Self::given(&about.moments, &about.axes);
+        refined.refine(&tensor);
+        refined.clear(&about.moments);
+        refined
+    }
+
+    /// An element of the tensor in B that the body has about its centre of mass.
+    fn element(&self, body: &RigidBody, i: usize, j: usize) -> DoubleDouble {
+        if body.provenance().moments == MomentsFrom::Tensor {
+            return body.inertia()[(i, j)].into();
+        }
+        let parts = self.axes.iter().zip(self.moments);
+        parts.fold(DoubleDouble::default(), |sum, (axis, moment)| {
+            sum + moment * axis[i] * axis[j]
+        })
+    }
+
+    /// What the body was found to have no moment about has none.
+    fn clear(&mut self, known: &[f64; 3]) {
+        for (moment, &known) in self.moments.iter_mut().zip(known) {
+            if known == 0.0 {
+                *moment = DoubleDouble::default();
+            }
+        }
     }
 
     /// From ascending moments, taken as exact, and axes (columns) that are a rotation to rounding: the nearest rotation.
@@ -52,6 +96,12 @@ impl RefinedPrincipal {
                 orthonormal(&columns)
             },
         }
+    }
+
+    /// The axes as columns.
+    #[must_use]
+    pub fn axes(&self) -> Matrix3<DoubleDouble> {
+        Matrix3::from(self.axes)
     }
 
     /// The axis of the k-th moment.
@@ -73,15 +123,10 @@ impl RefinedPrincipal {
         self.axes.map(|axis| dot(&axis, &vector))
     }
 
-    /// Eigenvalues and eigenvectors of the tensor from approximate ones, by Jacobi's rotations.
+    /// Eigenvalues and eigenvectors of the tensor (its rows) from approximate ones, by Jacobi's rotations.
     ///
     /// The elements off the diagonal start at rounding; each sweep squares them, so two reach twice the precision.
-    fn refine(&mut self, tensor: &Matrix3<f64>) {
-        let rows = tensor
-            .transpose()
-            .data
-            .0
-            .map(|row| row.map(DoubleDouble::from));
+    fn refine(&mut self, rows: &[Vector; 3]) {
         let mut b = self.axes.map(|axis| {
             let image = [0, 1, 2].map(|i| dot(&rows[i], &axis));
             self.axes.map(|other| dot(&other, &image))
@@ -155,8 +200,8 @@ fn rotate(b: &mut [Vector; 3], axes: &mut [Vector; 3], i: usize, j: usize) {
     axes[j] = pairs.map(|pair| pair.1);
     let k = 3 - i - j;
     let shift = tangent * product;
-    b[i][i] = b[i][i] - shift;
-    b[j][j] = b[j][j] + shift;
+    b[i][i] -= shift;
+    b[j][j] += shift;
     (b[i][k], b[j][k]) = turned(b[i][k], b[j][k]);
     (b[k][i], b[k][j]) = (b[i][k], b[j][k]);
     (b[i][j], b[j][i]) = (DoubleDouble::default(), DoubleDouble::default());
@@ -206,6 +251,40 @@ mod tests {
             }
         }
         assert!((refined.rounded_axes().determinant() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn parallel_axes_are_exact() {
+        let axes = *nalgebra::Rotation3::from_euler_angles(0.3, -1.0, 2.0).matrix();
+        let center = Vector3::new(0.1, -0.2, 0.5);
+        let body = RigidBody::from_principal(3.0, &[1.0, 2.0, 2.5], &axes, &center, 0.0);
+        let refined = RefinedPrincipal::about(&body.expect("a body"), &Vector3::zeros());
+        // Trace: the sum of the moments and 2 m d².
+        let d = center.map(DoubleDouble::from);
+        let square = d.x * d.x + d.y * d.y + d.z * d.z;
+        let [a, b, c] = refined.moments;
+        let trace = DoubleDouble::from(5.5) + square * 6.0.into();
+        assert!((a + b + c - trace).rounded().abs() < 1e-30);
+        // On the axis of symmetry: I_t + m d² twice, I_s.
+        let body = RigidBody::from_principal(
+            1.0,
+            &[0.75, 0.75, 1.25],
+            &Matrix3::identity(),
+            &Vector3::new(0.0, 0.0, 0.1),
+            0.0,
+        );
+        let refined = RefinedPrincipal::about(&body.expect("a body"), &Vector3::zeros());
+        let across = DoubleDouble::from(0.75) + DoubleDouble::product(0.1, 0.1);
+        assert_eq!(refined.moments, [across, across, 1.25.into()]);
+        let rod = RigidBody::from_principal(
+            2.0,
+            &[0.0; 3],
+            &Matrix3::identity(),
+            &Vector3::new(0.1, 0.7, -0.3),
+            0.0,
+        );
+        let refined = RefinedPrincipal::about(&rod.expect("a point"), &Vector3::zeros());
+        assert_eq!(refined.moments[0], DoubleDouble::default());
     }
 
     #[test]

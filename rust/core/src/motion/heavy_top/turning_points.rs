@@ -303,7 +303,7 @@ fn newton(monic: &[DoubleDouble; 3], start: f64) -> DoubleDouble {
         if !step.high.is_finite() {
             break;
         }
-        root = root - step;
+        root -= step;
         if step.high.abs() <= 1e-26 * root.high.abs() {
             break;
         }

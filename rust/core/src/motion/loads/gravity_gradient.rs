@@ -51,6 +51,12 @@ impl GravityGradient {
         self.orbit.mu()
     }
 
+    /// When the orbit has the state it was given with, if that is not the start of the motion.
+    #[must_use]
+    pub fn epoch(&self) -> Option<f64> {
+        self.epoch
+    }
+
     /// Position and velocity of C from the attractor at time `t`, in N.
     #[must_use]
     pub fn orbit_at(&self, subject: &Subject, t: f64) -> (Vector3<f64>, Vector3<f64>) {

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::Tolerance;
 use crate::error::Error;
 use crate::mass::RigidBody;
 use crate::mass::validity::ROUNDING;
@@ -17,7 +18,8 @@ pub enum Method {
     Auto,
     /// In closed form: a free body without a load, and a symmetric top pivoted on its axis under uniform gravity.
     Exact,
-    /// Taylor series of the order at which the work is least: analytic loads.
+    /// Taylor series of the order at which the work is least: analytic loads. At tolerances that doubles cannot serve in numbers
+    /// of twice their precision.
     Taylor,
     /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
     Dop853,
@@ -47,13 +49,15 @@ impl Method {
     /// tells, where that matters, whether every body is a [`closed_top`].
     ///
     /// # Errors
-    /// [`Error::MethodCannotServe`], which names one that can.
+    /// [`Error::MethodCannotServe`], which names one that can; [`Error::OutOfDomain`] where none serves the tolerance.
     pub fn serving(
         self,
         pivoted: bool,
         terms: Option<&[Term]>,
+        tolerance: &Tolerance,
         is_top: impl FnOnce() -> bool,
     ) -> Result<Self, Error> {
+        let is_beyond_doubles = tolerance.is_beyond_doubles();
         let may_be_closed = terms.is_some_and(|terms| {
             if pivoted {
                 gravity_alone(terms).is_some()
@@ -66,14 +70,26 @@ impl Method {
         } else {
             Self::Dop853
         };
+        if is_beyond_doubles && of_steps != Self::Taylor {
+            return Err(Error::OutOfDomain {
+                what: "rtol",
+                law: "2.3e-15 or more (ten units of rounding) where method=\"taylor\" cannot serve the run",
+                value: tolerance.relative,
+            });
+        }
         let needs = match self {
-            Self::Auto if may_be_closed && (!pivoted || is_top()) => return Ok(Self::Exact),
+            Self::Auto if may_be_closed && !is_beyond_doubles && (!pivoted || is_top()) => {
+                return Ok(Self::Exact);
+            }
             Self::Auto => return Ok(of_steps),
             Self::Exact if !may_be_closed => {
                 "a free body without a load, or with about=\"origin\" uniform gravity alone on a symmetric top"
             }
             Self::Taylor if terms.is_none() => {
                 "the loads of polhode.loads other than callbacks and compiled functions"
+            }
+            method if is_beyond_doubles && method != Self::Taylor => {
+                "an rtol of 2.3e-15 or more (ten units of rounding)"
             }
             method => return Ok(method),
         };
@@ -122,12 +138,15 @@ pub(super) fn gravity_alone(terms: &[Term]) -> Option<Vector3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::simulate::TIGHTEST;
     use nalgebra::Vector3;
 
     #[test]
     fn auto_takes_the_first_that_can() {
         let weight = [Term::uniform_gravity(&Vector3::z()).expect("finite")];
-        let auto = |pivoted, terms, is_top| Method::Auto.serving(pivoted, terms, || is_top);
+        let tolerance = Tolerance::new(1e-10, 0.0).expect("a tolerance");
+        let auto =
+            |pivoted, terms, is_top| Method::Auto.serving(pivoted, terms, &tolerance, || is_top);
         assert_eq!(auto(false, Some(&[]), false), Ok(Method::Exact));
         assert_eq!(auto(true, Some(&[]), false), Ok(Method::Taylor));
         assert_eq!(auto(true, Some(&weight), true), Ok(Method::Exact));
@@ -138,10 +157,39 @@ mod tests {
             (Method::Exact, Some(&weight[..]), "taylor"),
             (Method::Taylor, None, "dop853"),
         ] {
-            let refused = method.serving(false, terms, || true);
+            let refused = method.serving(false, terms, &tolerance, || true);
             assert!(
                 matches!(refused, Err(Error::MethodCannotServe { instead: named, .. }) if named == instead)
             );
+        }
+    }
+
+    #[test]
+    fn below_doubles_there_is_taylor() {
+        let tolerance = Tolerance::new(0.9 * TIGHTEST, 0.0).expect("a tolerance");
+        let serving = |method: Method, terms| method.serving(false, terms, &tolerance, || true);
+        assert_eq!(serving(Method::Auto, Some(&[])), Ok(Method::Taylor));
+        assert_eq!(serving(Method::Taylor, Some(&[])), Ok(Method::Taylor));
+        for method in [
+            Method::Exact,
+            Method::Dop853,
+            Method::Radau,
+            Method::Splitting,
+        ] {
+            let refused = serving(method, Some(&[]));
+            assert!(matches!(
+                refused,
+                Err(Error::MethodCannotServe {
+                    instead: "taylor",
+                    ..
+                })
+            ));
+        }
+        for method in [Method::Auto, Method::Dop853] {
+            assert!(matches!(
+                serving(method, None),
+                Err(Error::OutOfDomain { what: "rtol", .. })
+            ));
         }
     }
 }

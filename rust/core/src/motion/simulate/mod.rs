@@ -27,6 +27,8 @@ use crate::mass::RigidBody;
 
 /// The tightest relative tolerance that float64 can serve.
 pub const TIGHTEST: f64 = 10.0 * f64::EPSILON;
+/// The tightest relative tolerance that numbers of twice the precision can serve.
+pub const TIGHTEST_TWOFOLD: f64 = 1e-28;
 
 /// How accurate each step is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,12 +43,12 @@ impl Tolerance {
     /// Checked tolerances.
     ///
     /// # Errors
-    /// When `relative` is not within [`TIGHTEST`]..0.1 or `absolute` is negative.
+    /// When `relative` is not within [`TIGHTEST_TWOFOLD`]..0.1 or `absolute` is negative.
     pub fn new(relative: f64, absolute: f64) -> Result<Self, Error> {
         finite("rtol", relative)?;
         finite("atol", absolute)?;
-        if !(TIGHTEST..=0.1).contains(&relative) {
-            let law = "between 2.3e-15 (ten units of rounding) and 0.1";
+        if !(TIGHTEST_TWOFOLD..=0.1).contains(&relative) {
+            let law = "between 1e-28 and 0.1; below 2.3e-15 (ten units of rounding) method=\"taylor\" alone serves it";
             return Err(Error::OutOfDomain {
                 what: "rtol",
                 law,
@@ -61,6 +63,12 @@ impl Tolerance {
             });
         }
         Ok(Self { relative, absolute })
+    }
+
+    /// Whether it is tighter than doubles can serve.
+    #[must_use]
+    pub fn is_beyond_doubles(&self) -> bool {
+        self.relative < TIGHTEST
     }
 }
 
@@ -246,7 +254,7 @@ pub fn simulate<L: Load>(
     let mut run = Run::at_start(task, End::Complete);
     let (terms, has_events) = (load.analytic(), !events.rules().is_empty());
     let is_top = || closed_top(task.body).is_ok();
-    let method = (task.method).serving(task.subject.pivoted, terms, is_top);
+    let method = (task.method).serving(task.subject.pivoted, terms, &task.tolerance, is_top);
     run.end = match (method, terms) {
         (Err(error), _) => End::Failed(error.into()),
         (Ok(Method::Exact), Some(terms)) if !has_events => {
@@ -391,7 +399,7 @@ impl<E> Run<E> {
 }
 
 /// The ends of the spans into which `breaks` cut the time from the first to the last of `times`.
-fn spans(times: &[f64], mut breaks: Vec<f64>) -> Vec<f64> {
+pub(in crate::motion) fn spans(times: &[f64], mut breaks: Vec<f64>) -> Vec<f64> {
     let (start, end) = (times[0], times[times.len() - 1]);
     if start == end {
         return vec![start];

@@ -312,8 +312,6 @@ impl<const N: usize> Radau<N> {
             None => [SVector::zeros(); 3],
         };
         let mut transformed = combined(&T_INVERSE, &stages);
-        // Below this the iterates differ by rounding alone.
-        let enough = STAGE_TOLERANCE.max(10.0 * f64::EPSILON * system.error_norm(&y, &y, &y));
         let mut before = f64::NAN;
         for iteration in 1..=ITERATIONS {
             let mut slopes = [SVector::zeros(); 3];
@@ -330,12 +328,21 @@ impl<const N: usize> Radau<N> {
                     - pair(&transformed[1], &transformed[2]) * (COMPLEX / h)),
             );
             let change = [real, complex.map(|x| x.re), complex.map(|x| x.im)];
+            for (total, change) in transformed.iter_mut().zip(&change) {
+                *total += change;
+            }
+            stages = combined(&T, &transformed);
+            // Against the end of the step: what is zero at its start, as a body's place may be, has no size of its own there.
+            let end = y + stages[2];
             let norm = (change.iter())
-                .map(|part| system.error_norm(&y, &y, part))
+                .map(|part| system.error_norm(&y, &end, part))
                 .fold(
                     0.0,
                     |most: f64, x| if x > most || x.is_nan() { x } else { most },
                 );
+            // Below this the iterates differ by rounding alone.
+            let rounding = 10.0 * f64::EPSILON * system.error_norm(&y, &end, &end);
+            let enough = STAGE_TOLERANCE.max(rounding);
             let rate = norm / before;
             let left = f64::from(ITERATIONS - iteration);
             if norm.is_nan()
@@ -343,10 +350,6 @@ impl<const N: usize> Radau<N> {
             {
                 return Ok(None);
             }
-            for (total, change) in transformed.iter_mut().zip(&change) {
-                *total += change;
-            }
-            stages = combined(&T, &transformed);
             if norm <= enough || rate / (1.0 - rate) * norm < enough {
                 return Ok(Some((
                     stages,

@@ -1,10 +1,11 @@
 //! A body as it drifts freely and is kicked by a load.
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::scheme::Scheme;
+use super::short_turn::short_turn;
 use crate::error::Error;
-use crate::motion::attitude::from_axes;
+use crate::motion::attitude::{from_axes, restored};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::free::{FreeMotion, RefinedPrincipal};
 use crate::motion::loads::Load;
@@ -101,6 +102,8 @@ pub(super) struct Body {
     /// ω along axes without a moment, in P: it stays as it is.
     massless: Vector3<f64>,
     symmetry: Option<Symmetry>,
+    /// `(I₂ − I₃)/I₁` and cyclic, of a body that is not symmetric.
+    kappa: [f64; 3],
 }
 
 impl Body {
@@ -116,6 +119,7 @@ impl Body {
             q_bp: from_axes(euler.axes()),
             massless,
             symmetry: Symmetry::of(&moments, &massless),
+            kappa: [0, 1, 2].map(|i| euler.differences()[i] / moments[i]),
         }
     }
 
@@ -155,15 +159,19 @@ impl Body {
     }
 
     fn drift(&self, point: &mut Point, time: f64) -> Result<(), Error> {
-        let mut attitude = if let Some(top) = self.symmetry {
+        let attitude = if let Some(top) = self.symmetry {
             top.turned(point, time)
         } else {
             let omega = self.omega(point);
-            let motion = FreeMotion::refined(&self.principal, &omega, &point.attitude)?;
-            motion.at(time).attitude
+            let q = point.attitude.into_inner();
+            if let Some([x, y, z, w]) = short_turn(&self.kappa, &(omega * time)) {
+                UnitQuaternion::new_unchecked(q + q * Quaternion::new(w, x, y, z))
+            } else {
+                let motion = FreeMotion::refined(&self.principal, &omega, &point.attitude)?;
+                motion.at(time).attitude
+            }
         };
-        attitude.renormalize();
-        point.attitude = attitude;
+        point.attitude = restored(&attitude);
         point.position.add(&(point.velocity.value * time));
         Ok(())
     }

@@ -6,6 +6,7 @@
 
 mod body;
 pub mod scheme;
+mod short_turn;
 mod step_length;
 #[cfg(test)]
 mod tests;

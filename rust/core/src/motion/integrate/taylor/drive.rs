@@ -7,15 +7,16 @@ use std::ops::ControlFlow;
 use super::course::Course;
 use super::extras::Extras;
 use super::field::{Field, Parts};
-use super::pack::Pack;
+use super::frame::Precision;
+use super::pack::{Pack, cross_term};
 use super::push::Push;
-use super::series::{Coefficient, HIGHEST_ORDER, Series, cross_term};
+use super::series::{Coefficient, Series};
 use super::step::{Compensated, increment, longest};
 use crate::error::Error;
 use crate::motion::simulate::{Effort, End, Run};
 use crate::motion::state::Phase;
-use crate::numerics::double_double::two_sum;
-use crate::numerics::lane::Lane;
+use crate::numerics::double_double::{fast_two_sum, two_sum};
+use crate::numerics::number::{Number, Real};
 pub(crate) use seen::Step;
 pub(super) use seen::drive_seen;
 
@@ -43,10 +44,10 @@ pub(super) struct Settings {
 
 impl Settings {
     /// For the equations that `parts` says, with the order at which the work is least: it grows with the square of the order, the step with
-    /// `tolerance^(1/order)`.
-    pub(super) fn new(relative: f64, absolute: f64, parts: Parts) -> Self {
+    /// `tolerance^(1/order)`. No order is above `highest`.
+    pub(super) fn new(relative: f64, absolute: f64, highest: usize, parts: Parts) -> Self {
         let nats = -(LAST_TERM * relative).ln();
-        let mut halves = (4..HIGHEST_ORDER / 2).filter(|&half| half as f64 + 1.0 <= 0.3 * nats);
+        let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.3 * nats);
         let order = 2 * halves.next_back().map_or(4, |half| half + 1);
         Self {
             order,
@@ -58,8 +59,8 @@ impl Settings {
 }
 
 /// A motion to be run, and its run, which is at its start.
-pub(super) struct Job<'a> {
-    pub(super) course: Course<'a>,
+pub(super) struct Job<'a, X: Precision> {
+    pub(super) course: Course<'a, X>,
     pub(super) run: &'a mut Run<Error>,
 }
 
@@ -73,9 +74,9 @@ enum Stop {
 }
 
 /// What a motion comes to within a step.
-enum Meeting {
+enum Meeting<X> {
     /// An output, at this time since the start of the step.
-    Output(f64),
+    Output(X),
     /// A break, after this time.
     Break(f64),
     Nothing,
@@ -146,8 +147,8 @@ impl Search {
 }
 
 /// A motion under way.
-struct Lead<'a> {
-    job: Job<'a>,
+struct Lead<'a, X: Precision> {
+    job: Job<'a, X>,
     /// The next output.
     next: usize,
     stop: Stop,
@@ -155,7 +156,7 @@ struct Lead<'a> {
 }
 
 /// `R` motions under way. Times are since the start, in the unit of each motion.
-struct Lanes<'a, L, S, const B: usize, const R: usize> {
+struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const R: usize> {
     settings: Settings,
     series: S,
     field: Field<Pack<L, R>, B>,
@@ -163,7 +164,7 @@ struct Lanes<'a, L, S, const B: usize, const R: usize> {
     directions: [[Pack<L, R>; 3]; B],
     state: Compensated<Pack<L, R>>,
     push: Option<Box<Push<Pack<L, R>>>>,
-    leads: [Option<Lead<'a>>; R],
+    leads: [Option<Lead<'a, L::Real>>; R],
     /// The times now and of the next stop, each with what rounding has left out.
     now: [(f64, f64); R],
     stop: [(f64, f64); R],
@@ -175,9 +176,14 @@ struct Lanes<'a, L, S, const B: usize, const R: usize> {
 /// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
 /// done, and may stop them.
 #[inline(always)]
-pub(super) fn drive<L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize>(
+pub(super) fn drive<
+    L: Number<Real: Precision>,
+    S: Series<Pack<L, R>, B>,
+    const B: usize,
+    const R: usize,
+>(
     settings: Settings,
-    jobs: &mut dyn Iterator<Item = Job<'_>>,
+    jobs: &mut dyn Iterator<Item = Job<'_, L::Real>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let mut lanes = Lanes::<L, S, B, R>::new(settings);
@@ -208,16 +214,21 @@ pub(super) fn drive<L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: 
     }
 }
 
-impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lanes<'a, L, S, B, R> {
+impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
+where
+    L: Number<Real: Precision>,
+    S: Series<Pack<L, R>, B>,
+{
     /// All empty.
     #[inline(always)]
     fn new(settings: Settings) -> Self {
+        let zero = Pack::new(0.0);
         Self {
             settings,
             series: S::new(),
-            field: Field::new(),
+            field: Field::none(zero),
             extras: Extras::new(&settings.parts),
-            directions: [[Pack::new(0.0); 3]; B],
+            directions: [[zero; 3]; B],
             state: Compensated::new(),
             push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
             leads: [const { None }; R],
@@ -257,6 +268,9 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         for row in 0..R {
             h[row] *= self.direction[row];
             signed.set(row, h[row]);
+            if landings[row] == Landing::Break {
+                signed.put(row, self.time_to_stop(row));
+            }
         }
         let change = increment(&self.series, order, signed);
         self.state.add(&change);
@@ -264,11 +278,13 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
             let change = push.increment(order, signed);
             push.add(&change);
         }
+        self.extras.advance(order, signed);
         let mut ended = false;
         let mut outgrown = false;
         for row in 0..R {
             let (now, rest) = self.now[row];
-            self.now[row] = two_sum(now, rest + h[row]);
+            let (reached, more) = two_sum(now, h[row]);
+            self.now[row] = fast_two_sum(reached, rest + more);
             let (x, y) = (self.state.value[0].get(row), self.state.value[1].get(row));
             let z = self.state.value[2].get(row);
             let speed = (x * x + y * y + z * z).sqrt();
@@ -309,7 +325,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
                 if let Some(lead) = &self.leads[row] {
                     let moment = lead.job.course.moment(self.now[row]);
                     let inverse = lead.job.course.inverse_moments();
-                    self.extras.set(row, &moment, &inverse, &q);
+                    self.extras.set(row, &moment, inverse, &q);
                 }
             }
         }
@@ -317,8 +333,11 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         for k in 0..order {
             let sums = self.series.sums(k);
             let (spins, at) = (S::spins(&sums), self.series.get(k));
-            let more = self.extras.coefficient(k, &self.series, &self.field);
-            let acceleration = self.field.acceleration(parts, k, spins, &at, more);
+            let acceleration = self.field.acceleration(parts, k, spins, &at);
+            let (series, field) = (&self.series, &self.field);
+            let acceleration = self
+                .extras
+                .plus_coefficients(k, series, field, acceleration);
             self.series.extend(k, &sums, &acceleration);
         }
         if let Some(push) = &mut self.push {
@@ -333,7 +352,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         loop {
             let looked_at = search.time();
             let time = match looked_at {
-                Some(time) => time * self.direction[row],
+                Some(time) => L::Real::from(time * self.direction[row]),
                 None => match self.meet(row, h) {
                     Meeting::Output(time) => time,
                     Meeting::Break(gap) => return (gap, Landing::Break),
@@ -343,7 +362,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
             };
             let (state, place) = self.within(row, time);
             if looked_at.is_some() {
-                search.narrow(self.has_flipped(row, time, &state));
+                search.narrow(self.has_flipped(row, time.rounded(), &state));
                 h = search.end();
             } else {
                 self.give(row, &state, place.as_ref());
@@ -353,15 +372,12 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
 
     /// The state of a motion, and its position and velocity when it is pushed, at a time since the start of the step.
     #[inline(always)]
-    #[expect(
-        clippy::manual_map,
-        reason = "a closure would be compiled without the instructions of the level"
-    )]
-    fn within(&self, row: usize, time: f64) -> ([f64; 7], Option<[f64; 6]>) {
+    fn within(&self, row: usize, time: L::Real) -> ([L::Real; 7], Option<[L::Real; 6]>) {
         let mut within = Pack::new(0.0);
-        within.set(row, time);
+        within.put(row, time);
         let order = self.settings.order;
         let state = (self.state).moved(&increment(&self.series, order, within), row);
+        // No `map`: its closure would be compiled without the instructions of the level.
         let place = match &self.push {
             Some(push) => Some(push.moved(&push.increment(order, within), row)),
             None => None,
@@ -372,7 +388,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
     /// Whether a feedback has another sign in the `state` at a time since the start of the step than there, or ω has passed
     /// through zero under quadratic damping.
     #[inline(never)]
-    fn has_flipped(&self, row: usize, time: f64, state: &[f64; 7]) -> bool {
+    fn has_flipped(&self, row: usize, time: f64, state: &[L::Real; 7]) -> bool {
         let lead = self.leads[row].as_ref();
         lead.is_some_and(|lead| lead.job.course.has_flipped(state))
             || self.extras.is_reversed(row, self.settings.order, time)
@@ -385,9 +401,16 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         ((stop - now) + (stop_rest - now_rest)) * self.direction[row]
     }
 
+    /// The time from now to the next stop.
+    #[inline(always)]
+    fn time_to_stop(&self, row: usize) -> L::Real {
+        let ((now, now_rest), (stop, stop_rest)) = (self.now[row], self.stop[row]);
+        L::Real::pair(stop, -now) + L::Real::pair(stop_rest, -now_rest)
+    }
+
     /// What a motion comes to next in a step as long as `h`.
     #[inline(never)]
-    fn meet(&mut self, row: usize, h: f64) -> Meeting {
+    fn meet(&mut self, row: usize, h: f64) -> Meeting<L::Real> {
         let gap = self.gap(row);
         let time = self.time(row);
         let Some(lead) = &self.leads[row] else {
@@ -408,14 +431,14 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         }
         match lead.stop {
             _ if gap > h => Meeting::Nothing,
-            Stop::Output => Meeting::Output(gap * self.direction[row]),
+            Stop::Output => Meeting::Output(self.time_to_stop(row)),
             Stop::Break => Meeting::Break(gap),
         }
     }
 
     /// Gives a sample to a motion; after the last one it ends.
     #[inline(never)]
-    fn give(&mut self, row: usize, state: &[f64; 7], place: Option<&[f64; 6]>) {
+    fn give(&mut self, row: usize, state: &[L::Real; 7], place: Option<&[L::Real; 6]>) {
         let now = self.stop[row];
         let Some(lead) = &mut self.leads[row] else {
             return;
@@ -448,26 +471,31 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
             Landing::None => Ok(()),
             Landing::Break => {
                 self.now[row] = self.stop[row];
+                self.extras.restart(row);
                 course.pass_break(&state)
             }
             Landing::Flip => course.flip(&state),
         };
         if let Err(error) = changed {
             self.end(row, End::Failed(error));
-        } else if landing != Landing::None || state[..3].iter().any(|w| w.abs() > 0.5 * OUTGROWN) {
+        } else if landing != Landing::None
+            || state[..3]
+                .iter()
+                .any(|w| w.rounded().abs() > 0.5 * OUTGROWN)
+        {
             self.enter(row);
         }
     }
 
     /// The next motion into an empty lane, or none for ever.
     #[inline(never)]
-    fn load(&mut self, row: usize, jobs: &mut dyn Iterator<Item = Job<'a>>) {
+    fn load(&mut self, row: usize, jobs: &mut dyn Iterator<Item = Job<'a, L::Real>>) {
         let Some(job) = jobs.next() else {
             return self.vacate(row);
         };
         let start = job.course.start();
         for i in 0..7 {
-            self.state.value[i].set(row, start[i]);
+            self.state.value[i].put(row, start[i]);
             self.state.rest[i].set(row, 0.0);
         }
         if let Some(push) = &mut self.push {
@@ -478,6 +506,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
             } = job.course.initial();
             push.set(row, &[r.x, r.y, r.z, v.x, v.y, v.z]);
         }
+        self.extras.restart(row);
         self.now[row] = (0.0, 0.0);
         self.direction[row] = job.course.direction();
         self.fastest[row] = 0.0;
@@ -498,17 +527,19 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         };
         let course = &mut lead.job.course;
         let old = course.unit();
-        let omega = [state[0] * old, state[1] * old, state[2] * old];
+        let omega = [0, 1, 2].map(|i| state[i].rounded() * old);
         let unit = course.choose_unit(&omega);
         let ratio = old / unit;
         for i in 0..3 {
-            self.state.value[i].set(row, omega[i] / unit);
-            let rest = self.state.rest[i].get(row) * ratio;
-            self.state.rest[i].set(row, rest);
+            // Units are powers of two.
+            (self.state.value[i]).put(row, state[i] * old.into() / unit.into());
+            let rest = self.state.rest[i].real(row) * ratio.into();
+            self.state.rest[i].put(row, rest);
         }
         if let Some(push) = &mut self.push {
             push.rescale(row, ratio);
         }
+        self.extras.rescale(row, ratio);
         let (now, rest) = self.now[row];
         self.now[row] = (now / ratio, rest / ratio);
         let [x, y, z] = [omega[0] / unit, omega[1] / unit, omega[2] / unit];
@@ -522,7 +553,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         self.field.set(row, &course.field());
         for (packs, direction) in self.directions.iter_mut().zip(course.directions::<B>()) {
             for i in 0..3 {
-                packs[i].set(row, direction[i]);
+                packs[i].put(row, direction[i]);
             }
         }
         (self.stop[row], lead.stop) = next_stop(course, lead.next);
@@ -551,7 +582,7 @@ impl<'a, L: Lane, S: Series<Pack<L, R>, B>, const B: usize, const R: usize> Lane
         if let Some(push) = &mut self.push {
             push.set(row, &[0.0; 6]);
         }
-        self.field.set(row, &Field::NONE);
+        self.field.set(row, &Field::none(L::Real::default()));
         self.extras.vacate(row);
         self.now[row] = (0.0, 0.0);
         self.stop[row] = (f64::INFINITY, 0.0);
@@ -579,7 +610,7 @@ fn effort(steps: u64) -> Effort {
 }
 
 /// The output `next` or the end of the segment, whichever comes first.
-fn next_stop(course: &Course, next: usize) -> ((f64, f64), Stop) {
+fn next_stop<X: Precision>(course: &Course<X>, next: usize) -> ((f64, f64), Stop) {
     let (output, end) = (course.output(next), course.end_of_segment());
     // An output on a break belongs to the segment that ends there.
     let ahead = ((output.0 - end.0) + (output.1 - end.1)) * course.direction();
@@ -592,7 +623,7 @@ fn next_stop(course: &Course, next: usize) -> ((f64, f64), Stop) {
 
 /// A direction fixed in space as seen from the body: `Rᵀ e` for the attitude (x, y, z, w).
 #[inline(always)]
-pub(super) fn seen<L: Lane, const R: usize>(
+pub(super) fn seen<L: Number, const R: usize>(
     q: &[Pack<L, R>; 4],
     e: &[Pack<L, R>; 3],
 ) -> [Pack<L, R>; 3] {

@@ -1,11 +1,14 @@
 //! The terms of a load that are not linear in the coefficients of one order, together.
 
+use nalgebra::Vector3;
+
 use super::field::{Field, Parts};
+use super::frame::Precision;
 use super::moment::{Moment, Orbit};
 use super::pack::Pack;
 use super::series::Series;
 use super::terms::{Analytic, Forced, Gradient, Quadratic, STILL};
-use crate::numerics::lane::Lane;
+use crate::numerics::number::{Number, Real};
 
 /// Those that the load has; most loads have none.
 #[derive(Clone, Debug)]
@@ -14,9 +17,11 @@ pub(super) struct Extras<T> {
     quadratic: Option<Box<Quadratic<T>>>,
     forced: Option<Box<Forced<T>>>,
     gradients: Vec<Gradient<T>>,
+    /// The rows whose orbits have come from the step before.
+    are_carried: Vec<bool>,
 }
 
-impl<L: Lane, const R: usize> Extras<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new(parts: &Parts) -> Self {
         let mut gradients = Vec::new();
@@ -36,6 +41,7 @@ impl<L: Lane, const R: usize> Extras<Pack<L, R>> {
                 None
             },
             gradients,
+            are_carried: vec![false; R],
         }
     }
 
@@ -49,28 +55,60 @@ impl<L: Lane, const R: usize> Extras<Pack<L, R>> {
     pub(super) fn set(
         &mut self,
         row: usize,
-        moment: &Moment,
-        inverse_moments: &[f64; 3],
+        moment: &Moment<L::Real>,
+        inverse_moments: &Vector3<L::Real>,
         q: &[Pack<L, R>; 4],
     ) {
         if let Some(forced) = &mut self.forced {
             forced.set(row, moment, inverse_moments);
         }
-        let q = [q[0].get(row), q[1].get(row), q[2].get(row), q[3].get(row)];
+        if self.are_carried[row] {
+            return;
+        }
+        let q = [
+            q[0].real(row),
+            q[1].real(row),
+            q[2].real(row),
+            q[3].real(row),
+        ];
         let mut orbits = moment.orbits.iter();
         for gradient in &mut self.gradients {
-            let orbit = orbits.next().copied().unwrap_or(Orbit::NONE);
+            let orbit = orbits.next().copied().unwrap_or_else(Orbit::none);
             let position = seen_by(&q, &orbit.position);
             let velocity = seen_by(&q, &orbit.velocity);
             gradient.set(row, &orbit, &position, &velocity);
         }
     }
 
+    /// Goes on to the end of a step of length `h`, where orbits go by their own series.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
+        if L::Real::CARRIES_ORBITS && !self.gradients.is_empty() {
+            for gradient in &mut self.gradients {
+                gradient.advance(order, h);
+            }
+            self.are_carried.fill(true);
+        }
+    }
+
+    /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
+    pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
+        for gradient in &mut self.gradients {
+            gradient.rescale(row, ratio);
+        }
+    }
+
+    /// Has the orbits of one row found anew.
+    pub(super) fn restart(&mut self, row: usize) {
+        self.are_carried[row] = false;
+    }
+
     /// Leaves one row without such terms.
     pub(super) fn vacate(&mut self, row: usize) {
+        self.restart(row);
         let upright = Pack::new(0.0);
         let q = [upright, upright, upright, Pack::new(1.0)];
-        self.set(row, &Moment::default(), &[0.0; 3], &q);
+        self.set(row, &Moment::default(), &Vector3::zeros(), &q);
     }
 
     #[inline(always)]
@@ -80,15 +118,15 @@ impl<L: Lane, const R: usize> Extras<Pack<L, R>> {
         }
     }
 
-    /// The coefficient of order `k` of the angular acceleration by all of them.
+    /// `sum` and the coefficients of order `k` of the angular acceleration by all of them.
     #[inline(always)]
-    pub(super) fn coefficient<const B: usize>(
+    pub(super) fn plus_coefficients<const B: usize>(
         &mut self,
         k: usize,
         series: &impl Series<Pack<L, R>, B>,
         field: &Field<Pack<L, R>, B>,
+        mut sum: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
-        let mut sum = [Pack::new(0.0); 3];
         if self.is_empty {
             return sum;
         }
@@ -135,20 +173,20 @@ impl<L: Lane, const R: usize> Extras<Pack<L, R>> {
 }
 
 #[inline(always)]
-fn size<L: Lane, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
+fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
     let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
     (x * x + y * y + z * z).sqrt()
 }
 
 #[inline(always)]
-fn plus<L: Lane, const R: usize>(a: [Pack<L, R>; 3], b: [Pack<L, R>; 3]) -> [Pack<L, R>; 3] {
+fn plus<L: Number, const R: usize>(a: [Pack<L, R>; 3], b: [Pack<L, R>; 3]) -> [Pack<L, R>; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// A vector of N as seen in the attitude (x, y, z, w).
-fn seen_by(q: &[f64; 4], vector: &nalgebra::Vector3<f64>) -> [f64; 3] {
+fn seen_by<X: Real>(q: &[X; 4], vector: &Vector3<X>) -> Vector3<X> {
     let [x, y, z, w] = *q;
-    let u = nalgebra::Vector3::new(x, y, z);
-    let t = u.cross(vector) * 2.0;
-    (vector - t * w + u.cross(&t)).into()
+    let u = Vector3::new(x, y, z);
+    let t = u.cross(vector) * X::from(2.0);
+    vector - t * w + u.cross(&t)
 }

@@ -2,7 +2,7 @@
 
 use super::pack::Pack;
 use super::series::Coefficient;
-use crate::numerics::lane::Lane;
+use crate::numerics::number::Number;
 
 type Square<T> = [[T; 3]; 3];
 
@@ -31,7 +31,7 @@ pub(super) struct Field<T, const B: usize> {
 )]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Parts {
-    /// How many directions fixed in space.
+    /// How many directions fixed in space: none, the vertical axis, or all.
     pub(super) directions: usize,
     pub(super) on_omega: bool,
     pub(super) on_attitude: bool,
@@ -45,30 +45,26 @@ pub(super) struct Parts {
 }
 
 impl Parts {
+    /// The parts of two motions under terms of the same kinds: of these only the directions and quadratic damping depend on
+    /// the numbers in them.
+    pub(super) fn with(self, other: &Self) -> Self {
+        Self {
+            directions: self.directions.max(other.directions),
+            quadratic: self.quadratic || other.quadratic,
+            ..*other
+        }
+    }
+
     /// Whether the law may change with the state: by the sign of a feedback, or of ω that passes through zero.
     pub(super) fn may_flip(&self) -> bool {
         self.on_attitude || self.quadratic
     }
 }
 
-impl<const B: usize> Field<f64, B> {
+impl<T: Copy, const B: usize> Field<T, B> {
     /// Nothing turns.
-    pub(super) const NONE: Self = Self {
-        kappa: [0.0; 3],
-        constant: [0.0; 3],
-        on_omega: [[0.0; 3]; 3],
-        on_attitude: [[0.0; 4]; 3],
-        on_space: [[[0.0; 3]; 3]; B],
-        quadratic: [[0.0; 3]; 3],
-        force: [0.0; 3],
-        thrust: [0.0; 3],
-    };
-}
-
-impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     #[inline(always)]
-    pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
+    pub(super) fn none(zero: T) -> Self {
         Self {
             kappa: [zero; 3],
             constant: [zero; 3],
@@ -80,32 +76,33 @@ impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
             thrust: [zero; 3],
         }
     }
+}
 
+impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     /// Sets the field of one row.
     #[inline(always)]
-    pub(super) fn set(&mut self, row: usize, field: &Field<f64, B>) {
+    pub(super) fn set(&mut self, row: usize, field: &Field<L::Real, B>) {
         for n in 0..3 {
-            self.kappa[n].set(row, field.kappa[n]);
-            self.constant[n].set(row, field.constant[n]);
-            self.force[n].set(row, field.force[n]);
-            self.thrust[n].set(row, field.thrust[n]);
+            self.kappa[n].put(row, field.kappa[n]);
+            self.constant[n].put(row, field.constant[n]);
+            self.force[n].put(row, field.force[n]);
+            self.thrust[n].put(row, field.thrust[n]);
             for i in 0..3 {
-                self.on_omega[n][i].set(row, field.on_omega[n][i]);
-                self.quadratic[n][i].set(row, field.quadratic[n][i]);
+                self.on_omega[n][i].put(row, field.on_omega[n][i]);
+                self.quadratic[n][i].put(row, field.quadratic[n][i]);
             }
             for i in 0..4 {
-                self.on_attitude[n][i].set(row, field.on_attitude[n][i]);
+                self.on_attitude[n][i].put(row, field.on_attitude[n][i]);
             }
             for b in 0..B {
                 for i in 0..3 {
-                    self.on_space[b][n][i].set(row, field.on_space[b][n][i]);
+                    self.on_space[b][n][i].put(row, field.on_space[b][n][i]);
                 }
             }
         }
     }
 
-    /// The coefficient of order `k` of ω̇ from the products of ω's series, the coefficients of that order, and what the
-    /// terms that are not linear add.
+    /// The coefficient of order `k` of ω̇ from the products of ω's series and the coefficients of that order.
     #[inline(always)]
     pub(super) fn acceleration(
         &self,
@@ -113,30 +110,44 @@ impl<L: Lane, const R: usize, const B: usize> Field<Pack<L, R>, B> {
         k: usize,
         products: [Pack<L, R>; 3],
         at: &Coefficient<Pack<L, R>, B>,
-        more: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
-        let mut sum = more;
-        for n in 0..3 {
-            if k == 0 {
-                sum[n] = sum[n] + self.constant[n];
-            }
-            for (matrix, g) in self.on_space.iter().zip(&at.g) {
-                for i in 0..3 {
-                    sum[n] = matrix[n][i].mul_add(g[i], sum[n]);
-                }
-            }
-            if parts.on_omega {
-                for i in 0..3 {
-                    sum[n] = self.on_omega[n][i].mul_add(at.w[i], sum[n]);
-                }
-            }
-            if parts.on_attitude {
-                for i in 0..4 {
-                    sum[n] = self.on_attitude[n][i].mul_add(at.q[i], sum[n]);
-                }
-            }
-            sum[n] = self.kappa[n].mul_add(products[n], sum[n]);
+        // Written out, since a loop would keep the sums in memory.
+        let [mut x, mut y, mut z] = [Pack::new(0.0); 3];
+        if k == 0 {
+            let [a, b, c] = self.constant;
+            [x, y, z] = [x + a, y + b, z + c];
         }
-        sum
+        for ([a, b, c], g) in self.on_space.iter().zip(&at.g) {
+            x = plus_product(a, g, x);
+            y = plus_product(b, g, y);
+            z = plus_product(c, g, z);
+        }
+        if parts.on_omega {
+            let [a, b, c] = &self.on_omega;
+            x = plus_product(a, &at.w, x);
+            y = plus_product(b, &at.w, y);
+            z = plus_product(c, &at.w, z);
+        }
+        if parts.on_attitude {
+            let [a, b, c] = &self.on_attitude;
+            x = plus_product(a, &at.q, x);
+            y = plus_product(b, &at.q, y);
+            z = plus_product(c, &at.q, z);
+        }
+        let ([a, b, c], [s, t, u]) = (self.kappa, products);
+        [a.mul_add(s, x), b.mul_add(t, y), c.mul_add(u, z)]
     }
+}
+
+/// `sum + a·b`.
+#[inline(always)]
+fn plus_product<L: Number, const R: usize, const N: usize>(
+    a: &[Pack<L, R>; N],
+    b: &[Pack<L, R>; N],
+    mut sum: Pack<L, R>,
+) -> Pack<L, R> {
+    for i in 0..N {
+        sum = a[i].mul_add(b[i], sum);
+    }
+    sum
 }

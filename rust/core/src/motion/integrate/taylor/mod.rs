@@ -2,11 +2,13 @@
 //!
 //! | file | what it knows |
 //! |---|---|
+//! | `frame` | the principal axes, in doubles or in numbers of twice the precision |
 //! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
 //! | `field` | the equations that are linear in the coefficients of one order |
 //! | `terms`, `extras` | the recurrences of terms that are not |
 //! | `moment` | what depends on time alone |
 //! | `series` | the sums of products, the lanes over components or over motions |
+//! | `twin` | those sums in numbers of twice the precision |
 //! | `push` | the path of a body that forces act on |
 //! | `step` | the length of a step, the state at its end or within |
 //! | `drive` | steps, outputs, breaks, until all motions are done; `seen`: each step as it is made |
@@ -23,12 +25,14 @@ mod course;
 mod drive;
 mod extras;
 mod field;
+mod frame;
 mod moment;
 mod pack;
 mod push;
 mod series;
 mod step;
 mod terms;
+mod twin;
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -37,14 +41,18 @@ use course::{Course, parts};
 pub(crate) use drive::Step;
 use drive::{Job, Settings, drive, drive_seen};
 use field::Parts;
+use frame::Precision;
 use series::{Abreast, Alone};
+use twin::Twin;
 
 use crate::error::Error;
 use crate::motion::loads::Term;
 use crate::motion::simulate::{End, Run, Task};
 use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
 use crate::numerics::threads::fill_blocks;
+use crate::numerics::twofold::Twofold;
 
 /// Motions side by side: a register of the widest machines.
 const ROWS: usize = 8;
@@ -66,13 +74,21 @@ pub fn solve_one(
 ) -> Run<Error> {
     let mut run = Run::at_start(task, End::Stopped);
     let settings = settings(task, parts(terms, task.subject.pivoted));
-    let mut jobs = job(task, terms, &mut run).into_iter();
-    let _ = dispatch(OneByOne {
-        settings,
-        jobs: &mut jobs,
-        watch,
-    });
-    drop(jobs);
+    if task.tolerance.is_beyond_doubles() {
+        let jobs = &mut job(task, terms, &mut run).into_iter();
+        let _ = dispatch(Precisely {
+            settings,
+            jobs,
+            watch,
+        });
+    } else {
+        let jobs = &mut job(task, terms, &mut run).into_iter();
+        let _ = dispatch(OneByOne {
+            settings,
+            jobs,
+            watch,
+        });
+    }
     run
 }
 
@@ -84,8 +100,13 @@ pub(crate) fn solve_seen(
 ) -> Run<Error> {
     let mut run = Run::at_start(task, End::Stopped);
     let settings = settings(task, parts(terms, task.subject.pivoted));
-    if let Some(job) = job(task, terms, &mut run)
-        && let Some(last) = dispatch(Seen { settings, job, see })
+    let last = if task.tolerance.is_beyond_doubles() {
+        job::<DoubleDouble>(task, terms, &mut run)
+            .and_then(|job| dispatch(Seen { settings, job, see }))
+    } else {
+        job::<f64>(task, terms, &mut run).and_then(|job| dispatch(Seen { settings, job, see }))
+    };
+    if let Some(last) = last
         && run.end == End::Complete
     {
         let _over = see(&last);
@@ -93,11 +114,11 @@ pub(crate) fn solve_seen(
     run
 }
 
-/// The motions of many tasks, each under its own terms, into `runs`; on all cores, eight side by side in the lanes of each.
-/// Every motion has the bits of [`solve_one`].
+/// The motions of many tasks, each under its own terms, into `runs`; on all cores, eight side by side in the lanes of each,
+/// or one by one where doubles do not serve the tolerance. Every motion has the bits of [`solve_one`].
 ///
-/// `task` gives the tasks and `terms` what acts in each. They may differ in body, state and numbers; times, tolerance, whether the body is
-/// pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
+/// `task` gives the tasks and `terms` what acts in each. They may differ in body, state and numbers; times, tolerance,
+/// whether the body is pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
 /// motions that were begun; it may stop the run.
 ///
 /// # Panics
@@ -118,39 +139,43 @@ pub fn solve_many<'a>(
             watch(begun.load(Ordering::Relaxed) as f64 / all)
         }
     };
+    let is_precise = !runs.is_empty() && task(0).tolerance.is_beyond_doubles();
+    let block = if is_precise { 1 } else { BLOCK };
     // Where a run is stopped, what was done by then is kept.
-    let _ended = fill_blocks(runs, BLOCK, &mut |_| ask(), |first, runs| {
+    let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, runs| {
         let (count, example) = (runs.len(), task(first));
         let mut common = Parts::default();
         for row in first..first + count {
-            let quadratic = common.quadratic;
-            common = parts(terms(row), example.subject.pivoted);
-            common.quadratic |= quadratic;
+            common = common.with(&parts(terms(row), example.subject.pivoted));
         }
         let settings = settings(&example, common);
-        let mut jobs = (first..).zip(runs.iter_mut()).filter_map(|(row, run)| {
+        let begin = |row: usize| {
             begun.fetch_add(1, Ordering::Relaxed);
-            let task = task(row);
-            job(
-                &task,
-                terms(row),
-                run.insert(Run::at_start(&task, End::Stopped)),
-            )
-        });
-        let jobs = &mut jobs;
+            (task(row), terms(row))
+        };
         let watch = &mut |_| ask();
-        let flow = if count < FEW {
-            dispatch(OneByOne {
+        let flow = if is_precise {
+            let jobs = &mut rows(first, runs, &begin);
+            dispatch(Precisely {
                 settings,
                 jobs,
                 watch,
             })
         } else {
-            dispatch(SideBySide {
-                settings,
-                jobs,
-                watch,
-            })
+            let jobs = &mut rows(first, runs, &begin);
+            if count < FEW {
+                dispatch(OneByOne {
+                    settings,
+                    jobs,
+                    watch,
+                })
+            } else {
+                dispatch(SideBySide {
+                    settings,
+                    jobs,
+                    watch,
+                })
+            }
         };
         if flow.is_break() {
             stopped.store(true, Ordering::Relaxed);
@@ -161,11 +186,21 @@ pub fn solve_many<'a>(
 }
 
 fn settings(task: &Task<'_>, parts: Parts) -> Settings {
-    Settings::new(task.tolerance.relative, task.tolerance.absolute, parts)
+    let tolerance = task.tolerance;
+    let highest = if tolerance.is_beyond_doubles() {
+        twin::HIGHEST_ORDER
+    } else {
+        series::HIGHEST_ORDER
+    };
+    Settings::new(tolerance.relative, tolerance.absolute, highest, parts)
 }
 
 /// The job of a motion, if there is anything to do and nothing against it.
-fn job<'a>(task: &Task<'a>, terms: &'a [Term], run: &'a mut Run<Error>) -> Option<Job<'a>> {
+fn job<'a, X: Precision>(
+    task: &Task<'a>,
+    terms: &'a [Term],
+    run: &'a mut Run<Error>,
+) -> Option<Job<'a, X>> {
     if run.samples.len() == 1 {
         run.end = End::Complete;
         return None;
@@ -179,10 +214,47 @@ fn job<'a>(task: &Task<'a>, terms: &'a [Term], run: &'a mut Run<Error>) -> Optio
     }
 }
 
+/// The jobs of `runs`, the first of which is of the task `first`.
+fn rows<'a, X: Precision>(
+    first: usize,
+    runs: &'a mut [Option<Run<Error>>],
+    begin: &impl Fn(usize) -> (Task<'a>, &'a [Term]),
+) -> impl Iterator<Item = Job<'a, X>> {
+    (first..).zip(runs).filter_map(|(row, run)| {
+        let (task, terms) = begin(row);
+        job(&task, terms, run.insert(Run::at_start(&task, End::Stopped)))
+    })
+}
+
+/// Motions one after the other in numbers of twice the precision.
+struct Precisely<'a, 'b> {
+    settings: Settings,
+    jobs: &'b mut dyn Iterator<Item = Job<'a, DoubleDouble>>,
+    watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+}
+
+impl Kernel for Precisely<'_, '_> {
+    type Output = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> ControlFlow<()> {
+        let Self {
+            settings,
+            jobs,
+            watch,
+        } = self;
+        match settings.parts.directions {
+            0 => drive::<Twofold<L>, Twin<L, 0, 4>, 0, 1>(settings, jobs, watch),
+            1 => drive::<Twofold<L>, Twin<L, 1, 8>, 1, 1>(settings, jobs, watch),
+            _ => drive::<Twofold<L>, Twin<L, 3, 16>, 3, 1>(settings, jobs, watch),
+        }
+    }
+}
+
 /// Motions one after the other, the lanes over the components of each.
 struct OneByOne<'a, 'b> {
     settings: Settings,
-    jobs: &'b mut dyn Iterator<Item = Job<'a>>,
+    jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
     watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
 }
 
@@ -197,30 +269,44 @@ impl Kernel for OneByOne<'_, '_> {
             watch,
         } = self;
         match settings.parts.directions {
-            0 => drive::<L, Alone<L, 0, 4>, 0, 1>(settings, jobs, watch),
-            1 => drive::<L, Alone<L, 1, 8>, 1, 1>(settings, jobs, watch),
-            _ => drive::<L, Alone<L, 3, 16>, 3, 1>(settings, jobs, watch),
+            0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch),
+            1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch),
+            _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch),
         }
     }
 }
 
 /// One motion whose steps are shown as they are made.
-struct Seen<'a, 'b> {
+struct Seen<'a, 'b, X: Precision> {
     settings: Settings,
-    job: Job<'a>,
+    job: Job<'a, X>,
     see: &'b mut dyn FnMut(&Step) -> ControlFlow<()>,
 }
 
-impl Kernel for Seen<'_, '_> {
+impl Kernel for Seen<'_, '_, f64> {
     type Output = Option<Step>;
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Option<Step> {
         let Self { settings, job, see } = self;
         match settings.parts.directions {
-            0 => drive_seen::<L, Alone<L, 0, 4>, 0>(settings, job, see),
-            1 => drive_seen::<L, Alone<L, 1, 8>, 1>(settings, job, see),
-            _ => drive_seen::<L, Alone<L, 3, 16>, 3>(settings, job, see),
+            0 => drive_seen::<L, Alone<L, 0>, 0>(settings, job, see),
+            1 => drive_seen::<L, Alone<L, 1>, 1>(settings, job, see),
+            _ => drive_seen::<L, Alone<L, 3>, 3>(settings, job, see),
+        }
+    }
+}
+
+impl Kernel for Seen<'_, '_, DoubleDouble> {
+    type Output = Option<Step>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> Option<Step> {
+        let Self { settings, job, see } = self;
+        match settings.parts.directions {
+            0 => drive_seen::<Twofold<L>, Twin<L, 0, 4>, 0>(settings, job, see),
+            1 => drive_seen::<Twofold<L>, Twin<L, 1, 8>, 1>(settings, job, see),
+            _ => drive_seen::<Twofold<L>, Twin<L, 3, 16>, 3>(settings, job, see),
         }
     }
 }
@@ -228,7 +314,7 @@ impl Kernel for Seen<'_, '_> {
 /// Motions side by side, the lanes over the motions.
 struct SideBySide<'a, 'b> {
     settings: Settings,
-    jobs: &'b mut dyn Iterator<Item = Job<'a>>,
+    jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
     watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use crate::numerics::lane::Lane;
+use crate::numerics::number::Number;
 
 /// One number of `R` rows; with one row plain arithmetic. Every operation acts on each row by itself.
 #[derive(Clone, Copy, Debug)]
@@ -10,7 +10,7 @@ pub(super) struct Pack<L, const R: usize>(pub(super) [L; R]);
 
 macro_rules! each {
     ($operator:ident, $method:ident, $symbol:tt) => {
-        impl<L: Lane, const R: usize> $operator for Pack<L, R> {
+        impl<L: Number, const R: usize> $operator for Pack<L, R> {
             type Output = Self;
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
@@ -26,7 +26,7 @@ each!(Add, add, +);
 each!(Sub, sub, -);
 each!(Mul, mul, *);
 
-impl<L: Lane, const R: usize> Neg for Pack<L, R> {
+impl<L: Number, const R: usize> Neg for Pack<L, R> {
     type Output = Self;
 
     #[inline(always)]
@@ -35,23 +35,41 @@ impl<L: Lane, const R: usize> Neg for Pack<L, R> {
     }
 }
 
-impl<L: Lane, const R: usize> Pack<L, R> {
+impl<L: Number, const R: usize> Pack<L, R> {
     /// The number `x` in every row.
     #[inline(always)]
     pub(super) fn new(x: f64) -> Self {
         Self([L::new(x); R])
     }
 
-    /// The number of one row.
+    /// 1/n in every row.
+    #[inline(always)]
+    pub(super) fn over(n: usize) -> Self {
+        Self([L::over(n); R])
+    }
+
+    /// The number of one row, rounded to a double.
     #[inline(always)]
     pub(super) fn get(&self, row: usize) -> f64 {
         self.0[row].get()
     }
 
-    /// Sets the number of one row.
+    /// The number of one row.
+    #[inline(always)]
+    pub(super) fn real(&self, row: usize) -> L::Real {
+        self.0[row].real()
+    }
+
+    /// Sets the number of one row to a double.
     #[inline(always)]
     pub(super) fn set(&mut self, row: usize, x: f64) {
         self.0[row] = L::new(x);
+    }
+
+    /// Sets the number of one row.
+    #[inline(always)]
+    pub(super) fn put(&mut self, row: usize, x: L::Real) {
+        self.0[row] = L::of(x);
     }
 
     /// `self * b + c`.
@@ -71,4 +89,18 @@ impl<L: Lane, const R: usize> Pack<L, R> {
         }
         self
     }
+}
+
+/// `sum + a × b`.
+#[inline(always)]
+pub(super) fn cross_term<L: Number, const R: usize>(
+    a: &[Pack<L, R>; 3],
+    b: &[Pack<L, R>; 3],
+    sum: [Pack<L, R>; 3],
+) -> [Pack<L, R>; 3] {
+    [
+        a[1].mul_add(b[2], (-a[2]).mul_add(b[1], sum[0])),
+        a[2].mul_add(b[0], (-a[0]).mul_add(b[2], sum[1])),
+        a[0].mul_add(b[1], (-a[1]).mul_add(b[0], sum[2])),
+    ]
 }

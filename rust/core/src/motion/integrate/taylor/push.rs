@@ -2,26 +2,27 @@
 
 use super::field::Field;
 use super::pack::Pack;
-use super::series::{COUNT, RECIPROCALS, Series};
+use super::series::Series;
 use super::step::compensate;
-use crate::numerics::lane::Lane;
+use super::twin;
+use crate::numerics::number::{Number, Real};
 
 /// Position and velocity of the centre of mass in N, and the series of the acceleration in a step.
 #[derive(Clone, Debug)]
 pub(super) struct Push<T> {
     value: [T; 6],
     rest: [T; 6],
-    acceleration: [[T; 3]; COUNT],
+    acceleration: [[T; 3]; twin::COUNT],
 }
 
-impl<L: Lane, const R: usize> Push<Pack<L, R>> {
+impl<L: Number, const R: usize> Push<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         let zero = Pack::new(0.0);
         Self {
             value: [zero; 6],
             rest: [zero; 6],
-            acceleration: [[zero; 3]; COUNT],
+            acceleration: [[zero; 3]; twin::COUNT],
         }
     }
 
@@ -36,9 +37,9 @@ impl<L: Lane, const R: usize> Push<Pack<L, R>> {
     /// Multiplies the velocity of one row, which comes to another unit.
     pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
         for i in 3..6 {
-            let (value, rest) = (self.value[i].get(row), self.rest[i].get(row));
-            self.value[i].set(row, value * ratio);
-            self.rest[i].set(row, rest * ratio);
+            let (value, rest) = (self.value[i].real(row), self.rest[i].real(row));
+            self.value[i].put(row, value * ratio.into());
+            self.rest[i].put(row, rest * ratio.into());
         }
     }
 
@@ -74,11 +75,12 @@ impl<L: Lane, const R: usize> Push<Pack<L, R>> {
     pub(super) fn increment(&self, order: usize, h: Pack<L, R>) -> [Pack<L, R>; 6] {
         let mut sums = [Pack::new(0.0); 6];
         for k in (0..order).rev() {
-            let (once, twice) = (RECIPROCALS[k + 1], RECIPROCALS[k + 1] * RECIPROCALS[k + 2]);
+            let once = Pack::over(k + 1);
+            let twice = once * Pack::over(k + 2);
             for i in 0..3 {
                 let a = self.acceleration[k][i];
-                sums[i] = sums[i].mul_add(h, a * Pack::new(twice));
-                sums[3 + i] = sums[3 + i].mul_add(h, a * Pack::new(once));
+                sums[i] = sums[i].mul_add(h, a * twice);
+                sums[3 + i] = sums[3 + i].mul_add(h, a * once);
             }
         }
         for i in 0..3 {
@@ -91,28 +93,30 @@ impl<L: Lane, const R: usize> Push<Pack<L, R>> {
 
     #[inline(always)]
     pub(super) fn add(&mut self, increment: &[Pack<L, R>; 6]) {
-        compensate(&mut self.value, &mut self.rest, increment);
+        for i in 0..6 {
+            compensate(&mut self.value[i], &mut self.rest[i], increment[i]);
+        }
     }
 
     /// Position and velocity of one row.
-    pub(super) fn now(&self, row: usize) -> [f64; 6] {
-        let mut place = [0.0; 6];
+    pub(super) fn now(&self, row: usize) -> [L::Real; 6] {
+        let mut place = [L::Real::default(); 6];
         for i in 0..6 {
-            place[i] = self.value[i].get(row);
+            place[i] = self.value[i].real(row);
         }
         place
     }
 
     /// The coefficients of position and velocity of one row in the step that began at `start`.
-    pub(super) fn path(&self, row: usize, order: usize, start: &[f64; 6]) -> Vec<[f64; 6]> {
+    pub(super) fn path(&self, row: usize, order: usize, start: &[L::Real; 6]) -> Vec<[f64; 6]> {
         let mut path = vec![[0.0; 6]; order + 2];
-        path[0] = *start;
+        path[0] = start.map(L::Real::rounded);
         for i in 0..3 {
-            path[1][i] = start[3 + i];
+            path[1][i] = path[0][3 + i];
             for k in 0..order {
-                let a = self.acceleration[k][i].get(row) * RECIPROCALS[k + 1];
+                let a = self.acceleration[k][i].get(row) * (1.0 / (k + 1) as f64);
                 path[k + 1][3 + i] = a;
-                path[k + 2][i] = a * RECIPROCALS[k + 2];
+                path[k + 2][i] = a * (1.0 / (k + 2) as f64);
             }
         }
         path
@@ -120,11 +124,11 @@ impl<L: Lane, const R: usize> Push<Pack<L, R>> {
 
     /// Position and velocity of one row moved by `increment`.
     #[inline(always)]
-    pub(super) fn moved(&self, increment: &[Pack<L, R>; 6], row: usize) -> [f64; 6] {
-        let mut place = [0.0; 6];
+    pub(super) fn moved(&self, increment: &[Pack<L, R>; 6], row: usize) -> [L::Real; 6] {
+        let mut place = [L::Real::default(); 6];
         for i in 0..6 {
-            let change = increment[i].get(row) + self.rest[i].get(row);
-            place[i] = self.value[i].get(row) + change;
+            let change = increment[i].real(row) + self.rest[i].real(row);
+            place[i] = self.value[i].real(row) + change;
         }
         place
     }

@@ -3,7 +3,7 @@
 use super::pack::Pack;
 use super::series::{Coefficient, Series};
 use crate::numerics::double_double::two_sum;
-use crate::numerics::lane::Lane;
+use crate::numerics::number::Number;
 
 /// ω in principal axes and (x, y, z, w) of the attitude, each with what rounding has left out of it so far.
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub(super) struct Compensated<T> {
     pub(super) rest: [T; 7],
 }
 
-impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
+impl<L: Number, const R: usize> Compensated<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         Self {
@@ -21,11 +21,20 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
         }
     }
 
-    /// Adds the increments of a step, then puts the quaternion back to unit length. That correction goes into the rest,
-    /// and the next increment takes it along: nothing is rounded for it.
+    /// Adds the increments of a step, then puts the quaternion back to unit length: at once, since in a step of more than
+    /// half a turn what is left of the length would grow, by `1 − cos(ω h/2)`.
     #[inline(always)]
     pub(super) fn add(&mut self, increment: &[Pack<L, R>; 7]) {
-        compensate(&mut self.value, &mut self.rest, increment);
+        // Written out, since a loop would be vectorised across the numbers instead of the rows.
+        let [v0, v1, v2, v3, v4, v5, v6] = &mut self.value;
+        let [r0, r1, r2, r3, r4, r5, r6] = &mut self.rest;
+        compensate(v0, r0, increment[0]);
+        compensate(v1, r1, increment[1]);
+        compensate(v2, r2, increment[2]);
+        compensate(v3, r3, increment[3]);
+        compensate(v4, r4, increment[4]);
+        compensate(v5, r5, increment[5]);
+        compensate(v6, r6, increment[6]);
         // ½ (1 − |q|²), with the rest: the first-order correction.
         let mut lack = Pack::new(1.0);
         for i in 3..7 {
@@ -34,49 +43,42 @@ impl<L: Lane, const R: usize> Compensated<Pack<L, R>> {
         }
         lack = lack * Pack::new(0.5);
         for i in 3..7 {
-            self.rest[i] = self.value[i].mul_add(lack, self.rest[i]);
+            let change = self.value[i] * lack;
+            compensate(&mut self.value[i], &mut self.rest[i], change);
         }
     }
 
     /// The state of one row.
-    pub(super) fn now(&self, row: usize) -> [f64; 7] {
-        let mut state = [0.0; 7];
+    pub(super) fn now(&self, row: usize) -> [L::Real; 7] {
+        let mut state = [L::Real::default(); 7];
         for i in 0..7 {
-            state[i] = self.value[i].get(row);
+            state[i] = self.value[i].real(row);
         }
         state
     }
 
-    /// The state of one row moved by `increment`.
+    /// The state of one row moved by `increment`: to the bit what [`Self::add`] would make of it.
     #[inline(always)]
-    pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [f64; 7] {
-        let mut state = [0.0; 7];
-        for i in 0..7 {
-            let change = increment[i].get(row) + self.rest[i].get(row);
-            state[i] = self.value[i].get(row) + change;
-        }
-        state
+    pub(super) fn moved(&self, increment: &[Pack<L, R>; 7], row: usize) -> [L::Real; 7] {
+        let mut end = self.clone();
+        end.add(increment);
+        end.now(row)
     }
 }
 
-/// Adds increments to values and to what rounding has left out of them.
+/// Adds an increment to a value and to what rounding has left out of it.
 #[inline(always)]
-pub(super) fn compensate<L: Lane, const R: usize, const N: usize>(
-    values: &mut [Pack<L, R>; N],
-    rests: &mut [Pack<L, R>; N],
-    increments: &[Pack<L, R>; N],
+pub(super) fn compensate<L: Number, const R: usize>(
+    value: &mut Pack<L, R>,
+    rest: &mut Pack<L, R>,
+    increment: Pack<L, R>,
 ) {
-    for i in 0..N {
-        for row in 0..R {
-            let change = increments[i].0[row] + rests[i].0[row];
-            (values[i].0[row], rests[i].0[row]) = two_sum(values[i].0[row], change);
-        }
-    }
+    (*value, *rest) = two_sum(*value, increment + *rest);
 }
 
 /// What the polynomials of a step add to the state within the time `h` (Horner).
 #[inline(always)]
-pub(super) fn increment<L: Lane, const R: usize, const B: usize>(
+pub(super) fn increment<L: Number, const R: usize, const B: usize>(
     series: &impl Series<Pack<L, R>, B>,
     order: usize,
     h: Pack<L, R>,
@@ -103,7 +105,7 @@ pub(super) fn increment<L: Lane, const R: usize, const B: usize>(
 /// Not finite where a coefficient is not.
 /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
 #[inline(always)]
-pub(super) fn longest<L: Lane, const R: usize, const B: usize>(
+pub(super) fn longest<L: Number, const R: usize, const B: usize>(
     series: &impl Series<Pack<L, R>, B>,
     order: usize,
     tolerance: f64,
@@ -121,7 +123,7 @@ pub(super) fn longest<L: Lane, const R: usize, const B: usize>(
 
 /// The logarithm of the step for which the term of this order is as large as allowed.
 #[inline(always)]
-fn limit<L: Lane, const R: usize, const B: usize>(
+fn limit<L: Number, const R: usize, const B: usize>(
     at: &Coefficient<Pack<L, R>, B>,
     row: usize,
     order: usize,

@@ -1,10 +1,13 @@
 //! The recurrences of terms that are not linear in the coefficients of one order.
 
+use nalgebra::Vector3;
+
 use super::field::Field;
 use super::moment::{Moment, Orbit};
-use super::pack::Pack;
-use super::series::{COUNT, RECIPROCALS, Series, cross_term};
-use crate::numerics::lane::Lane;
+use super::pack::{Pack, cross_term};
+use super::series::Series;
+use super::twin::COUNT;
+use crate::numerics::number::{Number, Real};
 
 /// A term of a load as a series: its coefficient of order k from those of the motion up to k, asked for in order.
 pub(super) trait Analytic<T, const B: usize> {
@@ -35,7 +38,7 @@ pub(super) struct Quadratic<T> {
 /// its cube.
 pub(super) const STILL: f64 = 2e-6;
 
-impl<L: Lane, const R: usize> Quadratic<Pack<L, R>> {
+impl<L: Number, const R: usize> Quadratic<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         let zero = Pack::new(0.0);
@@ -62,7 +65,7 @@ impl<L: Lane, const R: usize> Quadratic<Pack<L, R>> {
     }
 }
 
-impl<L: Lane, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quadratic<Pack<L, R>> {
+impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quadratic<Pack<L, R>> {
     #[inline(always)]
     fn coefficient(
         &mut self,
@@ -81,11 +84,14 @@ impl<L: Lane, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quadra
         self.speeds[k] = Pack::new(0.0);
         if k == 0 {
             for row in 0..R {
-                let speed = square.get(row).sqrt();
-                let moves = speed > STILL * self.fastest.get(row);
-                self.speeds[0].set(row, if moves { speed } else { 0.0 });
-                let half = if moves { 0.5 / speed } else { 0.0 };
-                self.half_over_speed.set(row, half);
+                let speed = square.real(row).root();
+                let moves = speed.rounded() > STILL * self.fastest.get(row);
+                self.speeds[0].set(row, 0.0);
+                self.half_over_speed.set(row, 0.0);
+                if moves {
+                    self.speeds[0].put(row, speed);
+                    (self.half_over_speed).put(row, L::Real::from(0.5) / speed);
+                }
             }
         } else {
             let mut rest = square;
@@ -136,7 +142,7 @@ pub(super) struct Gradient<T> {
     strength: T,
 }
 
-impl<L: Lane, const R: usize> Gradient<Pack<L, R>> {
+impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         let zero = Pack::new(0.0);
@@ -156,16 +162,53 @@ impl<L: Lane, const R: usize> Gradient<Pack<L, R>> {
     pub(super) fn set(
         &mut self,
         row: usize,
-        orbit: &Orbit,
-        position: &[f64; 3],
-        velocity: &[f64; 3],
+        orbit: &Orbit<L::Real>,
+        position: &Vector3<L::Real>,
+        velocity: &Vector3<L::Real>,
     ) {
         for i in 0..3 {
-            self.position[0][i].set(row, position[i]);
-            self.velocity[0][i].set(row, velocity[i]);
+            self.position[0][i].put(row, position[i]);
+            self.velocity[0][i].put(row, velocity[i]);
         }
-        self.pull.set(row, orbit.pull);
-        self.strength.set(row, orbit.strength);
+        self.pull.put(row, orbit.pull);
+        self.strength.put(row, orbit.strength);
+    }
+
+    /// Goes on to the end of a step of length `h`, where the orbit has come by its own series; lengths again over the
+    /// distance there.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
+        let mut position = [Pack::new(0.0); 3];
+        let mut velocity = [Pack::new(0.0); 3];
+        for k in (0..=order).rev() {
+            for i in 0..3 {
+                position[i] = position[i].mul_add(h, self.position[k][i]);
+                velocity[i] = velocity[i].mul_add(h, self.velocity[k][i]);
+            }
+        }
+        for row in 0..R {
+            let r = Vector3::from_fn(|i, _| position[i].real(row));
+            let v = Vector3::from_fn(|i, _| velocity[i].real(row));
+            let distance = r.dot(&r).root();
+            let cube = distance * distance * distance;
+            let orbit = Orbit {
+                position: r,
+                velocity: v,
+                pull: self.pull.real(row) / cube,
+                strength: self.strength.real(row) / cube,
+            };
+            self.set(row, &orbit, &(r / distance), &(v / distance));
+        }
+    }
+
+    /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
+    pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
+        let (once, twice) = (L::Real::from(ratio), L::Real::from(ratio * ratio));
+        for v in &mut self.velocity[0] {
+            v.put(row, v.real(row) * once);
+        }
+        self.pull.put(row, self.pull.real(row) * twice);
+        (self.strength).put(row, self.strength.real(row) * twice);
     }
 
     /// The next coefficient of the power `a` of the squares, of which the first is one.
@@ -179,11 +222,11 @@ impl<L: Lane, const R: usize> Gradient<Pack<L, R>> {
             let factor = Pack::new(a * j as f64 - (k - j) as f64);
             sum = (self.squares[j] * factor).mul_add(powers[k - j], sum);
         }
-        sum * Pack::new(RECIPROCALS[k])
+        sum * Pack::over(k)
     }
 }
 
-impl<L: Lane, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Gradient<Pack<L, R>> {
+impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Gradient<Pack<L, R>> {
     #[inline(always)]
     fn coefficient(
         &mut self,
@@ -217,7 +260,7 @@ impl<L: Lane, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Gradie
                 torque[i] = self.fifths[k - j].mul_add(self.products[j][i], torque[i]);
             }
         }
-        let reciprocal = Pack::new(RECIPROCALS[k + 1]);
+        let reciprocal = Pack::over(k + 1);
         for i in 0..3 {
             self.position[k + 1][i] = (turned[i] + self.velocity[k][i]) * reciprocal;
             self.velocity[k + 1][i] = (-self.pull).mul_add(pulled[i], moved[i]) * reciprocal;
@@ -235,7 +278,7 @@ pub(super) struct Forced<T> {
     inverse_moments: [T; 3],
 }
 
-impl<L: Lane, const R: usize> Forced<Pack<L, R>> {
+impl<L: Number, const R: usize> Forced<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         let zero = Pack::new(0.0);
@@ -247,18 +290,23 @@ impl<L: Lane, const R: usize> Forced<Pack<L, R>> {
     }
 
     /// The cubics of one row at the start of a step.
-    pub(super) fn set(&mut self, row: usize, moment: &Moment, inverse_moments: &[f64; 3]) {
+    pub(super) fn set(
+        &mut self,
+        row: usize,
+        moment: &Moment<L::Real>,
+        inverse_moments: &Vector3<L::Real>,
+    ) {
         for i in 0..3 {
             for k in 0..4 {
-                self.in_body[k][i].set(row, moment.in_body[k][i]);
-                self.in_space[k][i].set(row, moment.in_space[k][i]);
+                self.in_body[k][i].put(row, moment.in_body[k][i]);
+                self.in_space[k][i].put(row, moment.in_space[k][i]);
             }
-            self.inverse_moments[i].set(row, inverse_moments[i]);
+            self.inverse_moments[i].put(row, inverse_moments[i]);
         }
     }
 }
 
-impl<L: Lane, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Forced<Pack<L, R>> {
+impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Forced<Pack<L, R>> {
     #[inline(always)]
     fn coefficient(
         &mut self,

@@ -6,12 +6,13 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::{Job, Lanes, Settings};
 use crate::motion::integrate::taylor::course::Course;
+use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::Pack;
 use crate::motion::integrate::taylor::series::{Coefficient, Series};
 use crate::motion::integrate::taylor::step::Compensated;
 use crate::motion::simulate::End;
 use crate::motion::state::Phase;
-use crate::numerics::lane::Lane;
+use crate::numerics::number::{Number, Real};
 
 /// A step: polynomials in the time since its start, in body axes and real units.
 #[derive(Clone, Debug)]
@@ -81,12 +82,12 @@ impl Step {
 /// Runs one motion and shows each step; the last one, on which the run has ended by itself, comes back.
 #[inline(always)]
 pub(in crate::motion::integrate::taylor) fn drive_seen<
-    L: Lane,
+    L: Number<Real: Precision>,
     S: Series<Pack<L, 1>, B>,
     const B: usize,
 >(
     settings: Settings,
-    job: Job<'_>,
+    job: Job<'_, L::Real>,
     see: &mut dyn FnMut(&Step) -> ControlFlow<()>,
 ) -> Option<Step> {
     let mut lanes = Lanes::<L, S, B, 1>::new(settings);
@@ -106,15 +107,19 @@ pub(in crate::motion::integrate::taylor) fn drive_seen<
 }
 
 /// What a step begins with.
-struct Before<'a, T> {
-    course: Course<'a>,
+struct Before<'a, L: Number> {
+    course: Course<'a, L::Real>,
     now: (f64, f64),
-    state: Compensated<T>,
-    place: Option<[f64; 6]>,
+    state: Compensated<Pack<L, 1>>,
+    place: Option<[L::Real; 6]>,
 }
 
-impl<'a, L: Lane, S: Series<Pack<L, 1>, B>, const B: usize> Lanes<'a, L, S, B, 1> {
-    fn before(&self) -> Option<Before<'a, Pack<L, 1>>> {
+impl<'a, L, S, const B: usize> Lanes<'a, L, S, B, 1>
+where
+    L: Number<Real: Precision>,
+    S: Series<Pack<L, 1>, B>,
+{
+    fn before(&self) -> Option<Before<'a, L>> {
         let lead = self.leads[0].as_ref()?;
         Some(Before {
             course: lead.job.course.clone(),
@@ -126,7 +131,7 @@ impl<'a, L: Lane, S: Series<Pack<L, 1>, B>, const B: usize> Lanes<'a, L, S, B, 1
 
     /// The step that began with `before` and was the last one made.
     #[inline(always)]
-    fn seen(&self, before: Before<'a, Pack<L, 1>>) -> Step {
+    fn seen(&self, before: Before<'a, L>) -> Step {
         let Before {
             course,
             now,
@@ -138,8 +143,8 @@ impl<'a, L: Lane, S: Series<Pack<L, 1>, B>, const B: usize> Lanes<'a, L, S, B, 1
         for k in 1..=order {
             let Coefficient { w, q, .. } = self.series.get(k);
             let [w0, w1, w2, x, y, z, s] = [w[0], w[1], w[2], q[0], q[1], q[2], q[3]];
-            let coefficient = [w0, w1, w2, x, y, z, s].map(|number| number.get(0));
-            series.push(course.in_body(&coefficient));
+            let coefficient = [w0, w1, w2, x, y, z, s].map(|number| number.real(0));
+            series.push(course.in_body(&coefficient).map(L::Real::rounded));
         }
         let unit = course.unit();
         let end = self.leads[0].as_ref().map_or_else(
@@ -148,12 +153,16 @@ impl<'a, L: Lane, S: Series<Pack<L, 1>, B>, const B: usize> Lanes<'a, L, S, B, 1
         );
         let begin = (now.0 + now.1) / unit;
         let initial = course.initial();
+        let state_in_body = course.in_body(&state.value.map(|number| number.real(0)));
+        let rest_in_body = course.in_body(&state.rest.map(|number| number.real(0)));
+        let rounded = state_in_body.map(L::Real::rounded);
+        let change = |i: usize| (state_in_body[i] - rounded[i].into() + rest_in_body[i]).rounded();
         Step {
             ends: [begin, end],
             rest: ((now.0 - begin * unit) + now.1) / unit,
             unit,
-            state: course.in_body(&state.value.map(|number| number.get(0))),
-            change: course.in_body(&state.rest.map(|number| number.get(0))),
+            state: rounded,
+            change: std::array::from_fn(change),
             series,
             path: (self.push.as_ref().zip(place))
                 .map_or_else(Vec::new, |(push, place)| push.path(0, order, &place)),

@@ -1,0 +1,166 @@
+//! The principal frame of a motion, to the precision of its numbers.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use crate::motion::attitude::{components, from_axes};
+use crate::motion::free::RefinedPrincipal;
+use crate::motion::simulate::Task;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::number::Real;
+
+/// Moments and axes about the reference point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Principal<X> {
+    /// I₁ ≤ I₂ ≤ I₃.
+    pub(super) moments: [X; 3],
+    /// I₂ − I₃, I₃ − I₁, I₁ − I₂.
+    pub(super) differences: [X; 3],
+    /// Columns, in B.
+    pub(super) axes: Matrix3<X>,
+    /// (x, y, z, w) of the rotation from principal axes to B.
+    pub(super) q_bp: [X; 4],
+}
+
+/// The numbers of a run: doubles, or of twice their precision.
+pub(super) trait Precision: Real {
+    /// Whether an orbit goes from step to step by its own series: Kepler's equation is solved in doubles.
+    const CARRIES_ORBITS: bool;
+    /// The principal frame of what is simulated.
+    fn principal(task: &Task<'_>) -> Principal<Self>;
+    /// (x, y, z, w) of a rotation.
+    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4];
+}
+
+impl Precision for f64 {
+    const CARRIES_ORBITS: bool = false;
+
+    fn principal(task: &Task<'_>) -> Principal<Self> {
+        let axes = *task.euler.axes();
+        Principal {
+            moments: task.euler.moments(),
+            differences: task.euler.differences(),
+            axes,
+            q_bp: components(&from_axes(&axes)),
+        }
+    }
+
+    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
+        components(rotation)
+    }
+}
+
+/// What defines body and start is taken as exact: moments and axes, or the tensor; the direction of a quaternion.
+impl Precision for DoubleDouble {
+    const CARRIES_ORBITS: bool = true;
+
+    fn principal(task: &Task<'_>) -> Principal<Self> {
+        let refined = RefinedPrincipal::about(task.body, &task.subject.point);
+        let [i1, i2, i3] = refined.moments;
+        let axes = refined.axes();
+        Principal {
+            moments: refined.moments,
+            differences: [i2 - i3, i3 - i1, i1 - i2],
+            axes,
+            q_bp: of_matrix(&axes),
+        }
+    }
+
+    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
+        normalized(components(rotation).map(Self::from))
+    }
+}
+
+/// p ∘ q, components (x, y, z, w).
+pub(super) fn product<X: Real>(p: [X; 4], q: [X; 4]) -> [X; 4] {
+    let ([a, b, c, d], [x, y, z, w]) = (p, q);
+    [
+        d * x + a * w + b * z - c * y,
+        d * y + b * w + c * x - a * z,
+        d * z + c * w + a * y - b * x,
+        d * w - a * x - b * y - c * z,
+    ]
+}
+
+pub(super) fn conjugate<X: Real>([x, y, z, w]: [X; 4]) -> [X; 4] {
+    [-x, -y, -z, w]
+}
+
+pub(super) fn normalized<X: Real>(q: [X; 4]) -> [X; 4] {
+    let length = q.into_iter().fold(X::zero(), |sum, x| sum + x * x).root();
+    q.map(|x| x / length)
+}
+
+/// `M v = a × v`.
+pub(super) fn cross_matrix<X: Real>(a: &Vector3<X>) -> Matrix3<X> {
+    let zero = X::zero();
+    Matrix3::new(zero, -a.z, a.y, a.z, zero, -a.x, -a.y, a.x, zero)
+}
+
+/// (x, y, z, w) of a rotation matrix, from the largest of the four.
+///
+/// Source: Shepperd, Journal of Guidance and Control 1 (1978) 223.
+fn of_matrix<X: Real>(m: &Matrix3<X>) -> [X; 4] {
+    let [x, y, z] = [0, 1, 2].map(|i| m[(i, i)]);
+    let one = X::one();
+    let squares = [
+        one + x - y - z,
+        one - x + y - z,
+        one - x - y + z,
+        one + x + y + z,
+    ];
+    let mut largest = 3;
+    for i in 0..3 {
+        if squares[i].rounded() > squares[largest].rounded() {
+            largest = i;
+        }
+    }
+    let sum = |i, j| m[(i, j)] + m[(j, i)];
+    let difference = |i, j| m[(i, j)] - m[(j, i)];
+    // Four times the products of component `largest` with all.
+    let mut products = match largest {
+        0 => [squares[0], sum(0, 1), sum(0, 2), difference(2, 1)],
+        1 => [sum(0, 1), squares[1], sum(1, 2), difference(0, 2)],
+        2 => [sum(0, 2), sum(1, 2), squares[2], difference(1, 0)],
+        _ => [
+            difference(2, 1),
+            difference(0, 2),
+            difference(1, 0),
+            squares[3],
+        ],
+    };
+    if products[3].rounded() < 0.0 {
+        products = products.map(|x| -x);
+    }
+    normalized(products)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quaternions_of_matrices_turn_as_they_do() {
+        for (roll, pitch, yaw) in [
+            (0.3, -1.0, 2.0),
+            (3.1, 0.1, -0.2),
+            (0.1, 3.0, 0.2),
+            (0.0, 0.1, 3.1),
+        ] {
+            let q = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+            let q = <DoubleDouble as Precision>::quaternion(&q);
+            let turned = |i: usize| {
+                let mut e = [DoubleDouble::default(); 4];
+                e[i] = 1.0.into();
+                let [x, y, z, _] = product(product(q, e), conjugate(q));
+                Vector3::new(x, y, z)
+            };
+            let matrix = Matrix3::from_columns(&[turned(0), turned(1), turned(2)]);
+            let again = of_matrix(&matrix);
+            let sign = if q[3].rounded() < 0.0 { -1.0 } else { 1.0 };
+            for (a, b) in again.iter().zip(q) {
+                assert!((*a - b * sign.into()).rounded().abs() < 1e-31);
+            }
+            assert!(again[3].rounded() >= 0.0);
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The length of a step: as long as the series of the state and of each of its derivatives allow.
+
+use super::numbers::{ORDER, Row, WIDTH};
+
+/// The last terms of a series, relative to the largest that the series has been.
+const LAST_TERM: f64 = 1e-17;
+/// The first coefficients, which tell how large a derivative that is zero at the start is going to be.
+const FIRST: usize = 5;
+
+/// How large some numbers and their derivatives by each variable have been so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pace {
+    sizes: [f64; WIDTH + 1],
+}
+
+impl Pace {
+    /// The longest step for which the last two terms of the series are small enough; infinite where they are zero, not a number
+    /// where they are not. Rounded to a few bits, so that it is the same on every machine.
+    ///
+    /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
+    pub(super) fn longest(&mut self, rows: &[&[Row]]) -> f64 {
+        for k in 0..FIRST {
+            for (most, size) in self.sizes.iter_mut().zip(sizes(rows, k)) {
+                *most = most.max(size);
+            }
+        }
+        let mut exponent = f64::INFINITY;
+        for k in [ORDER - 1, ORDER] {
+            for (scale, size) in self.sizes.iter().zip(sizes(rows, k)) {
+                if !size.is_finite() {
+                    return f64::NAN;
+                }
+                if size > 0.0 {
+                    exponent = exponent.min((LAST_TERM * (scale / size)).log2() / k as f64);
+                }
+            }
+        }
+        f64::from_bits(exponent.exp2().to_bits() & 0xffff_0000_0000_0000)
+    }
+}
+
+/// The sums of magnitudes of the coefficients of order `k`: of the values, and of each derivative.
+fn sizes(rows: &[&[Row]], k: usize) -> [f64; WIDTH + 1] {
+    let mut sizes = [0.0; WIDTH + 1];
+    for row in rows.iter().copied().flatten() {
+        let (values, slopes) = sizes.split_at_mut(1);
+        values[0] += row[k].value.abs();
+        for (size, slope) in slopes.iter_mut().zip(&row[k].slopes) {
+            *size += slope.abs();
+        }
+    }
+    sizes
+}

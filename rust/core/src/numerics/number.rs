@@ -1,0 +1,142 @@
+//! One algorithm for numbers of either precision: doubles, and sums of two doubles.
+//!
+//! [`Real`] is for what is done once, with matrices and quotients; [`Number`] for the arithmetic of kernels, where a
+//! [`Real`] comes in and goes out.
+
+use std::fmt::Debug;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
+use num_traits::{One, Zero};
+
+use super::double_double::DoubleDouble;
+use super::lane::Lane;
+
+/// A real number, rounded to one precision.
+pub trait Real:
+    Scalar
+    + Copy
+    + Default
+    + Zero
+    + One
+    + From<f64>
+    + Neg<Output = Self>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+{
+    /// The sum of two doubles.
+    #[must_use]
+    fn pair(high: f64, low: f64) -> Self;
+    /// The nearest double.
+    #[must_use]
+    fn rounded(self) -> f64;
+    /// Square root.
+    #[must_use]
+    fn root(self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn pair(high: f64, low: f64) -> Self {
+        high + low
+    }
+
+    #[inline(always)]
+    fn rounded(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+}
+
+impl Real for DoubleDouble {
+    #[inline]
+    fn pair(high: f64, low: f64) -> Self {
+        Self::sum(high, low)
+    }
+
+    #[inline]
+    fn rounded(self) -> f64 {
+        self.high
+    }
+
+    #[inline]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+}
+
+/// A number of a kernel: a [`Lane`], or one of twice its precision.
+pub trait Number:
+    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// What comes in and goes out without loss.
+    type Real: Real;
+    /// The number `x`.
+    fn new(x: f64) -> Self;
+    /// The nearest double.
+    fn get(self) -> f64;
+    /// The number `x`.
+    fn of(x: Self::Real) -> Self;
+    /// The number itself.
+    fn real(self) -> Self::Real;
+    /// `self * b + c`, rounded once or twice.
+    #[must_use]
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// 1/n.
+    ///
+    /// # Panics
+    /// When `n` is 64 or more.
+    #[must_use]
+    fn over(n: usize) -> Self;
+}
+
+/// 1/n.
+const RECIPROCALS: [f64; 64] = {
+    let mut reciprocals = [f64::INFINITY; 64];
+    let mut n = 1;
+    while n < 64 {
+        reciprocals[n] = 1.0 / n as f64;
+        n += 1;
+    }
+    reciprocals
+};
+
+impl<L: Lane> Number for L {
+    type Real = f64;
+
+    #[inline(always)]
+    fn new(x: f64) -> Self {
+        Lane::new(x)
+    }
+
+    #[inline(always)]
+    fn get(self) -> f64 {
+        Lane::get(self)
+    }
+
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        Lane::new(x)
+    }
+
+    #[inline(always)]
+    fn real(self) -> f64 {
+        Lane::get(self)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        Lane::mul_add(self, b, c)
+    }
+
+    #[inline(always)]
+    fn over(n: usize) -> Self {
+        Lane::new(RECIPROCALS[n])
+    }
+}

@@ -1,0 +1,87 @@
+//! Bodies, states and loads of every kind, for the tests of motion.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::RigidBody;
+use polhode::motion::loads::schedule::Windows;
+use polhode::motion::loads::{Damping, Feedback, Frame, GravityGradient, Sampled, Term};
+use polhode::motion::simulate::{Phase, State};
+
+pub(crate) fn turned(attitude: UnitQuaternion<f64>, omega: Vector3<f64>) -> Phase {
+    Phase::in_place(&State { attitude, omega })
+}
+
+pub(crate) fn skew() -> UnitQuaternion<f64> {
+    UnitQuaternion::from_euler_angles(0.3, -0.5, 1.1)
+}
+
+/// An asymmetric body whose axes and centre are askew.
+pub(crate) fn asymmetric() -> RigidBody {
+    let axes = skew().to_rotation_matrix().into_inner();
+    let center = Vector3::new(0.1, -0.2, 0.3);
+    RigidBody::from_principal(1.3, &[1.0, 2.0, 2.5], &axes, &center, 0.0).expect("a body")
+}
+
+/// Every kind of term, alone or with others.
+pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
+    let v = Vector3::new(0.3, -0.2, 0.5);
+    let at = Vector3::new(0.3, 0.1, 0.9);
+    let m = Matrix3::new(0.3, 0.05, 0.0, 0.05, 0.4, -0.02, 0.0, -0.02, 0.2);
+    let target = UnitQuaternion::from_euler_angles(2.0, 1.0, -2.0);
+    let torque = |frame| Term::constant_torque(&v, frame).expect("finite");
+    let force = |frame| Term::constant_force(&v, frame, Some(&at)).expect("finite");
+    let gravity = Term::uniform_gravity(&Vector3::new(0.1, 0.2, -1.0)).expect("finite");
+    let linear = Term::Damping(Damping::new(&m, &Matrix3::zeros()).expect("finite"));
+    let quadratic = Term::Damping(Damping::new(&m, &(m * 0.5)).expect("finite"));
+    let feedback = Term::Feedback(Feedback::new(&(m * 10.0), &m, &target).expect("finite"));
+    let times: Vec<f64> = (-1..=7).map(|k| 1.5 * f64::from(k)).collect();
+    let values: Vec<_> = times
+        .iter()
+        .map(|t| Vector3::new(t.sin(), t.cos(), 0.3 * (2.0 * t).sin()) * 0.5)
+        .collect();
+    let sampled = |frame| Term::Sampled(Sampled::new(&times, &values, frame).expect("ascending"));
+    let windows = Windows::new(&[(1.0, 2.0), (3.0, 4.5), (7.0, f64::INFINITY)]).expect("ordered");
+    vec![
+        ("none", vec![]),
+        ("torque in the body", vec![torque(Frame::Body)]),
+        ("torque in space", vec![torque(Frame::Space)]),
+        ("gravity", vec![gravity.clone()]),
+        ("force in space", vec![force(Frame::Space)]),
+        ("thrust", vec![force(Frame::Body)]),
+        ("two vectors", vec![torque(Frame::Space), gravity.clone()]),
+        ("damping", vec![linear]),
+        ("quadratic damping", vec![quadratic.clone()]),
+        ("feedback", vec![feedback.clone()]),
+        ("samples in the body", vec![sampled(Frame::Body)]),
+        ("samples in space", vec![sampled(Frame::Space)]),
+        ("schedule", vec![torque(Frame::Space).scheduled(&windows)]),
+        (
+            "all",
+            vec![
+                gravity,
+                quadratic,
+                feedback,
+                sampled(Frame::Space).scheduled(&windows),
+            ],
+        ),
+    ]
+}
+
+/// On an eccentric orbit.
+pub(crate) fn gradient() -> Term {
+    let (position, velocity) = (Vector3::new(1.0, 0.2, 0.1), Vector3::new(-0.2, 0.9, 0.3));
+    Term::GravityGradient(GravityGradient::new(1.0, &position, &velocity, None).expect("an orbit"))
+}
+
+/// How far two states are apart, in the largest of angle, ω, position and velocity.
+pub(crate) fn apart(a: &Phase, b: &Phase) -> f64 {
+    let q = (a.attitude.coords - b.attitude.coords).norm();
+    let q = q.min((a.attitude.coords + b.attitude.coords).norm());
+    [
+        2.0 * q,
+        (a.omega - b.omega).norm(),
+        (a.position - b.position).norm(),
+        (a.velocity - b.velocity).norm(),
+    ]
+    .into_iter()
+    .fold(0.0, f64::max)
+}
