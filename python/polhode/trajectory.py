@@ -81,7 +81,7 @@ class Trajectory:
     def _of_run(cls, known: dict[str, Any]) -> Trajectory:
         """Make the motion of a run: what is not `known` yet, its ``_outcome`` has ready for those who ask."""
         motion = object.__new__(cls)
-        motion.__dict__.update(known)
+        object.__setattr__(motion, "__dict__", known)
         return motion
 
     if not TYPE_CHECKING:

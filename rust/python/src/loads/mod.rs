@@ -21,7 +21,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyNotImplemented, PyTuple};
 
-pub(crate) use self::acting::{Acting, Fault};
+pub(crate) use self::acting::{Acting, Cause, Fault};
 use self::address::Compiled;
 pub(crate) use self::address::compiled;
 use self::called::Callback;

@@ -13,10 +13,11 @@ use polhode::motion::state::Phase;
 use polhode::numerics::threads::fill_blocks;
 use pyo3::prelude::*;
 
+use super::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
 use crate::interrupt::Interrupt;
-use crate::loads::{Acting, Fault, PyLoad};
+use crate::loads::{Acting, Cause, Fault, PyLoad};
 use crate::stack::{Broadcast, Stack};
 
 /// Bodies, their states at the start and the analytic terms of the load on each.
@@ -72,7 +73,10 @@ pub(super) struct Ensemble<'a> {
 }
 
 /// One run for each row, as far as they were begun.
-pub(super) type Runs = Vec<Option<Run<Fault>>>;
+pub(super) type Runs<E> = Vec<Option<Run<E>>>;
+
+/// The results as a `polhode.Trajectory`, and whether a row failed.
+pub(super) type Results<'py> = PyResult<(Bound<'py, PyAny>, bool)>;
 
 impl Ensemble<'_> {
     /// Every state at the start must be finite.
@@ -96,58 +100,86 @@ impl Ensemble<'_> {
     ///
     /// # Errors
     /// The user's own exceptions, and those that do not concern the integration where `raises`.
-    pub(super) fn all(&self, py: Python<'_>, interrupt: &Interrupt) -> PyResult<Runs> {
-        let count = self.grid.len();
-        let mut runs: Runs = (0..count).map(|_| None).collect();
+    pub(super) fn run<'py>(
+        &self,
+        py: Python<'py>,
+        body: &Bound<'py, PyRigidBody>,
+        load: Option<&Bound<'py, PyAny>>,
+        interrupt: &Interrupt,
+    ) -> Results<'py> {
         if self.load.calls_python() || !self.events.is_empty() {
-            for (row, slot) in runs.iter_mut().enumerate() {
-                let watch = |part: f64| interrupt.poll(Some((row as f64 + part) / count as f64));
-                let run = self.one(row, Some(py), &mut self.events.calling(py), watch);
-                let over = self.ends_all(&run);
-                *slot = Some(run);
-                if over {
-                    break;
-                }
-            }
+            self.results(py, body, load, self.attached(py, interrupt))
         } else if self.method == Method::Taylor {
-            runs = self.abreast(py, interrupt);
+            self.results(py, body, load, self.abreast(py, interrupt))
         } else {
-            let fraction = |of_row: f64| (count == 1).then_some(of_row);
-            // Where a run ends all, the rows begun so far are kept.
-            let _ended = py.detach(|| {
-                let mut watch = |done| interrupt.poll(Some(done));
-                fill_blocks(&mut runs, 1, &mut watch, |row, out| {
-                    let watch = |part| interrupt.poll(fraction(part));
-                    let run = self.one(row, None, &mut NoEvents::new(), watch);
-                    let over = self.ends_all(&run);
-                    out[0] = Some(run);
-                    if over { Err(()) } else { Ok(()) }
-                })
-            });
+            self.results(py, body, load, self.detached(py, interrupt))
         }
+    }
+
+    fn results<'py, E: Cause>(
+        &self,
+        py: Python<'py>,
+        body: &Bound<'py, PyRigidBody>,
+        load: Option<&Bound<'py, PyAny>>,
+        runs: Runs<E>,
+    ) -> Results<'py> {
         for (row, run) in runs.iter().enumerate() {
             if let Some(Run {
-                end: End::Failed(fault),
+                end: End::Failed(cause),
                 ..
             }) = run
             {
-                let error = fault.to_exception(py);
-                match fault {
-                    Fault::Python(_) => return Err(error),
-                    Fault::Core(_) if self.raises && !fault.is_of_integration() => {
-                        return Err(at_row(&self.grid.shape, row, &error, py));
-                    }
-                    Fault::Core(_) => {}
+                if cause.is_of_the_user() {
+                    return Err(cause.to_exception(py));
+                }
+                if self.raises && !cause.is_of_integration() {
+                    let error = cause.to_exception(py);
+                    return Err(at_row(&self.grid.shape, row, &error, py));
                 }
             }
         }
-        Ok(runs)
+        self.trajectory(py, body, load, runs)
     }
 
-    /// Integrates every row by Taylor series, eight side by side.
-    fn abreast(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs {
+    /// Every row, one by one, with Python at hand.
+    fn attached(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs<Fault> {
         let count = self.grid.len();
-        let mut runs: Vec<Option<Run<polhode::Error>>> = (0..count).map(|_| None).collect();
+        let mut runs: Runs<Fault> = (0..count).map(|_| None).collect();
+        for (row, slot) in runs.iter_mut().enumerate() {
+            let watch = |part: f64| interrupt.poll(Some((row as f64 + part) / count as f64));
+            let run = self.one(row, Some(py), &mut self.events.calling(py), watch);
+            let over = self.ends_all(&run);
+            *slot = Some(run);
+            if over {
+                break;
+            }
+        }
+        runs
+    }
+
+    /// Every row by itself, on all cores.
+    fn detached(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs<Fault> {
+        let count = self.grid.len();
+        let mut runs: Runs<Fault> = (0..count).map(|_| None).collect();
+        let fraction = |of_row: f64| (count == 1).then_some(of_row);
+        // Where a run ends all, the rows begun so far are kept.
+        let _ended = py.detach(|| {
+            let mut watch = |done| interrupt.poll(Some(done));
+            fill_blocks(&mut runs, 1, &mut watch, |row, out| {
+                let watch = |part| interrupt.poll(fraction(part));
+                let run = self.one(row, None, &mut NoEvents::new(), watch);
+                let over = self.ends_all(&run);
+                out[0] = Some(run);
+                if over { Err(()) } else { Ok(()) }
+            })
+        });
+        runs
+    }
+
+    /// Every row by Taylor series, eight side by side.
+    fn abreast(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs<polhode::Error> {
+        let count = self.grid.len();
+        let mut runs: Runs<polhode::Error> = (0..count).map(|_| None).collect();
         py.detach(|| {
             if count == 1 {
                 let mut watch = |part| interrupt.poll(Some(part));
@@ -159,9 +191,7 @@ impl Ensemble<'_> {
                 taylor::solve_many(&task, &terms, &mut runs, &poll);
             }
         });
-        (runs.into_iter())
-            .map(|run| run.map(|run| run.with_error(Fault::Core)))
-            .collect()
+        runs
     }
 
     fn ends_all(&self, run: &Run<Fault>) -> bool {

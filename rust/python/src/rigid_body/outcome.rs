@@ -11,10 +11,10 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::PyRigidBody;
-use super::ensemble::{Ensemble, Runs};
+use super::ensemble::{Ensemble, Results, Runs};
 use crate::arrays::{shaped, write, write_of};
 use crate::errors::at_row;
-use crate::loads::Fault;
+use crate::loads::Cause;
 use crate::stack::Stack;
 
 /// What a run gave besides the states: as arrays and tables for those who ask.
@@ -88,13 +88,13 @@ impl Outcome {
 
 impl Ensemble<'_> {
     /// The results as a `polhode.Trajectory`, and whether a row failed.
-    pub(super) fn trajectory<'py>(
+    pub(super) fn trajectory<'py, E: Cause>(
         &self,
         py: Python<'py>,
         body: &Bound<'py, PyRigidBody>,
         load: Option<&Bound<'py, PyAny>>,
-        runs: Runs,
-    ) -> PyResult<(Bound<'py, PyAny>, bool)> {
+        runs: Runs<E>,
+    ) -> Results<'py> {
         let failures = self.failures(py, &runs)?;
         let fields = PyDict::new(py);
         fields.set_item(intern!(py, "body"), body)?;
@@ -145,8 +145,8 @@ impl Ensemble<'_> {
     }
 
     /// A word for each row: how its run ended.
-    fn status<'py>(&self, py: Python<'py>, runs: &Runs) -> PyResult<Bound<'py, PyAny>> {
-        let word = |run: &Option<Run<Fault>>| match run.as_ref().map(|run| &run.end) {
+    fn status<'py, E>(&self, py: Python<'py>, runs: &Runs<E>) -> PyResult<Bound<'py, PyAny>> {
+        let word = |run: &Option<Run<E>>| match run.as_ref().map(|run| &run.end) {
             None => "not run",
             Some(End::Complete) => "complete",
             Some(End::Event) => "event",
@@ -162,27 +162,31 @@ impl Ensemble<'_> {
     }
 
     /// An exception, not raised, for each row that failed.
-    fn failures<'py>(&self, py: Python<'py>, runs: &Runs) -> PyResult<Bound<'py, PyTuple>> {
+    fn failures<'py>(
+        &self,
+        py: Python<'py>,
+        runs: &Runs<impl Cause>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
         let mut failures = Vec::new();
         for (row, run) in runs.iter().enumerate() {
             if let Some(run) = run
-                && let End::Failed(fault) = &run.end
+                && let End::Failed(cause) = &run.end
             {
-                failures.push(self.exception(py, row, run, fault)?.value(py).clone());
+                failures.push(self.exception(py, row, run, cause)?.value(py).clone());
             }
         }
         PyTuple::new(py, failures)
     }
 
     /// The exception of a row that failed, with its number, the time and the state.
-    fn exception(
+    fn exception<E: Cause>(
         &self,
         py: Python<'_>,
         row: usize,
-        run: &Run<Fault>,
-        fault: &Fault,
+        run: &Run<E>,
+        cause: &E,
     ) -> PyResult<PyErr> {
-        let error = at_row(&self.grid.shape, row, &fault.to_exception(py), py);
+        let error = at_row(&self.grid.shape, row, &cause.to_exception(py), py);
         let value = error.value(py);
         value.setattr("row", row)?;
         value.setattr("time", run.time)?;

@@ -194,8 +194,7 @@ impl PyRigidBody {
         };
         ensemble.check(py)?;
         let interrupt = Interrupt::new(progress);
-        let runs = ensemble.all(py, &interrupt)?;
-        let (trajectory, has_failures) = ensemble.trajectory(py, slf, load, runs)?;
+        let (trajectory, has_failures) = ensemble.run(py, slf, load, &interrupt)?;
         let failure = raises && has_failures;
         if let Err(stop) = interrupt.finish(py, !failure) {
             stop.value(py).setattr("partial", trajectory)?;

@@ -452,7 +452,7 @@ where
             run.time = lead.job.course.last_time();
             run.phase = phase;
             run.end = End::Complete;
-            self.vacate(row);
+            self.leads[row] = None;
         } else {
             (self.stop[row], lead.stop) = next_stop(&lead.job.course, lead.next);
         }
@@ -487,11 +487,11 @@ where
         }
     }
 
-    /// The next motion into an empty lane.
+    /// The next motion into an empty lane, or none for ever.
     #[inline(never)]
     fn load(&mut self, row: usize, jobs: &mut dyn Iterator<Item = Job<'a, L::Real>>) {
         let Some(job) = jobs.next() else {
-            return;
+            return self.vacate(row);
         };
         let start = job.course.start();
         for i in 0..7 {
@@ -574,7 +574,7 @@ where
             run.phase = lead.job.course.phase(&state, place.as_ref(), self.now[row]);
             run.end = end;
         }
-        self.vacate(row);
+        self.leads[row] = None;
     }
 
     /// A lane without motion: at rest for ever.
@@ -588,7 +588,6 @@ where
         }
         self.field.set(row, &Field::none(L::Real::default()));
         self.extras.vacate(row);
-        self.leads[row] = None;
         self.now[row] = (0.0, 0.0);
         self.stop[row] = (f64::INFINITY, 0.0);
         self.fastest[row] = 1.0;
