@@ -5,13 +5,16 @@ from __future__ import annotations
 import _thread
 import threading
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from oracles import free_cases, load_cases, top_cases
 from oracles.motion_cases import MotionCase, angle, load_table, relative_error
 from polhode import RigidBody, loads, solids
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 TIGHTEST_IN_DOUBLES = 2.3e-15
 TIGHTEST = 1e-28
@@ -81,7 +84,7 @@ GROWTH = {
 }
 
 
-def named(cases: Any) -> pytest.MarkDecorator:
+def named(cases: Iterable[MotionCase]) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("case", tuple(cases), ids=lambda case: case.name)
 
 

@@ -412,7 +412,7 @@ impl<'a, X: Precision> Course<'a, X> {
             force: (linear.force / mass * rate * rate).into(),
             thrust: (linear.thrust / mass * rate * rate).into(),
         };
-        let directions = self.directions::<B>();
+        let directions = Self::directions::<B>();
         for (vector, matrix) in &linear.on_space {
             let scaled = inverse * matrix * rate * rate;
             for (block, direction) in field.on_space.iter_mut().zip(&directions) {
@@ -428,7 +428,7 @@ impl<'a, X: Precision> Course<'a, X> {
     }
 
     /// The directions in N that the torques of what is fixed in space are made of: the vertical axis, or all.
-    pub(super) fn directions<const B: usize>(&self) -> [[X; 3]; B] {
+    pub(super) fn directions<const B: usize>() -> [[X; 3]; B] {
         let (zero, one) = (X::zero(), X::one());
         let mut directions = [[zero, zero, one]; B];
         if B > 1 {

@@ -551,7 +551,11 @@ where
             self.fastest[row] = 1.0;
         }
         self.field.set(row, &course.field());
-        for (packs, direction) in self.directions.iter_mut().zip(course.directions::<B>()) {
+        for (packs, direction) in self
+            .directions
+            .iter_mut()
+            .zip(Course::<L::Real>::directions::<B>())
+        {
             for i in 0..3 {
                 packs[i].put(row, direction[i]);
             }

@@ -15,7 +15,7 @@
 //! That order takes the newest coefficients, on which the processor may still be busy, last: the products j = 2, 3, … up
 //! to k − 1 (for odd k up to k − 2), then j = 1, (k − 1), 0, k.
 //!
-//! A direction e_n of space as seen from the body would obey `γ̇ = γ × ω`, six products of series. With |q| = 1 it is made
+//! A direction `e_n` of space as seen from the body would obey `γ̇ = γ × ω`, six products of series. With |q| = 1 it is made
 //! of squares, and the sum for a square is only half as long: see [`ROOTS`].
 
 use super::pack::Pack;
@@ -38,7 +38,7 @@ const RECIPROCALS: [f64; COUNT] = {
 };
 
 /// The coefficients of one order: ω in principal axes, (x, y, z, w) of the attitude, and `B` directions that are fixed in
-/// space as seen from the principal axes: the vertical e_3 of three, or all of them.
+/// space as seen from the principal axes: the vertical `e_3` of three, or all of them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coefficient<T, const B: usize> {
     pub(super) w: [T; 3],
@@ -251,7 +251,7 @@ const fn axis<const B: usize>(b: usize) -> usize {
     if B == 1 { 2 } else { b }
 }
 
-/// The numbers whose squares make the directions of space as seen from the body. With n, a, b = 1, 2, 3 and cyclic, e_n has
+/// The numbers whose squares make the directions of space as seen from the body. With n, a, b = 1, 2, 3 and cyclic, `e_n` has
 /// the components
 ///
 /// ```text
