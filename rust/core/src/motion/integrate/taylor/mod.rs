@@ -57,13 +57,13 @@ use crate::motion::simulate::{End, Run, Task};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
-use crate::numerics::threads::fill_blocks;
+use crate::numerics::threads::{fill_blocks, thread_count};
 use crate::numerics::twofold::Twofold;
 
 /// Motions side by side: a register of the widest machines.
 const ROWS: usize = 8;
-/// Motions that a thread takes at a time.
-const BLOCK: usize = 128;
+/// The most motions that a thread takes at a time.
+const MOST: usize = 1024;
 /// Fewer motions than this are sooner done one by one.
 const FEW: usize = 4;
 
@@ -96,6 +96,12 @@ pub fn solve_one(
         });
     }
     run
+}
+
+/// Motions that a thread takes at a time: many, since lanes idle at the end of a block, but some for every thread.
+fn block(count: usize) -> usize {
+    let share = count.div_ceil(4 * thread_count());
+    share.next_multiple_of(ROWS).clamp(2 * ROWS, MOST)
 }
 
 /// As [`solve_one`], with every step shown to `see`, which may stop the run, as soon as it is made.
@@ -146,7 +152,7 @@ pub fn solve_many<'a>(
         }
     };
     let is_precise = !runs.is_empty() && task(0).tolerance.is_beyond_doubles();
-    let block = if is_precise { 1 } else { BLOCK };
+    let block = if is_precise { 1 } else { block(runs.len()) };
     // Where a run is stopped, what was done by then is kept.
     let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, runs| {
         let (count, example) = (runs.len(), task(first));
