@@ -1,8 +1,9 @@
 """Taylor series beside heyoka's, one motion and stacks, and beside SciPy's DOP853 at 1e-12.
 
-Both sides run at the loosest tolerance of a ladder up to which the error after ten rotations, of ω relative to its
-magnitude and of the attitude, is at most 1e-13 against heyoka's series in extended precision; for a stack, of 64 of its
-motions. The tolerances stand in the rows. Further rows have both at their tightest, which is heyoka's default.
+Both sides run at the loosest tolerance of a ladder up to which the error after ten rotations, of ω relative
+to its magnitude and of the attitude, is at most 1e-13 against heyoka's series in extended precision; for a
+stack, of 64 of its motions. The tolerances stand in the rows. Further rows have both at their tightest,
+which is heyoka's default.
 
 heyoka (``pip install heyoka``) is left out where it is not installed.
 """
