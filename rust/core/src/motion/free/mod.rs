@@ -17,7 +17,7 @@
 //! | `invariants.rs` | what a motion keeps: energy, momentum, modulus, amplitudes |
 //! | `periods.rs`, `from_periods.rs` | periods and mean precession; the motion that has two given periods |
 //! | `polhode.rs`, `nutation.rs`, `poinsot.rs` | the curve of ω in the body, cones, the rolling ellipsoid |
-//! | `sensitivity.rs` on `clock.rs`, `conditioning.rs` | derivatives by initial state and moments; error bars |
+//! | `sensitivity` on `clock.rs`, `conditioning.rs` | derivatives by initial state and moments; error bars |
 
 mod circling;
 mod clock;

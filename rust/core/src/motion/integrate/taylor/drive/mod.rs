@@ -1,12 +1,14 @@
 //! Runs motions to their last output time, `R` at a time, each with its own steps.
 
+mod search;
 mod seen;
+mod settings;
 
 use std::ops::ControlFlow;
 
 use super::course::Course;
 use super::extras::Extras;
-use super::field::{Field, Parts};
+use super::field::Field;
 use super::frame::Precision;
 use super::pack::{Pack, cross_term};
 use super::push::Push;
@@ -17,46 +19,15 @@ use crate::motion::simulate::{Effort, End, Run};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
 use crate::numerics::number::{Number, Real};
+use search::{Landing, Search};
 pub(crate) use seen::Step;
 pub(super) use seen::drive_seen;
+pub(super) use settings::Settings;
 
 /// Steps between two looks at the watch.
 const PATIENCE: u32 = 64;
-/// Relative to the tolerance of a step, the size of the last term of its series: the terms left out are a quarter of that,
-/// and at the tightest tolerance stay below the rounding of the state even where they all have the same sign.
-const LAST_TERM: f64 = 0.05;
 /// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
 const OUTGROWN: f64 = 65_536.0;
-/// The halvings that find where within a step the law changes.
-const HALVINGS: u32 = 55;
-
-/// What all motions of a run have in common.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Settings {
-    /// The highest order of the series.
-    order: usize,
-    /// The size of their last terms as a logarithm to base 2.
-    last_term: f64,
-    /// The ω that counts as much as the largest |ω| so far: absolute over relative tolerance.
-    floor: f64,
-    pub(super) parts: Parts,
-}
-
-impl Settings {
-    /// For the equations that `parts` says, with the order at which the work is least: it grows with the square of the order, the step with
-    /// `tolerance^(1/order)`. No order is above `highest`.
-    pub(super) fn new(relative: f64, absolute: f64, highest: usize, parts: Parts) -> Self {
-        let nats = -(LAST_TERM * relative).ln();
-        let mut halves = (4..highest / 2).filter(|&half| half as f64 + 1.0 <= 0.36 * nats);
-        let order = 2 * halves.next_back().map_or(4, |half| half + 1);
-        Self {
-            order,
-            last_term: (LAST_TERM * relative).log2(),
-            floor: absolute / relative,
-            parts,
-        }
-    }
-}
 
 /// A motion to be run, and its run, which is at its start.
 pub(super) struct Job<'a, X: Precision> {
@@ -81,69 +52,6 @@ enum Meeting<X> {
     Break(f64),
     Nothing,
     End,
-}
-
-/// Why the equations of a motion change after a step.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Landing {
-    None,
-    Break,
-    Flip,
-}
-
-/// The search for the first time in a step at which a feedback has changed its sign or ω passed through zero: a look at its end, then halvings.
-struct Search {
-    before: f64,
-    after: f64,
-    looks: u32,
-    has_found: bool,
-}
-
-impl Search {
-    /// In a step as long as `h`; over at once unless `is_needed`.
-    fn new(is_needed: bool, h: f64) -> Self {
-        Self {
-            before: if h.is_finite() { h } else { 0.0 },
-            after: h,
-            looks: u32::from(is_needed && h.is_finite()),
-            has_found: false,
-        }
-    }
-
-    /// Where to look next, until it is over.
-    fn time(&self) -> Option<f64> {
-        (self.looks > 0).then_some(0.5 * (self.before + self.after))
-    }
-
-    /// Goes on with what was seen there.
-    fn narrow(&mut self, has_flipped: bool) {
-        let middle = 0.5 * (self.before + self.after);
-        if self.has_found {
-            if has_flipped {
-                self.after = middle;
-            } else {
-                self.before = middle;
-            }
-            self.looks -= 1;
-        } else if has_flipped {
-            (self.before, self.has_found, self.looks) = (0.0, true, HALVINGS);
-        } else {
-            self.looks = 0;
-        }
-    }
-
-    /// The end of the step.
-    fn end(&self) -> f64 {
-        self.after
-    }
-
-    fn landing(&self) -> Landing {
-        if self.has_found {
-            Landing::Flip
-        } else {
-            Landing::None
-        }
-    }
 }
 
 /// A motion under way.
