@@ -307,8 +307,9 @@ class TestFailure:
             RigidBody.from_density(lambda r: np.ones(len(r)), **arguments)
 
     def test_a_number_is_no_function(self) -> None:
+        number: Any = 1.0
         with pytest.raises(TypeError, match=r"density: expected a function.*float"):
-            RigidBody.from_density(1.0, regions.ball(1.0))  # type: ignore[arg-type]
+            RigidBody.from_density(number, regions.ball(1.0))
 
 
 class TestRegions:

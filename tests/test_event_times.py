@@ -76,10 +76,9 @@ def flips() -> Crossings:
 
 def fall() -> Crossings:
     """A body that turns while it is thrown: its height is h again and again zero."""
-    g, h, v = mpf(9.81), mpf(5.0), mpf(3.0)
+    g, h, v = mpf(9.81), mpf(5), mpf(13)
     load = loads.uniform_gravity((0.0, 0.0, -9.81))
     run = {"omega": (0.3, 0.4, 1.1), "load": load, "position": (0, 0, -5.0), "velocity": (0, 0, 13.0)}
-    v = mpf(13)
     root = mp.sqrt(v * v - 2 * g * h)
     times = [(v - root) / g, (v + root) / g]
     body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))

@@ -21,6 +21,20 @@ pub(crate) fn asymmetric() -> RigidBody {
     RigidBody::from_principal(1.3, &[1.0, 2.0, 2.5], &axes, &center, 0.0).expect("a body")
 }
 
+/// A body with these principal moments about the axes of its frame.
+pub(crate) fn aligned(moments: [f64; 3]) -> RigidBody {
+    let (axes, center) = (Matrix3::identity(), Vector3::zeros());
+    RigidBody::from_principal(1.0, &moments, &axes, &center, 0.0).expect("a body")
+}
+
+/// What a top under gravity along the third axis of space keeps: its energy and its angular momentum about that axis.
+pub(crate) fn kept_by_a_top(body: &RigidBody, gravity: &Vector3<f64>, phase: &Phase) -> [f64; 2] {
+    let momentum = body.inertia_about(&Vector3::zeros()) * phase.omega;
+    let height = -gravity.dot(&(phase.attitude * body.center_of_mass()));
+    let energy = 0.5 * phase.omega.dot(&momentum) + body.mass() * height;
+    [energy, (phase.attitude * momentum).z]
+}
+
 /// Every kind of term, alone or with others.
 pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
     let v = Vector3::new(0.3, -0.2, 0.5);
