@@ -9,157 +9,232 @@ use crate::numerics::lane::Lane;
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Abreast<L, const B: usize, const R: usize> {
-    orders: [Coefficient<Pack<L, R>, B>; COUNT],
+    orders: [Order<Pack<L, R>>; COUNT],
+    directions: [[[Pack<L, R>; 3]; B]; COUNT],
+    /// The component of ω that is constant in all motions, or [`NONE`].
+    still: usize,
 }
 
-/// The sums of products of [`Abreast`]: those of ω's components, and of each of them with q.
+/// No component of ω.
+const NONE: usize = 3;
+
+/// The sums of products of [`Abreast`]: ω₂ω₃, ω₃ω₁, ω₁ω₂ and q∘ω.
 pub(super) struct Sums<T> {
-    w: [T; 3],
-    q: [[T; 4]; 3],
+    spins: [T; 3],
+    turned: [T; 4],
 }
 
-impl<L: Lane, const R: usize> Sums<Pack<L, R>> {
+/// The real products that [`Sums`] are made of: those of ω's components, of α and β with ω₁ + iω₂, of q with ω₃. See
+/// [`series`](super::series).
+struct Products<T> {
+    spins: [T; 3],
+    alpha: [T; 3],
+    beta: [T; 3],
+    third: [T; 4],
+}
+
+/// One order, and the sums that its products with others take.
+#[derive(Clone, Copy, Debug)]
+struct Order<T> {
+    w: [T; 3],
+    q: [T; 4],
+    /// ω₁ + ω₂ and ω₂ − ω₁.
+    sum: T,
+    difference: T,
+    /// Real and imaginary part together of α and of β.
+    alpha: T,
+    beta: T,
+}
+
+impl<L: Lane, const R: usize> Order<Pack<L, R>> {
+    #[inline(always)]
+    fn new(rates: [Pack<L, R>; 3], q: [Pack<L, R>; 4]) -> Self {
+        let ([w0, w1, _], [x, y, z, w]) = (rates, q);
+        Self {
+            w: rates,
+            q,
+            sum: w0 + w1,
+            difference: w1 - w0,
+            alpha: w + z,
+            beta: x + y,
+        }
+    }
+}
+
+impl<L: Lane, const R: usize> Products<Pack<L, R>> {
     #[inline(always)]
     fn new() -> Self {
         let zero = Pack::new(0.0);
         Self {
-            w: [zero; 3],
-            q: [[zero; 4]; 3],
+            spins: [zero; 3],
+            alpha: [zero; 3],
+            beta: [zero; 3],
+            third: [zero; 4],
         }
     }
 
-    /// Adds the products of order `a` of all with order `b` of ω.
+    /// Adds the products of `a` with ω of `b`; but not those with component `STILL` of ω, which are zero.
     #[inline(always)]
-    fn add<const B: usize>(
-        &mut self,
-        a: &Coefficient<Pack<L, R>, B>,
-        b: &Coefficient<Pack<L, R>, B>,
-    ) {
+    fn add<const STILL: usize>(&mut self, a: &Order<Pack<L, R>>, b: &Order<Pack<L, R>>) {
         // Written out, since a loop would keep the sums in memory.
-        let [w0, w1, w2] = b.w;
-        self.w = [
-            a.w[1].mul_add(w2, self.w[0]),
-            a.w[2].mul_add(w0, self.w[1]),
-            a.w[0].mul_add(w1, self.w[2]),
-        ];
-        self.q = [
-            add_products(&self.q[0], w0, &a.q),
-            add_products(&self.q[1], w1, &a.q),
-            add_products(&self.q[2], w2, &a.q),
-        ];
+        let ([_, a1, a2], [x, y, z, w]) = (a.w, a.q);
+        let [b0, _, b2] = b.w;
+        if STILL == NONE {
+            self.spins[0] = a1.mul_add(b2, self.spins[0]);
+            self.spins[1] = a2.mul_add(b0, self.spins[1]);
+            self.spins[2] = a1.mul_add(b0, self.spins[2]);
+        }
+        if STILL != 0 {
+            self.alpha[0] = a.alpha.mul_add(b0, self.alpha[0]);
+            self.beta[0] = a.beta.mul_add(b0, self.beta[0]);
+        }
+        self.alpha[1] = w.mul_add(b.difference, self.alpha[1]);
+        self.alpha[2] = z.mul_add(b.sum, self.alpha[2]);
+        self.beta[1] = x.mul_add(b.sum, self.beta[1]);
+        self.beta[2] = y.mul_add(b.difference, self.beta[2]);
+        if STILL != 2 {
+            self.third[0] = x.mul_add(b2, self.third[0]);
+            self.third[1] = y.mul_add(b2, self.third[1]);
+            self.third[2] = z.mul_add(b2, self.third[2]);
+            self.third[3] = w.mul_add(b2, self.third[3]);
+        }
     }
-}
 
-#[inline(always)]
-fn add_products<L: Lane, const R: usize>(
-    sums: &[Pack<L, R>; 4],
-    factor: Pack<L, R>,
-    others: &[Pack<L, R>; 4],
-) -> [Pack<L, R>; 4] {
-    [
-        factor.mul_add(others[0], sums[0]),
-        factor.mul_add(others[1], sums[1]),
-        factor.mul_add(others[2], sums[2]),
-        factor.mul_add(others[3], sums[3]),
-    ]
+    #[inline(always)]
+    fn sums(self) -> Sums<Pack<L, R>> {
+        let ([a0, a1, a2], [b0, b1, b2]) = (self.alpha, self.beta);
+        let [x, y, z, w] = self.third;
+        Sums {
+            spins: self.spins,
+            turned: [a0 - a2 + y, a0 + a1 - x, b1 - b0 + w, -b0 - b2 - z],
+        }
+    }
 }
 
 impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<L, B, R> {
     #[inline(always)]
     fn new() -> Self {
         let zero = Pack::new(0.0);
-        let none = Coefficient {
-            w: [zero; 3],
-            q: [zero; 4],
-            g: [[zero; 3]; B],
-        };
         Self {
-            orders: [none; COUNT],
+            orders: [Order::new([zero; 3], [zero; 4]); COUNT],
+            directions: [[[zero; 3]; B]; COUNT],
+            still: NONE,
         }
     }
 
     #[inline(always)]
     fn start(&mut self, state: &Coefficient<Pack<L, R>, B>) {
-        self.orders[0] = *state;
+        self.orders[0] = Order::new(state.w, state.q);
+        self.directions[0] = state.g;
+    }
+
+    fn hold(&mut self, still: Option<usize>) {
+        self.still = still.unwrap_or(NONE);
     }
 
     #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<Pack<L, R>, B> {
-        self.orders[k]
+        let Order { w, q, .. } = self.orders[k];
+        Coefficient {
+            w,
+            q,
+            g: self.directions[k],
+        }
     }
 
     type Sums = Sums<Pack<L, R>>;
 
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
-        let mut sums = Sums::new();
-        let orders = &self.orders;
-        let last = k - k % 2;
-        if last > 2 {
-            let first = k + 1 - last;
-            for (a, b) in orders[2..last]
-                .iter()
-                .zip(orders[first..k - 1].iter().rev())
-            {
-                sums.add(a, b);
-            }
+        match self.still {
+            0 => self.products::<0>(k),
+            2 => self.products::<2>(k),
+            _ => self.products::<NONE>(k),
         }
-        let newest = [1, k.wrapping_sub(1), 0, k];
-        let newest = match k {
-            0 => &newest[3..],
-            1 => &newest[2..],
-            _ if k % 2 == 1 => &newest[..],
-            _ => &[1, 0, k][..],
-        };
-        for &j in newest {
-            sums.add(&orders[j], &orders[k - j]);
-        }
-        if k > 0 {
-            for b in 0..B {
-                self.orders[k].g[b] = self.direction(k, b);
-            }
-        }
-        sums
     }
 
     #[inline(always)]
     fn spins(sums: &Self::Sums) -> [Pack<L, R>; 3] {
-        sums.w
+        sums.spins
     }
 
     #[inline(always)]
     fn extend(&mut self, k: usize, sums: &Self::Sums, acceleration: &[Pack<L, R>; 3]) {
         let reciprocal = Pack::new(RECIPROCALS[k + 1]);
         let half = Pack::new(0.5 * RECIPROCALS[k + 1]);
-        let [a, b, c] = &sums.q;
         let [x, y, z] = *acceleration;
-        let next = &mut self.orders[k + 1];
-        next.w = [x * reciprocal, y * reciprocal, z * reciprocal];
-        next.q = [
-            (a[3] - b[2] + c[1]) * half,
-            (a[2] + b[3] - c[0]) * half,
-            (-a[1] + b[0] + c[3]) * half,
-            (-a[0] - b[1] - c[2]) * half,
-        ];
+        let [a, b, c, d] = sums.turned;
+        self.orders[k + 1] = Order::new(
+            [x * reciprocal, y * reciprocal, z * reciprocal],
+            [a * half, b * half, c * half, d * half],
+        );
     }
 }
 
 impl<L: Lane, const B: usize, const R: usize> Abreast<L, B, R> {
-    /// The coefficient of order `k` > 0 of direction `b`.
+    /// The sums of order `k`; without the products of orders above zero with component `STILL` of ω, which is constant.
     #[inline(always)]
-    fn direction(&self, k: usize, b: usize) -> [Pack<L, R>; 3] {
-        let n = axis::<B>(b);
-        let roots = |j: usize| roots(n, &self.orders[j].q);
-        let mut squares = [Pack::new(0.0); 6];
-        let middle = k / 2;
+    fn products<const STILL: usize>(&mut self, k: usize) -> Sums<Pack<L, R>> {
+        let mut products = Products::new();
+        let orders = &self.orders[..=k];
+        if k == 0 {
+            products.add::<NONE>(&orders[0], &orders[0]);
+            return products.sums();
+        }
+        let mut squares = Squares::new();
         if k.is_multiple_of(2) {
-            let root = roots(middle);
-            squares = add_squares(squares, &halved(&root), &root);
+            products.add::<STILL>(&orders[k / 2], &orders[k / 2]);
+            squares.add_middle(&orders[k / 2]);
         }
-        for j in (1..k - middle).rev() {
-            squares = add_squares(squares, &roots(j), &roots(k - j));
+        let inner = usize::from(STILL != NONE);
+        let early = orders[inner..k.div_ceil(2)].iter().rev();
+        for (early, late) in early.zip(&orders[k / 2 + 1..=k - inner]) {
+            products.add::<STILL>(early, late);
+            products.add::<STILL>(late, early);
+            squares.add(early, late);
         }
-        let [a, b, c, d, e, f] = add_squares(squares, &roots(0), &roots(k));
-        from_squares(n, [a + b, c + d, e + f])
+        if STILL != NONE {
+            products.add::<NONE>(&orders[0], &orders[k]);
+            products.add::<NONE>(&orders[k], &orders[0]);
+            squares.add(&orders[0], &orders[k]);
+        }
+        self.directions[k] = squares.directions();
+        products.sums()
+    }
+}
+
+/// The sums of the squares that make [directions](super::directions).
+struct Squares<T, const B: usize>([[T; 6]; B]);
+
+impl<L: Lane, const R: usize, const B: usize> Squares<Pack<L, R>, B> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self([[Pack::new(0.0); 6]; B])
+    }
+
+    #[inline(always)]
+    fn add(&mut self, one: &Order<Pack<L, R>>, other: &Order<Pack<L, R>>) {
+        for b in 0..B {
+            let n = axis::<B>(b);
+            self.0[b] = add_squares(self.0[b], &roots(n, &one.q), &roots(n, &other.q));
+        }
+    }
+
+    #[inline(always)]
+    fn add_middle(&mut self, middle: &Order<Pack<L, R>>) {
+        for b in 0..B {
+            let roots = roots(axis::<B>(b), &middle.q);
+            self.0[b] = add_squares(self.0[b], &halved(&roots), &roots);
+        }
+    }
+
+    #[inline(always)]
+    fn directions(&self) -> [[Pack<L, R>; 3]; B] {
+        let mut directions = [[Pack::new(0.0); 3]; B];
+        for b in 0..B {
+            let [s, t, u, v, w, x] = self.0[b];
+            directions[b] = from_squares(axis::<B>(b), [s + t, u + v, w + x]);
+        }
+        directions
     }
 }

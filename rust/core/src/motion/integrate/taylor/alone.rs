@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use super::directions::{ROOTS, Roots, axis, from_squares};
+use super::directions::{Mix, ROOTS, axis, from_squares};
 use super::pack::Pack;
 use super::series::{COUNT, Coefficient, RECIPROCALS, Series};
 use crate::numerics::lane::Lane;
@@ -37,60 +37,71 @@ impl<L: Lane, const W: usize> Components<L, W> {
 }
 
 impl<L: Lane> Components<L, 4> {
-    /// `other`, its lanes put in another order and given signs, added to `self`.
+    /// What `mix` makes of these; its signs as [`Signs`] has them.
     #[inline(always)]
-    fn plus_turned(mut self, turn: &Turn, other: &[L]) -> Self {
-        for i in 0..4 {
-            let factor = L::new(turn.signs[i]);
-            self.0[i] = factor.mul_add(other[turn.from[i]], self.0[i]);
-        }
-        self
-    }
-
-    /// The numbers of [`ROOTS`], then two that are not used.
-    #[inline(always)]
-    fn roots(&self, n: usize) -> Components<L, 8> {
-        let Roots {
-            first,
-            second,
-            signs,
-        } = &ROOTS[n];
-        let mut roots = Components::new();
+    fn mixed(&self, mix: &Mix, signs: &Components<L, 8>) -> Components<L, 8> {
+        let mut row = Components::new();
         for i in 0..8 {
-            roots.0[i] = L::new(signs[i]).mul_add(self.0[second[i]], self.0[first[i]]);
+            row.0[i] = signs.0[i].mul_add(self.0[mix.second[i]], self.0[mix.first[i]]);
         }
-        roots
+        row
     }
 }
 
-/// What a component of ω makes of q in q∘ω: which of its components, with which sign, goes where.
-#[derive(Clone, Copy)]
-struct Turn {
-    from: [usize; 4],
-    signs: [f64; 4],
-}
-
-/// The turns by the three components of ω. Since they only change places and signs, they can be done on sums of products
-/// instead of on each factor.
-const TURNS: [Turn; 3] = [
-    Turn {
-        from: [3, 2, 1, 0],
-        signs: [1.0, 1.0, -1.0, -1.0],
-    },
-    Turn {
-        from: [2, 3, 0, 1],
-        signs: [-1.0, 1.0, 1.0, -1.0],
-    },
-    Turn {
-        from: [1, 0, 3, 2],
-        signs: [1.0, -1.0, 1.0, -1.0],
-    },
+/// (Re α + Im α) twice, (Re β + Im β) twice, then (z, w, x, y): of (x, y, z, w).
+const LEFT: Mix = Mix {
+    first: [3, 3, 0, 0, 2, 3, 0, 1],
+    second: [2, 2, 1, 1, 2, 3, 0, 1],
+    signs: [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+};
+/// What they are multiplied with: ω₁ four times, then (ω₁ + ω₂, ω₂ − ω₁) twice.
+const RIGHT: Mix = Mix {
+    first: [0, 0, 0, 0, 0, 1, 0, 1],
+    second: [0, 0, 0, 0, 1, 0, 1, 0],
+    signs: [0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1.0, -1.0],
+};
+/// The signs with which the products of these, and of (y, x, w, z) with ω₃, make q∘ω.
+const TURNED: [[f64; 4]; 3] = [
+    [1.0, 1.0, -1.0, -1.0],
+    [-1.0, 1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0, -1.0],
 ];
 
-/// One order of [`Alone`]: two rows of factors, so that products of two orders are a row of one by the other of the other:
-/// q by each component of ω, then (ω₂, ω₃, ω₁) by (ω₃, ω₁, ω₂), then a square that is not used.
+/// The signs of every [`Mix`].
+#[derive(Clone, Copy, Debug)]
+struct Signs<L, const B: usize> {
+    left: Components<L, 8>,
+    right: Components<L, 8>,
+    roots: [Components<L, 8>; B],
+}
+
+impl<L: Lane, const B: usize> Signs<L, B> {
+    #[inline(always)]
+    fn new() -> Self {
+        let mut signs = Self {
+            left: Components::new(),
+            right: Components::new(),
+            roots: [Components::new(); B],
+        };
+        for i in 0..8 {
+            signs.left.0[i] = L::new(LEFT.signs[i]);
+            signs.right.0[i] = L::new(RIGHT.signs[i]);
+            for b in 0..B {
+                signs.roots[b].0[i] = L::new(ROOTS[axis::<B>(b)].signs[i]);
+            }
+        }
+        // Not known to the compiler, which would make a register of eight numbers of one kind into pieces of several, and
+        // store the pieces: whoever loads the whole after that has to wait.
+        black_box(signs)
+    }
+}
+
+/// One order of [`Alone`]: two rows of factors, so that products of two orders are a row of one by the other of the other,
+/// each in the place where q∘ω has it; then those of ω₂ω₃, ω₃ω₁ and ω₁ω₂ and a square that is not used.
 #[derive(Clone, Copy, Debug)]
 struct Order<L, const B: usize> {
+    q: Components<L, 4>,
+    w: Components<L, 4>,
     left: Components<L, 16>,
     right: Components<L, 16>,
     roots: [Components<L, 8>; B],
@@ -99,20 +110,36 @@ struct Order<L, const B: usize> {
 
 impl<L: Lane, const B: usize> Order<L, B> {
     #[inline(always)]
-    fn new([w0, w1, w2]: [L; 3], q: Components<L, 4>) -> Self {
-        let [x, y, z, w] = q.0;
-        let mut roots = [Components::new(); B];
-        for b in 0..B {
-            roots[b] = q.roots(axis::<B>(b));
-        }
+    fn none() -> Self {
         Self {
-            left: Components([x, y, z, w, x, y, z, w, x, y, z, w, w1, w2, w0, w0]),
-            right: Components([
-                w0, w0, w0, w0, w1, w1, w1, w1, w2, w2, w2, w2, w2, w0, w1, w0,
-            ]),
-            roots,
+            q: Components::new(),
+            w: Components::new(),
+            left: Components::new(),
+            right: Components::new(),
+            roots: [Components::new(); B],
             g: [[L::new(0.0); 3]; B],
         }
+    }
+
+    #[inline(always)]
+    fn new([w0, w1, w2]: [L; 3], q: Components<L, 4>, signs: &Signs<L, B>) -> Self {
+        let w = Components([w0, w1, w2, w2]);
+        let [l0, l1, l2, l3, l4, l5, l6, l7] = q.mixed(&LEFT, &signs.left).0;
+        let [r0, r1, r2, r3, r4, r5, r6, r7] = w.mixed(&RIGHT, &signs.right).0;
+        let [x, y, z, s] = q.0;
+        let mut order = Self {
+            q,
+            w,
+            left: Components([l0, l1, l2, l3, l4, l5, l6, l7, y, x, s, z, w1, w2, w1, w0]),
+            right: Components([
+                r0, r1, r2, r3, r4, r5, r6, r7, w2, w2, w2, w2, w2, w0, w0, w0,
+            ]),
+            ..Self::none()
+        };
+        for b in 0..B {
+            order.roots[b] = q.mixed(&ROOTS[axis::<B>(b)], &signs.roots[b]);
+        }
+        order
     }
 }
 
@@ -122,9 +149,10 @@ pub(super) struct Alone<L, const B: usize> {
     orders: [Order<L, B>; COUNT],
     /// The sums of an even order and of the odd one after it, as far as they go before its forerunner is known.
     begun: [LaneSums<L, B>; 2],
+    signs: Signs<L, B>,
 }
 
-/// The sums of products of [`Alone`]: of ω with itself, of each component of ω with q, and of the [`ROOTS`].
+/// The sums of products of [`Alone`]: of the rows of each [`Order`], and of the [`ROOTS`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LaneSums<L, const B: usize> {
     products: Components<L, 16>,
@@ -146,7 +174,9 @@ impl<L: Lane, const B: usize> LaneSums<L, B> {
     }
 
     #[inline(always)]
-    fn add_squares(&mut self, one: &Order<L, B>, other: &Order<L, B>) {
+    fn add_pair(&mut self, one: &Order<L, B>, other: &Order<L, B>) {
+        self.add(one, other);
+        self.add(other, one);
         for b in 0..B {
             self.squares[b] = self.squares[b].plus_products(&one.roots[b], &other.roots[b]);
         }
@@ -154,6 +184,7 @@ impl<L: Lane, const B: usize> LaneSums<L, B> {
 
     #[inline(always)]
     fn add_middle(&mut self, middle: &Order<L, B>) {
+        self.add(middle, middle);
         for b in 0..B {
             let root = &middle.roots[b];
             self.squares[b] = self.squares[b].plus_products(&root.halved(), root);
@@ -164,9 +195,9 @@ impl<L: Lane, const B: usize> LaneSums<L, B> {
 impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
     #[inline(always)]
     fn new() -> Self {
-        let zero = L::new(0.0);
         Self {
-            orders: [Order::new([zero; 3], Components::new()); COUNT],
+            orders: [Order::none(); COUNT],
+            signs: Signs::new(),
             begun: [LaneSums::new(); 2],
         }
     }
@@ -178,7 +209,7 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
             q.0[i] = state.q[i].0[0];
         }
         let [w0, w1, w2] = &state.w;
-        self.orders[0] = Order::new([w0.0[0], w1.0[0], w2.0[0]], q);
+        self.orders[0] = Order::new([w0.0[0], w1.0[0], w2.0[0]], q, &self.signs);
         for b in 0..B {
             for i in 0..3 {
                 self.orders[0].g[b][i] = state.g[b][i].0[0];
@@ -188,15 +219,17 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
 
     #[inline(always)]
     fn get(&self, k: usize) -> Coefficient<Pack<L, 1>, B> {
-        let Order { left, right, g, .. } = &self.orders[k];
-        let w = &right.0;
+        let Order { q, w, g, .. } = &self.orders[k];
         let mut at = Coefficient {
-            w: [Pack([w[0]]), Pack([w[4]]), Pack([w[8]])],
+            w: [Pack::new(0.0); 3],
             q: [Pack::new(0.0); 4],
             g: [[Pack::new(0.0); 3]; B],
         };
         for i in 0..4 {
-            at.q[i] = Pack([left.0[i]]);
+            at.q[i] = Pack([q.0[i]]);
+        }
+        for i in 0..3 {
+            at.w[i] = Pack([w.0[i]]);
         }
         for b in 0..B {
             for i in 0..3 {
@@ -214,34 +247,24 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
         if k.is_multiple_of(2) {
             let mut sums = LaneSums::new();
             let mut ahead = LaneSums::new();
-            if k > 2 {
-                let partners = orders[2..k].iter().rev().zip(orders[1..k - 1].iter().rev());
-                for (a, (far, near)) in orders[2..k].iter().zip(partners) {
-                    sums.add(a, near);
-                    ahead.add(a, far);
-                }
-            }
             if k > 0 {
                 let middle = k / 2;
                 sums.add_middle(&orders[middle]);
-                ahead.add_squares(&orders[middle], &orders[middle + 1]);
+                ahead.add_pair(&orders[middle], &orders[middle + 1]);
                 let farther = orders[middle + 1..k].iter().zip(&orders[middle + 2..]);
                 for (a, (near, far)) in orders[1..middle].iter().rev().zip(farther) {
-                    sums.add_squares(a, near);
-                    ahead.add_squares(a, far);
+                    sums.add_pair(a, near);
+                    ahead.add_pair(a, far);
                 }
-                sums.add(&orders[1], &orders[k - 1]);
-                ahead.add(&orders[1], &orders[k]);
-                ahead.add(&orders[k], &orders[1]);
             }
             self.begun = [sums, ahead];
         }
         // The compiler is not to know which: it would take apart the sums, which are whole registers.
         let mut sums = self.begun[black_box(k % 2)];
-        sums.add(&orders[0], &orders[k]);
-        if k > 0 {
-            sums.add(&orders[k], &orders[0]);
-            sums.add_squares(&orders[0], &orders[k]);
+        if k == 0 {
+            sums.add(&orders[0], &orders[0]);
+        } else {
+            sums.add_pair(&orders[0], &orders[k]);
             for b in 0..B {
                 let [s0, s1, s2, s3, s4, s5, ..] = sums.squares[b].0;
                 let halves = [Pack([s0 + s1]), Pack([s2 + s3]), Pack([s4 + s5])];
@@ -263,8 +286,10 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
         let reciprocal = L::new(RECIPROCALS[k + 1]);
         let half = L::new(0.5 * RECIPROCALS[k + 1]);
         let mut q = Components::new();
-        for (n, turn) in TURNS.iter().enumerate() {
-            q = q.plus_turned(turn, &sums.products.0[4 * n..]);
+        for (n, signs) in TURNED.iter().enumerate() {
+            for i in 0..4 {
+                q.0[i] = L::new(signs[i]).mul_add(sums.products.0[4 * n + i], q.0[i]);
+            }
         }
         for i in 0..4 {
             q.0[i] = q.0[i] * half;
@@ -275,6 +300,6 @@ impl<L: Lane, const B: usize> Series<Pack<L, 1>, B> for Alone<L, B> {
             w1.0[0] * reciprocal,
             w2.0[0] * reciprocal,
         ];
-        self.orders[k + 1] = Order::new(w, q);
+        self.orders[k + 1] = Order::new(w, q, &self.signs);
     }
 }

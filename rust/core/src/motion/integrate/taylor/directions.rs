@@ -19,18 +19,19 @@ pub(super) const fn axis<const B: usize>(b: usize) -> usize {
     if B == 1 { 2 } else { b }
 }
 
-/// The numbers u for each axis n: `q[first] + sign q[second]`, and two that are not used.
-pub(super) const ROOTS: [Roots; 3] = [roots_of(0), roots_of(1), roots_of(2)];
+/// The numbers u for each axis n, and two that are not used.
+pub(super) const ROOTS: [Mix; 3] = [roots_of(0), roots_of(1), roots_of(2)];
 
-pub(super) struct Roots {
+/// Eight numbers made of four: each is `x[first] + sign x[second]`.
+pub(super) struct Mix {
     pub(super) first: [usize; 8],
     pub(super) second: [usize; 8],
     pub(super) signs: [f64; 8],
 }
 
-const fn roots_of(n: usize) -> Roots {
+const fn roots_of(n: usize) -> Mix {
     let (a, b, w) = ((n + 1) % 3, (n + 2) % 3, 3);
-    Roots {
+    Mix {
         first: [a, b, n, w, n, w, n, n],
         second: [n, n, a, b, b, a, n, n],
         signs: [0.0, 0.0, 1.0, -1.0, 1.0, 1.0, 0.0, 0.0],

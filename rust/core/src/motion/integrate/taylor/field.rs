@@ -78,6 +78,24 @@ impl<T: Copy, const B: usize> Field<T, B> {
     }
 }
 
+impl<X: Copy + Default + PartialEq, const B: usize> Field<X, B> {
+    /// Whether nothing turns about each of the axes, so that its component of ω is constant: that of a symmetric body,
+    /// when no torque acts about it.
+    pub(super) fn stillness(&self) -> [bool; 3] {
+        let zero = X::default();
+        [0, 1, 2].map(|n| {
+            let on_space = self.on_space.iter().flat_map(|matrix| &matrix[n]);
+            [self.kappa[n], self.constant[n]]
+                .iter()
+                .chain(&self.on_omega[n])
+                .chain(&self.on_attitude[n])
+                .chain(&self.quadratic[n])
+                .chain(on_space)
+                .all(|x| *x == zero)
+        })
+    }
+}
+
 impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     /// Sets the field of one row.
     #[inline(always)]

@@ -7,13 +7,24 @@
 //! ω̇ = κ ω ω + …,   q̇ = ½ q∘ω
 //! ```
 //!
-//! give the coefficients of order k + 1 from those up to k. Nearly all work is in these sums. There are two ways through
-//! them in doubles: [`Alone`](super::alone::Alone) puts the components of one motion in the lanes,
-//! [`Abreast`](super::abreast::Abreast) the same component of several. They add the same products in the same order, so a
-//! motion has the same bits either way. In numbers of twice the precision there is [`Twin`](super::twin::Twin).
+//! give the coefficients of order k + 1 from those up to k. Nearly all work is in these sums. Of the twelve products of
+//! numbers in q∘ω two are saved: with `α = w + i z`, `β = x + i y` and `p = ω₁ + i ω₂` the second equation is
 //!
-//! That order takes the newest coefficients, on which the processor may still be busy, last: the products j = 2, 3, … up
-//! to k − 1 (for odd k up to k − 2), then j = 1, (k − 1), 0, k. Directions are made of q: see
+//! ```text
+//! 2 β̇ = α p − i ω₃ β,   2 α̇ = −β p̄ + i ω₃ α
+//! ```
+//!
+//! and a complex product takes three real ones. With `S = Re α + Im α` those of α p are `ω₁ S`, `(ω₁ + ω₂) z` and `(ω₂ − ω₁) w`:
+//! its parts are the first less the second, and the first plus the third. The sums in them are made once an order.
+//! (Gauss's way; Knuth, The Art of Computer Programming 2, §4.6.4.)
+//!
+//! There are two ways through the sums in doubles: [`Alone`](super::alone::Alone) puts the components of one motion in the
+//! lanes, [`Abreast`](super::abreast::Abreast) the same component of several. They add the same products in the same order,
+//! so a motion has the same bits either way. In numbers of twice the precision there is [`Twin`](super::twin::Twin), which
+//! has all twelve.
+//!
+//! That order takes the newest coefficients, on which the processor may still be busy, last: from the middle outward, first
+//! the product of order j < k/2 with k − j, then that of k − j with j. Directions are made of q: see
 //! [`directions`](super::directions).
 
 /// The highest order of a series in doubles, and the number of its coefficients. Even, since
@@ -47,6 +58,9 @@ pub(super) trait Series<T, const B: usize> {
     fn new() -> Self;
     /// Sets the coefficient of order zero.
     fn start(&mut self, state: &Coefficient<T, B>);
+    /// Says which component of ω is constant in all motions, if it is the first or the third: its products of orders above
+    /// zero, which are zero, may be left out.
+    fn hold(&mut self, _still: Option<usize>) {}
     /// The coefficient of order `k`; the directions are there once the sums of that order are.
     fn get(&self, k: usize) -> Coefficient<T, B>;
     /// The sums of products of order `k`.

@@ -76,31 +76,37 @@ pub(super) fn compensate<L: Number, const R: usize>(
     (*value, *rest) = two_sum(*value, increment + *rest);
 }
 
-/// What the polynomials of a step add to the state within the time `h` (Horner).
+/// What the polynomials of a step, of even order, add to the state within the time `h`: Horner's rule in h², for the even and
+/// the odd powers side by side, since each product waits for the one before.
 #[inline(always)]
 pub(super) fn increment<L: Number, const R: usize, const B: usize>(
     series: &impl Series<Pack<L, R>, B>,
     order: usize,
     h: Pack<L, R>,
 ) -> [Pack<L, R>; 7] {
-    let mut sum = [Pack::new(0.0); 7];
-    for k in (1..=order).rev() {
-        let Coefficient { w, q, .. } = series.get(k);
+    let square = h * h;
+    let mut odd = [Pack::new(0.0); 7];
+    let mut even = [Pack::new(0.0); 7];
+    for half in (1..=order / 2).rev() {
+        let (one, two) = (series.get(2 * half - 1), series.get(2 * half));
         for i in 0..3 {
-            sum[i] = sum[i].mul_add(h, w[i]);
+            odd[i] = odd[i].mul_add(square, one.w[i]);
+            even[i] = even[i].mul_add(square, two.w[i]);
         }
         for i in 0..4 {
-            sum[3 + i] = sum[3 + i].mul_add(h, q[i]);
+            odd[3 + i] = odd[3 + i].mul_add(square, one.q[i]);
+            even[3 + i] = even[3 + i].mul_add(square, two.q[i]);
         }
     }
-    for x in &mut sum {
-        *x = *x * h;
+    let mut sum = [Pack::new(0.0); 7];
+    for i in 0..7 {
+        sum[i] = even[i].mul_add(h, odd[i]) * h;
     }
     sum
 }
 
 /// The longest step for which the last two terms of the series are `tolerance` (as a logarithm to base 2) at most:
-/// those of ω relative to `scale`, those of the attitude to one, in the norm of the sum of magnitudes.
+/// those of ω relative to `scale`, those of the attitude to one, in the norm of the largest magnitude.
 ///
 /// Not finite where a coefficient is not.
 /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
@@ -130,15 +136,20 @@ fn limit<L: Number, const R: usize, const B: usize>(
     tolerance: f64,
     scale: f64,
 ) -> f64 {
-    let mut spin = 0.0;
+    let mut largest = 0.0;
+    let mut sum = 0.0;
     for w in &at.w {
-        spin += w.get(row).abs();
+        let w = w.get(row).abs() * (1.0 / scale);
+        largest = if w > largest { w } else { largest };
+        sum += w;
     }
-    let mut size = spin / scale;
     for q in &at.q {
-        size += q.get(row).abs();
+        let q = q.get(row).abs();
+        largest = if q > largest { q } else { largest };
+        sum += q;
     }
-    (tolerance - log2(size)) / order as f64 + 0.0 * size
+    // What is not a number is lost among the largest, but not in the sum.
+    (tolerance - log2(largest)) * (1.0 / order as f64) + 0.0 * sum
 }
 
 /// Binary logarithm to a hundredth, ample for the length of a step; the same bits on every machine. That of zero is −1023.

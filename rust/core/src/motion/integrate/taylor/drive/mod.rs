@@ -79,6 +79,8 @@ struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const R: usize> 
     /// The largest |ω| so far, or what else counts as large, and 1 or −1 for backward in time.
     fastest: [f64; R],
     direction: [f64; R],
+    /// The components of ω that are constant in each motion.
+    still: [[bool; 3]; R],
 }
 
 /// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
@@ -144,7 +146,15 @@ where
             stop: [(f64::INFINITY, 0.0); R],
             fastest: [1.0; R],
             direction: [1.0; R],
+            still: [[true; 3]; R],
         }
+    }
+
+    /// Tells the series which component of ω is constant in all motions.
+    fn hold(&mut self) {
+        let is_still = |n: &usize| self.still.iter().all(|row| row[*n]);
+        let still = [0, 2].into_iter().find(is_still);
+        self.series.hold(still.filter(|_| !self.extras.is_timed()));
     }
 
     /// One step of every motion; whether one has ended.
@@ -216,7 +226,7 @@ where
     /// The series at the states now.
     #[inline(always)]
     fn expand(&mut self) {
-        let Settings { order, parts, .. } = self.settings;
+        let order = self.settings.order;
         let [w0, w1, w2, x, y, z, w] = self.state.value;
         let q = [x, y, z, w];
         let mut g = self.directions;
@@ -238,19 +248,30 @@ where
             }
         }
         self.extras.start(&self.fastest);
-        for k in 0..order {
-            let sums = self.series.sums(k);
-            let (spins, at) = (S::spins(&sums), self.series.get(k));
-            let acceleration = self.field.acceleration(parts, k, spins, &at);
-            let (series, field) = (&self.series, &self.field);
-            let acceleration = self
-                .extras
-                .plus_coefficients(k, series, field, acceleration);
-            self.series.extend(k, &sums, &acceleration);
+        // Several motions have order 0 apart, so that what is special about it is not in their loop.
+        let first = usize::from(R > 1);
+        for k in 0..first {
+            self.extend(k);
+        }
+        for k in first..order {
+            self.extend(k);
         }
         if let Some(push) = &mut self.push {
             push.expand(order, &self.series, &self.field);
         }
+    }
+
+    /// The coefficients of order `k` + 1.
+    #[inline(always)]
+    fn extend(&mut self, k: usize) {
+        let sums = self.series.sums(k);
+        let (spins, at) = (S::spins(&sums), self.series.get(k));
+        let acceleration = (self.field).acceleration(self.settings.parts, k, spins, &at);
+        let (series, field) = (&self.series, &self.field);
+        let acceleration = self
+            .extras
+            .plus_coefficients(k, series, field, acceleration);
+        self.series.extend(k, &sums, &acceleration);
     }
 
     /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.
@@ -458,7 +479,9 @@ where
             // At rest, what the load makes of it is large.
             self.fastest[row] = 1.0;
         }
-        self.field.set(row, &course.field());
+        let field = course.field();
+        self.field.set(row, &field);
+        self.still[row] = field.stillness();
         for (packs, direction) in self
             .directions
             .iter_mut()
@@ -469,6 +492,7 @@ where
             }
         }
         (self.stop[row], lead.stop) = next_stop(course, lead.next);
+        self.hold();
     }
 
     /// Ends a motion before its last output.
@@ -495,6 +519,8 @@ where
             push.set(row, &[0.0; 6]);
         }
         self.field.set(row, &Field::none(L::Real::default()));
+        self.still[row] = [true; 3];
+        self.hold();
         self.extras.vacate(row);
         self.now[row] = (0.0, 0.0);
         self.stop[row] = (f64::INFINITY, 0.0);
