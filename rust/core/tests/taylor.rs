@@ -192,20 +192,19 @@ fn quadratic_damping_and_a_torque_reach_the_terminal_spin_from_either_side() {
     for (t, phase) in times.iter().zip(solve(0.0)) {
         assert!((phase.omega.z - exact(*t)).abs() < 1e-13, "{t}");
     }
-    // From −3: tan until it stands still, tanh from then on.
-    let still = (0.6_f64).atan() / 0.05;
-    for (t, phase) in times.iter().zip(solve(-3.0)) {
-        let since = t - still;
-        let omega = if since < 0.0 {
-            5.0 * (since * 0.05).tan()
-        } else {
-            exact(since)
-        };
-        assert!(
-            (phase.omega.z - omega).abs() < 1e-13,
-            "{t} {:e}",
-            phase.omega.z - omega
-        );
+    // From below: tan until it stands still, tanh from then on.
+    for start in (10..=490).map(|hundredths| f64::from(hundredths) * -0.01) {
+        let still = (start / -5.0).atan() / 0.05;
+        for (t, phase) in times.iter().zip(solve(start)) {
+            let since = t - still;
+            let omega = if since < 0.0 {
+                5.0 * (since * 0.05).tan()
+            } else {
+                exact(since)
+            };
+            let error = phase.omega.z - omega;
+            assert!(error.abs() < 1e-13, "from {start}, at {t}: {error:e}");
+        }
     }
 }
 

@@ -142,13 +142,20 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         sum
     }
 
-    /// Whether the series of one row are another law's at a time.
-    pub(super) fn is_reversed(&self, row: usize, order: usize, time: f64) -> bool {
+    /// Whether the series of one row, whose ω was `start`, are another law's where it is `omega`.
+    pub(super) fn is_reversed<const B: usize>(
+        &self,
+        row: usize,
+        field: &Field<Pack<L, R>, B>,
+        start: &[f64; 3],
+        omega: &[f64; 3],
+    ) -> bool {
         let quadratic = self.quadratic.as_ref();
-        quadratic.is_some_and(|quadratic| quadratic.is_reversed(row, order, time))
+        is_damped(field, row) && quadratic.is_some_and(|it| it.is_reversed(row, start, omega))
     }
 
-    /// Keeps the steps of motions that are almost at rest so short that they stay so: see [`Quadratic`].
+    /// Keeps the steps of motions under quadratic damping so short that those almost at rest stay so and that others do not
+    /// come to rest at their present rate: see [`Quadratic`].
     #[inline(always)]
     pub(super) fn limit<const B: usize>(
         &self,
@@ -162,14 +169,27 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         }
         let (w, change) = (series.get(0).w, series.get(1).w);
         for row in 0..R {
-            let still = STILL * fastest[row];
-            let is_damped = field.quadratic.iter().flatten().any(|x| x.get(row) != 0.0);
-            if is_damped && size(&w, row) <= still {
-                let most = 2.0 * still / size(&change, row);
-                h[row] = if h[row] > most { most } else { h[row] };
+            if !is_damped(field, row) {
+                continue;
             }
+            let (still, speed, rate) = (STILL * fastest[row], size(&w, row), size(&change, row));
+            let most = if speed <= still {
+                2.0 * still / rate
+            } else {
+                0.8 * speed / rate
+            };
+            h[row] = if h[row] > most { most } else { h[row] };
         }
     }
+}
+
+/// Whether quadratic damping acts in one row.
+#[inline(always)]
+fn is_damped<L: Number, const R: usize, const B: usize>(
+    field: &Field<Pack<L, R>, B>,
+    row: usize,
+) -> bool {
+    field.quadratic.iter().flatten().any(|x| x.get(row) != 0.0)
 }
 
 #[inline(always)]

@@ -23,8 +23,9 @@ type Vectors<T> = [[T; 3]; COUNT];
 /// s_k = (u_k − Σ_{0<j<k} s_j s_{k−j})/2s₀
 /// ```
 ///
-/// Where ω passes through zero the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below [`STILL`] of the fastest ω the term counts as zero, in
-/// steps over which what it does stays below rounding.
+/// Rounding in s grows as `1/s(t)` does, so a step does not go as far as ω would take to zero at its present rate. Where ω
+/// passes through zero all the same the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below
+/// [`STILL`] of the fastest ω the term counts as zero, in steps over which what it does stays below rounding.
 #[derive(Clone, Debug)]
 pub(super) struct Quadratic<T> {
     squares: [T; COUNT],
@@ -57,11 +58,11 @@ impl<L: Number, const R: usize> Quadratic<Pack<L, R>> {
         }
     }
 
-    /// Whether the series of |ω| of one row is negative at a time: where ω passes through zero along a line, it goes on as
-    /// −|ω|, which is not the law beyond.
-    pub(super) fn is_reversed(&self, row: usize, order: usize, time: f64) -> bool {
-        let speeds = self.speeds[..order].iter().rev();
-        speeds.fold(0.0, |sum, speed| sum * time + speed.get(row)) < 0.0
+    /// Whether one row's ω, `start` at the start of the step, has turned against it: where ω passes through zero along a line,
+    /// the series goes on as −|ω|, which is not the law beyond.
+    pub(super) fn is_reversed(&self, row: usize, start: &[f64; 3], omega: &[f64; 3]) -> bool {
+        let along: f64 = (0..3).map(|i| start[i] * omega[i]).sum();
+        self.speeds[0].get(row) > 0.0 && along < 0.0
     }
 }
 

@@ -291,7 +291,7 @@ where
             };
             let (state, place) = self.within(row, time);
             if looked_at.is_some() {
-                search.narrow(self.has_flipped(row, time.rounded(), &state));
+                search.narrow(self.has_flipped(row, &state));
                 h = search.end();
             } else {
                 self.give(row, &state, place.as_ref());
@@ -314,13 +314,15 @@ where
         (state, place)
     }
 
-    /// Whether a feedback has another sign in the `state` at a time since the start of the step than there, or ω has passed
-    /// through zero under quadratic damping.
+    /// Whether a feedback has another sign in the `state` later in the step than at its start, or ω has passed through zero
+    /// under quadratic damping.
     #[inline(never)]
-    fn has_flipped(&self, row: usize, time: f64, state: &[L::Real; 7]) -> bool {
+    fn has_flipped(&self, row: usize, state: &[L::Real; 7]) -> bool {
         let lead = self.leads[row].as_ref();
+        let start = [0, 1, 2].map(|i| self.state.value[i].get(row));
+        let omega = [0, 1, 2].map(|i| state[i].rounded());
         lead.is_some_and(|lead| lead.job.course.has_flipped(state))
-            || self.extras.is_reversed(row, self.settings.order, time)
+            || (self.extras).is_reversed(row, &self.field, &start, &omega)
     }
 
     /// The time from now to the next stop, positive also backward in time.
