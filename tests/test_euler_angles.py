@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 import pytest
@@ -131,8 +132,9 @@ class TestConventions:
         stack = np.array([[0.5, 0.5, 0.5, 0.5], [0.0, 0.6, 0.0, 0.8], [0.0, 0.0, 0.0, 1.0]])
         with pytest.raises(SingularAttitudeError, match=r"\b2\b"):
             euler_angles.from_quaternion(stack)
+        unknown: Any = "ignore"
         with pytest.raises(ValueError, match="singular"):
-            euler_angles.from_quaternion(stack, singular="ignore")  # type: ignore[arg-type]
+            euler_angles.from_quaternion(stack, singular=unknown)
 
     def test_shapes_are_checked(self) -> None:
         with pytest.raises(ValueError, match=r"angles.*shape \(\.\.\., 3\), got \(2,\)"):

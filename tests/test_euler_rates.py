@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import mpmath
 import numpy as np
@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipj
 from test_euler_angles import INTRINSIC, SEQUENCES
 
+FRAMES: tuple[Literal["body", "space"], ...] = ("body", "space")
 angle = st.floats(-3.1, 3.1)
 
 
@@ -45,7 +46,8 @@ def exact_omega(angles: Any, rates: Any, sequence: str) -> tuple[list[mpf], list
             dR = dR * turn(axis, a) + rate * (R * turn(axis, a, derivative=True))
             R = R * turn(axis, a)
         in_body, in_space = R.T * dR, dR * R.T
-        return tuple([W[2, 1], W[0, 2], W[1, 0]] for W in (in_body, in_space))  # type: ignore[return-value]
+        body, space = ([W[2, 1], W[0, 2], W[1, 0]] for W in (in_body, in_space))
+        return body, space
 
 
 def divisor(angles: np.ndarray, sequence: str) -> np.ndarray:
@@ -60,8 +62,8 @@ class TestEverySequence:
     def test_omega_is_that_of_the_turning_matrix(self, sequence: str, rng: np.random.Generator) -> None:
         for _ in range(5):
             angles, rates = rng.uniform(-6, 6, 3), rng.normal(size=3)
-            for frame, want in zip(("body", "space"), exact_omega(angles, rates, sequence), strict=True):
-                got = euler_angles.angular_velocity(angles, rates, sequence, frame)  # type: ignore[arg-type]
+            for frame, want in zip(FRAMES, exact_omega(angles, rates, sequence), strict=True):
+                got = euler_angles.angular_velocity(angles, rates, sequence, frame)
                 worst = max(abs(mpf(x) - y) for x, y in zip(got, want, strict=True))
                 assert float(worst) < 1e-15 * np.abs(rates).sum()
 

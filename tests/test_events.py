@@ -55,10 +55,11 @@ class TestEvents:
         assert np.isnan(motion.position[t > end]).all()
 
     def test_scipys_attributes_are_read(self) -> None:
-        def event(_t: float, omega: Any, *_: Any) -> float:
+        def falls(_t: float, omega: Any, *_: Any) -> float:
             return float(omega[1])
 
-        event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+        event: Any = falls
+        event.terminal, event.direction = True, -1.0
         motion = BODY.simulate([0, 200], (1e-3, 1.0, 1e-3), events=event)
         assert len(motion.events.t) == 1
 
@@ -161,7 +162,8 @@ class TestEvents:
                 load=loads.constant_torque((0, 0, 1e-9)),
                 events=lambda t, *_: t + 1.0,
             )
-        partial = caught.value.partial  # type: ignore[attr-defined]
+        interrupted: Any = caught.value
+        partial = interrupted.partial
         assert partial.status == "stopped"
         assert np.isfinite(partial.omega[1]).all()
         assert np.isnan(partial.omega[-1]).all()
@@ -237,8 +239,9 @@ class TestFailures:
             BALL.simulate([0.0, 1.0, 3.0], self.STARTS, load=self.LOAD)
         assert caught.value.partial is not None
         assert caught.value.partial.status.tolist() == ["complete", "failed", "not run"]
+        unknown: Any = "ignore"
         with pytest.raises(ValueError, match="on_failure"):
-            BALL.simulate([0, 1], (0, 0, 1), on_failure="ignore")  # type: ignore[arg-type]
+            BALL.simulate([0, 1], (0, 0, 1), on_failure=unknown)
 
     def test_an_interrupted_run_keeps_what_it_has(self) -> None:
         def interrupt(fraction: float) -> None:
@@ -247,7 +250,8 @@ class TestFailures:
 
         with pytest.raises(KeyboardInterrupt) as caught:
             BODY.simulate(np.linspace(0, 1e7, 1001), (1, 0.2, 1), progress=interrupt, method="dop853")
-        partial = caught.value.partial  # type: ignore[attr-defined]
+        interrupted: Any = caught.value
+        partial = interrupted.partial
         assert partial.status == "stopped"
         assert np.isfinite(partial.omega[1]).all()
         assert np.isnan(partial.omega[-1]).all()

@@ -266,7 +266,9 @@ fn a_motion_has_the_same_bits_alone_in_a_stack_on_any_threads_and_at_any_level()
                 let initial = turned(skew(), omega);
                 of(body, initial, &times, Method::Taylor, tightest())
             };
-            if kind > 0 && *name == "gravity gradient" {
+            // A body on a pivot has no orbit.
+            let is_pivoted = bodies.get(kind).is_some_and(|(_, pivoted)| *pivoted);
+            if is_pivoted && *name == "gravity gradient" {
                 continue;
             }
             let alone: Vec<_> = (0..21).map(|row| run(&task(row), terms)).collect();
