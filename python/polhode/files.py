@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _core
+from polhode._files.writing import write_bytes, writing
 from polhode.errors import FileFormatError, PolhodeError
 
 if TYPE_CHECKING:
@@ -102,8 +103,7 @@ def save_body(body: RigidBody, path: str | PathLike[str]) -> None:
     if _suffix(file) == ".json":
         _write_json(file, {"format": _BODY_FORMAT} | fields)
     else:
-        with file.open("wb") as stream:
-            np.savez(stream, format=np.array(_BODY_FORMAT), **fields)
+        _write_npz(file, _BODY_FORMAT, fields)
 
 
 def load_body(path: str | PathLike[str]) -> RigidBody:
@@ -142,8 +142,7 @@ def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
     arrays = {name: getattr(trajectory, name) for name in ("about", *_STATES, *_COUNTS, "status", "pivoted")}
     arrays |= {name: getattr(trajectory.body, name) for name in _BODY_ARRAYS}
     arrays |= {f"body_{name}": value for name, value in _body_fields(trajectory.body).items()}
-    with path.open("wb") as stream:  # numpy would add its suffix to a name that ends in .NPZ
-        np.savez(stream, format=np.array(_TRAJECTORY_FORMAT), **arrays)
+    _write_npz(path, _TRAJECTORY_FORMAT, arrays)
 
 
 def load_trajectory(path: str | PathLike[str]) -> Trajectory:
@@ -264,7 +263,12 @@ def _write_json(file: Path, fields: dict[str, Any]) -> None:
     if fields.get("mass") is not None and not np.size(fields["mass"]):
         raise ValueError(f"path: {file}: JSON does not tell the shape of an empty stack; .npz does")
     # Python writes the shortest decimal that gives the same float64 back.
-    file.write_text(json.dumps(_listed(fields), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    write_bytes(file, (json.dumps(_listed(fields), indent=1, allow_nan=False) + "\n").encode())
+
+
+def _write_npz(file: Path, name: str, arrays: dict[str, Any]) -> None:
+    with writing(file) as stream:  # given a path, numpy would add its suffix to one that ends in .NPZ
+        np.savez(stream, format=np.array(name), **arrays)
 
 
 def _listed(fields: dict[str, Any]) -> dict[str, Any]:

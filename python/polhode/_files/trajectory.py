@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._files.writing import writing
 from polhode.files import save_trajectory_json, save_trajectory_npz
 
 if TYPE_CHECKING:
@@ -58,4 +59,5 @@ def _save_csv(trajectory: Trajectory, file: Path) -> None:
     rows = np.stack([np.asarray(column, dtype=np.float64).reshape(-1) for column in columns], axis=-1)
     # 17 significant digits give the same float64 back.
     formats = ["%d"] * len(shape) + ["%.17g"] * (len(names) - len(shape))
-    np.savetxt(file, rows, fmt=formats, delimiter=",", header=",".join(names), comments="", encoding="utf-8")
+    with writing(file) as stream:
+        np.savetxt(stream, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")

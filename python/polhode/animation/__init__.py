@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from polhode._files.writing import write_bytes
 from polhode.animation.page import page
 from polhode.animation.scene import Scene
 
@@ -69,7 +70,7 @@ def animate(
         trajectory, frames=frames, duration=duration, shape=shape, title=title, time_unit=time_unit
     )
     if suffix == ".html":
-        file.write_text(page(scene), encoding="utf-8")
+        write_bytes(file, page(scene).encode())
     else:
         from polhode.animation.film import film
 

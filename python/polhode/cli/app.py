@@ -9,12 +9,13 @@ import os
 import re
 import sys
 from functools import partial
-from io import TextIOWrapper
+from io import StringIO, TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
 from cyclopts import App, CycloptsError, Parameter
 
+from polhode._files.writing import write_bytes
 from polhode.cli.options import (
     BodyOptions,
     CheckOptions,
@@ -236,8 +237,9 @@ def _show(report: Report, options: OutputOptions) -> None:
     if path is None:
         _write(report, form, Console(highlight=False))
     else:
-        with path.open("w", encoding="utf-8") as stream:
-            _write(report, form, Console(file=stream, highlight=False, color_system=None))
+        text = StringIO()
+        _write(report, form, Console(file=text, highlight=False, color_system=None))
+        write_bytes(path, text.getvalue().encode(errors="backslashreplace"))
 
 
 def _write(report: Report, form: str, console: Console) -> None:

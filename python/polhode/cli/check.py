@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
+from polhode._files.writing import write_bytes
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
@@ -115,7 +116,7 @@ def _fix(
     if path is None:
         return False
     source = robots.fixed(robot, verdicts, failing)
-    path.write_bytes(source)
+    write_bytes(path, source)
     rows, left, elsewhere = [], [], []
     for link, verdict in zip(robot.links, verdicts, strict=True):
         if verdict.verdict not in failing:

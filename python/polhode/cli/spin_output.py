@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 
 from polhode._extras import require
+from polhode._files.picture import save_picture
 from polhode._files.trajectory import TRAJECTORY_SUFFIXES
 from polhode.animation import ANIMATION_SUFFIXES, animate
 from polhode.cli.progress import progress
@@ -99,4 +100,4 @@ def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, par
     frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
     ax = angular_velocity(trajectory, place, frame=frame, degrees=spin.degrees)
     ax.set_title(title, loc="left")
-    figure.savefig(path, dpi=160)
+    save_picture(figure, path)
