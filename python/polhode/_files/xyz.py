@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from polhode._files.content import checked_format
+from polhode._files.reading import read_text
 from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
@@ -57,10 +58,7 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
     """
     file = Path(path)
     checked_format(file)
-    try:
-        lines = file.read_text(encoding="utf-8").splitlines()
-    except UnicodeDecodeError:
-        raise FileFormatError(f"{file}: not a text file, so not an XYZ file") from None
+    lines = read_text(file, "an XYZ file").splitlines()
     count_text = lines[0].strip()
     if not count_text.isdecimal() or int(count_text) == 0:
         raise FileFormatError(

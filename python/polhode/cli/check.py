@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
+from polhode._files.reading import files_read
 from polhode._files.writing import write_bytes
 from polhode.cli.layout import Column, Field, Report, Table
+from polhode.cli.outputs import check_outputs
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError
@@ -38,10 +40,12 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     is_good : bool
         Whether no link fails; of the fixed file where one is written.
     """
-    _check_options(file, options)
-    robot = _read(file, options)
+    _check_options(options)
+    with files_read() as read:
+        robot = _read(file, options)
+        verdicts = robots.check(robot, options.packages)
+    check_outputs([("--fix", options.fix)], read)
     failing = robots.FAILURES | ({"suspect"} if options.strict else frozenset())
-    verdicts = robots.check(robot, options.packages)
     report = Report()
     report.section(
         "",
@@ -68,16 +72,10 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     return report, _fix(report, robot, verdicts, failing, options)
 
 
-def _check_options(file: Path, options: CheckOptions) -> None:
+def _check_options(options: CheckOptions) -> None:
     for folder in options.packages:
         if not folder.is_dir():
             raise PolhodeError(f"--packages: there is no folder {folder}; name one that holds the packages")
-    if options.fix is None:
-        return
-    if not options.fix.parent.is_dir():
-        raise PolhodeError(f"--fix: there is no directory {options.fix.parent}; create it first")
-    if options.fix.exists() and file.exists() and options.fix.samefile(file):
-        raise PolhodeError(f"--fix: {options.fix} is the file that is read; write to another one")
 
 
 def _read(file: Path, options: CheckOptions) -> robots.Robot:

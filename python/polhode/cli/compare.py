@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._files.reading import read_text
 from polhode.cli.layout import Column, Table
 from polhode.errors import FileFormatError, PolhodeError
 
@@ -85,8 +86,10 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        document = json.loads(path.read_text("utf-8"))
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        document = json.loads(read_text(path, "JSON"))
+    except FileFormatError as error:
+        raise FileFormatError(f"--expect: {error}; save one with --format json") from None
+    except (ValueError, RecursionError) as error:
         message = f"--expect: {path} is not JSON ({error}); save one with --format json"
         raise FileFormatError(message) from None
     if not isinstance(document, dict):

@@ -43,8 +43,6 @@ def check_paths(paths: Sequence[Path]) -> None:
     for path in paths:
         if path.suffix.lower() not in _SUFFIXES:
             raise PolhodeError(f"--save: {path} does not end in one of {', '.join(_SUFFIXES)}")
-        if not path.parent.is_dir():
-            raise PolhodeError(f"--save: there is no directory {path.parent}; create it first")
 
 
 def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:

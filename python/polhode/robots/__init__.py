@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polhode._files.content import content_format
+from polhode._files.reading import read_bytes
 from polhode._files.xml_source import Edit, Element, edited, parse_xml
 from polhode.errors import FileFormatError
 from polhode.robots import mjcf, sdf, urdf
@@ -64,9 +65,7 @@ def read_robot(path: str | os.PathLike[str], packages: Sequence[str | os.PathLik
         If the file cannot be read.
     """
     file = Path(path)
-    if file.is_dir():
-        raise FileFormatError(f"{file}: is a directory; name a file in it")
-    return parse_robot(file.read_bytes(), name=str(file), folder=file.absolute().parent, packages=packages)
+    return parse_robot(read_bytes(file), name=str(file), folder=file.absolute().parent, packages=packages)
 
 
 def parse_robot(

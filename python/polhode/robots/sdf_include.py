@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from polhode._files.reading import read_bytes
 from polhode._files.xml_source import parse_xml
 from polhode.errors import FileFormatError
 from polhode.robots import urdf
@@ -71,7 +72,7 @@ def _model_file(folder: Path) -> Path | None:
     """Find the newest file that a model's folder offers."""
     config = folder / "model.config"
     if config.is_file():
-        root = parse_xml(config.read_bytes(), str(config))
+        root = parse_xml(read_bytes(config), str(config))
         offered = sorted(root.all("sdf"), key=_version)
         if not offered:
             raise FileFormatError(f"{config}: names no <sdf>; add the name of its file")

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from polhode._files.reading import read_bytes
 from polhode._files.xml_source import Element, parse_xml
 from polhode.errors import FileFormatError
 
@@ -101,7 +102,7 @@ class Sources:
         if self._count > _MOST_FILES:
             raise FileFormatError(f"{at.where}: {address} is one of more than {_MOST_FILES} files to be read")
         self.names[address] = None
-        return parse_xml(path.read_bytes(), str(path), file=address)
+        return parse_xml(read_bytes(path), str(path), file=address)
 
     def count_copy(self, at: Element) -> None:
         """Count a copy of elements, so that a small file does not become a boundless one."""
