@@ -105,8 +105,8 @@ def _ply_header(lines: Iterable[bytes]) -> tuple[list[_Element], bool]:
         words = line.split()
         if words[:1] == [b"element"]:
             elements.append(_Element(words[1], int(words[2]), []))
-            if elements[-1].count < 0:
-                raise ValueError(f"the header promises {elements[-1].count} rows")
+            if elements[-1].rows < 0:
+                raise ValueError(f"the header promises {elements[-1].rows} rows")
         elif words[:1] == [b"property"]:
             elements[-1].are_lists.append(words[1] == b"list")
         is_text |= words[:2] == [b"format", b"ascii"]

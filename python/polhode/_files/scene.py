@@ -77,6 +77,10 @@ def read_scene(file: Path, readable: tuple[str, ...]) -> Mesh:
             )
         corners = np.asarray(geometry.faces, dtype=np.int64)
         placed = np.asarray(geometry.vertices, dtype=np.float64)
+        if corners.size == 0:
+            corners = np.empty((0, 3), dtype=np.int64)
+        if corners.shape[1:] != (3,) or placed.shape[1:] != (3,):
+            raise FileFormatError(f"{file}: its faces or vertices are not rows of three numbers")
         if corners.size and not (corners.min() >= 0 and corners.max() < len(placed)):
             row = int(np.flatnonzero((corners < 0).any(axis=1) | (corners >= len(placed)).any(axis=1))[0])
             raise FileFormatError(f"{file}: face {row} names a vertex that the file does not hold")

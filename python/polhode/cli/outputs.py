@@ -38,7 +38,7 @@ def check_outputs(outputs: Sequence[tuple[str, Path | None]], inputs: Iterable[P
             continue
         if not path.parent.is_dir():
             raise PolhodeError(
-                f"{option}: {path}: there is no directory {path.parent}; check the path or create it"
+                f"{option}: {path}: there is no directory {path.parent}; check the path or create it first"
             )
         if any(_is_same(path, other) for other in read):
             raise PolhodeError(f"{option}: {path} is a file that is read; write to another one")
