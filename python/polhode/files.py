@@ -230,7 +230,8 @@ def _pivoted(fields: dict[str, Any], file: Path) -> bool:
 
 
 def _check_unit(quaternion: NDArray[np.float64], file: Path) -> None:
-    squares = np.square(quaternion).sum(axis=-1)
+    with np.errstate(over="ignore"):
+        squares = np.square(quaternion).sum(axis=-1)
     off = squares[np.abs(squares - 1.0) > _OFF_UNITY]
     if off.size:
         raise FileFormatError(f"{file}: a quaternion has the norm {np.sqrt(off[0]):.9g}, expected 1")

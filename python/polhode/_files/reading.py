@@ -14,7 +14,7 @@ from polhode.errors import FileFormatError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-__all__ = ["MOST_TEXT", "check_ordinary", "files_read", "read_bytes", "read_text"]
+__all__ = ["MOST_TEXT", "check_ordinary", "files_read", "note_read", "read_bytes", "read_text"]
 
 MOST_TEXT: Final = 1 << 30
 """Bytes of the largest text that is read whole."""
@@ -41,6 +41,12 @@ def files_read() -> Iterator[list[Path]]:
         _READ.reset(token)
 
 
+def note_read(path: str | os.PathLike[str]) -> None:
+    """Add a file to the lists that :func:`files_read` gave."""
+    for read in _READ.get():
+        read.append(Path(path))
+
+
 def check_ordinary(path: str | os.PathLike[str]) -> None:
     """Refuse what is no ordinary file before it is opened: a pipe would be waited for, a device never ends.
 
@@ -60,8 +66,7 @@ def check_ordinary(path: str | os.PathLike[str]) -> None:
     for is_that, words in _OTHERS:
         if is_that(mode):
             raise FileFormatError(f"{os.fspath(path)}: {words}")
-    for read in _READ.get():
-        read.append(Path(path))
+    note_read(path)
 
 
 def read_bytes(path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:

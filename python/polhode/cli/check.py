@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
-from polhode._files.reading import files_read
+from polhode._files.reading import MOST_TEXT, files_read
 from polhode._files.writing import write_bytes
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.outputs import check_outputs
@@ -43,7 +43,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     _check_options(options)
     with files_read() as read:
         robot = _read(file, options)
-        verdicts = robots.check(robot, options.packages)
+        verdicts = robots.check(robot, options.packages, allow_outside=options.allow_outside)
     check_outputs([("--fix", options.fix)], read)
     failing = robots.FAILURES | ({"suspect"} if options.strict else frozenset())
     report = Report()
@@ -64,7 +64,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
         *(Field(f"count.{word}", word, count) for word, count in counts.items()),
     )
     notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
-    report.notes += [*robot.notes, *notes]
+    report.notes += [in_options(note) for note in (*robot.notes, *notes)]
     if options.fix is None:
         if any(verdict.better is not None for verdict in bad):
             report.notes.append("--fix FILE writes better values into a copy")
@@ -80,11 +80,22 @@ def _check_options(options: CheckOptions) -> None:
 
 def _read(file: Path, options: CheckOptions) -> robots.Robot:
     if file != STDIN:
-        return robots.read_robot(file, options.packages)
-    source = sys.stdin.buffer.read()
+        return robots.read_robot(file, options.packages, allow_outside=options.allow_outside)
+    source = sys.stdin.buffer.read(MOST_TEXT + 1)
+    if len(source) > MOST_TEXT:
+        raise FileFormatError(f"-: more than {MOST_TEXT} bytes came, the most that is read; divide the model")
     if not source:
         raise FileFormatError("-: nothing came on standard input; send a file into it")
-    return robots.parse_robot(source, name=shown(file), folder=Path.cwd(), packages=options.packages)
+    return _parsed(source, shown(file), Path.cwd(), options)
+
+
+def _parsed(
+    source: bytes, name: str, folder: Path, options: CheckOptions, roots: tuple[Path, ...] = ()
+) -> robots.Robot:
+    packages = (*options.packages, *roots)
+    return robots.parse_robot(
+        source, name=name, folder=folder, packages=packages, allow_outside=options.allow_outside
+    )
 
 
 def _row(verdict: robots.Verdict) -> dict[str, Any]:
@@ -149,6 +160,7 @@ def _fix(
         report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(left)}")
     if elsewhere:
         report.notes.append(f"left as they are, to be fixed in their own files: {', '.join(elsewhere)}")
-    fixed = robots.parse_robot(source, name=str(path), folder=robot.folder, packages=options.packages)
-    again = robots.check(fixed, options.packages)
+    fixed = _parsed(source, str(path), robot.folder, options, robot.roots)
+    packages = (*options.packages, *robot.roots)
+    again = robots.check(fixed, packages, allow_outside=options.allow_outside)
     return not any(verdict.verdict in failing for verdict in again)

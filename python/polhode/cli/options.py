@@ -106,7 +106,10 @@ class CheckOptions:
     ----------
     packages
         A folder that holds the packages of package:// and model:// addresses. May be repeated; folders above
-        the file, ROS_PACKAGE_PATH and GZ_SIM_RESOURCE_PATH are searched too.
+        the file, ROS_PACKAGE_PATH, GZ_SIM_RESOURCE_PATH and AMENT_PREFIX_PATH are searched too.
+    allow_outside
+        Read meshes and included files wherever their names lead; without it only in the model's own package
+        and in those of --packages.
     strict
         Let links that are only suspect fail as well.
     fix
@@ -114,6 +117,7 @@ class CheckOptions:
     """
 
     packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="", show_default=False)] = ()
+    allow_outside: Annotated[bool, Parameter(name="--allow-outside", negative="")] = False
     strict: Annotated[bool, Parameter(name="--strict", negative="")] = False
     fix: Annotated[Path | None, Parameter(name="--fix")] = None
 
