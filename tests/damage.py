@@ -1,7 +1,7 @@
 """Damaged files: every kind of file that the package reads, and the ways in which files go bad.
 
-A reader may refuse a damaged file, by an error of polhode that names it, or read a valid body from it. It may not
-raise anything else, take long, or read another body from a file that is cut short or has a checksum.
+A reader may refuse a damaged file, by an error of polhode that names it, or read a valid body from it. It may
+not raise anything else, take long, or read another body from a file that is cut short or has a checksum.
 """
 
 from __future__ import annotations
@@ -21,15 +21,16 @@ from polhode import RigidBody, Trajectory, loads, robots, solids
 from polhode.errors import PolhodeError
 from polhode.io import read_mesh
 
-__all__ = ["KINDS", "LONGEST", "Kind", "cuts", "damaged", "every_damage", "outcome", "write_all"]
+__all__ = ["KINDS", "LONGEST", "Kind", "cuts", "damaged", "every_damage", "outcome", "tally", "whole_file"]
 
 LONGEST = 5.0
 """Seconds that a reader may take over a small file."""
 WAYS = ("bit", "bits", "character", "word", "zeros", "noise", "insert", "remove", "repeat", "swap")
 PRINTABLE = np.arange(32, 127)
-HOSTILE = tuple(
-    b'nan inf -inf -0.0 1e400 1e308 1e-320 -1 0 7 99999999999999999999 1_0 0x10 1,5 true null NaN Infinity {} [[[ "x"'
-    b" 2147483648 -2147483648 4294967295 18446744073709551615 1e19 3.5 format vertex end_header robot".split()
+HOSTILE = (
+    *b"nan inf -inf -0.0 1e400 1e308 1e-320 -1 0 7 1_0 0x10 1,5 true null NaN Infinity".split(),
+    *b"99999999999999999999 2147483648 -2147483648 4294967295 18446744073709551615 1e19 3.5 {} [[[".split(),
+    *b"format vertex end_header robot".split(),
 )
 
 
@@ -103,6 +104,12 @@ def _solid(path: Path) -> object:
     return _numbers(RigidBody.from_file(path, density=2.0))
 
 
+def _mended(path: Path) -> object:
+    return _numbers(
+        RigidBody.from_file(path, mass=2.0, length_unit="km", weld=1e-9, closure="caps", orient=True)
+    )
+
+
 def _molecule(path: Path) -> object:
     return _numbers(RigidBody.from_file(path))
 
@@ -129,21 +136,25 @@ _FALL = _BOX.simulate(
     np.linspace(0, 1, 5), (0.1, 1.0, 0.2), load=loads.uniform_gravity((0.0, 0.0, -9.81)), about="origin"
 )
 _SPINS = _STACK.simulate([0.0, 0.5, 1.0], (0.1, 1.0, 0.2))
-_LINK = """<inertial><mass value="2"/><origin xyz="0 0 0.1"/>
-<inertia ixx="1" iyy="1" izz="1.5" ixy="0" ixz="0" iyz="0"/></inertial>"""
+_INERTIA = '<inertia ixx="1" iyy="1" izz="1.5" ixy="0" ixz="0" iyz="0"/>'
+_LINK = f'<inertial><mass value="2"/><origin xyz="0 0 0.1"/>{_INERTIA}</inertial>'
 _URDF = f"""<?xml version="1.0"?>
-<!-- two links --><robot name="arm"><link name="base">{_LINK}<visual><geometry><box size="1 2 3"/></geometry></visual>
-</link><link name="tip">{_LINK}<collision><origin rpy="0.1 0.2 0.3"/><geometry><cylinder radius="0.1" length="2"/>
-</geometry></collision></link><joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint></robot>
+<!-- two links --><robot name="arm">
+<link name="base">{_LINK}<visual><geometry><box size="1 2 3"/></geometry></visual></link>
+<link name="tip">{_LINK}<collision><origin rpy="0.1 0.2 0.3"/>
+<geometry><cylinder radius="0.1" length="2"/></geometry></collision></link>
+<joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint></robot>
 """
-_SDF = """<sdf version="1.9"><model name="m"><link name="a"><pose>0 0 1 0 0 0.5</pose><inertial><mass>2.5</mass>
-<pose relative_to="a">0 0.1 0 0 0 0</pose><inertia><ixx>1</ixx><iyy>1.2</iyy><izz>1.4</izz><ixy>0.1</ixy></inertia>
-</inertial><collision name="c"><geometry><sphere><radius>0.4</radius></sphere></geometry></collision></link>
+_SDF = """<sdf version="1.9"><model name="m"><link name="a"><pose>0 0 1 0 0 0.5</pose>
+<inertial><mass>2.5</mass><pose relative_to="a">0 0.1 0 0 0 0</pose>
+<inertia><ixx>1</ixx><iyy>1.2</iyy><izz>1.4</izz><ixy>0.1</ixy></inertia></inertial>
+<collision name="c"><geometry><sphere><radius>0.4</radius></sphere></geometry></collision></link>
 <model name="inner"><link name="b"/></model></model></sdf>
 """
-_MJCF = """<mujoco model="m"><compiler angle="degree" autolimits="true"/><default><geom density="900"/></default>
-<worldbody><body name="a" pos="0 0 1" euler="10 20 30"><inertial pos="0 0 0" mass="3" diaginertia="1 1 1.5"/>
-<geom type="capsule" size="0.1" fromto="0 0 0 0 0 1"/><body name="b"><geom type="ellipsoid" size="1 2 3"/></body>
+_MJCF = """<mujoco model="m"><compiler angle="degree"/><default><geom density="900"/></default>
+<worldbody><body name="a" pos="0 0 1" euler="10 20 30">
+<inertial pos="0 0 0" mass="3" diaginertia="1 1 1.5"/><geom type="capsule" size="0.1" fromto="0 0 0 0 0 1"/>
+<body name="b"><geom type="ellipsoid" size="1 2 3"/></body>
 <replicate count="3" offset="1 0 0"><body name="c"><geom type="box" size="1 1 1" mass="2"/></body></replicate>
 </body></worldbody></mujoco>
 """
@@ -162,6 +173,8 @@ KINDS: dict[str, Kind] = {
     "ASCII STL": Kind(".stl", _mesh(ascii_stl), _solid),
     "OBJ": Kind(".obj", _mesh(obj), _solid),
     "plates": Kind(".tab", _mesh(obj), _solid),
+    "plates, mended": Kind(".txt", _mesh(obj), _mended, is_self_ending=False),  # caps close what was cut off
+    "binary STL, mended": Kind(".stl", _mesh(binary_stl), _mended),
     "ASCII PLY": Kind(".ply", _mesh(ascii_ply), _solid),
     "binary PLY, streamed": Kind(".ply", _mesh(binary_ply), _solid),
     "binary PLY, whole": Kind(".ply", _mesh(binary_ply), _triangles),
@@ -218,7 +231,7 @@ def damaged(data: bytes, rng: np.random.Generator) -> tuple[str, bytes]:
 
 
 def every_damage(data: bytes, seed: int, cut: int, bad: int) -> Iterator[tuple[str, bytes]]:
-    """So many files cut short, at places spread over the file and near its end, and so many gone bad otherwise."""
+    """So many files cut short, spread over the file and near its end, and so many gone bad otherwise."""
     rng = np.random.default_rng(seed)
     places = {int(place) for place in np.linspace(0, len(data) - 1, min(cut, len(data)))}
     places |= set(range(max(0, len(data) - 8), len(data)))
@@ -227,7 +240,7 @@ def every_damage(data: bytes, seed: int, cut: int, bad: int) -> Iterator[tuple[s
         yield damaged(data, rng)
 
 
-def write_all(kind: Kind, folder: Path) -> tuple[bytes, object]:
+def whole_file(kind: Kind, folder: Path) -> tuple[bytes, object]:
     """A whole file of a kind, and what is read of it."""
     path = folder / f"whole{kind.suffix}"
     data = kind.write(path)
@@ -236,7 +249,7 @@ def write_all(kind: Kind, folder: Path) -> tuple[bytes, object]:
 
 
 def outcome(kind: Kind, path: Path, whole: object, way: str) -> str:
-    """What a reader makes of a damaged file: "refused", "same" or "other"; an AssertionError where it may not."""
+    """What a reader makes of a damaged file: "refused", "same" or "other"; an AssertionError for all else."""
     start = time.perf_counter()
     try:
         found = kind.read(path)

@@ -8,6 +8,7 @@ triangle's corners anew.
 from __future__ import annotations
 
 import os
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -25,7 +26,7 @@ from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, isotopes
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 
 __all__ = [
@@ -142,7 +143,8 @@ def body_from_file(
     masses = np.array([isotope.mass for isotope in molecule_isotopes(path, molecule)])
     if length_unit is not None:
         masses *= ATOMIC_MASS_CONSTANT
-    return _core.RigidBody.from_particles(masses, molecule.positions * scale)
+    with _naming(path), np.errstate(over="ignore"):
+        return _core.RigidBody.from_particles(masses, molecule.positions * scale)
 
 
 def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float = 0.0) -> Mesh:
@@ -238,9 +240,10 @@ def solid_from_file(
     streamed = _stream_format(file) if weld == 0.0 and index_base == 1 and closure is None else None
     if streamed is not None:
         try:
-            body, faces, volume, area = _core.stream_solid(
-                str(file), scale=scale, density=density, mass=mass, orient=orient, progress=progress
-            )
+            with _naming(file):
+                body, faces, volume, area = _core.stream_solid(
+                    str(file), scale=scale, density=density, mass=mass, orient=orient, progress=progress
+                )
         except MeshError as error:
             is_told = streamed == "PLY" or " is not closed" not in str(error)
             if is_told or file.stat().st_size > _SMALL_FILE:
@@ -251,7 +254,8 @@ def solid_from_file(
     corners = len(mesh.vertices)
     if weld != 0.0:
         mesh = meshes.weld_within(mesh, weld)
-    vertices = mesh.vertices * scale
+    with np.errstate(over="ignore"):  # what is beyond float64 is refused as infinite, with its number
+        vertices = mesh.vertices * scale
 
     def solid(density: float | None, mass: float | None = None) -> _core.RigidBody:
         return _core.RigidBody.from_mesh(
@@ -259,11 +263,12 @@ def solid_from_file(
         )
 
     try:
-        body = solid(density, mass)
-        volume = float(body.mass) / density if density is not None else float(solid(1.0).mass)
+        with _naming(file):
+            body = solid(density, mass)
+            volume = float(body.mass) / density if density is not None else float(solid(1.0).mass)
+            area = _core.surface_area(vertices, mesh.faces)
     except MeshError as error:
-        raise MeshError(_with_weld(f"{file}: {error}", mesh)) from None
-    area = _core.surface_area(vertices, mesh.faces)
+        raise MeshError(_with_weld(str(error), mesh)) from None
     welded = corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
@@ -299,7 +304,9 @@ def _read(file: Path, suffix: str, index_base: int) -> Mesh:
         # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
         return Mesh(*_core.read_stl(str(file)), "binary STL")
     if suffix in (".obj", ".tab", ".txt"):
-        return Mesh(*_core.read_plates(str(file), index_base), "v/f text")
+        mesh = Mesh(*_core.read_plates(str(file), index_base), "v/f text")
+        meshes.check_faces(mesh, str(file))
+        return mesh
     return read_scene(file, readable=tuple(known for known in EXPECTED_CONTENT if known != MOLECULE_SUFFIX))
 
 
@@ -333,6 +340,17 @@ def _with_weld(message: str, mesh: Mesh) -> str:
     hint = f"{near} {lie} within {resolution:g} of another, weld={resolution:g} joins {them}"
     fault, others, remedies = message.partition("; close the mesh ")
     return f"{fault}; {hint}; or close the mesh {remedies}" if others else f"{message} ({hint})"
+
+
+@contextmanager
+def _naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Let what is wrong with a body tell the file that it is read from."""
+    try:
+        yield
+    except PolhodeError as error:
+        if str(error).startswith(f"{os.fspath(path)}: "):
+            raise
+        raise type(error)(f"{os.fspath(path)}: {error}") from None
 
 
 def _check_amount(name: str, value: object, path: str | os.PathLike[str]) -> None:
