@@ -47,6 +47,11 @@ def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
 
 
 def _save_csv(trajectory: Trajectory, file: Path) -> None:
+    if trajectory.t.ndim != 1:
+        raise ValueError(
+            f"path: {file}: a table has one row for each time, and these are of shape {trajectory.t.shape}; "
+            "give times in one row, or save as .npz"
+        )
     shape = trajectory.omega.shape[:-2]
     names = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
     names.append("t")
