@@ -32,11 +32,11 @@ class OutputOptions:
         A table for people or the same fields as JSON, where an infinite number is the string "Infinity" and
         an undefined one is null; JSON by default where --output ends in .json.
     output
-        Write the report to this file instead of the terminal.
+        Write the report to this file instead of the terminal; - is standard output.
     """
 
     form: Annotated[Literal["table", "json"] | None, Parameter(name="--format")] = None
-    output: Annotated[Path | None, Parameter(name="--output")] = None
+    output: Annotated[Path | None, Parameter(name="--output", allow_leading_hyphen=True)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
