@@ -31,6 +31,9 @@ HOSTILE = (
     *b"nan inf -inf -0.0 1e400 1e308 1e-320 -1 0 7 1_0 0x10 1,5 true null NaN Infinity".split(),
     *b"99999999999999999999 2147483648 -2147483648 4294967295 18446744073709551615 1e19 3.5 {} [[[".split(),
     *b"format vertex end_header robot".split(),
+    b"9" * 5000,
+    b"[" * 20000,
+    b"\n" * 300,
 )
 
 

@@ -154,8 +154,8 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
     ----------
     path : str or os.PathLike
         Binary and ASCII STL, and ``v``/``f`` text (``.obj``, ``.tab``, ``.txt``) are read without any
-        further library; PLY, OFF, GLB and what else trimesh knows by trimesh (extra ``mesh``). Nodes of a
-        scene are placed by their transforms and taken together.
+        further library; PLY, OFF and GLB by trimesh (extra ``mesh``), and no other format. Nodes of a scene
+        are placed by their transforms and taken together.
     index_base : {1, 0}
         What ``v``/``f`` text counts its vertices from: 1 in OBJ and in most plate files, 0 in some.
     weld : float

@@ -7,7 +7,7 @@ import os
 import struct
 from typing import TYPE_CHECKING, Final
 
-from polhode._files.reading import check_ordinary
+from polhode._files.reading import check_ordinary, naming
 from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
 def checked_format(file: Path) -> str | None:
     """Tell the format of the content where that can be; an error where it is not the suffix's."""
     check_ordinary(file)
-    with file.open("rb") as stream:
+    with naming(file), file.open("rb") as stream:
         head = stream.read(4096)
         size = os.fstat(stream.fileno()).st_size
     if not head:

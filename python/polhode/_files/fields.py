@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._files.reading import MOST_TEXT, check_ordinary, read_text
+from polhode._files.reading import MOST_TEXT, check_ordinary, naming, read_text
 from polhode._files.writing import write_bytes
 from polhode.errors import FileFormatError
 
@@ -77,7 +77,7 @@ def read_npz(file: Path) -> dict[str, NDArray[Any]]:
     check_ordinary(file)
     arrays: dict[str, NDArray[Any]] = {}
     try:
-        with zipfile.ZipFile(file) as archive:
+        with naming(file), zipfile.ZipFile(file) as archive:
             for member in archive.infolist():
                 name = member.filename.removesuffix(".npy")
                 if name in arrays:
@@ -92,7 +92,6 @@ def read_npz(file: Path) -> dict[str, NDArray[Any]]:
         raise
     except OSError as error:
         if error.errno != errno.EINVAL:  # which is a place in the file that there is not
-            error.filename = error.filename or str(file)
             raise
         raise FileFormatError(f"{file}: not a whole npz file: it points outside itself") from None
     except Exception as error:  # zipfile, zlib and numpy raise nearly anything over a damaged file

@@ -14,7 +14,7 @@ from polhode.errors import FileFormatError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-__all__ = ["MOST_TEXT", "check_ordinary", "files_read", "note_read", "read_bytes", "read_text"]
+__all__ = ["MOST_TEXT", "check_ordinary", "files_read", "naming", "note_read", "read_bytes", "read_text"]
 
 MOST_TEXT: Final = 1 << 30
 """Bytes of the largest text that is read whole."""
@@ -69,6 +69,16 @@ def check_ordinary(path: str | os.PathLike[str]) -> None:
     note_read(path)
 
 
+@contextmanager
+def naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Let errors of the system name the file that is read."""
+    try:
+        yield
+    except OSError as error:
+        error.filename = error.filename or str(path)
+        raise
+
+
 def read_bytes(path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:
     """Read a whole file of at most so many bytes.
 
@@ -86,15 +96,11 @@ def read_bytes(path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:
         With the name of the file.
     """
     check_ordinary(path)
-    try:
-        with Path(path).open("rb") as stream:
-            if os.fstat(stream.fileno()).st_size <= most:
-                data = stream.read(most + 1)
-                if len(data) <= most:
-                    return data
-    except OSError as error:
-        error.filename = error.filename or str(path)
-        raise
+    with naming(path), Path(path).open("rb") as stream:
+        if os.fstat(stream.fileno()).st_size <= most:
+            data = stream.read(most + 1)
+            if len(data) <= most:
+                return data
     raise FileFormatError(
         f"{os.fspath(path)}: is larger than {most} bytes, the most that is read of such files"
     )

@@ -10,6 +10,7 @@ from polhode._extras import require
 from polhode._files.glb import check_glb
 from polhode._files.mesh import Mesh, weld
 from polhode._files.promises import check_off, check_ply, check_ply_lists, check_ply_size
+from polhode._files.reading import naming
 from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
@@ -54,11 +55,9 @@ def read_scene(file: Path, readable: tuple[str, ...]) -> Mesh:
     kind = suffix.removeprefix(".")
     try:
         # Its own processing would merge, drop and reorder; only the stored triangles are wanted.
-        scene = _loaded(trimesh, file, kind)
-    except (MemoryError, FileFormatError):
-        raise
-    except OSError as error:
-        error.filename = error.filename or str(file)
+        with naming(file):
+            scene = _loaded(trimesh, file, kind)
+    except (MemoryError, OSError, FileFormatError):
         raise
     except Exception as error:  # a damaged file can raise anything in there, from KeyError to struct.error
         reason = " ".join(str(error).split()) or type(error).__name__

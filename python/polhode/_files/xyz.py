@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["Molecule", "read_xyz"]
+
+_MOST_DIGITS: Final = 18
 
 
 class Molecule(NamedTuple):
@@ -60,7 +62,7 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
     checked_format(file)
     lines = read_text(file, "an XYZ file").splitlines()
     count_text = lines[0].strip()
-    if not count_text.isdecimal() or int(count_text) == 0:
+    if not (count_text.isdecimal() and len(count_text) <= _MOST_DIGITS) or int(count_text) == 0:
         raise FileFormatError(
             f"{file}: line 1 of an XYZ file is the number of atoms, not {count_text[:40]!r}"
         )
