@@ -46,7 +46,7 @@ def left_pipe(buffering: int) -> Iterator[io.TextIOWrapper]:
     read, write = os.pipe()
     os.close(read)
     stream = open(write, "w", buffering=buffering, encoding="utf-8")  # noqa: PTH123, SIM115 (no path)
-    yield stream  # type: ignore[misc]
+    yield stream
     stream.close()  # which fails where something is left to be written
 
 

@@ -214,7 +214,9 @@ def _status(fields: dict[str, Any], file: Path, shape: tuple[int, ...]) -> Any:
     status = np.array(held, dtype=object)
     others = [word for word in status.reshape(-1).tolist() if word not in _ENDS]
     if others:
-        raise FileFormatError(f"{file}: status holds {others[0]!r}, expected one of {', '.join(_ENDS)}")
+        raise FileFormatError(
+            f"{file}: status holds {repr(others[0])[:60]}, expected one of {', '.join(_ENDS)}"
+        )
     if status.shape not in ((), shape):
         raise FileFormatError(f"{file}: status has shape {status.shape}, expected {shape}")
     return status.astype(str) if status.ndim else str(held)
@@ -225,7 +227,8 @@ def _pivoted(fields: dict[str, Any], file: Path) -> bool:
     if isinstance(held, np.ndarray) and held.dtype == np.bool_ and held.ndim == 0:
         return bool(held)
     if not isinstance(held, bool):
-        raise FileFormatError(f"{file}: pivoted is {held!r}, expected true or false")
+        found = f"{held.dtype} of shape {held.shape}" if isinstance(held, np.ndarray) else repr(held)[:60]
+        raise FileFormatError(f"{file}: pivoted is {found}, expected true or false")
     return held
 
 
