@@ -155,7 +155,7 @@ def own_root(folder: Path) -> Path:
     return folder.parent if is_beside else folder
 
 
-def shortened(text: str, most: int = 80) -> str:
+def shortened(text: str, most: int = 200) -> str:
     """Give a text from a file as an error names it: the beginning of a long one, and how long it is."""
     return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
 

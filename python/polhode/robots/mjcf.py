@@ -60,6 +60,7 @@ class _Reader:
     def __init__(self, root: Element, folder: Path, sources: Sources, prefix: str = "") -> None:
         expand_includes(root, folder, sources)
         self.root, self.folder, self.sources, self.prefix = root, folder, sources, sources.prefix(prefix)
+        self._open_copies = 0
         settings = {k: v for compiler in root.all("compiler") for k, v in compiler.attributes.items()}
         self.in_radians = settings.get("angle", "degree") == "radian"
         self.sequence = settings.get("eulerseq", "xyz").swapcase()
@@ -141,17 +142,18 @@ class _Reader:
         turn = {"pos": attributes.get("offset", "0 0 0"), "euler": attributes.get("euler", "0 0 0")}
         step, fault = self._step(replicate, turn)
         count = copies(replicate)
-        if tag == "geom":
+        is_geom, place = tag == "geom", first.place
+        if is_geom:
             self.sources.count_copies(count, replicate)
-        place = first.place
-        for _ in range(count if tag == "geom" else 1):
-            inside = self.members(replicate, tag, place, first.inherited, first.problem or fault)
-            for member in inside:
-                if tag == "geom":
-                    self.sources.count_copied(member.element)
-                else:
-                    self.sources.notes["bodies within <replicate> are judged once, their copies not"] = None
-                yield member
+        for number in range(count if is_geom else 1):
+            self._open_copies += 1
+            inside = list(self.members(replicate, tag, place, first.inherited, first.problem or fault))
+            self._open_copies -= 1
+            if is_geom and number == 0:
+                self.sources.count_copied(count * len(inside), replicate, keep=self._open_copies == 0)
+            if inside and not is_geom:
+                self.sources.notes["bodies within <replicate> are judged once, their copies not"] = None
+            yield from inside
             place = place.then(step)
 
     def _add_model(self, model: Element) -> None:

@@ -57,6 +57,6 @@ def copies(replicate: Element) -> int:
     (count,) = numbers(replicate, text, 1, "count")
     if count != int(count) or count < 1:
         raise FileFormatError(
-            f"{replicate.where}: count is {shortened(repr(text))} where a whole number from 1 has to stand"
+            f"{replicate.where}: count is {shortened(repr(text), 80)} where a whole number from 1 has to stand"
         )
     return int(count)

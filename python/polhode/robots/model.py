@@ -180,11 +180,11 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
         wanted = (
             "a finite number" if count == 1 else f"{count or ''} finite numbers".replace("  ", " ").strip()
         )
-        found = None if text is None else shortened(repr(text))
+        found = None if text is None else shortened(repr(text), 80)
         raise FileFormatError(f"{element.where}: {what} is {found} where {wanted} has to stand")
     if values.size and np.abs(values).max() > _LARGEST:
         raise FileFormatError(
-            f"{element.where}: {what} is {shortened(repr(text))}, beyond {_LARGEST:g}, where squares have no "
+            f"{element.where}: {what} is {shortened(repr(text), 80)}, beyond {_LARGEST:g}, where squares have no "
             "room in numbers; correct it"
         )
     return values
