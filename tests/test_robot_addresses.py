@@ -21,12 +21,14 @@ if TYPE_CHECKING:
     from polhode.robots import Verdict
 
 # m a²/6 of a cube of side 1.
-INERTIAL = """<inertial><mass value="6"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"""
+INERTIAL = """<inertial><mass value="6"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"""
 ROBOT = f"""<robot name="r"><link name="first">{INERTIAL}
 <collision><geometry><mesh filename="ADDRESS"/></geometry></collision></link>
 <link name="second">{INERTIAL.replace("1", "2")}
 <collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>"""
-SDF = """<sdf version="1.9"><model name="m"><link name="own"/><include><uri>ADDRESS</uri></include></model></sdf>"""
+INCLUDE = "<include><uri>ADDRESS</uri></include>"
+SDF = f'<sdf version="1.9"><model name="m"><link name="own"/>{INCLUDE}</model></sdf>'
 OPENED: list[str] | None = None
 
 
@@ -63,6 +65,7 @@ def first(path: Path, *packages: Path, allow_outside: bool = False) -> Verdict:
     """The verdict of the link with the mesh; the other one is always judged."""
     found = robots.read_robot(path, packages, allow_outside=allow_outside)
     one, two = robots.check(found, packages, allow_outside=allow_outside)
+    assert two.shape_moments is not None
     np.testing.assert_allclose(two.shape_moments, 1.0, rtol=1e-14)
     return one
 
@@ -122,8 +125,8 @@ class TestLinks:
         (tmp_path / "shot" / "r.urdf").symlink_to("../blobs/1")
         (tmp_path / "shot" / "cube.obj").symlink_to("../blobs/2")
         assert is_read(first(tmp_path / "shot" / "r.urdf"))
-        code, out, _ = run("check", tmp_path / "shot" / "r.urdf", "--strict", "--fix", tmp_path / "better.urdf")
-        assert code == 0, out
+        path, better = tmp_path / "shot" / "r.urdf", tmp_path / "better.urdf"
+        assert run("check", path, "--strict", "--fix", better)[0] == 0
 
     def test_an_installed_package_of_links_to_its_source(self, tmp_path: Path) -> None:
         source, installed = tmp_path / "src" / "arm", tmp_path / "install" / "arm"
@@ -143,9 +146,7 @@ class TestLinks:
 
 
 @pytest.mark.parametrize("variable", ["ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "AMENT_PREFIX_PATH"])
-def test_declared_packages_are_read(
-    variable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_declared_packages_are_read(variable: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     share = tmp_path / "ws" / "share"
     file = mesh(share / "arm" / "cube.obj")
     monkeypatch.setenv(variable, str(share.parent if variable.startswith("AMENT") else share))
@@ -203,7 +204,7 @@ def test_what_lies_outside_is_told_and_not_opened(address: str, arm: Path, opene
     del opened[:]
     verdict = first(path)
     (note,) = verdict.notes
-    assert note.startswith(f"line 2: mesh {address} lies outside {arm.parent}")
+    assert note.startswith(f"line 3: mesh {address} lies outside {arm.parent}")
     assert "--packages" in note
     assert "pass allow_outside=True" in note
     assert not [name for name in opened if "cube.obj" in name or "linked" in name]
@@ -216,11 +217,18 @@ def test_what_lies_outside_is_told_and_not_opened(address: str, arm: Path, opene
 
 @pytest.mark.parametrize(
     "address",
-    ["package://../outside/cube.obj", "package://..", "model://", "package:///", "package://./arm", "http://a/b"],
+    [
+        "package://../outside/cube.obj",
+        "package://..",
+        "model://",
+        "package:///",
+        "package://./arm",
+        "http://a/b",
+    ],
 )
 def test_names_of_no_package_are_not_found(address: str, arm: Path) -> None:
     (note,) = first(robot(arm / "r.urdf", address), allow_outside=True).notes
-    assert note == f"line 2: mesh {address} was not found"
+    assert note == f"line 3: mesh {address} was not found"
 
 
 @pytest.mark.parametrize(
@@ -248,7 +256,7 @@ def test_a_mesh_that_is_none_is_a_note_of_its_link(address: str, says: str, arm:
     verdict = first(robot(arm / "r.urdf", address))
     assert verdict.verdict == "placeholder"
     (note,) = verdict.notes
-    assert note.startswith("line 2: mesh ")
+    assert note.startswith("line 3: mesh ")
     assert says in note
     assert len(note) < 500
 
@@ -306,10 +314,12 @@ class TestIncludes:
             assert len(robots.read_robot(path, allow_outside=True).links) >= 1
             assert run("check", path, "--allow-outside")[0] == 0
 
-    @pytest.mark.parametrize("address", ["../outside/m.sdf", "model://outside", "model://arm/../outside", "evil"])
+    @pytest.mark.parametrize(
+        "address", ["../outside/m.sdf", "model://outside", "model://arm/../outside", "evil"]
+    )
     def test_of_sdf(self, address: str, arm: Path, opened: list[str]) -> None:
-        (arm.parent / "outside" / "m.sdf").write_text(SDF.replace("<include><uri>ADDRESS</uri></include>", ""))
-        (arm.parent / "outside" / "model.sdf").write_text('<sdf><model name="m"><link name="x"/></model></sdf>')
+        (arm.parent / "outside" / "m.sdf").write_text(SDF.replace(INCLUDE, ""))
+        (arm.parent / "outside" / "model.sdf").write_text(SDF.replace(INCLUDE, ""))
         (arm / "evil").mkdir()
         (arm / "evil" / "model.config").write_text("<model><sdf>../../outside/m.sdf</sdf></model>")
         path = robot(arm / "r.sdf", address, SDF)

@@ -10,7 +10,7 @@ import numpy as np
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
 from polhode.io import read_mesh
-from polhode.robots.addresses import shortened
+from polhode.robots.words import quoted, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -205,7 +205,7 @@ class GeometryReader:
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
     """Give the solid of a shape that is no mesh, or why there is none."""
     if shape.kind not in _SOLIDS:
-        return None, f"a shape of kind {shortened(repr(shape.kind))} has no volume that could be told"
+        return None, f"a shape of kind {quoted(shape.kind)} has no volume that could be told"
     try:
         return _SOLIDS[shape.kind](shape.size), ""
     except ValueError as error:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from polhode._files.xml_source import Budget, Element, parse_xml
 from polhode.errors import FileFormatError
-from polhode.robots.addresses import shortened
+from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -114,7 +114,7 @@ class Sources:
 
     def count_copied(self, number: int, at: Element, *, keep: bool) -> None:
         """Count the elements within copies, alike; those of copies within copies are not kept twice."""
-        if self._copied + number > _MOST_COPIED:
+        if number + (self._copied if keep else 0) > _MOST_COPIED:
             raise LimitError(
                 f"{at.where}: more than {_MOST_COPIED} elements are to stand in copies; lower the count"
             )
