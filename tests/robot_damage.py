@@ -43,8 +43,9 @@ SAMPLES: Final[dict[str, dict[str, str]]] = {
     "sdf": {
         "world.sdf": """<?xml version="1.0"?><sdf version="1.9"><world name="w"><model name="m">
   <link name="a"><inertial><pose degrees="true">0 0 0.1 0 0 30</pose><mass>3</mass>
-    <inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>
-  <collision name="a"><pose>0.1 0 0 0.4 0.5 -0.6</pose><geometry><box><size>0.2 0.3 0.4</size></box></geometry>
+    <inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia>
+    </inertial>
+  <collision name="a"><pose>0.1 0 0 0.4 0.5 -0.6</pose><geometry><box><size>2 3 4</size></box></geometry>
   </collision></link>
   <link name="b"><inertial auto="true"/><collision name="c"><geometry><mesh><uri>model://part/cube.obj</uri>
     <scale>1 1 1</scale></mesh></geometry></collision></link>
@@ -64,8 +65,8 @@ SAMPLES: Final[dict[str, dict[str, str]]] = {
     },
     "mjcf": {
         "scene.xml": """<mujoco model="s"><compiler angle="degree" eulerseq="xyz" meshdir="parts"/>
-  <default><geom type="box" size="0.1 0.2 0.3"/><default class="ball"><geom type="sphere" size="0.1"/></default>
-  </default>
+  <default><geom type="box" size="0.1 0.2 0.3"/>
+    <default class="ball"><geom type="sphere" size="0.1"/></default></default>
   <asset><mesh name="cube" file="cube.obj" scale="1 1 2"/><model name="leg" file="parts/leg.xml"/></asset>
   <worldbody>
     <body name="a"><inertial mass="3" pos="0 0 0.1" euler="5 6 7" fullinertia="0.1 0.1 0.1 0.01 0 0"/>
@@ -76,7 +77,7 @@ SAMPLES: Final[dict[str, dict[str, str]]] = {
       <include file="parts/hand.xml"/>
       <attach model="leg" body="upper" prefix="left_"/></body>
     <body name="c" childclass="ball"><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><geom zaxis="1 2 3"/>
-      <body name="d"><geom xyaxes="0 1 0 1 1 0" type="ellipsoid" size="0.1 0.2 0.3" quat="2 1 0 0"/></body></body>
+      <body name="d"><geom xyaxes="0 1 0 1 1 0" type="ellipsoid" size="1 2 3" quat="2 1 0 0"/></body></body>
   </worldbody></mujoco>
 """,
         "parts/hand.xml": """<mujocoinclude><body name="hand"><inertial mass="1" pos="0 0 0" quat="1 0 0 0"
@@ -91,26 +92,9 @@ HOSTILE: Final = (
     *("nan", "inf", "-inf", "1e999", "-1e999", "1e308", "1e50", "-1e50", "1e-320", "1e-60", "", " ", "-0"),
     *("0x10", "1_0", "0", "-1", "9999", "1e9", "1,5", "1 2", "1 2 3 4 5 6 7", "٣", "None", "true", "zzz"),
     *("1" * 1_000_000, "0 " * 500_000, "0." + "0" * 999_998, "a/" * 500_000, "n" * 300, "../" * 400),
-    *(
-        "/etc/hostname",
-        "file:///etc/hostname",
-        "package://../..",
-        "package://part/../../x",
-        "model://",
-        "model:///",
-    ),
-    *(
-        "..",
-        ".",
-        "../..",
-        "pipe",
-        "loop",
-        "folder",
-        "away",
-        "C:\\x.stl",
-        "..\\..\\x.stl",
-        "\\\\host\\share\\x.stl",
-    ),
+    *("/etc/hostname", "file:///etc/hostname", "package://../..", "package://part/../../x"),
+    *("model://", "model:///", "..\\..\\x.stl", "\\\\host\\share\\x.stl", "C:\\x.stl"),
+    *("..", ".", "../..", "pipe", "loop", "folder", "away"),
     *("http://127.0.0.1:9/x", "cube.obj\u202e", "world.sdf", "scene.xml", "urdf/r.urdf", "%s%n", "quat_xyzw"),
 )
 VALUE: Final = re.compile(rb"=\s*(\"[^\"]*\"|'[^']*')|>([^<>]*[^<>\s][^<>]*)<")

@@ -36,20 +36,22 @@ def folder(tmp_path: Path) -> Path:
 
 def judged(path: Path) -> str:
     """What becomes of a robot: a word for a verdict or an error."""
+    told = ""
     try:
         robot = robots.read_robot(path)
     except FileFormatError as error:
-        assert str(error).startswith(f"{path}: ")
-        assert len(str(error)) < 1500
+        told = str(error)
+    if told:
+        assert told.startswith(f"{path}: ")
+        assert len(told) < 1500
         return "refused"
     verdicts = robots.check(robot)
     assert {verdict.verdict for verdict in verdicts} <= WORDS
     assert all(len(verdict.reason) < 1500 for verdict in verdicts)
     better = robots.fixed(robot, verdicts, WORDS)
     again = robots.parse_robot(better, name="better", folder=robot.folder)
-    assert [link.name for link in again.links if not link.file] == [
-        link.name for link in robot.links if not link.file
-    ]
+    own, written = ([link.name for link in each.links if not link.file] for each in (robot, again))
+    assert own == written
     return "judged"
 
 
@@ -84,8 +86,8 @@ def test_whole_samples_are_judged(sample: str, folder: Path) -> None:
 
 
 def test_damaged_robots(folder: Path) -> None:
-    counts = go_through(range(300), folder)
-    assert min(counts.values()) > 50
+    counts = go_through(range(200), folder)
+    assert min(counts.values()) > 20
 
 
 @pytest.mark.long

@@ -16,11 +16,12 @@ from polhode._files.content import content_format
 from polhode._files.xml_source import Edit, Element, edited, parse_xml
 from polhode.errors import FileFormatError
 from polhode.robots import mjcf, sdf, urdf
-from polhode.robots.addresses import Addresses, own_root, shortened
+from polhode.robots.addresses import Addresses, own_root
 from polhode.robots.geometry import GeometryReader
 from polhode.robots.model import Inertial, Link, Place, Robot, Shape
 from polhode.robots.sources import Sources, read_source
 from polhode.robots.verdict import FAILURES, Verdict, judge
+from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

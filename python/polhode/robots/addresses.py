@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-__all__ = ["Addresses", "Found", "own_root", "shortened"]
+__all__ = ["Addresses", "Found", "own_root"]
 
 _SEARCH_PATHS: Final = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH")
 _PACKAGES: Final = ("package.xml", "manifest.xml", "model.config")
@@ -153,11 +153,6 @@ def own_root(folder: Path) -> Path:
             return marked[which]
     is_beside = folder.name.lower() in _BESIDE_MESHES and folder.parent in above
     return folder.parent if is_beside else folder
-
-
-def shortened(text: str, most: int = 80) -> str:
-    """Give a text from a file as an error names it: the beginning of a long one, and how long it is."""
-    return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
 
 
 def _absolute(folder: Path) -> Path:

@@ -10,7 +10,7 @@ import numpy as np
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
 from polhode.io import read_mesh
-from polhode.robots.addresses import shortened
+from polhode.robots.words import quoted, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -86,16 +86,16 @@ class GeometryReader:
         """Take the shapes of a link together."""
         notes: dict[str, str] = {}  # where each was found first
         folder = link.folder or self._folder
-        # What leaves the range of numbers is refused where it is used.
-        with np.errstate(all="ignore"):
-            boxes = [self._box(shape, folder, notes) for shape in link.shapes]
-            body, role = self._whole(link, folder, notes)
+        boxes = [self._box(shape, folder, notes) for shape in link.shapes]
+        body, role = self._whole(link, folder, notes)
         told = tuple(f"{where}: {note}" if where else note for note, where in notes.items())
         known = [box for box in boxes if box is not None]
         if not known or len(known) < len(boxes):
             return Geometry(body, role, None, None, told)
         low = np.min([box[0] for box in known], axis=0)
         high = np.max([box[1] for box in known], axis=0)
+        if not (np.isfinite(low).all() and np.isfinite(high).all()):
+            return Geometry(body, role, None, None, (*told, "its shapes are larger than numbers reach"))
         return Geometry(body, role, low, high, told)
 
     def _whole(self, link: Link, folder: Path, notes: dict[str, str]) -> tuple[RigidBody | None, str]:
@@ -167,7 +167,11 @@ class GeometryReader:
         used = np.unique(mesh.faces)
         if used.size and not (used[0] >= 0 and used[-1] < len(mesh.vertices)):
             return f"mesh {name}: {path}: a face names a vertex that the file does not hold; check the file"
-        return _Read(mesh, mesh.vertices[used])
+        corners = mesh.vertices[used]
+        if not np.isfinite(corners).all():
+            vertex = int(used[np.flatnonzero(~np.isfinite(corners).all(axis=1))[0]])
+            return f"mesh {name}: {path}: vertex {vertex} is not finite; check the file"
+        return _Read(mesh, corners)
 
     def _box(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[Floats, Floats] | None:
         """Opposite corners of the box along the axes of the link around a shape."""
@@ -201,7 +205,7 @@ class GeometryReader:
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
     """Give the solid of a shape that is no mesh, or why there is none."""
     if shape.kind not in _SOLIDS:
-        return None, f"a shape of kind {shortened(repr(shape.kind))} has no volume that could be told"
+        return None, f"a shape of kind {quoted(shape.kind)} has no volume that could be told"
     try:
         return _SOLIDS[shape.kind](shape.size), ""
     except ValueError as error:

@@ -16,10 +16,10 @@ from polhode import euler_angles
 from polhode._core import rotate
 from polhode._files.xml_source import Edit, Element, remove_attribute, set_attribute
 from polhode.errors import FileFormatError
-from polhode.robots.addresses import shortened
 from polhode.robots.mjcf_parts import copies, expand_includes
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
 from polhode.robots.sources import LimitError
+from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,6 +60,7 @@ class _Reader:
     def __init__(self, root: Element, folder: Path, sources: Sources, prefix: str = "") -> None:
         expand_includes(root, folder, sources)
         self.root, self.folder, self.sources, self.prefix = root, folder, sources, sources.prefix(prefix)
+        self._open_copies = 0
         settings = {k: v for compiler in root.all("compiler") for k, v in compiler.attributes.items()}
         self.in_radians = settings.get("angle", "degree") == "radian"
         self.sequence = settings.get("eulerseq", "xyz").swapcase()
@@ -141,17 +142,18 @@ class _Reader:
         turn = {"pos": attributes.get("offset", "0 0 0"), "euler": attributes.get("euler", "0 0 0")}
         step, fault = self._step(replicate, turn)
         count = copies(replicate)
-        if tag == "geom":
+        is_geom, place = tag == "geom", first.place
+        if is_geom:
             self.sources.count_copies(count, replicate)
-        place = first.place
-        for _ in range(count if tag == "geom" else 1):
-            inside = self.members(replicate, tag, place, first.inherited, first.problem or fault)
-            for member in inside:
-                if tag == "geom":
-                    self.sources.count_copied(member.element)
-                else:
-                    self.sources.notes["bodies within <replicate> are judged once, their copies not"] = None
-                yield member
+        for number in range(count if is_geom else 1):
+            self._open_copies += 1
+            inside = list(self.members(replicate, tag, place, first.inherited, first.problem or fault))
+            self._open_copies -= 1
+            if is_geom and number == 0:
+                self.sources.count_copied(count * len(inside), replicate, keep=self._open_copies == 0)
+            if inside and not is_geom:
+                self.sources.notes["bodies within <replicate> are judged once, their copies not"] = None
+            yield from inside
             place = place.then(step)
 
     def _add_model(self, model: Element) -> None:
@@ -167,7 +169,7 @@ class _Reader:
         name = attach.attributes.get("model", "")
         if name not in self.models:
             raise FileFormatError(
-                f"{attach.where}: <attach> of model {shortened(repr(name))}, which no <model> of the assets "
+                f"{attach.where}: <attach> of model {quoted(name)}, which no <model> of the assets "
                 "names; add it"
             )
         file = self.models[name]
@@ -192,7 +194,7 @@ class _Reader:
                     return
             if wanted is not None:
                 raise FileFormatError(
-                    f"{attach.where}: {file} has no body {shortened(repr(wanted))}; correct the name"
+                    f"{attach.where}: {file} has no body {quoted(wanted)}; correct the name"
                 )
 
     def everything(self, parent: Element, inherited: str | None) -> Iterator[Member]:
@@ -224,7 +226,7 @@ class _Reader:
             if len(self.sequence) != 3 or not (
                 set(self.sequence) <= set("xyz") or set(self.sequence) <= set("XYZ")
             ):
-                sequence = shortened(repr(self.sequence.swapcase()))
+                sequence = quoted(self.sequence.swapcase())
                 raise FileFormatError(
                     f"{element.where}: euler by eulerseq {sequence}, which is not read: three letters of "
                     "xyz or of XYZ have to stand there; give quat"
@@ -287,8 +289,11 @@ class _Reader:
             place = Place(_turning_z_to(unit(geom, along)), (ends[:3] + ends[3:]) / 2.0)
             half = float(np.linalg.norm(along)) / 2.0
             size = [size[0], half] if needed == 2 else [size[0], size[min(1, len(size) - 1)], half]
-        if len(size) < needed:
-            raise FileFormatError(f"{geom.where}: a geom of type {kind} needs {needed} numbers of size")
+        if not needed <= len(size) <= 3:
+            raise FileFormatError(
+                f"{geom.where}: a geom of type {kind} needs {needed} numbers of size, at most 3, and has "
+                f"{len(size)}; correct it"
+            )
         if kind == "box":
             return place, tuple(2.0 * x for x in size[:3])
         if kind in ("cylinder", "capsule"):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polhode.errors import FileFormatError
-from polhode.robots.addresses import shortened
 from polhode.robots.model import numbers
+from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -57,6 +57,6 @@ def copies(replicate: Element) -> int:
     (count,) = numbers(replicate, text, 1, "count")
     if count != int(count) or count < 1:
         raise FileFormatError(
-            f"{replicate.where}: count is {shortened(repr(text))} where a whole number from 1 has to stand"
+            f"{replicate.where}: count is {quoted(text)} where a whole number from 1 has to stand"
         )
     return int(count)

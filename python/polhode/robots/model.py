@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode.errors import FileFormatError
-from polhode.robots.addresses import shortened
+from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -155,7 +155,7 @@ class Robot:
 
 
 # Longer texts hold no few numbers; the file may say them of many elements.
-_LONGEST: Final = 10_000
+_LONGEST: Final = 1000
 # Five such lengths multiply in a tensor of density 1; beyond it numbers have no room.
 _LARGEST: Final = 1e50
 
@@ -180,11 +180,10 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
         wanted = (
             "a finite number" if count == 1 else f"{count or ''} finite numbers".replace("  ", " ").strip()
         )
-        found = None if text is None else shortened(repr(text))
-        raise FileFormatError(f"{element.where}: {what} is {found} where {wanted} has to stand")
+        raise FileFormatError(f"{element.where}: {what} is {quoted(text)} where {wanted} has to stand")
     if values.size and np.abs(values).max() > _LARGEST:
         raise FileFormatError(
-            f"{element.where}: {what} is {shortened(repr(text))}, beyond {_LARGEST:g}, where squares have no "
+            f"{element.where}: {what} is {quoted(text)}, beyond {_LARGEST:g}, where squares have no "
             "room in numbers; correct it"
         )
     return values

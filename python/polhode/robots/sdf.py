@@ -10,10 +10,10 @@ import numpy as np
 from polhode._core import rotate
 from polhode._files.xml_source import Edit, Element, blanks_of, set_text
 from polhode.errors import FileFormatError
-from polhode.robots.addresses import shortened
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
 from polhode.robots.sdf_include import included
 from polhode.robots.urdf import roll_pitch_yaw, tensor_text
+from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,7 +73,7 @@ def _pose(element: Element | None) -> Place:
     if element is None or not element.text.strip():
         return Place.here()
     if element.attributes.get("relative_to"):
-        frame = shortened(repr(element.attributes["relative_to"]))
+        frame = quoted(element.attributes["relative_to"])
         raise FileFormatError(
             f"{element.where}: a pose relative to {frame} is not followed; give it in the link"
         )

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 from polhode.errors import FileFormatError
 from polhode.robots import urdf
-from polhode.robots.addresses import shortened
 from polhode.robots.model import Link
+from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 from polhode._files.reading import note_read
 from polhode._files.xml_source import Budget, Element, parse_xml
 from polhode.errors import FileFormatError
-from polhode.robots.addresses import shortened
+from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -113,13 +113,13 @@ class Sources:
         if self._copies > _MOST_COPIES:
             raise LimitError(f"{at.where}: more than {_MOST_COPIES} copies are to be made; lower the count")
 
-    def count_copied(self, at: Element) -> None:
-        """Count an element within a copy, alike."""
-        self._copied += 1
-        if self._copied > _MOST_COPIED:
+    def count_copied(self, number: int, at: Element, *, keep: bool) -> None:
+        """Count the elements within copies, alike; those of copies within copies are not kept twice."""
+        if number + (self._copied if keep else 0) > _MOST_COPIED:
             raise LimitError(
-                f"{at.where}: more than {_MOST_COPIED} elements stand in copies; lower the count"
+                f"{at.where}: more than {_MOST_COPIED} elements are to stand in copies; lower the count"
             )
+        self._copied += number if keep else 0
 
     def name(self, prefix: str, own: str, at: Element) -> str:
         """Give a link its name; a long one is cut, and links are counted.
