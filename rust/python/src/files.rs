@@ -15,6 +15,7 @@ use polhode::mass::surface;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::depth::Deeper;
 use crate::errors::{new, to_py};
 use crate::interrupt::Interrupt;
 use crate::meshes::{read_mesh, with_mesh};
@@ -55,6 +56,7 @@ pub(crate) fn stream_solid(
     orient: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(PyRigidBody, usize, f64, f64)> {
+    let _deeper = Deeper::enter("from_file")?;
     let amount = amount(mass, density)?;
     let options = Options {
         orient,

@@ -4,12 +4,41 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 
+use crate::depth;
+
 /// How often Python is asked, in milliseconds; fast enough to feel immediate, rare enough to cost nothing.
 const INTERVAL: u64 = 50;
+/// How long a pass over many rows holds Python alone.
+const HOLD: Duration = Duration::from_millis(20);
+
+/// The beat of a pass over many rows that holds the GIL: Ctrl-C ends it, other threads of Python have their turn.
+pub(crate) struct Beat<'py> {
+    py: Python<'py>,
+    looked: Instant,
+}
+
+impl<'py> Beat<'py> {
+    pub(crate) fn new(py: Python<'py>) -> Self {
+        Self {
+            py,
+            looked: Instant::now(),
+        }
+    }
+
+    /// Called between blocks of rows, each of far less than a hundredth of a second.
+    pub(crate) fn mark(&mut self) -> PyResult<()> {
+        if self.looked.elapsed() >= HOLD {
+            self.py.check_signals()?;
+            self.py.detach(|| ());
+            self.looked = Instant::now();
+        }
+        Ok(())
+    }
+}
 
 /// A run that Python may stop: by Ctrl-C, or by an exception from its progress callback.
 pub(crate) struct Interrupt {
@@ -20,11 +49,14 @@ pub(crate) struct Interrupt {
     stopped: AtomicBool,
     error: Mutex<Option<PyErr>>,
     progress: Option<Py<PyAny>>,
+    /// How deep the run is within other runs; its threads are as deep.
+    depth: usize,
 }
 
 impl Interrupt {
     pub(crate) fn new(progress: Option<Py<PyAny>>) -> Self {
         Self {
+            depth: depth::current(),
             start: Instant::now(),
             due: AtomicU64::new(if progress.is_some() { 0 } else { INTERVAL }),
             stopped: AtomicBool::new(false),
@@ -58,17 +90,27 @@ impl Interrupt {
         let answer = Python::attach(|py| {
             py.check_signals()?;
             if let (Some(progress), Some(fraction)) = (&self.progress, fraction) {
-                progress.call1(py, (fraction,))?;
+                depth::within(self.depth, || progress.call1(py, (fraction,)))?;
             }
             Ok(())
         });
         if let Err(error) = answer {
-            self.error
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .get_or_insert(error);
-            self.stopped.store(true, Ordering::Relaxed);
+            self.stop(error);
         }
+    }
+
+    /// Ends the run by this exception, unless another one has done so.
+    pub(crate) fn stop(&self, error: PyErr) {
+        self.error
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get_or_insert(error);
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether an exception ends the run.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
     }
 
     /// The end of the run: the exception that stopped it, or a last word to the progress callback when it is complete.
