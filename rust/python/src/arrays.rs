@@ -275,6 +275,28 @@ pub(crate) fn floats<'py>(
     Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly())
 }
 
+/// The float64 array of real numbers that an argument is, for the Python part of the package.
+///
+/// Parameters
+/// ----------
+/// object : array_like
+/// name : str
+///     What errors call it.
+///
+/// Returns
+/// -------
+/// numpy.ndarray
+///     C-ordered; the object itself where it is so already.
+#[pyfunction]
+pub(crate) fn real_numbers<'py>(
+    object: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let array = floats(object, name)?;
+    let array: &Bound<'py, PyArrayDyn<f64>> = &array;
+    Ok(array.clone())
+}
+
 /// Rows of N indices, or the row that has a negative index, and that index.
 type Indices<const N: usize> = Result<Vec<[usize; N]>, (usize, i64)>;
 

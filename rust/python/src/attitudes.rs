@@ -69,7 +69,7 @@ fn as_quaternion<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, 
     if has_none {
         return Ok(None);
     }
-    let _deeper = Deeper::enter("as_quat")?;
+    let _deeper = Deeper::argument("as_quat")?;
     object
         .getattr_opt("as_quat")?
         .map(|method| method.call0())

@@ -31,18 +31,24 @@ pub(crate) fn numpy(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
 pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = object.py();
     if !object.is_exact_instance_of::<PyUntypedArray>() {
-        let _deeper = Deeper::enter(name)?;
+        let _deeper = Deeper::argument(name)?;
         let mut beat = Beat::new(py);
         nothing_lost(object, name, DEPTH, &mut beat)?;
         if let Some(array) = in_pieces(object, &mut beat)? {
             return Ok(array);
         }
     }
-    let _deeper = Deeper::enter(name)?;
+    let _deeper = Deeper::argument(name)?;
     numpy(py)?
         .call_method1(intern!(py, "asarray"), (object,))
         .map_err(|error| {
-            PyErr::from_type(error.get_type(py), format!("{name}: {}", error.value(py)))
+            // What else the object raised comes back as it was.
+            let kind = error.get_type(py);
+            if kind.is(py.get_type::<PyValueError>()) || kind.is(py.get_type::<PyTypeError>()) {
+                PyErr::from_type(kind, format!("{name}: {}", error.value(py)))
+            } else {
+                error
+            }
         })
 }
 

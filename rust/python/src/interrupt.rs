@@ -10,8 +10,10 @@ use pyo3::prelude::*;
 
 use crate::depth;
 
-/// How often Python is asked, in milliseconds; fast enough to feel immediate, rare enough to cost nothing.
-const INTERVAL: u64 = 50;
+/// How often Python is asked for signals, in milliseconds: fast enough to feel immediate, rare enough to cost nothing.
+const INTERVAL: u64 = 20;
+/// How often a progress callback is told, in milliseconds.
+const TELLING: u64 = 50;
 /// How long a pass over many rows holds Python alone.
 const HOLD: Duration = Duration::from_millis(20);
 
@@ -46,6 +48,7 @@ pub(crate) struct Interrupt {
     /// When Python is to be asked next, in milliseconds since the start: with a progress callback at once, so that the
     /// quickest run tells of itself too.
     due: AtomicU64,
+    interval: u64,
     stopped: AtomicBool,
     error: Mutex<Option<PyErr>>,
     progress: Option<Py<PyAny>>,
@@ -59,6 +62,11 @@ impl Interrupt {
             depth: depth::current(),
             start: Instant::now(),
             due: AtomicU64::new(if progress.is_some() { 0 } else { INTERVAL }),
+            interval: if progress.is_some() {
+                TELLING
+            } else {
+                INTERVAL
+            },
             stopped: AtomicBool::new(false),
             error: Mutex::new(None),
             progress,
@@ -69,12 +77,17 @@ impl Interrupt {
     ///
     /// Called from any thread, attached or not. Signals are only seen by Python's main thread.
     pub(crate) fn poll(&self, fraction: Option<f64>) -> ControlFlow<()> {
-        let now = u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX - INTERVAL);
+        let now = u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX - TELLING);
         let due = self.due.load(Ordering::Relaxed);
         if now >= due
             && self
                 .due
-                .compare_exchange(due, now + INTERVAL, Ordering::Relaxed, Ordering::Relaxed)
+                .compare_exchange(
+                    due,
+                    now + self.interval,
+                    Ordering::Relaxed,
+                    Ordering::Relaxed,
+                )
                 .is_ok()
         {
             self.ask(fraction);

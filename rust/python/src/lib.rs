@@ -63,6 +63,8 @@ mod _core {
     #[pymodule_export]
     use crate::accumulator::PyMassAccumulator;
     #[pymodule_export]
+    use crate::arrays::real_numbers;
+    #[pymodule_export]
     use crate::equimomental::stick;
     #[pymodule_export]
     use crate::euler_rates::{angular_velocity_from_euler_rates, euler_rates};

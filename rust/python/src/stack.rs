@@ -5,7 +5,7 @@
 use std::ops::Index;
 
 use polhode::Error;
-use polhode::numerics::threads::{Halt, fill_blocks};
+use polhode::numerics::threads::{Halt, Watch, fill_blocks};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -15,6 +15,9 @@ use crate::memory::{self, Names};
 
 /// Rows of a large map done at a time by one thread, or between two looks at Python's signals.
 pub(crate) const BLOCK: usize = 1024;
+
+/// Rows of a small map done between two looks at the clock.
+const FEW: usize = 16;
 
 /// Values in C order under a shape; one value has the empty shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,21 +139,44 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         py: Python<'_>,
         f: impl Fn([usize; K]) -> Result<R, Error> + Sync,
     ) -> PyResult<Stack<R>> {
-        let count = self.len();
-        let named = |(row, error): (usize, Error)| at_row(&self.shape, row, &to_py(py, &error), py);
-        if count <= BLOCK {
-            let rows = (self.rows().enumerate())
-                .map(|(row, operands)| f(operands).map_err(|error| named((row, error))))
-                .collect::<PyResult<_>>()?;
-            return Ok(Stack {
-                shape: self.shape.clone(),
-                rows,
-            });
+        if self.len() > BLOCK {
+            return self.on_all_cores(py, BLOCK, |row, _| f(row));
         }
+        let mut rows = Vec::with_capacity(self.len());
+        let mut beat = Beat::new(py);
+        for (row, operands) in self.rows().enumerate() {
+            if row % FEW == FEW - 1 {
+                beat.mark()?;
+            }
+            let value = f(operands);
+            rows.push(value.map_err(|error| at_row(&self.shape, row, &to_py(py, &error), py))?);
+        }
+        Ok(Stack {
+            shape: self.shape.clone(),
+            rows,
+        })
+    }
+
+    /// As [`try_map`](Self::try_map) where a single row may take long: each asks now and then whether to go on.
+    pub(crate) fn try_map_watched<R: Send>(
+        &self,
+        py: Python<'_>,
+        f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
+    ) -> PyResult<Stack<R>> {
+        self.on_all_cores(py, if self.len() > BLOCK { BLOCK } else { 1 }, f)
+    }
+
+    fn on_all_cores<R: Send>(
+        &self,
+        py: Python<'_>,
+        size: usize,
+        f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
+    ) -> PyResult<Stack<R>> {
+        let count = self.len();
         // First what all blocks go into in the end, so that it is known to be there.
         let mut rows = memory::vector(Names(&self.names), &self.shape, 1)?;
         let mut blocks: Vec<Vec<R>> = Vec::new();
-        blocks.resize_with(count.div_ceil(BLOCK), Vec::new);
+        blocks.resize_with(count.div_ceil(size), Vec::new);
         let interrupt = Interrupt::new(None);
         let outcome = py.detach(|| {
             fill_blocks(
@@ -158,10 +184,11 @@ impl<'a, const K: usize> Broadcast<'a, K> {
                 1,
                 &mut |_| interrupt.poll(None),
                 |block, out| {
-                    let end = count.min((block + 1) * BLOCK);
-                    (out[0].try_reserve_exact(BLOCK)).map_err(|_| Fault::NoMemory)?;
-                    for row in block * BLOCK..end {
-                        let value = f(self.operands(row));
+                    let end = count.min((block + 1) * size);
+                    (out[0].try_reserve_exact(size)).map_err(|_| Fault::NoMemory)?;
+                    let watch = &mut |_| interrupt.poll(None);
+                    for row in block * size..end {
+                        let value = f(self.operands(row), watch);
                         out[0].push(value.map_err(|error| Fault::Row(row, error))?);
                     }
                     Ok(())
@@ -170,7 +197,9 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         });
         interrupt.finish(py, outcome.is_ok())?;
         match outcome {
-            Err(Halt::Failed(Fault::Row(row, error))) => return Err(named((row, error))),
+            Err(Halt::Failed(Fault::Row(row, error))) => {
+                return Err(at_row(&self.shape, row, &to_py(py, &error), py));
+            }
             Err(Halt::Failed(Fault::NoMemory)) => {
                 let what = Names(&self.names);
                 return Err(memory::refused(what, &self.shape, 2 * size_of::<R>()));

@@ -34,7 +34,7 @@ impl PyLoad {
         about: &str,
         start: Option<f64>,
     ) -> PyResult<Stack<Wrench>> {
-        let _deeper = Deeper::enter("load")?;
+        let _deeper = Deeper::run("load")?;
         let terms = self.terms(py)?;
         let bodies = match body {
             Some(body) => &body.get().bodies,

@@ -118,7 +118,7 @@ impl PyRigidBody {
         rtol: f64,
         max_evaluations: i128,
     ) -> PyResult<Self> {
-        let _deeper = Deeper::enter("from_density")?;
+        let _deeper = Deeper::run("from_density")?;
         callable(density)?;
         let region = region(bounds)?;
         let effort = Effort {
@@ -173,7 +173,7 @@ impl PyRigidBody {
         rtol: f64,
         max_evaluations: i128,
     ) -> PyResult<Self> {
-        let _deeper = Deeper::enter("from_radial_density")?;
+        let _deeper = Deeper::run("from_radial_density")?;
         callable(density)?;
         let radii: Stack<f64> = read(radii, "radii")?;
         let boundaries = match radii.shape[..] {

@@ -126,7 +126,7 @@ impl PyRigidBody {
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
-        let _deeper = Deeper::enter("simulate")?;
+        let _deeper = Deeper::run("simulate")?;
         let pivoted = is_pivot(about)?;
         if pivoted && velocity.is_some() {
             return Err(PyValueError::new_err(
