@@ -15,9 +15,11 @@ use polhode::mass::surface;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::depth::Deeper;
 use crate::errors::{new, to_py};
 use crate::interrupt::Interrupt;
 use crate::meshes::{read_mesh, with_mesh};
+use crate::particles::watched;
 use crate::rigid_body::PyRigidBody;
 use crate::solids::amount;
 use crate::stack::Stack;
@@ -55,6 +57,7 @@ pub(crate) fn stream_solid(
     orient: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(PyRigidBody, usize, f64, f64)> {
+    let _deeper = Deeper::run("from_file")?;
     let amount = amount(mass, density)?;
     let options = Options {
         orient,
@@ -125,8 +128,9 @@ pub(crate) fn surface_area(
     faces: &Bound<'_, PyAny>,
 ) -> PyResult<f64> {
     let mesh = read_mesh(vertices, faces)?;
-    let area = with_mesh!(mesh, |vertices, faces| py
-        .detach(|| surface::area(vertices, faces)));
+    let area = with_mesh!(mesh, |vertices, faces| {
+        watched(py, |watch| surface::area(vertices, faces, watch))?
+    });
     area.map_err(|error| to_py(py, &error))
 }
 
