@@ -43,7 +43,7 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     if not size > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = axes_3d(ax)
-    times = np.asarray(t, dtype=np.float64).reshape(-1)
+    times = _core.real_numbers(t, "t").reshape(-1)
     upright = _upright(momentum / size)
     now = motion.at(times[-1:])
     attitude = upright @ _core.rotate(now.quaternion[0], np.eye(3)).T

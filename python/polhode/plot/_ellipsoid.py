@@ -53,7 +53,7 @@ def ellipsoid(
     _one(body.shape, "body")
     new = ax is None
     ax = axes_3d(ax)
-    middle = np.asarray(body.center_of_mass if center is None else center, dtype=np.float64)
+    middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
     semi_axes = inertia_semi_axes(body.principal.moments)
     semi_axes *= size / semi_axes.max()
     solid_ellipsoid(ax, semi_axes, body.principal.axes, middle, opacity)
@@ -167,7 +167,7 @@ def poinsot(
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
     _one(motion.shape, "motion")
-    times = np.asarray(t, dtype=np.float64).reshape(-1)
+    times = _core.real_numbers(t, "t").reshape(-1)
     found = motion.poinsot(times)
     if not np.isfinite(found.semi_axes).all():
         raise ValueError("motion: the body has a zero moment, and its ellipsoid no end")
