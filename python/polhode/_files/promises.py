@@ -75,7 +75,8 @@ def check_ply(file: Path, triangles: int) -> None:
             if element.name == b"face" and element.are_lists[0]:
                 expected += int(row[0]) - 2
         at += element.rows
-    _check_rest(rows, at)
+    _check_end(rows, at)
+    _check_numbers(rows)
     if triangles < faces or (expected and triangles != expected):
         raise _cut_short(faces)
 
@@ -92,7 +93,7 @@ def check_off(file: Path, triangles: int) -> None:
     for row in rows[vertices : vertices + faces]:
         if len(row) < int(row[0]) + 1:
             raise ValueError(f"the face {_shown(row)} has fewer corners than it says")
-    _check_rest(rows, vertices + faces)
+    _check_end(rows, vertices + faces)  # trimesh has refused words that are no numbers
     if triangles != sum(int(row[0]) - 2 for row in rows[vertices:]):
         raise _cut_short(faces)
 
@@ -115,13 +116,15 @@ def _ply_header(lines: Iterable[bytes]) -> tuple[list[_Element], bool]:
     return elements, is_text
 
 
-def _check_rest(rows: list[list[bytes]], end: int) -> None:
-    """Refuse rows behind the last, and words in any that are no numbers."""
+def _check_end(rows: list[list[bytes]], end: int) -> None:
     if len(rows) > end:
         raise ValueError(f"the row {_shown(rows[end])} is one more than the header promises")
-    for start in range(0, end, _ROWS_AT_ONCE):
+
+
+def _check_numbers(rows: list[list[bytes]]) -> None:
+    for start in range(0, len(rows), _ROWS_AT_ONCE):
         words = [word for row in rows[start : start + _ROWS_AT_ONCE] for word in row]
-        np.array(words).astype(np.float64)
+        np.array(words).astype(np.float64)  # which tells the word that is none
 
 
 def _shown(row: list[bytes]) -> str:
