@@ -11,6 +11,7 @@ from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.robots.sources import read_stream
 
 if TYPE_CHECKING:
     from polhode.cli.options import CheckOptions
@@ -82,7 +83,7 @@ def _check_options(file: Path, options: CheckOptions) -> None:
 def _read(file: Path, options: CheckOptions) -> robots.Robot:
     if file != STDIN:
         return robots.read_robot(file, options.packages, allow_outside=options.allow_outside)
-    source = sys.stdin.buffer.read()
+    source = read_stream(sys.stdin.buffer, shown(file))
     if not source:
         raise FileFormatError("-: nothing came on standard input; send a file into it")
     return _parsed(source, shown(file), Path.cwd(), options)
