@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from command_line import one_line, run
 from mesh_files import ascii_ply, ascii_stl, binary_ply, binary_stl, glb, obj, off
 from oracles.meshes import icosphere
 from polhode import RigidBody, Trajectory, loads, robots, solids
@@ -133,6 +134,23 @@ def _robot(path: Path) -> object:
     return [(link.name, link.inertial.mass if link.inertial else None) for link in robot.links]
 
 
+def _expected(path: Path) -> object:
+    """A report held against an earlier one, on the command line."""
+    part = path.with_name("part.obj")
+    part.write_bytes(obj(*icosphere(0)))
+    code, _, err = run("report", part, "--expect", path)
+    if code != 2:
+        return code
+    if not one_line(err):
+        raise AssertionError(err)
+    raise PolhodeError(err.strip())
+
+
+def _report(path: Path) -> bytes:
+    path.with_name("part.obj").write_bytes(obj(*icosphere(0)))
+    return run("report", path.with_name("part.obj"), "--format", "json")[1].encode()
+
+
 _BOX = solids.box((3.0, 0.2, 1.1), mass=0.7).translated((0.1, 1e3, 0.3))
 _STACK = solids.box(np.arange(1.0, 19.0).reshape(2, 3, 3), density=2.0)
 _FALL = _BOX.simulate(
@@ -187,6 +205,7 @@ KINDS: dict[str, Kind] = {
     "URDF": Kind(".urdf", _text(_URDF), _robot),
     "SDF": Kind(".sdf", _text(_SDF), _robot),
     "MJCF": Kind(".xml", _text(_MJCF), _robot),
+    "expected report": Kind(".json", _report, _expected),
 }
 
 

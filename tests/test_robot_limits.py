@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import time
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from command_line import one_line, run
 from polhode import robots
 from polhode._files.xml_source import Edit, edited, parse_xml
 from polhode.errors import FileFormatError
+from polhode.robots.sources import read_source, read_stream
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -232,7 +234,10 @@ class TestMany:
     def test_bytes(self, tmp_path: Path) -> None:
         (tmp_path / "r.urdf").write_text("<robot><link/></robot>")
         with pytest.raises(FileFormatError, match="has more than 10 bytes"):
-            robots.sources.read_source(tmp_path / "r.urdf", 10)
+            read_source(tmp_path / "r.urdf", 10)
+        with pytest.raises(FileFormatError, match="standard input: has more than 10 bytes"):
+            read_stream(io.BytesIO(b"n" * 11), "standard input", 10)
+        assert read_stream(io.BytesIO(b"n" * 10), "standard input", 10) == b"n" * 10
 
     def test_names_do_not_multiply(self, tmp_path: Path) -> None:
         (tmp_path / "m.sdf").write_text(f"<sdf><model>{'<link/>' * 1000}</model></sdf>")

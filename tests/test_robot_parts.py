@@ -263,6 +263,29 @@ class TestSdfInclude:
         )
         assert robot.notes == ("https://example.org/sun is not judged: nothing is fetched from a network",)
 
+    @pytest.mark.parametrize(
+        ("text", "says"),
+        [
+            ("<sdf><model>", "part.xml: line 1: not well-formed XML"),
+            ("<html/>", "line 3: the root of part.xml is <html>, not <sdf> or <robot>"),
+            ('<!DOCTYPE x [<!ENTITY a "b">]><sdf/>', "part.xml: line 1: declares a document type"),
+        ],
+    )
+    def test_what_cannot_be_read_is_one_too(self, tmp_path: Path, text: str, says: str) -> None:
+        include = "<include><uri>part.xml</uri></include>"
+        main = write(tmp_path, main_sdf=sdf(LINK.format("own", 0.02, SPHERE), include), part_xml=text)
+        own, lost = judged(main).values()
+        assert (own.verdict, lost.verdict) == ("good", "unreadable")
+        assert lost.reason.startswith("line 3: ")
+        assert says in lost.reason
+
+    def test_what_is_mjcf_is_told(self, tmp_path: Path) -> None:
+        include = "<include><uri>part.xml</uri></include>"
+        text = WORLD.format("", "<body/>")
+        robot = robots.read_robot(write(tmp_path, main_sdf=sdf('<link name="own"/>', include), part_xml=text))
+        assert [link.name for link in robot.links] == ["own"]
+        assert robot.notes[1] == "part.xml is not judged: it is MJCF, to be checked for itself"
+
     def test_a_model_within_itself_is_refused(self, tmp_path: Path) -> None:
         main = write(tmp_path, main_sdf=sdf("<include><uri>main.sdf</uri></include>"))
         with pytest.raises(FileFormatError, match=r"line 1 of main\.sdf: main\.sdf is read within itself"):

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
-from polhode._files.reading import MOST_TEXT, files_read
+from polhode._files.reading import files_read
 from polhode._files.writing import write_bytes
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.outputs import check_outputs
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.robots.sources import read_stream
 
 if TYPE_CHECKING:
     from polhode.cli.options import CheckOptions
@@ -81,9 +82,7 @@ def _check_options(options: CheckOptions) -> None:
 def _read(file: Path, options: CheckOptions) -> robots.Robot:
     if file != STDIN:
         return robots.read_robot(file, options.packages, allow_outside=options.allow_outside)
-    source = sys.stdin.buffer.read(MOST_TEXT + 1)
-    if len(source) > MOST_TEXT:
-        raise FileFormatError(f"-: more than {MOST_TEXT} bytes came, the most that is read; divide the model")
+    source = read_stream(sys.stdin.buffer, shown(file))
     if not source:
         raise FileFormatError("-: nothing came on standard input; send a file into it")
     return _parsed(source, shown(file), Path.cwd(), options)

@@ -113,7 +113,8 @@ class Addresses:
     def _own(self, folder: Path) -> tuple[Path, ...]:
         """Give the folders that a model in this folder may name files in: its own and the declared ones."""
         if folder not in self._roots:
-            inside = (own_root(Path(os.path.realpath(folder))), own_root(_absolute(folder)))
+            places = dict.fromkeys((Path(os.path.realpath(folder)), _absolute(folder)))
+            inside = [own_root(place) for place in places]
             self._roots[folder] = tuple(dict.fromkeys(_with_real([*inside, *self._declared])))
         return self._roots[folder]
 
@@ -148,7 +149,7 @@ def own_root(folder: Path) -> Path:
     wide = {Path(folder.anchor), home, *home.parents}
     above = [each for each in (folder, *folder.parents) if each not in wide]
     for marks, which in ((_PACKAGES, -1), (_CHECKOUTS, 0), (_PYTHON, 0)):
-        marked = [each for each in above if any(_kind(each / mark)[0] is not None for mark in marks)]
+        marked = [each for each in above if any(os.path.lexists(each / mark) for mark in marks)]
         if marked:
             return marked[which]
     is_beside = folder.name.lower() in _BESIDE_MESHES and folder.parent in above

@@ -46,6 +46,9 @@ def included(
     try:
         path = _located(include, uri, sources, folder)
         root = sources.read(path, uri, include)
+        if root.tag == "mujoco":
+            sources.notes[f"{shortened(uri)} is not judged: it is MJCF, to be checked for itself"] = None
+            return
         if root.tag not in _ROOTS:
             found = f"the root of {shortened(uri)} is <{shortened(root.tag)}>"
             raise FileFormatError(f"{include.where}: {found}, not <sdf> or <robot>; check the file")

@@ -19,10 +19,11 @@ from polhode.robots.words import shortened
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+    from typing import BinaryIO
 
     from polhode.robots.addresses import Addresses
 
-__all__ = ["LimitError", "Sources", "read_source"]
+__all__ = ["LimitError", "Sources", "read_source", "read_stream"]
 
 _MOST_BYTES: Final = 1 << 28
 _MOST_FILES: Final = 1000
@@ -171,10 +172,22 @@ def read_source(path: Path, most: int = _MOST_BYTES) -> bytes:
     with os.fdopen(os.open(path, flags), "rb") as stream:
         if stat.S_ISFIFO(mode):
             os.set_blocking(stream.fileno(), True)
-        source = stream.read(most + 1)
-    if len(source) > most:
-        raise FileFormatError(f"{path}: has more than {most} bytes, the most that is read; divide the model")
+        source = read_stream(stream, str(path), most)
     if not source and stat.S_ISFIFO(mode):
         raise FileFormatError(f"{path}: is a pipe into which nothing writes; start first what writes")
     note_read(path)
+    return source
+
+
+def read_stream(stream: BinaryIO, name: str, most: int = _MOST_BYTES) -> bytes:
+    """Read what comes to its end, of at most so many bytes.
+
+    Raises
+    ------
+    FileFormatError
+        If it is more.
+    """
+    source = stream.read(most + 1)
+    if len(source) > most:
+        raise FileFormatError(f"{name}: has more than {most} bytes, the most that is read; divide the model")
     return source
