@@ -81,6 +81,7 @@ def test_absurd_sizes_are_refused() -> None:
         "PolhodeError",
         "MeshError",
         "QuadratureError",
+        "InvalidInertiaError",
     )
     wrong = {name: answer for name, answer in answers().items() if answer[0] not in accepted}
     assert not wrong
@@ -90,6 +91,10 @@ def test_errors_of_memory_give_what_asks_the_shape_and_the_bytes() -> None:
     told = {name: words for name, (kind, words) in answers().items() if kind == "MemoryError"}
     assert len(told) > 0.9 * len(answers())
     for name, words in told.items():
+        if name.endswith("__getitem__") or "__getitem__ " in name:
+            # NumPy itself finds the rows that a key picks.
+            assert words.startswith("key: Unable to allocate"), (name, words)
+            continue
         told_right = re.fullmatch(
             r".+: a result of shape \([\d, ]+\) takes [\d.e]+ ([kMGTP]B|bytes) with its copies, "
             r"(but [\d.]+ .B are left|more than a process can address|which the system does not give); .*",

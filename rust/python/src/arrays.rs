@@ -176,7 +176,7 @@ pub(crate) fn write_of<'py, R, T: Item>(
 
 /// The numbers of an array that is being made: room for all of them was found before the first was computed.
 pub(crate) struct Numbers<'py> {
-    numbers: Vec<f64>,
+    found: Vec<f64>,
     beat: Beat<'py>,
     py: Python<'py>,
 }
@@ -185,7 +185,10 @@ impl<'py> Numbers<'py> {
     /// None yet, of an array of items under a shape; `what` asks for it.
     pub(crate) fn of<T: Item>(py: Python<'py>, what: &str, shape: &[usize]) -> PyResult<Self> {
         Ok(Self {
-            numbers: memory::vector(what, &[shape, T::TAIL].concat(), 0)?,
+            found: match memory::few(shape, size_of::<f64>() * size::<T>()) {
+                Some(rows) => Vec::with_capacity(rows * size::<T>()),
+                None => memory::vector(what, &[shape, T::TAIL].concat(), 0)?,
+            },
             beat: Beat::new(py),
             py,
         })
@@ -199,9 +202,9 @@ impl<'py> Numbers<'py> {
     ) -> PyResult<()> {
         let mut rows = rows.into_iter();
         loop {
-            let before = self.numbers.len();
-            (rows.by_ref().take(BLOCK)).for_each(|row| write(row, &mut self.numbers));
-            if self.numbers.len() == before {
+            let before = self.found.len();
+            (rows.by_ref().take(BLOCK)).for_each(|row| write(row, &mut self.found));
+            if self.found.len() == before {
                 return Ok(());
             }
             self.beat.mark()?;
@@ -210,7 +213,7 @@ impl<'py> Numbers<'py> {
 
     /// The array.
     pub(crate) fn finish<T: Item>(self, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        shaped::<T>(self.py, self.numbers, shape)
+        shaped::<T>(self.py, self.found, shape)
     }
 }
 

@@ -116,7 +116,7 @@ fn to_python<'py>(
     masses.put(&found.rows, |row, out| out.extend(&row.masses))?;
     let mut positions = Numbers::of::<[f64; 3]>(py, "positions", &shape)?;
     positions.put(&found.rows, |row, out| {
-        out.extend(row.positions.as_flattened())
+        out.extend(row.positions.as_flattened());
     })?;
     let parts = (
         masses.finish::<f64>(&shape)?,

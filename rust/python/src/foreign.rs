@@ -202,8 +202,11 @@ fn in_pieces<'py>(
 /// How many numbers a list of lists has if all are as long as the first.
 fn size_hint(object: &Bound<'_, PyAny>, depth: usize) -> usize {
     let is_list = object.is_instance_of::<PyList>() || object.is_instance_of::<PyTuple>();
+    if depth == 0 || !is_list {
+        return 1;
+    }
     let length = object.len().unwrap_or(0);
-    if depth == 0 || !is_list || length == 0 {
+    if length == 0 {
         return 1;
     }
     let of_first = object

@@ -20,23 +20,31 @@ const HOLD: Duration = Duration::from_millis(20);
 /// The beat of a pass over many rows that holds the GIL: Ctrl-C ends it, other threads of Python have their turn.
 pub(crate) struct Beat<'py> {
     py: Python<'py>,
-    looked: Instant,
+    /// When Python was looked at last; short passes never ask for the time.
+    looked: Option<Instant>,
+    begun: bool,
 }
 
 impl<'py> Beat<'py> {
     pub(crate) fn new(py: Python<'py>) -> Self {
         Self {
             py,
-            looked: Instant::now(),
+            looked: None,
+            begun: false,
         }
     }
 
     /// Called between blocks of rows, each of far less than a hundredth of a second.
     pub(crate) fn mark(&mut self) -> PyResult<()> {
-        if self.looked.elapsed() >= HOLD {
+        if !self.begun {
+            self.begun = true;
+            return Ok(());
+        }
+        let looked = *self.looked.get_or_insert_with(Instant::now);
+        if looked.elapsed() >= HOLD {
             self.py.check_signals()?;
             self.py.detach(|| ());
-            self.looked = Instant::now();
+            self.looked = Some(Instant::now());
         }
         Ok(())
     }

@@ -61,6 +61,15 @@ pub(crate) fn room(what: impl Display, shape: &[usize], bytes: usize) -> PyResul
     }
 }
 
+/// How many items a shape has, where they are so few that nobody needs to look whether there is room.
+pub(crate) fn few(shape: &[usize], bytes: usize) -> Option<usize> {
+    let mut items = 1_usize;
+    for &length in shape {
+        items = items.checked_mul(length)?;
+    }
+    (items.checked_mul(bytes)? as u64 <= LITTLE).then_some(items)
+}
+
 /// An empty vector with room for the items of `shape`; `copies` is how many as large there will be beside it.
 ///
 /// # Errors

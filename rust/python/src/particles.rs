@@ -99,7 +99,7 @@ pub(crate) fn read_labels<'py>(
             "labels: expected integers, got dtype {dtype}"
         )));
     }
-    Ok(contiguous(&array, "labels", "int64")?.extract()?)
+    contiguous(&array, "labels", "int64")?.extract()
 }
 
 /// Work that Ctrl-C may end, without the interpreter lock.

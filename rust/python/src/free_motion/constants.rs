@@ -187,7 +187,7 @@ impl PyFreeMotion {
         let axis = if cones.is_one() {
             cones[0].axis.into_pyobject(py)?.into_any()
         } else {
-            write_any_of(py, &cones, |cones| cones.axis as i64)?
+            write_any_of(py, &cones, |cones| i64::try_from(cones.axis).unwrap_or(2))?
         };
         let parts = (
             axis,

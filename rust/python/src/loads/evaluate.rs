@@ -38,7 +38,7 @@ impl PyLoad {
         let terms = self.terms(py)?;
         let bodies = match body {
             Some(body) => &body.get().bodies,
-            None => &self.unit(py, &terms)?,
+            None => &unit(py, &terms)?,
         };
         let pivoted = is_pivot(about)?;
         let t: Stack<f64> = read(t, "t")?;
@@ -112,18 +112,6 @@ impl PyLoad {
         }
         let shape = grid.shape;
         Ok(Stack { shape, rows: found })
-    }
-
-    /// The bodies it acts on; a load that does not depend on the body acts on any.
-    fn unit(&self, py: Python<'_>, terms: &Stack<Vec<Term>>) -> PyResult<Stack<RigidBody>> {
-        if terms.rows.iter().flatten().any(Term::needs_body) {
-            return Err(PyTypeError::new_err(
-                "body: the weight, the point of a force and the gravity gradient depend on the body; pass body=",
-            ));
-        }
-        RigidBody::new(1.0, &nalgebra::Matrix3::identity(), &Vector3::zeros(), 0.0)
-            .map(Stack::one)
-            .map_err(|error| to_py(py, &error))
     }
 }
 
@@ -320,4 +308,16 @@ impl PyLoad {
         })?;
         Ok(Some(axes.into_any()))
     }
+}
+
+/// The bodies it acts on; a load that does not depend on the body acts on any.
+fn unit(py: Python<'_>, terms: &Stack<Vec<Term>>) -> PyResult<Stack<RigidBody>> {
+    if terms.rows.iter().flatten().any(Term::needs_body) {
+        return Err(PyTypeError::new_err(
+            "body: the weight, the point of a force and the gravity gradient depend on the body; pass body=",
+        ));
+    }
+    RigidBody::new(1.0, &nalgebra::Matrix3::identity(), &Vector3::zeros(), 0.0)
+        .map(Stack::one)
+        .map_err(|error| to_py(py, &error))
 }

@@ -12,7 +12,7 @@ use super::called::Callback;
 use crate::arrays::{numpy, read_list, try_rows};
 use crate::errors::to_py;
 use crate::interrupt::Beat;
-use crate::rigid_body::{picked_rows, to_index};
+use crate::rigid_body::{picked_by, to_index};
 use crate::stack::{Broadcast, Stack};
 
 /// A term, and how it was made.
@@ -75,9 +75,7 @@ impl Part {
         shape: &[usize],
         key: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        let numbers = numpy(py)?.call_method1("arange", (shape.iter().product::<usize>(),))?;
-        let numbers = numbers.call_method1("reshape", (PyTuple::new(py, shape)?,))?;
-        let picked = picked_rows(&numbers.get_item(key)?)?;
+        let picked = picked_by(py, shape, key)?;
         let rows = picked.as_slice()?;
         let mut part = self.copied(py)?;
         if let Acts::Term(terms) = &part.acts {

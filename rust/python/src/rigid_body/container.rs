@@ -5,7 +5,7 @@ use std::hash::{Hash, Hasher};
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use polhode::RigidBody;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyMemoryError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyList, PyTuple};
 
@@ -39,12 +39,7 @@ impl PyRigidBody {
 
     /// NumPy's indexing over the stack: integers, slices, masks, arrays, ``...`` and ``None``.
     fn __getitem__(&self, py: Python<'_>, key: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let np = numpy(py)?;
-        // NumPy itself tells which rows the key picks.
-        let rows = np
-            .call_method1("arange", (self.bodies.rows.len(),))?
-            .call_method1("reshape", (self.shape(py)?,))?;
-        let picked = picked_rows(&rows.get_item(key)?)?;
+        let picked = picked_by(py, &self.bodies.shape, key)?;
         let shape = picked.shape().to_vec();
         let grid = Broadcast::of(["key"], [&shape])?;
         let picked = picked.as_slice()?;
@@ -141,13 +136,31 @@ impl PyRigidBody {
     }
 }
 
+/// The rows of a stack that a key picks, as NumPy itself tells.
+pub(crate) fn picked_by<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    key: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
+    let rows = numpy(py)?
+        .call_method1("arange", (shape.iter().product::<usize>(),))?
+        .call_method1("reshape", (PyTuple::new(py, shape)?,))?;
+    picked_rows(&rows.get_item(key).map_err(|error| {
+        if error.is_instance_of::<PyMemoryError>(py) {
+            PyMemoryError::new_err(format!("key: {}", error.value(py)))
+        } else {
+            error
+        }
+    })?)
+}
+
 /// The rows that NumPy picked of their numbers, C-ordered.
-pub(crate) fn picked_rows<'py>(
+pub(super) fn picked_rows<'py>(
     picked: &Bound<'py, PyAny>,
 ) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
     let picked = numpy(picked.py())?.call_method1("asarray", (picked,))?;
     let picked = contiguous(&picked, "key", "int64")?;
-    Ok(picked.extract()?)
+    picked.extract()
 }
 
 /// The number of a row that NumPy picked: never a negative one.

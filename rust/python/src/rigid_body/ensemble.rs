@@ -16,10 +16,10 @@ use pyo3::prelude::*;
 use super::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Beat, Interrupt};
 use crate::loads::{Acting, Cause, Fault, PyLoad};
 use crate::memory;
-use crate::stack::{Broadcast, Stack};
+use crate::stack::{BLOCK, Broadcast, Stack};
 
 /// Bodies, their states at the start and the analytic terms of the load on each.
 pub(super) struct Start<'a> {
@@ -144,7 +144,7 @@ impl Ensemble<'_> {
     }
 
     /// As many as there are rows, none of them begun, and room for their states and the arrays of these.
-    fn none_yet<E>(&self) -> PyResult<Runs<E>> {
+    fn none_yet<E>(&self, py: Python<'_>) -> PyResult<Runs<E>> {
         let numbers = size_of::<Phase>().saturating_mul(2 * self.times.len());
         let what = "simulate: rows of the stack times output times";
         let states = [&self.grid.shape[..], &[self.times.len()]].concat();
@@ -152,14 +152,18 @@ impl Ensemble<'_> {
         let each = numbers.saturating_add(size_of::<Option<Run<E>>>());
         let count = memory::room(what, &self.grid.shape, each)?;
         let mut runs = memory::vector(what, &self.grid.shape, 0)?;
-        runs.resize_with(count, || None);
+        let mut beat = Beat::new(py);
+        while runs.len() < count {
+            beat.mark()?;
+            runs.resize_with(count.min(runs.len() + BLOCK), || None);
+        }
         Ok(runs)
     }
 
     /// Every row, one by one, with Python at hand.
     fn attached(&self, py: Python<'_>, interrupt: &Interrupt) -> PyResult<Runs<Fault>> {
         let count = self.grid.len();
-        let mut runs = self.none_yet::<Fault>()?;
+        let mut runs = self.none_yet::<Fault>(py)?;
         for (row, slot) in runs.iter_mut().enumerate() {
             let watch = |part: f64| interrupt.poll(Some((row as f64 + part) / count as f64));
             let run = self.one(row, Some(py), &mut self.events.calling(py), watch);
@@ -175,7 +179,7 @@ impl Ensemble<'_> {
     /// Every row by itself, on all cores.
     fn detached(&self, py: Python<'_>, interrupt: &Interrupt) -> PyResult<Runs<Fault>> {
         let count = self.grid.len();
-        let mut runs = self.none_yet::<Fault>()?;
+        let mut runs = self.none_yet::<Fault>(py)?;
         let fraction = |of_row: f64| (count == 1).then_some(of_row);
         // Where a run ends all, the rows begun so far are kept.
         let _ended = py.detach(|| {
@@ -194,7 +198,7 @@ impl Ensemble<'_> {
     /// Every row by Taylor series, eight side by side.
     fn abreast(&self, py: Python<'_>, interrupt: &Interrupt) -> PyResult<Runs<polhode::Error>> {
         let count = self.grid.len();
-        let mut runs = self.none_yet::<polhode::Error>()?;
+        let mut runs = self.none_yet::<polhode::Error>(py)?;
         py.detach(|| {
             if count == 1 {
                 let mut watch = |part| interrupt.poll(Some(part));

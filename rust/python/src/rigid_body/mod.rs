@@ -20,7 +20,7 @@ use polhode::RigidBody;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-pub(crate) use self::container::{picked_rows, to_index};
+pub(crate) use self::container::{picked_by, to_index};
 pub(crate) use self::simulate::read_times;
 use crate::arrays::read;
 use crate::stack::Stack;
