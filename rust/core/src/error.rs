@@ -525,6 +525,21 @@ pub enum Error {
         /// The step asked for.
         step: f64,
     },
+    /// A run of more steps than a run may take.
+    #[error(
+        "the integration has come to t = {time:?} in {steps} steps, and would take {ahead:.1e} in all; a run takes {most:e} at \
+         most: ask for a shorter time (the rest from there with resume), or a looser rtol"
+    )]
+    TooManySteps {
+        /// Where it has come to.
+        time: f64,
+        /// Steps so far.
+        steps: u64,
+        /// Steps of the whole run at this rate.
+        ahead: f64,
+        /// The limit.
+        most: f64,
+    },
     /// The equations of motion gave a number that is not finite.
     #[error(
         "the equations of motion are not finite at t = {time:?}: check the load at that time and state"
@@ -581,7 +596,9 @@ impl Error {
             Self::File(_) => Kind::File,
             Self::Quadrature { .. } => Kind::Quadrature,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
-            Self::StepTooSmall { .. } | Self::NotFiniteMotion { .. } => Kind::Integration,
+            Self::StepTooSmall { .. }
+            | Self::TooManySteps { .. }
+            | Self::NotFiniteMotion { .. } => Kind::Integration,
             _ => Kind::Argument,
         }
     }

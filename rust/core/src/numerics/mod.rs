@@ -17,6 +17,7 @@
 //! | [`jacobi`] | Jacobi's functions of one number, Carlson's integral of the second kind |
 //! | [`jet`] | numbers with their derivatives |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
+//! | [`sign_changes`] | all places in an interval at which a polynomial changes its sign |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
 //! | [`eigen3`] | eigenvalues and eigenvectors of symmetric 3×3 matrices |
 //!
@@ -35,6 +36,7 @@ pub mod planes;
 pub mod power_of_two;
 pub mod quadrature;
 pub mod reduce;
+pub mod sign_changes;
 pub mod split_vector;
 pub mod theta;
 pub mod threads;

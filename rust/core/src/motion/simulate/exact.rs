@@ -10,13 +10,13 @@ use super::{Effort, End, Run, Task};
 use crate::error::Error;
 use crate::motion::free::FreeMotion;
 use crate::motion::heavy_top::HeavyTop;
-use crate::motion::loads::Term;
+use crate::motion::loads::{Switch, Term};
 use crate::motion::state::{Phase, State};
 
 /// States between two looks at the watch.
 const PATIENCE: usize = 4096;
 /// Parts of a turn at whose ends events are looked for.
-const PARTS_OF_A_TURN: f64 = 16.0;
+const PARTS_OF_A_TURN: f64 = 6.0;
 
 /// The run under `terms`, without events.
 pub(super) fn solve<E: From<Error>>(
@@ -194,5 +194,9 @@ impl<E: From<Error>> Stepper for Exact<E> {
 
     fn carry(&self) -> Carry {
         Carry::default()
+    }
+
+    fn switches(&self) -> Vec<Switch> {
+        Vec::new()
     }
 }

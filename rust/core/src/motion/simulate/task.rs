@@ -12,6 +12,31 @@ pub const TIGHTEST: f64 = 10.0 * f64::EPSILON;
 /// The tightest relative tolerance that numbers of twice the precision can serve.
 pub const TIGHTEST_TWOFOLD: f64 = 1e-28;
 
+/// The most steps that a run takes.
+pub const MOST_STEPS: u64 = 1_000_000_000;
+/// The steps after which a run is judged by how far it has come.
+const JUDGED: u64 = 1 << 17;
+/// How many times [`MOST_STEPS`] a run that is judged may seem to need: its steps may yet become longer.
+const HOPELESS: f64 = 1e3;
+
+/// Refuses to go on with a run that has taken all its steps, or is hopelessly far from the end of its `span` of time.
+///
+/// # Errors
+/// [`Error::TooManySteps`].
+pub(crate) fn check_steps(steps: u64, start: f64, elapsed: f64, span: f64) -> Result<(), Error> {
+    let (most, ahead) = (MOST_STEPS as f64, steps as f64 * (span / elapsed).abs());
+    let is_hopeless = steps >= JUDGED && ahead > HOPELESS * most;
+    if steps < MOST_STEPS && !is_hopeless {
+        return Ok(());
+    }
+    Err(Error::TooManySteps {
+        time: start + elapsed,
+        steps,
+        ahead,
+        most,
+    })
+}
+
 /// How accurate each step is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
@@ -184,6 +209,17 @@ pub fn check_times(times: &[f64]) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_that_cannot_end_are_refused() {
+        let is_refused = |steps, elapsed| check_steps(steps, 0.0, elapsed, 1.0).is_err();
+        assert!(is_refused(MOST_STEPS, 1.0) && !is_refused(MOST_STEPS - 1, 1.0));
+        // 2¹⁷ steps for 1.3e-7 of the time are 1e12 for all of it.
+        let part = JUDGED as f64 / (HOPELESS * MOST_STEPS as f64);
+        assert!(is_refused(JUDGED, 0.99 * part) && !is_refused(JUDGED, 1.01 * part));
+        assert!(!is_refused(JUDGED - 1, 0.5 * part));
+        assert!(is_refused(JUDGED, -0.5 * part) && is_refused(JUDGED, 0.0));
+    }
 
     #[test]
     fn times_must_run_one_way() {

@@ -1,0 +1,175 @@
+"""Random bodies under feedback and schedules by every method that serves them, against small steps in plain NumPy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from oracles.many_motions import Motions
+from polhode import RigidBody, loads
+
+Floats = NDArray[np.float64]
+KINDS = ("body_torque", "space_torque", "linear", "quadratic", "feedback")
+STEP = 0.04
+"""Of the reference; rates are near one, so that order 8 leaves rounding alone."""
+MOVED = 1e-10
+
+
+def _unit(rng: np.random.Generator, count: int, size: int) -> Floats:
+    v = rng.normal(size=(count, size))
+    return np.asarray(v / np.linalg.norm(v, axis=1)[:, None])
+
+
+def draw(rng: np.random.Generator, n: int) -> tuple[Motions, Floats, Floats]:
+    """Bodies and loads, states to start from, and the lengths of the runs."""
+    second = rng.uniform(0.1, 1.0, (n, 3))
+    second[rng.random(n) < 0.2, 1:] = 0.5  # symmetric ones
+    moments = second.sum(1)[:, None] - second
+    axes = np.linalg.qr(rng.normal(size=(n, 3, 3)))[0]
+    axes[rng.random(n) < 0.5] = np.eye(3)
+    inertia = axes * moments[:, None, :] @ axes.transpose(0, 2, 1)
+    has = {kind: rng.random(n) < 0.3 for kind in KINDS}
+    has["feedback"] = rng.random(n) < 0.8
+    eye = np.eye(3)
+
+    def gain(kind: str, low: float, high: float) -> Floats:
+        size = np.exp(rng.uniform(np.log(low), np.log(high), n)) * has[kind]
+        shape = eye + 0.3 * rng.normal(size=(n, 3, 3)) * (rng.random(n) < 0.3)[:, None, None]
+        return np.asarray(size[:, None, None] * shape @ shape.transpose(0, 2, 1))
+
+    lightly = (10.0 ** rng.uniform(-4, -0.5, n) * (rng.random(n) < 0.5) * has["feedback"])[:, None, None]
+    end = rng.uniform(5.0, 30.0, n)
+    windows = {}
+    for kind in KINDS:
+        window = np.sort(rng.uniform(0.0, 1.0, (n, 2)), 1) * end[:, None]
+        always = rng.random(n) < 0.5
+        windows[kind] = np.where(always[:, None], [[-1e3, 1e3]], window)
+    target = _unit(rng, n, 4)
+    motions = Motions(
+        inertia=0.5 * (inertia + inertia.transpose(0, 2, 1)),
+        body_torque=0.1 * rng.normal(size=(n, 3)) * has["body_torque"][:, None],
+        space_torque=0.3 * rng.normal(size=(n, 3)) * has["space_torque"][:, None],
+        linear=gain("linear", 1e-3, 0.3),
+        quadratic=gain("quadratic", 1e-3, 0.3),
+        stiffness=gain("feedback", 0.2, 3.0),
+        damping=lightly * eye,
+        target=target,
+        windows=windows,
+    )
+    states = np.concatenate([_unit(rng, n, 4), rng.normal(size=(n, 3))], 1)
+    # Half of them come close to half a turn from the target, or just past it, on their way: that state is taken back in time.
+    e = np.concatenate([_unit(rng, n, 3), np.zeros((n, 1))], 1)
+    depth = 10.0 ** rng.uniform(-6, -2, n) * rng.choice([-1.0, 1.0], n)
+    e[:, 3] = depth
+    across = np.cross(e[:, :3], states[:, 4:]) + 1e-3 * rng.normal(size=(n, 1)) * e[:, :3]
+    graze = np.concatenate([_times(target, e), across], 1)
+    graze[:, :4] /= np.linalg.norm(graze[:, :4], axis=1)[:, None]
+    at = rng.uniform(0.3, 4.0, n)
+    # Backward in time damping drives: where it is strong there is no such start.
+    is_weak = has["feedback"] & ~has["quadratic"] & ~has["linear"]
+    chosen = np.flatnonzero(is_weak & (rng.random(n) < 0.6))
+    states[chosen] = motions.rows(chosen).run(graze[chosen], at[chosen], np.zeros(chosen.size), STEP)
+    states[has["feedback"] & (rng.random(n) < 0.05), 4:] = 0.0
+    return motions, states, end
+
+
+def _times(p: Floats, q: Floats) -> Floats:
+    vector = p[:, 3:] * q[:, :3] + q[:, 3:] * p[:, :3] + np.cross(p[:, :3], q[:, :3])
+    return np.concatenate([vector, (p[:, 3] * q[:, 3] - (p[:, :3] * q[:, :3]).sum(1))[:, None]], 1)
+
+
+def load_of(motions: Motions, row: int) -> Any:
+    parts: list[Any] = []
+
+    def add(kind: str, *numbers: Floats, load: Any) -> None:
+        if not any(number[row].any() for number in numbers):
+            return
+        window = motions.windows[kind][row]
+        parts.append(load if window[1] == 1e3 else loads.schedule(load, [tuple(window)]))
+
+    m = motions
+    add("body_torque", m.body_torque, load=loads.constant_torque(m.body_torque[row], "body"))
+    add("space_torque", m.space_torque, load=loads.constant_torque(m.space_torque[row], "space"))
+    add("linear", m.linear, load=loads.damping(m.linear[row]))
+    add("quadratic", m.quadratic, load=loads.damping(np.zeros((3, 3)), m.quadratic[row]))
+    feedback = loads.feedback(m.stiffness[row], m.damping[row], m.target[row])
+    add("feedback", m.stiffness, load=feedback)
+    if not parts:
+        return None
+    total = parts[0]
+    for part in parts[1:]:
+        total = total + part
+    return total
+
+
+def apart(a: Floats, b: Floats, scale: Any) -> Any:
+    """Half an angle, or how far ω are apart in parts of its scale."""
+    tilt = np.minimum(np.linalg.norm(a[..., :4] - b[..., :4], axis=-1), np.linalg.norm(a[..., :4] + b[..., :4], axis=-1))
+    return np.maximum(tilt, np.linalg.norm(a[..., 4:] - b[..., 4:], axis=-1) / scale)
+
+
+def serving(motions: Motions, row: int) -> list[str]:
+    rates = (motions.linear, motions.quadratic, motions.damping)
+    return ["taylor", "dop853", "radau"] + (["splitting"] if not any(x[row].any() for x in rates) else [])
+
+
+def compare(n: int, seed: int) -> dict[str, float]:
+    """The worst error of each method in units of what is allowed, 100 rtol κ."""
+    rng = np.random.default_rng(seed)
+    motions, states, end = draw(rng, n)
+    start = np.zeros(n)
+    want = motions.run(states, start, end, STEP)
+    shift = _unit(rng, n, 7) * MOVED
+    moved = states + shift
+    moved[:, :4] /= np.linalg.norm(moved[:, :4], axis=1)[:, None]
+    scale = np.maximum(np.linalg.norm(states[:, 4:], axis=1), 1.0)
+    kappa = np.maximum(1.0, apart(motions.run(moved, start, end, STEP), want, scale) / MOVED)
+    fine = motions.run(states, start, end, 0.5 * STEP)
+    doubt = apart(fine, want, scale)
+    worst: dict[str, float] = {}
+    left_out = 0
+    for row in range(n):
+        if kappa[row] > 1e8:
+            left_out += 1
+            continue
+        body = RigidBody(1.0, motions.inertia[row])
+        rtol = float(10.0 ** rng.uniform(-11, -6))
+        for method in serving(motions, row):
+            tolerance = max(rtol, 1e-9) if method == "radau" else rtol
+            run = body.simulate(
+                [0.0, end[row]],
+                states[row, 4:],
+                states[row, :4],
+                load=load_of(motions, row),
+                method=method,  # type: ignore[arg-type]
+                rtol=tolerance,
+            )
+            got = np.concatenate([run.quaternion[-1], run.omega[-1]])
+            allowed = 100 * tolerance * kappa[row]
+            assert doubt[row] < 0.1 * allowed, f"{seed=} {row=}: the reference is off by {doubt[row]:.2e}"
+            ratio = float(apart(got, want[row], scale[row]) / allowed)
+            assert ratio < 1.0, f"{seed=} {row=} {method} rtol={tolerance:.2e} κ={kappa[row]:.2e}: {ratio:.2e}"
+            worst[method] = max(worst.get(method, 0.0), ratio)
+    assert left_out <= max(1, 0.01 * n)
+    return worst
+
+
+def test_random_feedback_and_schedules() -> None:
+    assert set(compare(60, 1)) == {"taylor", "dop853", "radau", "splitting"}
+
+
+@pytest.mark.long
+@pytest.mark.timeout(7200)
+def test_two_thousand_random_feedbacks_and_schedules() -> None:
+    for seed in range(10):
+        print(seed, compare(200, 100 + seed))
+
+
+def test_a_flip_twice_within_a_step() -> None:
+    """A ball that turns about one axis under a feedback is a pendulum of two laws, known in closed form by energy."""
+    ball = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
+    for method in ("taylor", "dop853", "radau", "splitting"):
+        run = ball.simulate([0, 20], (0, 0, 2.002), load=loads.feedback(1.0, 0.0), method=method, rtol=1e-12)  # type: ignore[arg-type]
+        assert run.omega[-1, 2] == pytest.approx(1.96575271182971, abs=1e-9)
