@@ -7,9 +7,24 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{floats, numpy, write};
+use crate::errors::{at_row, to_py};
 use crate::interrupt::Interrupt;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::Stack;
+
+/// That every motion knows its state at the farthest of the times.
+fn within_reach<M: ClosedForm>(py: Python<'_>, motions: &Stack<M>, times: &[f64]) -> PyResult<()> {
+    let size = |t: f64| if t.is_finite() { t.abs() } else { 0.0 };
+    let farthest = times.iter().fold(0.0_f64, |most, &t| most.max(size(t)));
+    for (row, motion) in motions.rows.iter().enumerate() {
+        if motion.reach() < farthest {
+            let t = times.iter().find(|&&t| size(t) == farthest);
+            let outcome = motion.reaches(*t.unwrap_or(&farthest));
+            return outcome.map_err(|error| at_row(&motions.shape, row, &to_py(py, &error), py));
+        }
+    }
+    Ok(())
+}
 
 /// The trajectory of `body` that moves as `motions` say, through the times `t`, whose axes follow those of the stack.
 ///
@@ -23,6 +38,7 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
     fields: Bound<'py, PyDict>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let times = floats(t, "t")?;
+    within_reach(py, motions, times.as_slice()?)?;
     let shape = [&motions.shape[..], times.shape()].concat();
     // NumPy's own memory, in large pages: the pages of a plain vector take longer to come by than the states.
     let array = |components: usize| {

@@ -21,7 +21,9 @@ pub use self::events::{Crossing, Direction, Events, NoEvents, Rule};
 pub use self::method::{Method, closed_top};
 pub(in crate::motion) use self::run::spans;
 pub use self::run::{Effort, End, Run};
-pub use self::task::{Footing, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_times};
+pub use self::task::{
+    Footing, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_scales, check_times,
+};
 use super::integrate::taylor;
 use super::loads::Load;
 pub use super::state::{Phase, State};
@@ -43,6 +45,12 @@ pub fn simulate<L: Load>(
     let (terms, has_events) = (load.analytic(), !events.rules().is_empty());
     let is_top = || closed_top(task.body).is_ok();
     let method = (task.method).serving(task.subject.pivoted, terms, &task.tolerance, is_top);
+    let method = method.and_then(|method| {
+        if method != Method::Exact {
+            check_scales(task.body, task.times)?;
+        }
+        Ok(method)
+    });
     run.end = match (method, terms) {
         (Err(error), _) => End::Failed(error.into()),
         (Ok(Method::Exact), Some(terms)) if !has_events => {
