@@ -10,11 +10,12 @@ import pytest
 from mpmath import mp, mpf
 from oracles.jacobi import JacobiMotion
 from oracles.lagrange import LagrangeTop
-from oracles.motion_cases import angle, relative_error
+from oracles.motion_cases import angle, relative_error, unit_floats
 from polhode import RigidBody, loads
 from polhode.errors import PolhodeError
 
-MOMENTS, OMEGA, ATTITUDE = (1.0, 2.0, 2.5), (0.3, 0.2, 1.1), (0.1, -0.5, 0.3, 0.8)
+MOMENTS, OMEGA = (1.0, 2.0, 2.5), (0.3, 0.2, 1.1)
+ATTITUDE = unit_floats(0.1, -0.5, 0.3, 0.8)
 NEAR = (1.0, 0.2, np.sqrt(0.8) * (1 + 1e-9))
 G = (0.0, 0.0, -4.0)
 TOP = RigidBody.from_principal(1.0, (0.75, 0.75, 0.5), center_of_mass=(0.0, 0.0, 0.5))
@@ -29,7 +30,8 @@ def reach_of(motion: Any) -> float:
     with pytest.raises(PolhodeError, match="beyond the reach of this motion") as caught:
         motion.at([1.0, 1e100, 2.0])
     message = str(caught.value)
-    assert "t = 1e+100" in message and "2^88 turns" in message
+    assert "t = 1e100" in message
+    assert "2^88 turns" in message
     return float(message.split("<= ")[1].split(":")[0])
 
 
@@ -47,15 +49,15 @@ def test_times_beyond_the_reach_are_refused(omega: Any) -> None:
         assert motion.error_bar(t) == (np.inf, np.inf)
     assert np.isnan(motion.at([np.nan, np.inf]).omega).all()
     bars = motion.error_bar(np.concatenate([[0.0], np.logspace(-300, 308, 609)]), rtol=0.0)
-    assert not np.isnan(bars.attitude).any() and not np.isnan(bars.omega).any()
+    assert not np.isnan(bars).any()
     assert motion.error_bar(reach * 0.999, rtol=0.0).attitude > 1.5
     bars = motion.error_bar(np.logspace(-300, 308, 609))
-    assert not np.isnan(bars.attitude).any() and not np.isnan(bars.omega).any()
+    assert not np.isnan(bars).any()
 
 
 def test_the_row_and_the_time_are_named() -> None:
     motions = free([OMEGA, (3e5, 2e5, 11e5)])
-    with pytest.raises(PolhodeError, match=r"row 1: t = -1e\+22 is beyond"):
+    with pytest.raises(PolhodeError, match=r"row 1: t = -1e22 is beyond"):
         motions.at([0.0, -1e22])
 
 

@@ -1,7 +1,8 @@
-"""Where a closed form changes its series or its case: the answer is the exact one on both sides, up to a million turns."""
+"""Where a closed form changes its series or its case, the answer is the exact one on both sides."""
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import mpmath
@@ -10,11 +11,11 @@ import pytest
 from mpmath import mp, mpf
 from oracles.jacobi import JacobiMotion
 from oracles.lagrange import LagrangeTop
-from oracles.motion_cases import angle, relative_error
+from oracles.motion_cases import angle, relative_error, unit_floats
 from polhode import RigidBody
 
 BAR = 1e-14
-ATTITUDE = (0.1, -0.5, 0.3, 0.8)
+ATTITUDE = unit_floats(0.1, -0.5, 0.3, 0.8)
 TIMES = np.array([0.3, 7.0, 1e3, 1e6])
 
 
@@ -30,7 +31,7 @@ def worst(motion: Any, exact: Any, times: np.ndarray = TIMES) -> float:
 def assert_free(moments: Any, omega: Any, mode: str, times: np.ndarray = TIMES) -> None:
     motion = RigidBody.from_principal(1.0, moments).free_motion(omega, ATTITUDE)
     assert motion.mode == mode
-    assert worst(motion, JacobiMotion(moments, omega, ATTITUDE), times) <= BAR
+    assert worst(motion, JacobiMotion(moments, omega, ATTITUDE, digits=35), times) <= BAR
 
 
 def complement_at(ratio: float) -> float:
@@ -58,7 +59,7 @@ def test_free_series_from_sines_to_hyperbolic_functions(side: float, long_axis: 
     assert_free(moments, omega, "long-axis" if long_axis else "short-axis")
 
 
-@pytest.mark.parametrize("angle_on_polhode", np.linspace(-3.0, 3.0, 13))
+@pytest.mark.parametrize("angle_on_polhode", [-3.0, -1e-9, 1e-9, 3.0])
 @pytest.mark.parametrize("k", [0.9, 1e-2, 1e-7])
 def test_the_start_from_either_end_of_the_quarter_period(angle_on_polhode: float, k: float) -> None:
     """tan am u tan am (K − u) = 1/k′: the nearer end changes at tan am u = k′^(−1/2)."""
@@ -97,7 +98,7 @@ def test_symmetric_bodies_and_their_neighbours(shape: str, ulps: int) -> None:
     assert worst(motion, JacobiMotion(moments, omega, ATTITUDE, digits=110)) <= BAR
 
 
-@pytest.mark.parametrize("offset", [0.0, 1e-300, 1e-170, 1e-155, 1e-150, 1e-20, 1e-8])
+@pytest.mark.parametrize("offset", [0.0, 1e-300, 1e-155, 1e-150, 1e-8])
 @pytest.mark.parametrize("axis", [0, 2])
 def test_steady_spins_and_their_neighbours(axis: int, offset: float) -> None:
     moments, omega = (1.0, 2.0, 2.5), np.zeros(3)
@@ -133,7 +134,7 @@ def test_spins_about_the_intermediate_axis_and_their_neighbours(axis: int, offse
     assert later[1] == pytest.approx(-1.25, rel=1e-12)
 
 
-@pytest.mark.parametrize("cancelled", [2.0**-n for n in (8, 11, 12, 13, 14, 20)])
+@pytest.mark.parametrize("cancelled", [2.0**-n for n in (8, 12, 13, 20)])
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_where_four_times_the_precision_begins(cancelled: float, side: float) -> None:
     """The two terms of L² − 2T I₂ cancel but for this part."""
@@ -143,27 +144,33 @@ def test_where_four_times_the_precision_begins(cancelled: float, side: float) ->
     assert_free(moments, (1.0, 0.4, third), "short-axis" if side > 0 else "long-axis", times)
 
 
-def top(omega: Any, theta: float) -> tuple[Any, Any]:
+def top(omega: Any, theta: float, digits: int = 60) -> tuple[Any, Any]:
     attitude = (np.sin(theta / 2), 0.0, 0.0, np.cos(theta / 2))
     body = RigidBody.from_principal(1.0, (0.75, 0.75, 0.5), center_of_mass=(0.0, 0.0, 0.5))
     motion = body.heavy_top(omega, attitude, gravity=(0.0, 0.0, -4.0))
-    return motion, LagrangeTop(1.0, (0.75, 0.75, 0.5), 0.5, omega, attitude, 4.0)
+    return motion, LagrangeTop(1.0, (0.75, 0.75, 0.5), 0.5, omega, attitude, 4.0, digits)
+
+
+@cache
+def even_fall() -> float:
+    """ω₁ for which k² = k′² = ½."""
+    low, high = 0.1, 1.9
+    for _ in range(55):
+        middle = (low + high) / 2
+        inside = top((middle, 1.2, 4.0), 1.0, digits=25)[1].complement > np.sqrt(0.5)
+        low, high = (middle, high) if inside else (low, middle)
+    return low
 
 
 @pytest.mark.parametrize("step", [-0.1, -1e-6, -1e-12, 1e-12, 1e-6, 0.1])
 def test_top_series_from_sines_to_hyperbolic_functions(step: float) -> None:
-    """Sines serve while K ≤ K′: at k² = ½, found by bisection in the rate of the fall."""
-    low, high = 0.1, 1.9
-    for _ in range(60):
-        middle = (low + high) / 2
-        inside = top((middle, 1.2, 4.0), 1.0)[1].complement > np.sqrt(0.5)
-        low, high = (middle, high) if inside else (low, middle)
-    motion, exact = top((low + step, 1.2, 4.0), 1.0)
+    """Sines serve while K ≤ K′."""
+    motion, exact = top((even_fall() + step, 1.2, 4.0), 1.0)
     assert (exact.complement > np.sqrt(0.5)) == (step < 0)
     assert worst(motion, exact) <= BAR
 
 
-@pytest.mark.parametrize("apart", [2.0**-n for n in (2, 6, 10, 12, 14, 18, 30)])
+@pytest.mark.parametrize("apart", [2.0**-n for n in (2, 11, 13, 30)])
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_where_tops_begin_with_four_times_the_precision(apart: float, side: float) -> None:
     """Energy that reaches the upright position but for this part, L_z = L_s."""

@@ -1,14 +1,14 @@
 """The heavy symmetric top in closed form, with mpmath: Jacobi's functions and Legendre's third integral.
 
-With γ the upward vertical in the body, u = cos θ and, in the frame that turns about the axis as the equal spherical
-top does, α = q_w + i q_z and β = q_x + i q_y,
+With γ the upward vertical in the body, u = cos θ and, in the frame that turns about the axis as the equal
+spherical top does, α = q_w + i q_z and β = q_x + i q_y,
 
     u̇² = (1 − u²)(h − 2κ(u − u₀)) − (a − b u)²,     u = u₁ + (u₂ − u₁) sn² v,     v = ½ √(2κ(u₃ − u₁)) t + v₀,
     (arg α)˙ = ½ (a + b)/(1 + u),     (arg β)˙ = ½ (a − b)/(1 − u),
 
-κ = m g l/I_t, b = I_s ω_s/I_t, I_t a the angular momentum about the vertical, h the square of ω across the axis. The roots
-are mpmath's, the integrals Carlson's R_F and R_J. The axis is the third of the body, gravity acts against the third of
-space, and the top neither stays nor arrives upright.
+κ = m g l/I_t, b = I_s ω_s/I_t, I_t a the angular momentum about the vertical, h the square of ω across the
+axis. The integrals are Carlson's R_F and R_J. The axis is the third of the body, gravity acts against the
+third of space, and the top neither stays nor arrives upright.
 """
 
 from __future__ import annotations
@@ -22,6 +22,18 @@ from mpmath import mp, mpc, mpf
 __all__ = ["LagrangeTop"]
 
 Vector = list[mpf]
+
+
+def _roots(a: mpf, b: mpf, c: mpf, digits: int) -> list[mpf]:
+    """The real roots of x³ + a x² + b x + c, ascending.
+
+    Two that are close cost half of the digits, so thrice as many are carried.
+    """
+    with mp.workdps(3 * digits):
+        p = mpmath.sqrt(a * a - 3 * b) / 3
+        cosine = (9 * a * b - 2 * a**3 - 27 * c) / (54 * p**3)
+        angle = mpmath.acos(max(-1, min(1, cosine)))
+        return sorted(2 * p * mpmath.cos((angle + 2 * k * mp.pi) / 3) - a / 3 for k in range(3))
 
 
 class LagrangeTop:
@@ -63,11 +75,10 @@ class LagrangeTop:
             lift, fall = (mpmath.conj(vertical) * rate).real, (mpmath.conj(vertical) * rate).imag
             self._a = lift + self._b * u0
             a, b, e = self._a, self._b, abs(rate) ** 2 + 2 * kappa * u0
-            # (1 − u²)(e − 2κu) − (a − bu)²
-            roots = mpmath.polyroots(
-                [2 * kappa, -e - b * b, 2 * a * b - 2 * kappa, e - a * a], maxsteps=500, extraprec=4 * digits
+            # (1 − u²)(e − 2κu) − (a − bu)², over 2κ
+            self._u1, self._u2, u3 = _roots(
+                *(x / (2 * kappa) for x in (-e - b * b, 2 * a * b - 2 * kappa, e - a * a)), digits
             )
-            self._u1, self._u2, u3 = sorted(root.real for root in roots)
             self._range = self._u2 - self._u1
             self._m = self._range / (u3 - self._u1)
             self._m1 = (u3 - self._u2) / (u3 - self._u1)

@@ -1,7 +1,8 @@
 """Random free bodies and heavy tops near the separatrix: how near is drawn, not left to chance.
 
-`L² − 2T I₂ = I₃(I₃ − I₂) ω₃² − I₁(I₂ − I₁) ω₁²` vanishes on the separatrix; k′² is what is left of it. A start is made near
-by a double ω₃ next to the one that cancels, then ω₁ and ω₃ moved by last bits, or by an ω near the intermediate axis.
+`L² − 2T I₂ = I₃(I₃ − I₂) ω₃² − I₁(I₂ − I₁) ω₁²` vanishes on the separatrix; k′² is what is left of it. A
+start is made near by the double ω₃ next to the one that cancels, the best of several ω₁, or by an ω near the
+intermediate axis.
 """
 
 from __future__ import annotations
@@ -63,7 +64,7 @@ def _cancelling(rng: np.random.Generator, moments: np.ndarray, relative: float) 
 
 
 def starts(count: int, seed: int = SEED) -> list[Start]:
-    """k′ from 0.1 to 1e-16 and both sides in turn, half of them by cancelling, half near the intermediate axis."""
+    """k′ from 0.1 to 1e-16, both sides in turn, half of them by cancelling, half near the middle axis."""
     rng = np.random.default_rng(seed)
     drawn: list[Start] = []
     while len(drawn) < count:
@@ -100,7 +101,7 @@ class TopStart(NamedTuple):
 
 
 def top_starts(count: int, seed: int = SEED) -> list[TopStart]:
-    """Tops that nearly come to rest upright: `a − b` and the energy left there vanish but for `relative` or last bits."""
+    """Tops that nearly come to rest upright: `a − b` and the energy left there vanish but for little."""
     rng = np.random.default_rng(seed)
     drawn: list[TopStart] = []
     while len(drawn) < count:
@@ -130,7 +131,7 @@ def top_starts(count: int, seed: int = SEED) -> list[TopStart]:
 
 
 def exact_axes(tensor: Any, axes: Any, digits: int = 100) -> tuple[Any, list[list[mpf]]]:
-    """Moments and principal axes (rows of the matrix) of a tensor of doubles; or the rotation nearest to `axes`, as rows."""
+    """Moments and principal axes of a tensor of doubles; or the rotation nearest to `axes`. As rows."""
     with mp.workdps(digits + 20):
         if tensor is not None:
             values, vectors = mpmath.eigsy(mpmath.matrix(np.asarray(tensor).tolist()))

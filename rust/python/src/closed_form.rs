@@ -12,15 +12,19 @@ use crate::interrupt::Interrupt;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::Stack;
 
-/// That every motion knows its state at the farthest of the times.
+/// That every motion knows its state at each of the times.
 fn within_reach<M: ClosedForm>(py: Python<'_>, motions: &Stack<M>, times: &[f64]) -> PyResult<()> {
-    let size = |t: f64| if t.is_finite() { t.abs() } else { 0.0 };
-    let farthest = times.iter().fold(0.0_f64, |most, &t| most.max(size(t)));
+    let least = |least: f64, motion: &M| least.min(motion.reach());
+    let reach = motions.rows.iter().fold(f64::INFINITY, least);
+    // Without a branch, several times at once.
+    if !times.iter().fold(false, |any, t| any | (t.abs() > reach)) {
+        return Ok(());
+    }
     for (row, motion) in motions.rows.iter().enumerate() {
-        if motion.reach() < farthest {
-            let t = times.iter().find(|&&t| size(t) == farthest);
-            let outcome = motion.reaches(*t.unwrap_or(&farthest));
-            return outcome.map_err(|error| at_row(&motions.shape, row, &to_py(py, &error), py));
+        for &t in times {
+            motion
+                .reaches(t)
+                .map_err(|error| at_row(&motions.shape, row, &to_py(py, &error), py))?;
         }
     }
     Ok(())
