@@ -41,10 +41,11 @@ def assert_free(start: Start) -> None:
 
 
 def assert_top(start: TopStart) -> None:
-    body = RigidBody.from_principal(start.mass, start.moments, center_of_mass=(0.0, 0.0, start.height))
-    top = body.heavy_top(start.omega, start.attitude, gravity=(0.0, 0.0, -start.gravity))
-    exact = LagrangeTop(*start[:6], digits=70)
-    assert worst(top, exact, start.times) <= BAR, start
+    mass, moments, height, omega, attitude, gravity, times = start
+    body = RigidBody.from_principal(mass, moments, center_of_mass=(0.0, 0.0, height))
+    top = body.heavy_top(omega, attitude, gravity=(0.0, 0.0, -gravity))
+    exact = LagrangeTop(mass, moments, height, omega, attitude, gravity, digits=70)
+    assert worst(top, exact, times) <= BAR, start
     assert top.nutation_period == pytest.approx(float(exact.period), rel=2e-15)
 
 

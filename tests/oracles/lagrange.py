@@ -13,7 +13,7 @@ third of space, and the top neither stays nor arrives upright.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import mpmath
@@ -52,9 +52,9 @@ class LagrangeTop:
     def __init__(
         self,
         mass: float,
-        moments: Sequence[float],
+        moments: Any,
         height: float,
-        omega: Sequence[float],
+        omega: Any,
         attitude: Iterable[float],
         gravity: float,
         digits: int = 80,

@@ -121,9 +121,12 @@ def top_starts(count: int, seed: int = SEED) -> list[TopStart]:
             spin = float(rng.uniform(0.1, 0.9) * min(least, 2 * mpmath.sqrt(kappa)) * I_t / mpf(along))
             b = mpf(along) * mpf(spin) / I_t
             second = float(b * top / sine)
-            first = float(mpmath.sqrt(2 * kappa * top * (1 + mpf(relative)) - mpf(second) ** 2))
+            square = 2 * kappa * top * (1 + mpf(relative)) - mpf(second) ** 2
+            if square <= 0:
+                continue
+            first = float(mpmath.sqrt(square))
         omega = np.array([first * rng.choice([-1.0, 1.0]), second, spin])
-        fastest = max(np.linalg.norm(omega), float(mpmath.sqrt(kappa)))
+        fastest = max(float(np.linalg.norm(omega)), float(mpmath.sqrt(kappa)))
         turns = 2 * np.pi / fastest * ROTATIONS * rng.uniform(0.5, 1.0, len(ROTATIONS))
         moments = np.array([across, across, along])
         drawn.append(TopStart(mass, moments, height, omega, attitude, gravity, turns))
