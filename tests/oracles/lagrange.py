@@ -24,11 +24,12 @@ __all__ = ["LagrangeTop"]
 Vector = list[mpf]
 
 
-def _roots(a: mpf, b: mpf, c: mpf, digits: int) -> list[mpf]:
+def _roots(coefficients: list[mpf], digits: int) -> list[mpf]:
     """The real roots of x³ + a x² + b x + c, ascending.
 
     Two that are close cost half of the digits, so thrice as many are carried.
     """
+    a, b, c = coefficients
     with mp.workdps(3 * digits):
         p = mpmath.sqrt(a * a - 3 * b) / 3
         cosine = (9 * a * b - 2 * a**3 - 27 * c) / (54 * p**3)
@@ -77,7 +78,7 @@ class LagrangeTop:
             a, b, e = self._a, self._b, abs(rate) ** 2 + 2 * kappa * u0
             # (1 − u²)(e − 2κu) − (a − bu)², over 2κ
             self._u1, self._u2, u3 = _roots(
-                *(x / (2 * kappa) for x in (-e - b * b, 2 * a * b - 2 * kappa, e - a * a)), digits
+                [x / (2 * kappa) for x in (-e - b * b, 2 * a * b - 2 * kappa, e - a * a)], digits
             )
             self._range = self._u2 - self._u1
             self._m = self._range / (u3 - self._u1)

@@ -52,12 +52,12 @@ def _cancelling(rng: np.random.Generator, moments: np.ndarray, relative: float) 
     with mp.workdps(60):
         i1, i2, i3 = (mpf(x) for x in moments)
         ratio = i1 * (i2 - i1) / (i3 * (i3 - i2)) * (1 + mpf(relative))
-        best = None
+        best: tuple[Any, np.ndarray] = mpf(1), omega
         for _ in range(200 if abs(relative) < 1e-16 else 1):
             exact = abs(mpf(omega[0])) * mpmath.sqrt(ratio)
             third = float(exact)
             error = abs(exact / mpf(third) - 1)
-            if best is None or error < best[0]:
+            if error < best[0]:
                 best = error, np.array([omega[0], omega[1], third * np.sign(omega[2])])
             omega[0] = np.nextafter(omega[0], 10 * omega[0])
     return best[1]
