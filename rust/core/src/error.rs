@@ -508,6 +508,17 @@ pub enum Error {
          about=\"center_of_mass\""
     )]
     PivotedInOrbit,
+    /// A time so far away that the phases of a motion in closed form are not known any more.
+    #[error(
+        "t = {t:?} is beyond the reach of this motion, |t| <= {reach:.3e}: phases are known to 2^-90 of the turns made, so \
+         after 2^88 turns nothing is left of them; ask for times within"
+    )]
+    BeyondReach {
+        /// The time.
+        t: f64,
+        /// The largest.
+        reach: f64,
+    },
     /// There is nothing where something is needed.
     #[error("{what} must not be empty")]
     Empty {

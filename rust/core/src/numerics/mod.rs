@@ -7,6 +7,7 @@
 //! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
+//! | [`quad_double`] | four times the precision, where differences decide |
 //! | [`twofold`] | numbers of twice the precision in kernels |
 //! | [`number`] | one algorithm for doubles and for numbers of twice the precision |
 //! | [`power_of_two`] | scales that keep all digits |
@@ -34,6 +35,7 @@ pub mod lane;
 pub mod number;
 pub mod planes;
 pub mod power_of_two;
+pub mod quad_double;
 pub mod quadrature;
 pub mod reduce;
 pub mod sign_changes;

@@ -27,7 +27,7 @@ pub use self::run::{Effort, End, Run};
 pub(in crate::motion) use self::run::{HELD, spans};
 pub(in crate::motion) use self::task::check_steps;
 pub use self::task::{
-    Footing, MOST_STEPS, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_times,
+    Footing, MOST_STEPS, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_scales, check_times,
 };
 use super::integrate::taylor;
 use super::loads::Load;
@@ -50,6 +50,12 @@ pub fn simulate<L: Load>(
     let (terms, has_events) = (load.analytic(), !events.rules().is_empty());
     let is_top = || closed_top(task.body).is_ok();
     let method = (task.method).serving(task.subject.pivoted, terms, &task.tolerance, is_top);
+    let method = method.and_then(|method| {
+        if method != Method::Exact {
+            check_scales(task.body, task.times)?;
+        }
+        Ok(method)
+    });
     run.end = match (method, terms) {
         (Err(error), _) => End::Failed(error.into()),
         (Ok(Method::Exact), Some(terms)) if !has_events => {

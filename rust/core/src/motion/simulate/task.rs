@@ -206,6 +206,44 @@ pub fn check_times(times: &[f64]) -> Result<(), Error> {
     Ok(())
 }
 
+/// Squares and cubes of the rates of a run, and its torques, stay within float64 while its span is within these bounds.
+const SPANS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+/// Likewise of the largest moment over the square of the span.
+const TORQUES: std::ops::RangeInclusive<f64> = 1e-250..=1e250;
+
+/// Checks that the equations of motion of a body through these times can be integrated in float64: rates are of the order of
+/// one over the span or more, and torques are moments times their squares.
+///
+/// # Errors
+/// [`Error::OutOfDomain`].
+pub fn check_scales(body: &RigidBody, times: &[f64]) -> Result<(), Error> {
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
+        return Ok(());
+    };
+    let span = (last - first).abs();
+    if span == 0.0 {
+        return Ok(());
+    }
+    if !SPANS.contains(&span) {
+        return Err(Error::OutOfDomain {
+            what: "the span of t",
+            law: "from 1e-100 to 1e100 for an integration in steps, whose rates and their squares are to stay within the \
+                  range of float64; choose another unit of time",
+            value: span,
+        });
+    }
+    let moment = body.inertia().diagonal().max();
+    if moment > 0.0 && !TORQUES.contains(&(moment / span / span)) {
+        return Err(Error::OutOfDomain {
+            what: "the largest moment over the square of the span of t",
+            law: "from 1e-250 to 1e250 for an integration in steps, whose torques are to stay within the range of float64; \
+                  choose another unit of mass, length or time",
+            value: moment / span / span,
+        });
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
