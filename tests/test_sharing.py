@@ -204,7 +204,7 @@ STICK = solids.box((1.0, 2.0, 3.0), mass=1.0)
 CALLS: dict[str, Callable[[], object]] = {
     "body": lambda: RigidBody(1.0, SMALL).principal_moments,
     "stack": lambda: (BODIES[:40] + BODIES[40:80]).inertia,
-    "lists": lambda: RigidBody.from_particles([1.0, 2.0], [[0, 0, 1], [1.0, 0, 0]]).provenance,
+    "lists": lambda: RigidBody.from_particles([1.0, 2.0], [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]).provenance,
     "errors": lambda: refused(),
     "free motion": lambda: ONE.free_motion((1.0, 0.1, 1.0)).at([0.0, 1.0]),
     "heavy top": lambda: HEAVY.at([0.0, 1.0]).omega,
