@@ -11,6 +11,7 @@ from polhode import RigidBody
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.quantities import quantities, quantity, vector
+from polhode.cli.report import top_fields
 from polhode.cli.source import shown
 from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
@@ -53,7 +54,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         "body",
         Field("mass", "mass", body.mass, loaded.mass_unit),
         Field("principal_moments", "I1 I2 I3", body.principal_moments, loaded.moment_unit),
-        Field("top", "top", str(body.principal.top)),
+        *top_fields(loaded),
     )
     report.section(
         "motion",
@@ -82,8 +83,9 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report.notes += [note] if note else []
     title = "" if file is None else Path(shown(file)).name
     for path in spin.save:
-        save(trajectory, path, spin, title=title, part=part)
+        told = save(motion, trajectory, path, spin, title=title, part=part)
         report.notes.append(f"saved {path}")
+        report.notes += [f"{path.name}: {note}" for note in told]
     return report
 
 

@@ -2,10 +2,10 @@
 
 use nalgebra::Matrix3;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use polhode::PrincipalAxes;
 use polhode::mass::validity::{ASYMMETRY, check_symmetry};
 use polhode::numerics::threads::Halt;
 use polhode::principal as core;
+use polhode::{PrincipalAxes, RigidBody};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -177,15 +177,12 @@ fn run(
 }
 
 /// As `polhode.results.PrincipalAxes`.
-pub(crate) fn to_python<'py>(
-    py: Python<'py>,
-    found: &Stack<PrincipalAxes>,
-) -> PyResult<Bound<'py, PyAny>> {
+fn to_python<'py>(py: Python<'py>, found: &Stack<PrincipalAxes>) -> PyResult<Bound<'py, PyAny>> {
     to_python_of(py, found, |principal| *principal)
 }
 
 /// As [`to_python`], for one item of each row.
-pub(crate) fn to_python_of<'py, R>(
+fn to_python_of<'py, R>(
     py: Python<'py>,
     rows: &Stack<R>,
     principal: impl Fn(&R) -> PrincipalAxes,
@@ -193,6 +190,35 @@ pub(crate) fn to_python_of<'py, R>(
     let moments = write_of(py, rows, |row| principal(row).moments)?;
     let axes = write_of(py, rows, |row| principal(row).axes)?;
     results(py)?.call1((moments, axes))
+}
+
+/// As [`to_python`], of bodies about their centres of mass, with the tolerances at which the classes are decided.
+pub(crate) fn of_bodies<'py>(
+    py: Python<'py>,
+    bodies: &Stack<RigidBody>,
+) -> PyResult<Bound<'py, PyAny>> {
+    if bodies
+        .rows
+        .iter()
+        .all(|body| body.provenance().rounding == 0.0)
+    {
+        return to_python_of(py, bodies, RigidBody::principal);
+    }
+    with_rtols(
+        py,
+        &bodies.map(|body| (body.principal(), body.top_rtols(&body.principal().moments))),
+    )
+}
+
+/// As [`to_python`], each with the tolerances at which its class is decided.
+pub(crate) fn with_rtols<'py>(
+    py: Python<'py>,
+    rows: &Stack<(PrincipalAxes, [f64; 3])>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let moments = write_of(py, rows, |(principal, _)| principal.moments)?;
+    let axes = write_of(py, rows, |(principal, _)| principal.axes)?;
+    let rtols = write_of(py, rows, |(_, rtols)| *rtols)?;
+    results(py)?.call1((moments, axes, rtols))
 }
 
 /// Axes (..., 3, 3) turned as `principal_axes` does with `canonical`, moments closer than rtol counting as equal.
@@ -289,16 +315,26 @@ pub(crate) fn principal_gaps<'py>(
     Ok(write(py, &read::<[f64; 3]>(moments, "moments")?.map(core::gaps))?.into_any())
 }
 
-/// Class of the top with ascending moments, at a relative tolerance: a string, or an array of them.
+/// Class of the top with ascending moments: a string, or an array of them. The relative tolerance is one number, or three of
+/// shape (..., 3) for I1 = 0, I1 = I2 and I2 = I3.
 #[pyfunction]
 pub(crate) fn classify_tops<'py>(
     py: Python<'py>,
     moments: &Bound<'py, PyAny>,
-    rtol: f64,
+    rtol: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    check_rtol(rtol)?;
-    let classes =
-        read::<[f64; 3]>(moments, "moments")?.map(|moments| core::classify(moments, rtol).as_str());
+    let rtols = match rtol.extract::<f64>() {
+        Ok(one) => Stack::one([one; 3]),
+        Err(_) => read::<[f64; 3]>(rtol, "rtol")?,
+    };
+    for &rtol in rtols.rows.as_flattened() {
+        check_rtol(rtol)?;
+    }
+    let moments = read::<[f64; 3]>(moments, "moments")?;
+    let grid = Broadcast::of(["moments", "rtol"], [&moments.shape, &rtols.shape])?;
+    let classes = grid.try_map(py, |[m, r]| {
+        Ok(core::classify_within(&moments[m], &rtols[r]).as_str())
+    })?;
     if classes.is_one() {
         return Ok(PyString::new(py, classes[0]).into_any());
     }

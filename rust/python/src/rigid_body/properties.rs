@@ -11,7 +11,7 @@ use pyo3::types::PyNotImplemented;
 use super::{PyRigidBody, points};
 use crate::arrays::{Argument, read, read_or, write, write_numbers, write_of};
 use crate::attitudes::read_rotation;
-use crate::principal::{to_python, to_python_of};
+use crate::principal::{of_bodies, with_rtols};
 use crate::stack::{Broadcast, Stack};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
@@ -51,7 +51,7 @@ impl PyRigidBody {
     /// 'prolate'
     #[getter]
     fn principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        to_python_of(py, &self.bodies, RigidBody::principal)
+        of_bodies(py, &self.bodies)
     }
 
     /// Radii of gyration √(I/m) about the principal axes through C, ascending, shape (..., 3).
@@ -148,9 +148,12 @@ impl PyRigidBody {
     ) -> PyResult<Bound<'py, PyAny>> {
         let points = points(&self.bodies, Some(point), "point")?;
         let grid = self.with("point", &points)?;
-        to_python(
+        with_rtols(
             py,
-            &grid.try_map(py, |[b, p]| Ok(self.bodies[b].principal_about(&points[p])))?,
+            &grid.try_map(py, |[b, p]| {
+                let found = self.bodies[b].principal_about(&points[p]);
+                Ok((found, self.bodies[b].top_rtols(&found.moments)))
+            })?,
         )
     }
 
@@ -333,13 +336,13 @@ impl PyRigidBody {
     }
 
     /// One body's numbers for each row.
-    pub(super) fn numbers(&self) -> Stack<[f64; 33]> {
+    pub(super) fn numbers(&self) -> Stack<[f64; 34]> {
         self.bodies.map(RigidBody::to_array)
     }
 
     /// Bodies from their numbers.
-    pub(super) fn from_numbers(numbers: &Stack<[f64; 33]>, py: Python<'_>) -> PyResult<Self> {
-        crate::arrays::try_rows(py, numbers, |row: &[f64; 33]| -> Result<RigidBody, Error> {
+    pub(super) fn from_numbers(numbers: &Stack<[f64; 34]>, py: Python<'_>) -> PyResult<Self> {
+        crate::arrays::try_rows(py, numbers, |row: &[f64; 34]| -> Result<RigidBody, Error> {
             RigidBody::from_array(row)
         })
         .map(Self::from)
