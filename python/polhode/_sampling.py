@@ -16,7 +16,7 @@ from polhode import _core
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from polhode import FreeMotion, HeavyTop
 
@@ -29,6 +29,7 @@ __all__ = [
     "TURN",
     "Span",
     "axis_times",
+    "drawn_times",
     "fastest",
     "follow",
     "motion_times",
@@ -43,6 +44,8 @@ CHORD: Final = 0.002
 """How deep a chord of a drawn curve may cut, of the size of what it lies on: half a pixel."""
 MOST: Final = 12_000
 """Points of a curve that a browser still draws smoothly."""
+_DRAWN: Final = 50_000
+"""Points of a curve in a picture that does not move."""
 _PER_NUTATION: Final = 24
 
 
@@ -175,6 +178,32 @@ def axis_times(top: HeavyTop, t: Floats, *, most: int = MOST) -> Span:
     arm = float(np.linalg.norm(top.body.center_of_mass))
     step = min(TURN / across if across > 0.0 else np.inf, _nutation_step(top))
     return follow(lambda t: top.at(t).point("center_of_mass")[:, np.newaxis] / arm, t, step=step, most=most)
+
+
+def drawn_times(
+    motion: FreeMotion | HeavyTop, t: ArrayLike, choose: Callable[..., Span] = motion_times
+) -> Floats:
+    """Put times between those that a picture was asked for, or say why no curve can follow.
+
+    Parameters
+    ----------
+    motion : FreeMotion or HeavyTop
+        Of one body.
+    t : array_like, shape (T,)
+        Times between which curves are drawn.
+    choose : callable
+        `motion_times` or `axis_times`.
+    """
+    times = np.asarray(t, dtype=np.float64).reshape(-1)
+    if not times.size or not np.isfinite(times).all():
+        raise ValueError(f"t: expected one or more finite times, got {times[~np.isfinite(times)][:1]}")
+    span = choose(motion, times, most=_DRAWN)
+    if not span.is_whole:
+        raise ValueError(
+            f"t: a curve through {_DRAWN} points follows the motion to {span.t[-1]:.6g}, not to "
+            f"{times[-1]:.6g}; give a shorter span"
+        )
+    return span.t
 
 
 def _nutation_step(motion: FreeMotion | HeavyTop) -> float:

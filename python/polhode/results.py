@@ -315,7 +315,10 @@ class Provenance:
 
     def __repr__(self) -> str:
         shape = np.shape(self.source)
-        return f"<Provenance stack of shape {shape}>" if shape else one_line(self, vars(self))
+        if shape:
+            return f"<Provenance stack of shape {shape}>"
+        told = {name: value for name, value in vars(self).items() if name != "rounding" or value}
+        return one_line(self, told)
 
     def __str__(self) -> str:
         """Tell it in one line, for one body."""

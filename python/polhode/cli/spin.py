@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import RigidBody
+from polhode._sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.quantities import quantities, quantity, vector
@@ -66,6 +67,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report.notes += _notes(loaded)
     if until is None:
         return report
+    _check_end(motion, until)
     trajectory = motion.at(np.linspace(0.0, until, spin.samples))
     angles = np.rad2deg(trajectory.euler_angles("ZXZ", singular="nan")[-1])
     report.section(
@@ -113,6 +115,18 @@ def _checked(file: Path | None, spin: SpinOptions) -> float | None:
     if until == 0.0:
         raise PolhodeError(f"--until: {until:g} is not a time other than 0")
     return until
+
+
+def _check_end(motion: FreeMotion | HeavyTop, until: float) -> None:
+    """Refuse a time after so many turns that the last digit of the angular velocity is a turn or more."""
+    rate = fastest(motion)
+    digit = rate * np.finfo(float).eps
+    if not digit * abs(until) < 1.0:
+        raise PolhodeError(
+            f"--until: after {until:g} s at {rate:.4g} rad/s the last digit of the angular velocity turns "
+            f"the body by {digit * abs(until):.2g} rad, and its attitude is not known; end before "
+            f"{1.0 / digit:.2g} s"
+        )
 
 
 def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedBody:
