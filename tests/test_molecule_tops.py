@@ -234,10 +234,20 @@ def symmetric_particles(kind: int, rng: np.random.Generator) -> tuple[Floats, Fl
         outer = rng.uniform(0.5, 3.0)
         mass = rng.uniform(1.0, 30.0, 2)
         return np.repeat(mass, [1, 4]), np.concatenate([along(0.0), tetrahedron(outer)])
-    count, height = int(rng.integers(3, 7)), rng.uniform(2.0, 4.0) if kind == 1 else rng.uniform(0.0, 0.3)
-    mass = rng.uniform(1.0, 30.0, 3)
-    ring = around(count, rng.uniform(0.5, 1.0) if kind == 1 else rng.uniform(1.0, 3.0))
-    return np.repeat(mass, [count, 1, 1]), np.concatenate([ring, along(height, -height)])
+    count, heavy, light = int(rng.integers(3, 7)), rng.uniform(10.0, 30.0), rng.uniform(1.0, 3.0)
+    if kind == 1:
+        ring, height, masses = (
+            around(count, rng.uniform(0.5, 1.0)),
+            rng.uniform(2.0, 4.0),
+            (light, heavy, heavy),
+        )
+    else:
+        ring, height, masses = (
+            around(count, rng.uniform(1.0, 3.0)),
+            rng.uniform(0.0, 0.3),
+            (heavy, light, light),
+        )
+    return np.repeat(masses, [count, 1, 1]), np.concatenate([ring, along(height, -height)])
 
 
 def worst_displacements(
