@@ -149,7 +149,7 @@ def _divided(t: Floats, step: float, most: int) -> Span:
     interval = np.minimum(np.searchsorted(ends, number, side="right"), len(lengths) - 1)
     done = (number - (ends - parts)[interval]) / parts[interval]
     divided = np.where(done < 1.0, t[interval] + done * lengths[interval], t[interval + 1])
-    return Span(divided, is_whole=count == ends[-1])
+    return Span(divided, is_whole=bool(count == ends[-1]))
 
 
 def motion_times(motion: FreeMotion | HeavyTop, t: Floats, *, most: int = MOST) -> Span:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from polhode._sampling import COARSE, TURN, fastest, motion_times, turns
+from polhode._sampling import COARSE, MOST, TURN, fastest, motion_times, turns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -119,7 +119,7 @@ def of_motion(
         span = motion_times(motion, pictures, most=_BETWEEN * len(pictures))
         chosen = np.flatnonzero(np.isin(span.t, pictures))
     else:
-        span = motion_times(motion, since)
+        span = motion_times(motion, since, most=max(MOST, 2 * len(t)))
         chosen = np.arange(len(span.t))
         seconds, notes = _on_screen(float(span.t[-1]), rate, duration)
     if span.t[chosen[-1]] != since[-1]:
