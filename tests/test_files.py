@@ -198,7 +198,9 @@ class TestOtherLibraries:
                 **vars(atoms) | {"get_masses": lambda: np.array([16.0, 2.0, 2.0]), "has": lambda _: True}
             )
         body = RigidBody.from_atoms(atoms)
-        assert body == RigidBody.from_particles([isotope.mass for isotope in isotopes("OHH")], positions)
+        assert body == RigidBody.from_particles(
+            [isotope.mass for isotope in isotopes(["O", "H", "H"])], positions
+        )
         assert str(body.provenance).startswith("3 atoms, most common isotopes; ")
         average = RigidBody.from_atoms(atoms, masses="average")
         np.testing.assert_allclose(average.mass, 15.999 + 2 * 1.008, atol=1e-3)

@@ -34,7 +34,9 @@ def around(count: int, radius: float, height: float = 0.0, phase: float = 0.0) -
 
 
 def tetrahedron(radius: float) -> Floats:
-    return radius / np.sqrt(3.0) * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
+    corners: Floats = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
+    corners *= radius / 3.0**0.5
+    return corners
 
 
 def along(*heights: float) -> Floats:
@@ -201,7 +203,7 @@ class TestTheBound:
 
     def test_bodies_saved_before_it_was_kept_are_read(self) -> None:
         body = RigidBody.from_particles([1.0, 2.0, 3.0], np.eye(3))
-        (numbers,) = body.__reduce__()[1]
+        numbers = np.asarray(body.__reduce__()[1][0])
         assert RigidBody._from_numbers(numbers[:33]) == body
         assert RigidBody._from_numbers(np.stack([numbers, numbers])[:, :33]).shape == (2,)
         with pytest.raises(ValueError, match=r"expected shape \(\.\.\., 34\), got \(32,\)"):
@@ -364,8 +366,7 @@ class TestTheCommand:
             assert b == pytest.approx(planar_moments(bent)[0], rel=1e-14)
 
     def test_the_defect_is_never_positive(self, rng: np.random.Generator, tmp_path: Path) -> None:
-        every = [value[:2] for value in (*MOLECULES.values(), *ASYMMETRIC.values())]
-        for labels, points in every:
+        for labels, points in [(one[0], one[1]) for one in MOLECULES.values()] + list(ASYMMETRIC.values()):
             for decimals in (3, 6):
                 path = printed(tmp_path / "any.xyz", labels, points, decimals, rng)
                 moments = RigidBody.from_file(path).principal_moments

@@ -87,7 +87,7 @@ def fastest(motion: FreeMotion | HeavyTop) -> float:
     arm, gravity = float(np.linalg.norm(center)), motion.gravity
     square = float(motion.omega @ motion.omega)
     if not arm > 0.0:
-        return square**0.5
+        return float(np.sqrt(square))
     axis, tensor = center / arm, body.inertia_about("origin")
     transverse = 0.5 * (np.trace(tensor) - axis @ tensor @ axis)
     height = -float(start.point("center_of_mass")[0] @ gravity)

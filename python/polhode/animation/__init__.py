@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from polhode import FreeMotion, HeavyTop, Trajectory
 
-__all__ = ["ANIMATION_SUFFIXES", "animate", "animate_motion"]
+__all__ = ["ANIMATION_SUFFIXES", "animate"]
 
 ANIMATION_SUFFIXES = (".html", ".gif", ".mp4")
 

@@ -1,5 +1,7 @@
 //! Principal axes and tops of bare tensors.
 
+use std::cell::Cell;
+
 use nalgebra::Matrix3;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::mass::validity::{ASYMMETRY, check_symmetry};
@@ -178,17 +180,8 @@ fn run(
 
 /// As `polhode.results.PrincipalAxes`.
 fn to_python<'py>(py: Python<'py>, found: &Stack<PrincipalAxes>) -> PyResult<Bound<'py, PyAny>> {
-    to_python_of(py, found, |principal| *principal)
-}
-
-/// As [`to_python`], for one item of each row.
-fn to_python_of<'py, R>(
-    py: Python<'py>,
-    rows: &Stack<R>,
-    principal: impl Fn(&R) -> PrincipalAxes,
-) -> PyResult<Bound<'py, PyAny>> {
-    let moments = write_of(py, rows, |row| principal(row).moments)?;
-    let axes = write_of(py, rows, |row| principal(row).axes)?;
+    let moments = write_of(py, found, |principal| principal.moments)?;
+    let axes = write_of(py, found, |principal| principal.axes)?;
     results(py)?.call1((moments, axes))
 }
 
@@ -197,17 +190,17 @@ pub(crate) fn of_bodies<'py>(
     py: Python<'py>,
     bodies: &Stack<RigidBody>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    if bodies
-        .rows
-        .iter()
-        .all(|body| body.provenance().rounding == 0.0)
-    {
-        return to_python_of(py, bodies, RigidBody::principal);
+    let is_rounded = Cell::new(false);
+    let moments = write_of(py, bodies, |body| {
+        is_rounded.set(is_rounded.get() || body.provenance().rounding != 0.0);
+        body.principal().moments
+    })?;
+    let axes = write_of(py, bodies, |body| body.principal().axes)?;
+    if !is_rounded.get() {
+        return results(py)?.call1((moments, axes));
     }
-    with_rtols(
-        py,
-        &bodies.map(|body| (body.principal(), body.top_rtols(&body.principal().moments))),
-    )
+    let rtols = write_of(py, bodies, |body| body.top_rtols(&body.principal().moments))?;
+    results(py)?.call1((moments, axes, rtols))
 }
 
 /// As [`to_python`], each with the tolerances at which its class is decided.
