@@ -335,6 +335,11 @@ class TestFilms:
             assert film.duration == (len(t) / 30.0 if duration is None else duration)
             assert count is None or len(t) == count
             check_chords(lambda times: in_space(motion.at(times)) / fastest(motion), film.trajectory.t)
+        uneven = motion.at(10.0 * np.linspace(0.0, 1.0, 344) ** 2)  # as many samples as the film has pictures
+        film = of_motion(motion, uneven, duration=None, is_film=True, time_unit="s")
+        t = film.trajectory.t[film.chosen]
+        np.testing.assert_allclose(t, np.linspace(0.0, 10.0, len(t)), atol=1e-12)
+        np.testing.assert_allclose(film.trajectory.omega, motion.at(film.trajectory.t).omega, atol=1e-9)
         slow = of_motion(motion, motion.at([0.0, 0.1]), duration=None, is_film=True, time_unit="s")
         assert (len(slow.chosen), slow.duration) == (300, 10.0)
 

@@ -81,9 +81,11 @@ def of_samples(
     if len(chosen) > 1:
         between = np.add.reduceat(angles, chosen[:-1])
         widest = float(between.max())
-        needed = int(np.ceil(whole * rate / TURN)) + 1
+        needed = np.ceil(whole * rate / TURN) + 1.0
         where = f"{trajectory.t[chosen[int(between.argmax())]]:.6g} {time_unit}"
-        way_out = f"give frames={needed} or more" if count >= needed else f"ask for {needed} times or more"
+        way_out = (
+            f"give frames={needed:.7g} or more" if count >= needed else f"ask for {needed:.7g} times or more"
+        )
         notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
     if is_film:
         seconds = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
@@ -127,7 +129,8 @@ def of_motion(
             f"shown is the beginning, to {span.t[chosen[-1]] + t[0]:.6g} of {t[-1]:.6g} {time_unit}: "
             f"{len(chosen)} frames follow the motion no farther; a shorter span shows all of it"
         )
-    shown = samples if len(span.t) == len(t) else replace(motion.at(span.t), t=span.t + t[0])
+    is_enough = np.array_equal(span.t, since)
+    shown = samples if is_enough else replace(motion.at(span.t), t=span.t + t[0])
     return Moments(shown, chosen, seconds, tuple(notes))
 
 
