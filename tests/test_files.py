@@ -208,6 +208,8 @@ class TestOtherLibraries:
         own = RigidBody.from_atoms(heavy)
         assert own == RigidBody.from_particles([16.0, 2.0, 2.0], positions)
         assert own.provenance.source == "atoms, masses of their own"
+        nameless = SimpleNamespace(get_masses=lambda: [16.0, 2.0, 2.0], get_positions=lambda: positions)
+        assert RigidBody.from_atoms(nameless) == own
         with pytest.raises(ValueError, match="conformer"):
             RigidBody.from_atoms(atoms, conformer=0)
         with pytest.raises(ValueError, match="masses: expected 'most_common' or 'average', got 'heavy'"):

@@ -50,12 +50,14 @@ def body_from_atoms(
     masses : {"most_common", "average"}
         Of each element, where the object was not given masses (ASE) or isotopes (RDKit) of its own.
     """
-    if hasattr(atoms, "get_chemical_symbols") and hasattr(atoms, "get_positions"):
+    if hasattr(atoms, "get_masses") and hasattr(atoms, "get_positions"):
         if conformer is not None:
             raise ValueError("conformer: only an RDKit molecule has some")
-        labels, positions = atoms.get_chemical_symbols(), atoms.get_positions()
-        if hasattr(atoms, "has") and atoms.has("masses"):  # ASE's set_masses
+        positions = atoms.get_positions()
+        was_set = hasattr(atoms, "has") and atoms.has("masses")  # by ASE's set_masses
+        if was_set or not hasattr(atoms, "get_chemical_symbols"):
             return body_of_atoms(atoms.get_masses(), positions, source="own")
+        labels = atoms.get_chemical_symbols()
     elif hasattr(atoms, "GetAtoms") and hasattr(atoms, "GetConformer"):
         if not atoms.GetNumConformers():
             raise ValueError(
