@@ -22,12 +22,13 @@ from polhode._files.mesh import Mesh
 from polhode._files.scene import read_scene
 from polhode._files.xyz import Molecule, read_xyz
 from polhode.errors import FileFormatError, MeshError, PolhodeError
-from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, isotopes
+from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, body_of_atoms, isotopes
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from polhode.molecules import Masses
 
 __all__ = [
     "MOLECULE_SUFFIX",
@@ -82,6 +83,7 @@ def body_from_file(
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
     index_base: int = 1,
+    masses: Masses = "most_common",
     progress: Callable[[float], object] | None = None,
 ) -> _core.RigidBody:
     """Read the body a file describes: what ``RigidBody.from_file`` does.
@@ -98,6 +100,8 @@ def body_from_file(
         masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
     weld, closure, orient, index_base
         Of a mesh; see :func:`solid_from_file`.
+    masses : {"most_common", "average"}
+        Of a molecule; see :func:`polhode.molecules.isotopes`.
     progress : callable, optional
         Is told the fraction of a large mesh file done, now and then; an exception it raises ends the reading.
 
@@ -118,6 +122,8 @@ def body_from_file(
         _check_amount(name, value, path)
     scale = 1.0 if length_unit is None else metres_per(length_unit)
     if not _is_molecule(path):
+        if masses != "most_common":
+            raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
         return solid_from_file(
             path,
             density=density,
@@ -140,11 +146,10 @@ def body_from_file(
         if is_given:
             raise PolhodeError(f"{name}: {os.fspath(path)} is a molecule, {reason}; leave it out")
     molecule = read_xyz(path)
-    masses = np.array([isotope.mass for isotope in molecule_isotopes(path, molecule)])
-    if length_unit is not None:
-        masses *= ATOMIC_MASS_CONSTANT
+    unit = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
+    found = [isotope.mass * unit for isotope in molecule_isotopes(path, molecule, masses)]
     with _naming(path), np.errstate(over="ignore"):
-        return _core.RigidBody.from_particles(masses, molecule.positions * scale)
+        return body_of_atoms(found, molecule.positions * scale, source=masses, rounding=molecule.rounding * scale)
 
 
 def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float = 0.0) -> Mesh:
@@ -274,7 +279,9 @@ def solid_from_file(
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
 
 
-def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[Isotope]:
+def molecule_isotopes(
+    path: str | os.PathLike[str], molecule: Molecule, masses: Masses = "most_common"
+) -> list[Isotope]:
     """Find the nuclides of a molecule's atoms, naming the file in what goes wrong.
 
     Parameters
@@ -283,6 +290,8 @@ def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[
         Where the molecule comes from.
     molecule : Molecule
         What was read.
+    masses : {"most_common", "average"}
+        See :func:`polhode.molecules.isotopes`.
 
     Returns
     -------
@@ -290,7 +299,7 @@ def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[
         In the order of the atoms.
     """
     try:
-        return isotopes(molecule.labels)
+        return isotopes(molecule.labels, masses)
     except PolhodeError as error:
         raise FileFormatError(f"{os.fspath(path)}: {error}") from None
 

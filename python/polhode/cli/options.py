@@ -124,19 +124,27 @@ class CheckOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class MoleculeOptions:
-    """Which nuclides a molecule is made of.
+    """Which nuclides a molecule is made of, and which of its moments are equal.
 
     Attributes
     ----------
     isotopes
         Nuclides to put in: for an element (18O: all its atoms) or for one atom by its number in the file
         (2=13C). May be repeated: each option is one isotopologue, in which several are separated by commas.
+    masses
+        Where a label of the file names no isotope: the most common one of the element, or the average over
+        them.
     length_unit
         Unit of the file's coordinates.
+    rtol
+        Moments closer than this times the largest count as equal, for the class of the top; by default 1e-6,
+        and more where the file has so few digits that their rounding can make more. The report tells which.
     """
 
     isotopes: Annotated[Words, Parameter(name="--isotopes", negative="", show_default=False)] = ()
+    masses: Annotated[Literal["most_common", "average"], Parameter(name="--masses")] = "most_common"
     length_unit: Annotated[LengthUnit, Parameter(name="--length-unit")] = "angstrom"
+    rtol: Annotated[float | None, Parameter(name="--rtol")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
