@@ -362,6 +362,16 @@ impl RigidBody {
                 value: difference,
             });
         }
+        for (what, value) in [
+            ("error_bound.mass", error_bound.mass),
+            ("error_bound.center_of_mass", error_bound.center_of_mass),
+            ("error_bound.inertia", error_bound.inertia),
+        ] {
+            if value.is_nan() || value < 0.0 {
+                let law = "zero or more";
+                return Err(Error::OutOfDomain { what, law, value });
+            }
+        }
         Ok(Self {
             mass,
             center_of_mass,

@@ -117,7 +117,7 @@ impl MassAccumulator {
         })?;
         self.check_free(first, end)?;
         // Up to the first whole block, the whole blocks, and what is left.
-        let to_block = first.next_multiple_of(WHOLE) - first;
+        let to_block = first.wrapping_neg() % WHOLE;
         let head = usize::try_from(to_block.min(count)).unwrap_or(masses.len());
         let tail = head + (masses.len() - head) / BLOCK * BLOCK;
         for odd in [0..head, tail..masses.len()] {
