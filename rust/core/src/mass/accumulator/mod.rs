@@ -110,11 +110,7 @@ impl MassAccumulator {
         let _ = Particles::new(masses, positions);
         let first = start.unwrap_or_else(|| self.end());
         let count = masses.len() as u64;
-        let end = first.checked_add(count).ok_or(Error::OutOfDomain {
-            what: "start",
-            law: "such that the last particle's number is below 2^64",
-            value: first as f64,
-        })?;
+        let end = behind(first, count)?;
         self.check_free(first, end)?;
         // Up to the first whole block, the whole blocks, and what is left.
         let to_block = first.wrapping_neg() % WHOLE;
@@ -161,6 +157,7 @@ impl MassAccumulator {
     /// When a particle with the same number is in both; then nothing is added.
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
         let shift = if other.is_placed { 0 } else { self.end() };
+        behind(shift, other.end())?;
         for (start, piece) in &other.pieces {
             self.check_free(start + shift, piece.end + shift)?;
         }
@@ -246,7 +243,7 @@ impl MassAccumulator {
         mut positions: &[[f64; 3]],
     ) -> Result<(), Error> {
         while !masses.is_empty() {
-            let left = (start + 1).next_multiple_of(WHOLE) - start;
+            let left = WHOLE - start % WHOLE;
             let count = usize::try_from(left).map_or(masses.len(), |left| left.min(masses.len()));
             let end = start + count as u64;
             let matter = Matter::Loose {
@@ -285,6 +282,15 @@ impl MassAccumulator {
             }
         }
     }
+}
+
+/// The number after the last of `count` particles from the number `first` on.
+fn behind(first: u64, count: u64) -> Result<u64, Error> {
+    first.checked_add(count).ok_or(Error::OutOfDomain {
+        what: "start",
+        law: "such that the last particle's number is below 2^64",
+        value: first as f64,
+    })
 }
 
 /// Whether two pieces that meet become one: parts of the same block, the halves of a node of the tree, or sums of which
