@@ -1,8 +1,9 @@
-"""Lines of the core that its tests execute: those of cargo, and those of pytest through an extension with counters.
+"""Lines of the core that tests execute: those of cargo, and of pytest through an extension with counters.
 
-``python rust/coverage.py [--least PERCENT] [PYTEST OPTIONS]`` builds into ``target/coverage``, runs both suites, and prints the share of
-lines, the least covered files first. It needs ``llvm-profdata`` and ``llvm-cov`` of rustc's LLVM or a newer one: ``rustup component add
-llvm-tools``, or a package such as ``llvm-22``; ``LLVM_PROFDATA`` and ``LLVM_COV`` name others.
+``python rust/coverage.py [--least PERCENT] [PYTEST OPTIONS]`` builds into ``target/coverage``, runs both
+suites, and prints the share of lines, the worst files last. It needs ``llvm-profdata`` and ``llvm-cov`` of
+rustc's LLVM or a newer one: ``rustup component add llvm-tools``, or a package such as ``llvm-22``;
+``LLVM_PROFDATA`` and ``LLVM_COV`` name others.
 """
 
 from __future__ import annotations
@@ -23,17 +24,21 @@ RAW = TARGET / "raw"
 
 
 def tool(name: str) -> str:
-    """The path of one of LLVM's tools."""
+    """Find one of LLVM's tools."""
     named = os.environ.get(name.upper().replace("-", "_"))
     sysroot = subprocess.check_output(["rustc", "--print", "sysroot"], text=True).strip()
     version = subprocess.check_output(["rustc", "-vV"], text=True)
-    host, major = (re.search(rf"^{key}: (\w[\w-]*)", version, re.M) for key in ("host", "LLVM version"))
+    host, major = (
+        re.search(rf"^{key}: (\w[\w-]*)", version, re.MULTILINE) for key in ("host", "LLVM version")
+    )
     inside = Path(sysroot) / "lib" / "rustlib" / (host[1] if host else "") / "bin" / name
     newest = [f"{name}-{k}" for k in range(int(major[1]) if major else 22, 40)]
     for candidate in filter(None, [named, str(inside), *newest]):
         if found := shutil.which(candidate):
             return found
-    raise SystemExit(f"{name} is missing: rustup component add llvm-tools, or install LLVM {major and major[1]}")
+    raise SystemExit(
+        f"{name} is missing: rustup component add llvm-tools, or install LLVM {major and major[1]}"
+    )
 
 
 failed: list[str] = []
@@ -50,18 +55,39 @@ def run(*command: str | Path, **environment: str) -> None:
 
 def of_cargo() -> list[Path]:
     """Run the tests of the core; the programs that were run."""
-    arguments = ["--locked", "--package", "polhode", "--package", "polhode-fuzz", "--profile", "coverage", "--target-dir", TARGET]
+    arguments = [
+        "--locked",
+        "--package",
+        "polhode",
+        "--package",
+        "polhode-fuzz",
+        "--profile",
+        "coverage",
+        "--target-dir",
+        TARGET,
+    ]
     run("cargo", "test", *arguments, "--lib", "--tests", "--no-fail-fast")
     told = subprocess.run(
         ["cargo", "test", *map(str, arguments), "--lib", "--tests", "--no-run"],
         check=True, cwd=ROOT, text=True, capture_output=True, env={**os.environ, "RUSTFLAGS": "-C instrument-coverage"},
     )  # fmt: skip
-    return [ROOT / path for path in re.findall(r"\((\S+?)\)$", told.stderr, re.M)]
+    return [ROOT / path for path in re.findall(r"\((\S+?)\)$", told.stderr, re.MULTILINE)]
 
 
 def of_pytest(options: list[str]) -> Path:
     """Run the tests of the package on an extension with counters."""
-    run("cargo", "build", "--locked", "--package", "polhode-python", "--profile", "coverage", "--target-dir", TARGET, PYO3_PYTHON=sys.executable)
+    run(
+        "cargo",
+        "build",
+        "--locked",
+        "--package",
+        "polhode-python",
+        "--profile",
+        "coverage",
+        "--target-dir",
+        TARGET,
+        PYO3_PYTHON=sys.executable,
+    )
     package = TARGET / "python"
     shutil.rmtree(package, ignore_errors=True)
     shutil.copytree(ROOT / "python", package, ignore=shutil.ignore_patterns("*.so", "__pycache__"))
@@ -74,9 +100,19 @@ def of_pytest(options: list[str]) -> Path:
 def lines(programs: list[Path]) -> dict[Path, dict[int, int]]:
     """How often each line of the core was executed, its tests left out."""
     profile = TARGET / "all.profdata"
-    subprocess.run([tool("llvm-profdata"), "merge", "-sparse", *map(str, RAW.glob("*.profraw")), "-o", str(profile)], check=True)
+    subprocess.run(
+        [tool("llvm-profdata"), "merge", "-sparse", *map(str, RAW.glob("*.profraw")), "-o", str(profile)],
+        check=True,
+    )
     objects = [word for program in programs[1:] for word in ("-object", str(program))]
-    command = [tool("llvm-cov"), "export", "-format=lcov", f"-instr-profile={profile}", str(programs[0]), *objects]
+    command = [
+        tool("llvm-cov"),
+        "export",
+        "-format=lcov",
+        f"-instr-profile={profile}",
+        str(programs[0]),
+        *objects,
+    ]
     found: dict[Path, dict[int, int]] = defaultdict(dict)
     file, last = Path(), 0
     for row in subprocess.run(command, check=True, text=True, capture_output=True).stdout.splitlines():
@@ -101,11 +137,15 @@ def main() -> None:
     found = lines([*of_cargo(), of_pytest(options)])
     total = sum(map(len, found.values()))
     hit = sum(count > 0 for counts in found.values() for count in counts.values())
-    missed = {file: sorted(line for line, count in counts.items() if not count) for file, counts in found.items()}
+    missed = {
+        file: sorted(line for line, count in counts.items() if not count) for file, counts in found.items()
+    }
     for file in sorted(missed, key=lambda file: len(missed[file])):
         if missed[file]:
             share = 100 * (1 - len(missed[file]) / len(found[file]))
-            print(f"{share:6.1f} %  {len(missed[file]):4d} missed  {file.relative_to(CORE)}: {spans(missed[file])}")
+            print(
+                f"{share:6.1f} %  {len(missed[file]):4d} missed  {file.relative_to(CORE)}: {spans(missed[file])}"
+            )
     share = 100 * hit / total
     print(f"{share:.2f} % of {total} lines of the core")
     if share < given.least:

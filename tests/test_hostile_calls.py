@@ -51,7 +51,7 @@ def hostile(seed: int, first: int, last: int, folder: Path) -> tuple[list[str], 
         if ended:
             made += sum(json.loads(lines[-1])["counts"].values())
             break
-        if not (wrong and wrong[-1].endswith(f"{at} hangs")):
+        if f"seed {seed}, call {at} hangs" not in wrong:
             wrong.append(f"seed {seed}, call {at} killed the process ({worker.returncode}): {tail}")
         made += at + 1 - first
         first = at + 1

@@ -1,4 +1,4 @@
-"""Arguments spoilt: the same numbers in another form, other shapes, other types, numbers at the ends of float64, other objects."""
+"""Arguments spoilt: other forms of the same numbers, other shapes, types, numbers, objects."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class HasArray:
     def __init__(self, values: Any) -> None:
         self.values = values
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:  # noqa: ARG002
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
         return np.asarray(self.values, dtype=dtype)
 
 
@@ -56,12 +56,18 @@ def objects(rng: np.random.Generator) -> Any:
     """Something that is no number at all, or one of another kind."""
     choices: tuple[Any, ...] = (
         None, "text", "", b"bytes", object(), {}, {"a": 1}, set(), (), [], [[]], [[], []], True, False, ...,
-        NotImplemented, 10**400, -(10**400), 2**63, 2**62, -1, 0, Decimal("1.5"), Decimal("NaN"), Fraction(1, 3), 1j, complex("nan"),
-        np.float16(1.5), np.longdouble(1.5), np.datetime64("2020-01-01"), np.timedelta64(1, "s"), datetime.datetime(2020, 1, 1),
-        np.ma.masked, float, len, lambda *_: None, lambda *_: np.nan, _raises, _grows, iter([1.0, 2.0]), (x for x in (1.0, 2.0, 3.0)),
-        range(3), slice(0, 3), slice(None, None, -1), memoryview(b"abc"), bytearray(8), np.array(None), np.array("a"), "\ud800", "\0", "é" * 1000,
-        LiesAboutLength(), HasArray([1.0, 2.0, 3.0]), type("Odd", (), {"as_quat": lambda self: [1.0, 0.0, 0.0, 0.0]})(),
-        type("Bad", (), {"as_quat": _raises})(), type("None_", (), {"as_quat": None})(), np.array([1.0, None, 3.0], dtype=object),
+        NotImplemented, 10**400, -(10**400), 2**63, 2**62, -1, 0, Decimal("1.5"), Decimal("NaN"),
+        Fraction(1, 3), 1j, complex("nan"),
+        np.float16(1.5), np.longdouble(1.5), np.datetime64("2020-01-01"), np.timedelta64(1, "s"),
+        datetime.datetime(2020, 1, 1),
+        np.ma.masked, float, len, lambda *_: None, lambda *_: np.nan, _raises, _grows, iter([1.0, 2.0]),
+        (x for x in (1.0, 2.0, 3.0)),
+        range(3), slice(0, 3), slice(None, None, -1), memoryview(b"abc"), bytearray(8), np.array(None),
+        np.array("a"), "\ud800", "\0", "é" * 1000,
+        LiesAboutLength(), HasArray([1.0, 2.0, 3.0]),
+        type("Odd", (), {"as_quat": lambda *_: [1.0, 0.0, 0.0, 0.0]})(),
+        type("Bad", (), {"as_quat": _raises})(), type("None_", (), {"as_quat": None})(),
+        np.array([1.0, None, 3.0], dtype=object),
         [1.0, [2.0, 3.0]], "center_of_mass", "origin", "ZYX", "space",
     )  # fmt: skip
     return choices[rng.integers(len(choices))]
@@ -181,7 +187,9 @@ def numbers(values: Any, rng: np.random.Generator) -> Any:
         if plain.ndim and plain.size and kind < 5:
             plain.flat[rng.integers(plain.size)] = rng.choice([-1, -2, 99, 2**62, -(2**62), 2**31, 0])
             return plain
-        return int(rng.choice([-1, 0, 1, 2, 3, 2**31, 2**62, -(2**63), 10**6])) if not plain.ndim else plain * 0
+        return (
+            int(rng.choice([-1, 0, 1, 2, 3, 2**31, 2**62, -(2**63), 10**6])) if not plain.ndim else plain * 0
+        )
     if plain.dtype.kind != "f":
         return plain
     with np.errstate(all="ignore"):
@@ -205,8 +213,10 @@ def numbers(values: Any, rng: np.random.Generator) -> Any:
 def words(value: str, rng: np.random.Generator) -> Any:
     """Other words for an option."""
     choices = (
-        "", value.upper(), value + " ", value[:-1], value * 1000, value.encode(), None, 0, 1.5, [value], (value,), "\0", "\ud800", "é", True,
-        np.str_(value), np.array(value), np.array([value]), "origin", "center_of_mass", "space", "nan", "ZYX", "zyz", "exact", "splitting",
+        "", value.upper(), value + " ", value[:-1], value * 1000, value.encode(), None, 0, 1.5, [value],
+        (value,), "\0", "\ud800", "é", True,
+        np.str_(value), np.array(value), np.array([value]), "origin", "center_of_mass", "space", "nan",
+        "ZYX", "zyz", "exact", "splitting",
         "radau", "dop853", "taylor", "keep", "short-axis", "caps", "hull", "nodes", "linear-angular",
     )  # fmt: skip
     return choices[rng.integers(len(choices))]

@@ -8,7 +8,6 @@ import pickle
 from typing import Any
 
 import numpy as np
-
 import polhode
 from polhode import _core
 
@@ -31,14 +30,26 @@ def fingerprint(result: Any) -> Any:
             return float(result).hex()
         case np.ndarray():
             if result.dtype.kind == "f":
-                return (result.shape, np.ascontiguousarray(np.where(np.isnan(result), np.nan, result)).tobytes())
+                return (
+                    result.shape,
+                    np.ascontiguousarray(np.where(np.isnan(result), np.nan, result)).tobytes(),
+                )
             return (result.shape, result.tobytes() if result.dtype.kind != "O" else repr(result))
         case polhode.RigidBody():
             return tuple(map(fingerprint, _numbers(result)))
         case polhode.FreeMotion():
-            return (fingerprint(result.body), fingerprint(result.omega), fingerprint(result.quaternion), fingerprint(result.modulus))
+            return (
+                fingerprint(result.body),
+                fingerprint(result.omega),
+                fingerprint(result.quaternion),
+                fingerprint(result.modulus),
+            )
         case polhode.HeavyTop():
-            return (fingerprint(result.nutation_limits), fingerprint(result.mean_spin), fingerprint(result.omega))
+            return (
+                fingerprint(result.nutation_limits),
+                fingerprint(result.mean_spin),
+                fingerprint(result.omega),
+            )
         case polhode.MassAccumulator():
             return pickle.dumps(result)
         case _core.Load() | _core.Region():
@@ -88,7 +99,13 @@ def obeys(result: Any) -> None:
 
 def _is_body(body: polhode.RigidBody) -> None:
     mass, center, inertia, moments, axes, *bounds = (np.asarray(x) for x in _numbers(body))
-    for what, array in (("mass", mass), ("centre", center), ("inertia", inertia), ("moments", moments), ("axes", axes)):
+    for what, array in (
+        ("mass", mass),
+        ("centre", center),
+        ("inertia", inertia),
+        ("moments", moments),
+        ("axes", axes),
+    ):
         if not np.isfinite(array).all():
             raise Wrong(f"a body with {what} {array}")
     if not (mass > 0).all() or not (moments >= 0).all():

@@ -1,7 +1,8 @@
 """Hostile calls, each a function of a seed and its number alone, in a process that may die of them.
 
 ``python -m hostile.worker SEED FROM TO [PROGRESS]`` in ``tests`` makes the calls and prints one line of JSON for each that went wrong.
-The number of the call under way stands in the file PROGRESS, so that whoever waits knows which one hung or killed the process.
+The number of the call under way stands in the file PROGRESS,
+so that whoever waits knows which one hung or killed the process.
 ``python -m hostile.worker SEED NUMBER`` makes one call and tells what it was.
 """
 
@@ -10,8 +11,10 @@ from __future__ import annotations
 import json
 import os
 import resource
+import signal
 import struct
 import sys
+import time
 import warnings
 from collections.abc import Callable
 from typing import Any
@@ -22,10 +25,15 @@ from . import spoilt, valid, verdict
 
 ROOM = 4 << 30
 """Bytes of address space for a worker: what asks for more gets a MemoryError."""
+LONGEST, SLACK = 1.0, 2.0
+"""Seconds that a call may last, and those it may take to hear that it is over, on a busy machine."""
 MAY_BE_UNKNOWN = frozenset({
-    "HeavyTop", "RigidBody.heavy_top", "ray_kappa", "molecules.ray_kappa", "molecules.rotational_constants", "PrincipalAxes.kappa",
-    "steady_precession", "validity.nearest_valid", "nearest_valid", "free_precession", "FreeMotion.sensitivity",
-    "FreeMotion.error_bar", "FreeMotion.poinsot", "FreeMotion.herpolhode", "Trajectory.sensitivity", "motion_sensitivity", "principal_gaps",
+    "HeavyTop", "RigidBody.heavy_top", "ray_kappa", "molecules.ray_kappa", "molecules.rotational_constants",
+    "PrincipalAxes.kappa",
+    "steady_precession", "validity.nearest_valid", "nearest_valid", "free_precession",
+    "FreeMotion.sensitivity",
+    "FreeMotion.error_bar", "FreeMotion.poinsot", "FreeMotion.herpolhode", "Trajectory.sensitivity",
+    "motion_sensitivity", "principal_gaps",
     "Trajectory.invariants", "RigidBody.stability", "molecules.isotopes",
 })  # fmt: skip
 """Whose results say NaN where a quantity is not defined, as their docstrings tell."""
@@ -126,6 +134,31 @@ def judge(made: Made) -> str:
     return outcome
 
 
+class TooLong(Exception):  # noqa: N818 - Ctrl-C, as it were
+    """A call has lasted long enough."""
+
+
+def interrupt(*_: object) -> None:
+    """End the call under way, as Ctrl-C would."""
+    raise TooLong
+
+
+def limited(made: Made) -> str:
+    """Judge the call, and interrupt it after a second: work without end is allowed, but not without a way out."""
+    signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, LONGEST)
+    start = time.monotonic()
+    try:
+        return judge(made)
+    except TooLong:
+        lasted = time.monotonic() - start
+        if lasted > LONGEST + SLACK:
+            raise verdict.Wrong(f"deaf to an interrupt for {lasted - LONGEST:.1f} s") from None
+        return "interrupted"
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+
 def _recorded(unraised: list[str]) -> Callable[[Any], None]:
     return lambda hook: unraised.append(f"unraisable {hook.exc_value!r}")
 
@@ -143,10 +176,10 @@ def run(seed: int, numbers: range, progress: str | None = None) -> dict[str, int
             os.pwrite(file, struct.pack("<q", number), 0)
         made = Made(calls, seed, number)
         try:
-            outcome = judge(made)
-        except (Exception, BaseExceptionGroup) as error:  # noqa: BLE001 - that is the finding
+            outcome = limited(made)
+        except (Exception, BaseExceptionGroup) as error:
             outcome = _told(seed, number, made, error)
-        except BaseException as error:  # noqa: BLE001 - a panic is no Exception
+        except BaseException as error:
             if isinstance(error, KeyboardInterrupt | SystemExit):
                 raise
             outcome = _told(seed, number, made, error)
@@ -158,8 +191,13 @@ def run(seed: int, numbers: range, progress: str | None = None) -> dict[str, int
 
 
 def _told(seed: int, number: int, made: Made, error: BaseException) -> str:
-    told = {"seed": seed, "number": number, "error": f"{type(error).__name__}: {error}"[:400], "call": str(made)}
-    print(json.dumps(told), flush=True)  # noqa: T201 - the parent reads it
+    told = {
+        "seed": seed,
+        "number": number,
+        "error": f"{type(error).__name__}: {error}"[:400],
+        "call": str(made),
+    }
+    print(json.dumps(told), flush=True)
     return "wrong"
 
 
@@ -169,11 +207,11 @@ def main() -> None:
     seed, first, *rest = (int(word) for word in sys.argv[1:4])
     if not rest:
         made = Made(valid.all_calls(), seed, first)
-        print(made, flush=True)  # noqa: T201
-        print(judge(made))  # noqa: T201
+        print(made, flush=True)
+        print(judge(made))
         return
     counts = run(seed, range(first, rest[0]), sys.argv[4] if len(sys.argv) > 4 else None)
-    print(json.dumps({"counts": counts}), flush=True)  # noqa: T201
+    print(json.dumps({"counts": counts}), flush=True)
 
 
 if __name__ == "__main__":
