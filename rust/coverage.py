@@ -21,6 +21,7 @@ ROOT = Path(__file__).resolve().parents[1]
 CORE = ROOT / "rust" / "core" / "src"
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "coverage"
 RAW = TARGET / "raw"
+FLAGS = "-C instrument-coverage"
 
 
 def tool(name: str) -> str:
@@ -28,9 +29,8 @@ def tool(name: str) -> str:
     named = os.environ.get(name.upper().replace("-", "_"))
     sysroot = subprocess.check_output(["rustc", "--print", "sysroot"], text=True).strip()
     version = subprocess.check_output(["rustc", "-vV"], text=True)
-    host, major = (
-        re.search(rf"^{key}: (\w[\w-]*)", version, re.MULTILINE) for key in ("host", "LLVM version")
-    )
+    said = [re.search(rf"^{key}: (\w[\w-]*)", version, re.MULTILINE) for key in ("host", "LLVM version")]
+    host, major = said
     inside = Path(sysroot) / "lib" / "rustlib" / (host[1] if host else "") / "bin" / name
     newest = [f"{name}-{k}" for k in range(int(major[1]) if major else 22, 40)]
     for candidate in filter(None, [named, str(inside), *newest]):
@@ -47,7 +47,7 @@ failed: list[str] = []
 
 def run(*command: str | Path, **environment: str) -> None:
     """Run a command with counters."""
-    flags = {"RUSTFLAGS": "-C instrument-coverage", "LLVM_PROFILE_FILE": str(RAW / "%4m.profraw")}
+    flags = {"RUSTFLAGS": FLAGS, "LLVM_PROFILE_FILE": str(RAW / "%4m.profraw")}
     words = [str(word) for word in command]
     if subprocess.run(words, check=False, cwd=ROOT, env={**os.environ, **flags, **environment}).returncode:
         failed.append(" ".join(words[:4]))
@@ -69,8 +69,12 @@ def of_cargo() -> list[Path]:
     run("cargo", "test", *arguments, "--lib", "--tests", "--no-fail-fast")
     told = subprocess.run(
         ["cargo", "test", *map(str, arguments), "--lib", "--tests", "--no-run"],
-        check=True, cwd=ROOT, text=True, capture_output=True, env={**os.environ, "RUSTFLAGS": "-C instrument-coverage"},
-    )  # fmt: skip
+        check=True,
+        cwd=ROOT,
+        text=True,
+        capture_output=True,
+        env={**os.environ, "RUSTFLAGS": FLAGS},
+    )
     return [ROOT / path for path in re.findall(r"\((\S+?)\)$", told.stderr, re.MULTILINE)]
 
 
@@ -132,9 +136,13 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--least", type=float, default=0.0, help="fail below this share, in percent")
+    parser.add_argument("--suite", choices=("both", "cargo", "pytest"), default="both")
     given, options = parser.parse_known_args()
     shutil.rmtree(RAW, ignore_errors=True)
-    found = lines([*of_cargo(), of_pytest(options)])
+    programs = [of_pytest(options)] if given.suite != "cargo" else []
+    if given.suite != "pytest":
+        programs += of_cargo()
+    found = lines(programs)
     total = sum(map(len, found.values()))
     hit = sum(count > 0 for counts in found.values() for count in counts.values())
     missed = {
@@ -143,9 +151,8 @@ def main() -> None:
     for file in sorted(missed, key=lambda file: len(missed[file])):
         if missed[file]:
             share = 100 * (1 - len(missed[file]) / len(found[file]))
-            print(
-                f"{share:6.1f} %  {len(missed[file]):4d} missed  {file.relative_to(CORE)}: {spans(missed[file])}"
-            )
+            where = f"{file.relative_to(CORE)}: {spans(missed[file])}"
+            print(f"{share:6.1f} %  {len(missed[file]):4d} missed  {where}")
     share = 100 * hit / total
     print(f"{share:.2f} % of {total} lines of the core")
     if share < given.least:

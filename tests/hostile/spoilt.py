@@ -163,7 +163,7 @@ def types(values: Any, rng: np.random.Generator) -> Any:
         lambda: plain.astype(object),
         lambda: plain.astype(str),
         lambda: plain.astype("S"),
-        lambda: plain.astype("datetime64[s]") if plain.dtype.kind == "i" else plain.astype(int).astype("datetime64[s]"),
+        lambda: plain.astype(int).astype("datetime64[s]"),
         lambda: plain.astype(int).astype("timedelta64[s]"),
         lambda: np.ma.masked_array(plain, mask=rng.integers(2, size=plain.shape).astype(bool)),
         lambda: np.zeros(plain.shape, dtype=[("a", float), ("b", int)]),

@@ -1,9 +1,9 @@
 """Hostile calls, each a function of a seed and its number alone, in a process that may die of them.
 
-``python -m hostile.worker SEED FROM TO [PROGRESS]`` in ``tests`` makes the calls and prints one line of JSON for each that went wrong.
-The number of the call under way stands in the file PROGRESS,
-so that whoever waits knows which one hung or killed the process.
-``python -m hostile.worker SEED NUMBER`` makes one call and tells what it was.
+``python -m hostile.worker SEED FROM TO [PROGRESS]`` in ``tests`` makes the calls and prints one line of JSON
+for each that went wrong. The number of the call under way stands in the file PROGRESS, so that whoever waits
+knows which one hung or killed the process. ``python -m hostile.worker SEED NUMBER`` makes one call and tells
+what it was.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ def interrupt(*_: object) -> None:
 
 
 def limited(made: Made) -> str:
-    """Judge the call, and interrupt it after a second: work without end is allowed, but not without a way out."""
+    """Judge the call, and interrupt it after a second: work may last, but not without a way out."""
     signal.signal(signal.SIGALRM, interrupt)
     signal.setitimer(signal.ITIMER_REAL, LONGEST)
     start = time.monotonic()
