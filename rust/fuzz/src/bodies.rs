@@ -1,16 +1,14 @@
-//! Every constructor of a body, and what is made of bodies.
+//! Every constructor of a body.
 
 use arbitrary::Result;
-use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3};
+use nalgebra::{Matrix3, Matrix4, Matrix6};
 use polhode::error::Error;
 use polhode::mass::density::{Effort, from_density, from_radial_density};
-use polhode::mass::equimomental::{equimomental_particles, stick};
 use polhode::mass::forms::SpatialOrder;
 use polhode::mass::particles::labelled_particles;
 use polhode::mass::particles::particles;
 use polhode::mass::polyhedron::closure::{capped, hulled};
 use polhode::mass::polyhedron::{Options, polyhedron_watched};
-use polhode::mass::realizable::{nearest_valid, within_box};
 use polhode::mass::regions::Region;
 use polhode::mass::surface::{area, surface};
 use polhode::mass::tetrahedra::{CellDensity, tetrahedra};
@@ -20,8 +18,9 @@ use polhode::mass::{Amount, curve, laminae, rods, solids};
 use polhode::{Error as Fault, RigidBody};
 
 use crate::draw::{Draw, patience};
-use crate::laws::{is_body, size};
+use crate::laws::is_body;
 use crate::meshes::mesh;
+use crate::uses::used;
 
 /// Takes the bytes as what a body is made of, makes it, and uses it.
 ///
@@ -151,10 +150,12 @@ fn of_particles(draw: &mut Draw<'_>) -> Result<Option<RigidBody>> {
         .collect::<Result<Vec<_>>>()?;
     let labels = masses
         .iter()
-        .map(|_| Ok(draw.up_to(3)? as i64 - 1))
+        .map(|_| draw.one_of(&[-1, 0, 1, 2]))
         .collect::<Result<Vec<_>>>()?;
     if let Ok(bodies) = labelled_particles(&masses, &positions, &labels, &mut patience(1000)) {
-        bodies.iter().for_each(|body| is_body(body, 0.0));
+        for body in &bodies {
+            is_body(body, 0.0);
+        }
     }
     Ok(particles(&masses, &positions).ok())
 }
@@ -189,7 +190,7 @@ fn of_cells(draw: &mut Draw<'_>) -> Result<Made> {
     let mut nodes: Vec<[f64; 3]> = draw.list(7, Draw::numbers)?;
     // A nearly flat cell is where digits are lost.
     if nodes.len() >= 4 && draw.coin()? {
-        let small = 2.0_f64.powi(-(draw.up_to(60)? as i32));
+        let small = draw.tiny()?;
         let weight = draw.numbers::<3>()?;
         let off = draw.number()? * small;
         let mut flat = [off; 3];
@@ -341,109 +342,4 @@ fn of_density(draw: &mut Draw<'_>) -> Result<Made> {
         Ok::<(), Error>(())
     };
     Ok(region.and_then(|region| from_density(&region, density, effort)))
-}
-
-/// What is made of bodies is bodies, and what is asked of them is answered.
-fn used(body: &RigidBody, draw: &mut Draw<'_>, admitted: f64) -> Result<()> {
-    assert!(
-        body.is_close(body, 0.0, 0.0),
-        "not close to itself: {body:?}"
-    );
-    let (point, direction) = (draw.vector()?, draw.vector()?);
-    let is_a_point = point.iter().all(|x| x.is_finite());
-    if let (true, Ok(moment)) = (is_a_point, body.moment_about(&direction, &point)) {
-        assert!(
-            moment >= 0.0,
-            "moment about {direction:?} through {point:?} {moment:?}: {body:?}"
-        );
-    }
-    let is_plain = |x: f64| (1e-60..1e60).contains(&x);
-    let is_near = point.amax() < 1e60 && body.center_of_mass().amax() < 1e60;
-    let about = body.principal_about(&point);
-    if is_plain(body.mass()) && is_plain(size(&body.inertia())) && is_near {
-        assert!(about.moments.iter().all(|x| *x >= 0.0), "{about:?}");
-    }
-    for made in [
-        body.translated(&point),
-        body.rotated(&draw.rotation()?),
-        body.scaled(draw.positive()?, draw.positive()?),
-        body.combined(body),
-        body.without(&body.scaled(0.5, 0.5).unwrap_or(*body)),
-    ]
-    .into_iter()
-    .flatten()
-    {
-        is_body(&made, 2.0 * admitted);
-    }
-    forms(body, admitted);
-    if let Ok(particles) = equimomental_particles(body) {
-        assert!(particles.masses.iter().all(|&mass| mass > 0.0));
-        assert!(particles.positions.iter().flatten().all(|x| x.is_finite()));
-        if admitted == 0.0 && is_plain(size(&body.inertia())) && is_plain(body.mass()) {
-            let mass: f64 = particles.masses.iter().sum();
-            assert!((mass - body.mass()).abs() <= 1e-14 * body.mass());
-        }
-    }
-    if let Ok(particles) = stick(
-        draw.positive()?,
-        draw.positive()?,
-        draw.number()?,
-        draw.number()?,
-    ) {
-        assert!(particles.masses.iter().all(|mass| mass.is_finite()));
-    }
-    if let Ok((nearest, distance)) = nearest_valid(&draw.symmetric()?) {
-        assert!(distance >= 0.0 || distance.is_nan());
-        let is_valid = RigidBody::new(1.0, &nearest, &Vector3::zeros(), 0.0).is_ok();
-        assert!(
-            is_valid || !(is_plain(size(&nearest)) || size(&nearest) == 0.0),
-            "{nearest:?}"
-        );
-    }
-    let _ = within_box(body, &draw.vector()?, &draw.vector()?);
-    Ok(())
-}
-
-/// Forms of other libraries say the same.
-fn forms(body: &RigidBody, admitted: f64) {
-    let size_of_body = size(&body.inertia()) / body.mass();
-    let is_plain = (1e-60..1e60).contains(&size_of_body)
-        && (1e-60..1e60).contains(&body.mass())
-        && body.center_of_mass().norm_squared() < 1e4 * size_of_body
-        && admitted == 0.0;
-    if !is_plain {
-        return;
-    }
-    let reach = size_of_body + body.center_of_mass().norm_squared();
-    let agrees = |again: Made, what: &str| match again {
-        Ok(again) => {
-            is_body(&again, 0.0);
-            let off = size(&(again.inertia() - body.inertia()));
-            assert!(off <= 1e-13 * reach * body.mass(), "{what}: off by {off:e}");
-        }
-        // What rounding makes of a body on the edge of the possible is told.
-        Err(Fault::TriangleInequality { relative, .. }) => assert!(relative < 1e-10, "{what}"),
-        Err(Fault::NegativeMoment { .. } | Fault::NotASpatialInertia { .. }) => {}
-        Err(error) => assert!(false, "{what}: {error}"),
-    };
-    agrees(
-        RigidBody::from_parameters(&body.parameters(), 1e-12),
-        "parameters",
-    );
-    agrees(
-        RigidBody::from_pseudo_inertia(&body.pseudo_inertia(), 1e-12),
-        "pseudo-inertia",
-    );
-    let order = SpatialOrder::AngularLinear;
-    let spatial = body.spatial_inertia(order);
-    agrees(
-        RigidBody::from_spatial_inertia(&spatial, order, 1e-12),
-        "spatial inertia",
-    );
-    if let Ok(parameters) = body.log_cholesky() {
-        assert!(parameters.iter().all(|x| x.is_finite()), "{parameters:?}");
-        if let Ok(again) = RigidBody::from_log_cholesky(&parameters) {
-            is_body(&again, 0.0);
-        }
-    }
 }

@@ -142,6 +142,15 @@ impl<'a> Draw<'a> {
         Ok(if self.wild { number } else { number.abs() })
     }
 
+    /// A power of two from 2⁻⁶⁰ to 1.
+    ///
+    /// # Errors
+    /// When the bytes are used up.
+    pub fn tiny(&mut self) -> Result<f64> {
+        let exponent = i32::try_from(self.up_to(60)?).unwrap_or_default();
+        Ok(2.0_f64.powi(-exponent))
+    }
+
     /// Numbers.
     ///
     /// # Errors

@@ -14,6 +14,12 @@ pub fn size(a: &Matrix3<f64>) -> f64 {
     a.amax()
 }
 
+/// Whether numbers are so far from the ends of float64 that squares and products are numbers.
+#[must_use]
+pub fn is_plain(numbers: &[f64]) -> bool {
+    (numbers.iter()).all(|x| *x == 0.0 || (1e-30..1e30).contains(&x.abs()))
+}
+
 /// Ascending finite moments, and axes that are a rotation and diagonalize the tensor.
 ///
 /// # Panics

@@ -19,9 +19,12 @@ pub mod angles;
 pub mod bodies;
 pub mod draw;
 pub mod laws;
+pub mod loads;
 pub mod meshes;
 pub mod motions;
 pub mod readers;
+pub mod runs;
+pub mod uses;
 
 /// A harness: takes bytes, panics where a law is broken.
 pub type Harness = fn(&[u8]);

@@ -65,11 +65,7 @@ fn add(draw: &mut Draw<'_>, mesh: &mut Mesh) -> Result<()> {
     };
     let first = i64::try_from(mesh.vertices.len()).unwrap_or_default();
     let (shift, scale) = (draw.vector()?, draw.vector()?);
-    let jitter = if draw.coin()? {
-        2.0_f64.powi(-i32::try_from(draw.up_to(60)?).unwrap_or_default())
-    } else {
-        0.0
-    };
+    let jitter = if draw.coin()? { draw.tiny()? } else { 0.0 };
     for corner in corners {
         let mut point = [0.0; 3];
         for (k, x) in point.iter_mut().enumerate() {

@@ -113,22 +113,18 @@ fn both_ways(stream: &mut dyn TriangleStream, mesh: &TriangleMesh) {
     let of_stream = streamed(stream, 1.0, amount, options, &mut patience(1000));
     let (vertices, faces) = (&mesh.vertices, &mesh.faces);
     let in_memory = polyhedron_watched(vertices, faces, amount, options, &mut patience(1000));
-    match (of_stream, in_memory) {
-        (Ok(solid), Ok(body)) => {
-            is_body(&solid.body, 0.0);
-            is_body(&body, 0.0);
-            let allowed = solid.body.error_bound().mass + body.error_bound().mass;
-            let off = (solid.body.mass() - body.mass()).abs();
-            assert!(off <= allowed, "masses differ by {off:e} > {allowed:e}");
-            assert_eq!(solid.triangles, faces.len());
-        }
-        (Err(_), Err(_)) => {}
-        (stream, memory) => {
-            assert!(
-                false,
-                "a stream gives {stream:?} where memory gives {memory:?}"
-            );
-        }
+    assert_eq!(
+        of_stream.is_ok(),
+        in_memory.is_ok(),
+        "a stream gives {of_stream:?} where memory gives {in_memory:?}"
+    );
+    if let (Ok(solid), Ok(body)) = (of_stream, in_memory) {
+        is_body(&solid.body, 0.0);
+        is_body(&body, 0.0);
+        let allowed = solid.body.error_bound().mass + body.error_bound().mass;
+        let off = (solid.body.mass() - body.mass()).abs();
+        assert!(off <= allowed, "masses differ by {off:e} > {allowed:e}");
+        assert_eq!(solid.triangles, faces.len());
     }
 }
 
@@ -200,7 +196,7 @@ fn ply(mut draw: Draw<'_>) -> Result<Vec<u8>> {
         } else {
             rows.to_string()
         };
-        header += &format!("element {element} {count}\n");
+        header.extend(["element ", element, " ", &count, "\n"]);
         let mut properties = Vec::new();
         match element {
             "vertex" => {
@@ -225,8 +221,10 @@ fn ply(mut draw: Draw<'_>) -> Result<Vec<u8>> {
         }
         for (count, kind, name) in &properties {
             match count {
-                Some(count) => header += &format!("property list {count} {kind} {name}\n"),
-                None => header += &format!("property {kind} {name}\n"),
+                Some(count) => {
+                    header.extend(["property list ", count, " ", kind, " ", name, "\n"]);
+                }
+                None => header.extend(["property ", kind, " ", name, "\n"]),
             }
         }
         for row in 0..rows.min(4) {
@@ -255,7 +253,11 @@ fn ply(mut draw: Draw<'_>) -> Result<Vec<u8>> {
 }
 
 /// A number as a PLY stores it.
-#[expect(clippy::cast_possible_truncation, reason = "so the format stores it")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "so the format stores it"
+)]
 fn put(bytes: &mut Vec<u8>, kind: &str, number: f64, big: bool) {
     let mut stored = match kind {
         "char" => (number as i8).to_le_bytes().to_vec(),
