@@ -117,6 +117,19 @@ pub enum Error {
         /// The body as far as it is known.
         estimate: Box<crate::RigidBody>,
     },
+    /// A number of the body that float64 does not hold with all its digits.
+    #[error(
+        "the {what} would be {}, and float64 holds 2.2e-308 to 1.8e+308 with all digits: choose other units of length or mass",
+        decimal(*mantissa, *exponent)
+    )]
+    OutOfRange {
+        /// Which number.
+        what: &'static str,
+        /// The number is this times `2^exponent`.
+        mantissa: f64,
+        /// The power of two.
+        exponent: i32,
+    },
     /// The total mass is not positive.
     #[error("mass must be positive, got {mass:?}")]
     NonPositiveMass {
@@ -538,6 +551,14 @@ pub enum Error {
     Stopped,
 }
 
+/// Three digits of `mantissa·2^exponent`, which may lie beyond all doubles.
+fn decimal(mantissa: f64, exponent: i32) -> String {
+    let logarithm = mantissa.abs().log10() + f64::from(exponent) * std::f64::consts::LOG10_2;
+    let digits = 10.0_f64.powf(logarithm - logarithm.floor());
+    let sign = if mantissa < 0.0 { "-" } else { "" };
+    format!("{sign}{digits:.2}e{}", logarithm.floor())
+}
+
 impl From<Halt<Infallible>> for Error {
     fn from(halt: Halt<Infallible>) -> Self {
         match halt {
@@ -567,6 +588,7 @@ impl Error {
                 ..
             }
             | Self::NonPositiveMass { .. }
+            | Self::OutOfRange { .. }
             | Self::NegativeMass { .. }
             | Self::NegativeDensity { .. }
             | Self::NoMass { .. }

@@ -150,6 +150,14 @@ impl RigidBody {
         all_finite("center_of_mass", &matter.center_of_mass)?;
         let inertia = matter.inertia();
         all_finite("inertia", &inertia)?;
+        let spread = matter.central.trace();
+        if spread > 0.0 && spread < f64::MIN_POSITIVE {
+            return Err(Error::OutOfRange {
+                what: "sum of the second moments",
+                mantissa: spread,
+                exponent: 0,
+            });
+        }
         Ok(Self {
             mass: matter.mass,
             center_of_mass: matter.center_of_mass,

@@ -122,7 +122,7 @@ impl Region {
     /// When the mesh does not bound a solid.
     pub fn mesh<I: Index>(vertices: &[[f64; 3]], faces: &[[I; 3]]) -> Result<Self, Error> {
         // Whatever is wrong with the mesh is told here.
-        let solid = polyhedron(vertices, faces, Amount::Density(1.0), false)?;
+        let solid = polyhedron(vertices, faces, Amount::Mass(1.0), false)?;
         Ok(Self(Kind::Mesh {
             apex: solid.center_of_mass(),
             faces: faces

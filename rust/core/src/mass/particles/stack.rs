@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Watch, about_center, in_own_axes, is_thin, particles_watched};
+use super::extreme::in_units;
+use super::{Watch, about_center, in_own_axes, is_ordinary, is_thin, particles_watched};
 use crate::error::Error;
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::Provenance;
@@ -87,10 +88,16 @@ fn batch<'a>(
     bodies: &mut [RigidBody],
 ) -> Result<(), (usize, Error)> {
     let watch = &mut |_: f64| ControlFlow::Continue(());
-    let particles: Vec<_> = which.iter().map(|&k| (k, row(k))).collect();
-    let mut moments = Vec::with_capacity(particles.len());
-    for &(k, row) in &particles {
-        moments.push(about_center(row, watch).map_err(|error| (k, error))?);
+    let (mut particles, mut moments) = (Vec::new(), Vec::new());
+    for &k in which {
+        let row = row(k);
+        let matter = about_center(row, watch).map_err(|error| (k, error))?;
+        if is_ordinary(&matter, row) {
+            particles.push((k, row));
+            moments.push(matter);
+        } else {
+            bodies[k] = in_units(row, watch).map_err(|error| (k, error))?;
+        }
     }
     decompose(&particles, &moments, |provenance| provenance, bodies)?;
     let is_thin = |&(k, _): &(usize, Particles<'_>)| is_thin(&bodies[k]);
