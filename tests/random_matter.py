@@ -1,4 +1,4 @@
-"""Random matter of every kind that an adversary would try: flat, thin, huge, tiny, far away, light and heavy."""
+"""Random matter as an adversary would choose it: flat, thin, huge, tiny, far away, light and heavy."""
 
 from __future__ import annotations
 

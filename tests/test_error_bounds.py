@@ -20,7 +20,7 @@ from oracles.exact_polyhedron import polyhedron
 from oracles.exact_shapes import tensor, tetrahedra
 from oracles.meshes import box, icosphere, tetrahedron
 from polhode import RigidBody
-from polhode.errors import PolhodeError
+from polhode.errors import MeshError, PolhodeError
 
 LEAST = Fraction(2) ** -1022
 MOST = Fraction(np.finfo(float).max)
@@ -126,7 +126,7 @@ def mesh_faults(number: int) -> list[str]:
     try:
         exact = polyhedron(vertices, faces)
     except ZeroDivisionError:
-        with pytest.raises(PolhodeError, match="volume|inward"):
+        with pytest.raises(MeshError):
             RigidBody.from_mesh(vertices, faces, density=rho)
         return []
     try:
@@ -168,7 +168,7 @@ def thin_faults(
         try:
             exact = exact_of(*shape, digits=400)
         except ZeroDivisionError:  # without area or length
-            with pytest.raises(PolhodeError, match="area|length"):
+            with pytest.raises(PolhodeError, match=r"area|length"):
                 make(*shape, rho)
             return []
         mass = Fraction(rho) * fractions(exact.content)

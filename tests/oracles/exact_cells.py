@@ -57,10 +57,7 @@ def cells_matter(nodes: Any, cells: Any, densities: Any) -> Matter | None:
     C = [Fraction(x, 12 * unit * mass) for x in first]
     scale = 20 * 6 * 12 * 144 * unit**5 * weight * mass
     S = [
-        [
-            Fraction(second[max(x, y)][min(x, y)] * mass - first[x] * first[y], scale)
-            for y in range(3)
-        ]
+        [Fraction(second[max(x, y)][min(x, y)] * mass - first[x] * first[y], scale) for y in range(3)]
         for x in range(3)
     ]
     return Matter(M, C, S)

@@ -24,6 +24,8 @@ pub enum Kind {
     Quadrature,
     /// An integration that could not go on.
     Integration,
+    /// More than there is memory for.
+    Memory,
 }
 
 /// An input that breaks a law of mechanics, of geometry or of the numbers themselves.
@@ -546,6 +548,18 @@ pub enum Error {
         /// Where.
         time: f64,
     },
+    /// More results than there is memory for; nothing has been computed.
+    #[error(
+        "{count} {what} would take {bytes:.3e} bytes, for which there is no memory: ask for fewer at a time"
+    )]
+    NoMemory {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        count: usize,
+        /// All together.
+        bytes: f64,
+    },
     /// Whoever watched the work asked it to stop.
     #[error("the computation was stopped before it was finished")]
     Stopped,
@@ -604,6 +618,7 @@ impl Error {
             Self::Quadrature { .. } => Kind::Quadrature,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. } | Self::NotFiniteMotion { .. } => Kind::Integration,
+            Self::NoMemory { .. } => Kind::Memory,
             _ => Kind::Argument,
         }
     }

@@ -104,17 +104,17 @@ pub struct Cubature<const D: usize, const K: usize> {
     pub leaves: Vec<Leaf<D, K>>,
     /// The sum of the leaves' relative errors.
     pub error: f64,
-    /// How many points were evaluated.
+    /// At how many points of the rules the integrand was evaluated.
     pub evaluations: usize,
-    /// How many more it would take to look for jumps beside faces, where that was not allowed.
-    pub unprobed: usize,
 }
 
 /// Points that are evaluated in one call, about.
 const BATCH: usize = 1 << 18;
 
 /// Integrates over `cells`, halving those with the largest errors until all errors sum to `rtol` or below, or the next
-/// round would take more than `max_evaluations` points: whether it converged is for the caller to see.
+/// round would take more than `max_evaluations` points: whether it converged is for the caller to see. Looking beside the
+/// faces of the boxes is not counted: it takes a ninth as many points as the rule of fifteen in three dimensions, and less
+/// than a sixth as many as that of seven.
 ///
 /// # Errors
 /// Whatever the integrand fails with.
@@ -134,19 +134,15 @@ pub fn integrate<const D: usize, const K: usize, F: Integrand<D, K>>(
         let totals: Vec<f64> = errors.iter().map(|axes| axes.iter().sum()).collect();
         let error: f64 = totals.iter().sum();
         let room = max_evaluations.saturating_sub(evaluations) / (2 * each);
-        let unprobed = leaves.iter().filter(|leaf| !leaf.is_probed).count() * probes.points();
-        let is_done = error <= rtol && unprobed == 0;
-        if is_done || (error > rtol && room == 0) || evaluations + unprobed > max_evaluations {
-            return Ok(Cubature {
-                leaves,
-                error,
-                evaluations,
-                unprobed,
-            });
-        }
-        if error <= rtol {
+        if error <= rtol || room == 0 {
+            if leaves.iter().all(|leaf| leaf.is_probed) {
+                return Ok(Cubature {
+                    leaves,
+                    error,
+                    evaluations,
+                });
+            }
             probes.ask(integrand, &mut leaves)?;
-            evaluations += unprobed;
             continue;
         }
         let halved = worst(&totals, 0.25 * rtol, room.min((BATCH / (2 * each)).max(1)));

@@ -56,7 +56,7 @@ impl<const D: usize> Probes<D> {
     }
 
     /// How many points each box takes.
-    pub(super) fn points(&self) -> usize {
+    fn points(&self) -> usize {
         D * self.lines.len() * self.along()
     }
 
@@ -213,7 +213,7 @@ mod tests {
                 let Ok(found) = integrate(&mut Step(place), &[whole], &rule, 1e-9, 100_000);
                 let sum: f64 = found.leaves.iter().map(|leaf| leaf.sums[0]).sum();
                 let error = (sum - (2.0 - place)).abs();
-                assert!(found.error <= 1e-9 && found.unprobed == 0, "{place}");
+                assert!(found.error <= 1e-9, "{place}");
                 assert!(error <= 1.25 * found.error + 1e-15, "{place}: {error:e}");
             }
         }
