@@ -150,6 +150,14 @@ impl RigidBody {
         all_finite("center_of_mass", &matter.center_of_mass)?;
         let inertia = matter.inertia();
         all_finite("inertia", &inertia)?;
+        let spread = matter.central.trace();
+        if spread > 0.0 && spread < f64::MIN_POSITIVE {
+            return Err(Error::OutOfRange {
+                what: "sum of the second moments",
+                mantissa: spread,
+                exponent: 0,
+            });
+        }
         Ok(Self {
             mass: matter.mass,
             center_of_mass: matter.center_of_mass,
@@ -311,7 +319,7 @@ impl RigidBody {
     pub fn radii_of_gyration(&self) -> [f64; 3] {
         self.principal
             .moments
-            .map(|moment| (moment / self.mass).sqrt())
+            .map(|moment| root_of_ratio(moment, self.mass))
     }
 
     /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows, bounds,
@@ -386,12 +394,21 @@ impl RigidBody {
     /// to `rtol` of its distance from the origin or of the radius of gyration, whichever is larger; each `+ atol`.
     #[must_use]
     pub fn is_close(&self, other: &Self, rtol: f64, atol: f64) -> bool {
-        let size = (trace(&other.inertia) / other.mass)
-            .sqrt()
-            .max(other.center_of_mass.norm());
+        let size =
+            root_of_ratio(trace(&other.inertia), other.mass).max(other.center_of_mass.norm());
         (self.mass - other.mass).abs() <= atol + rtol * other.mass
             && (self.center_of_mass - other.center_of_mass).norm() <= atol + rtol * size
             && (self.inertia - other.inertia).abs().max() <= atol + rtol * other.inertia.abs().max()
+    }
+}
+
+/// `√(a/b)`, where a/b may be beyond all numbers too.
+fn root_of_ratio(a: f64, b: f64) -> f64 {
+    let ratio = a / b;
+    if ratio.is_normal() || a == 0.0 {
+        ratio.sqrt()
+    } else {
+        a.sqrt() / b.sqrt()
     }
 }
 
@@ -450,6 +467,24 @@ mod tests {
                 body(1.0, 1.0, -1.0),
                 Err(Error::NegativeMoment { .. })
             ));
+        }
+    }
+
+    #[test]
+    fn radii_of_what_is_very_heavy_and_light() {
+        for (mass, moment, radius) in [
+            (1e-200, 1e200, 1e200),
+            (1e200, 1e-200, 1e-200),
+            (2.0, 8.0, 2.0),
+        ] {
+            let body = RigidBody::new(
+                mass,
+                &diagonal(moment, moment, moment),
+                &Vector3::zeros(),
+                0.0,
+            );
+            let [found, ..] = body.expect("body").radii_of_gyration();
+            assert!((found / radius - 1.0).abs() < 1e-15);
         }
     }
 

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 use self::moments::Moments;
 use super::body::RigidBody;
-use super::particles::{Particles, Watch, check};
+use super::particles::{ORDINARY, Particles, Watch, check};
 use crate::error::Error;
 use crate::mass::provenance::Provenance;
 use crate::numerics::reduce::{BLOCK, depth};
@@ -181,7 +181,18 @@ impl MassAccumulator {
     /// When particles before the last have not been added, or the total mass is not positive.
     pub fn finish(&self) -> Result<RigidBody, Error> {
         let (total, additions) = self.total()?;
-        let body = RigidBody::from_second_moment(&total.rounded(additions))?;
+        let matter = total.rounded(additions);
+        let spread = matter.central.trace();
+        // As of particles, but what underflowed in a chunk cannot be summed again.
+        if spread != 0.0 && !ORDINARY.contains(&spread) {
+            return Err(Error::OutOfDomain {
+                what: "the sum of the second moments",
+                law: "from 1.5e-241 to 1.0e+301, so that nothing under- or overflows on the way to it: add the particles in \
+                      other units of length or mass",
+                value: spread,
+            });
+        }
+        let body = RigidBody::from_second_moment(&matter)?;
         let count = usize::try_from(self.count()).unwrap_or(usize::MAX);
         Ok(body.with_provenance(Provenance::of_particles(count)))
     }
