@@ -10,7 +10,7 @@ use super::validity::{
     ROUNDING, check_mass, check_moments, check_rotation, check_rtol, mean_of_halves, symmetrized,
     trace,
 };
-use crate::error::{Error, all_finite};
+use crate::error::{Error, all_finite, finite};
 use crate::numerics::eigen3::{Eigen3, eigen3};
 use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
 
@@ -178,6 +178,8 @@ impl RigidBody {
         hint: &'static str,
     ) -> Result<Self, Error> {
         all_finite("inertia", &inertia)?;
+        // All that is rounding is relative to it; a trace beyond all numbers would admit anything.
+        finite("the trace of inertia", scale)?;
         let principal = principal_axes(&inertia);
         check_moments(
             &principal.moments,
@@ -362,7 +364,9 @@ impl RigidBody {
         check_rotation("axes", &axes)?;
         let principal = PrincipalAxes { moments, axes };
         let difference = (inertia - tensor(&principal)).abs().max();
-        if difference > 1e-12 * trace(&inertia) || !(0.0 <= i1 && i1 <= i2 && i2 <= i3) {
+        // The least numbers of float64 have few digits.
+        let rounding = 1e-12 * trace(&inertia) + f64::MIN_POSITIVE * 64.0 * f64::EPSILON;
+        if difference > rounding || !(0.0 <= i1 && i1 <= i2 && i2 <= i3) {
             let law = "that of the ascending principal moments and the axes stored beside it";
             return Err(Error::OutOfDomain {
                 what: "inertia",
@@ -395,10 +399,20 @@ impl RigidBody {
     #[must_use]
     pub fn is_close(&self, other: &Self, rtol: f64, atol: f64) -> bool {
         let size =
-            root_of_ratio(trace(&other.inertia), other.mass).max(other.center_of_mass.norm());
+            root_of_ratio(trace(&other.inertia), other.mass).max(length(&other.center_of_mass));
         (self.mass - other.mass).abs() <= atol + rtol * other.mass
-            && (self.center_of_mass - other.center_of_mass).norm() <= atol + rtol * size
+            && length(&(self.center_of_mass - other.center_of_mass)) <= atol + rtol * size
             && (self.inertia - other.inertia).abs().max() <= atol + rtol * other.inertia.abs().max()
+    }
+}
+
+/// The length of a vector, which may be large beyond the root of the largest number.
+fn length(vector: &Vector3<f64>) -> f64 {
+    let largest = vector.amax();
+    if largest > 1e150 {
+        (vector / largest).norm() * largest
+    } else {
+        vector.norm()
     }
 }
 
@@ -485,6 +499,34 @@ mod tests {
             );
             let [found, ..] = body.expect("body").radii_of_gyration();
             assert!((found / radius - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn numbers_at_the_ends_of_float64() {
+        let most = f64::MAX;
+        let wild = Matrix3::new(-4.0, most, most, most, -most, 4.0, most, 4.0, -most);
+        for tensor in [wild, diagonal(most, most, most)] {
+            let fault = RigidBody::new(1.0, &tensor, &Vector3::zeros(), 0.0).expect_err("no trace");
+            assert!(matches!(fault, Error::NonFinite { .. }), "{fault}");
+        }
+        let far = Vector3::new(1.0, -3e279, 4e279);
+        let body = RigidBody::new(1.0, &diagonal(1.0, 1.0, 1.0), &far, 0.0).expect("far away");
+        assert!(body.is_close(&body, 0.0, 0.0));
+        let least = Matrix3::new(5.0, 1.0, -1.0, 1.0, 5.0, -1.0, -1.0, -1.0, 6.0) * 5e-323;
+        let body = RigidBody::new(1.0, &least, &Vector3::zeros(), 0.0).expect("tiny");
+        assert_eq!(RigidBody::from_array(&body.to_array()).as_ref(), Ok(&body));
+    }
+
+    #[test]
+    fn negative_bounds_are_no_bounds() {
+        let body = RigidBody::new(1.0, &diagonal(1.0, 1.0, 1.0), &Vector3::zeros(), 0.0);
+        let mut numbers = body.expect("body").to_array();
+        for (place, value) in [(22, -1.0), (23, f64::NAN), (24, -0.5)] {
+            let before = std::mem::replace(&mut numbers[place], value);
+            let read = RigidBody::from_array(&numbers);
+            assert!(matches!(read, Err(Error::OutOfDomain { .. })), "{read:?}");
+            numbers[place] = before;
         }
     }
 
