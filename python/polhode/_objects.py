@@ -28,7 +28,7 @@ def body_from_mesh(mesh: Any, **options: Any) -> _core.RigidBody:
             f"got {type(mesh).__name__}; RigidBody.from_mesh takes arrays"
         )
     # Formats that store the corners of each triangle anew give equal vertices, which are one.
-    vertices, index = np.unique(np.asarray(found.vertices, dtype=float), axis=0, return_inverse=True)
+    vertices, index = np.unique(_core.real_numbers(found.vertices, "vertices"), axis=0, return_inverse=True)
     return _core.RigidBody.from_mesh(vertices, index.reshape(-1)[np.asarray(found.faces)], **options)
 
 
@@ -59,4 +59,4 @@ def body_from_atoms(atoms: Any, conformer: int | None = None) -> _core.RigidBody
             f"atoms: expected ASE's Atoms or RDKit's Mol, got {type(atoms).__name__}; "
             "RigidBody.from_particles takes masses and positions"
         )
-    return _core.RigidBody.from_particles(np.asarray(masses, dtype=float), np.asarray(positions, dtype=float))
+    return _core.RigidBody.from_particles(masses, positions)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 import numpy as np
 
+from polhode import _core
 from polhode._extras import require
 from polhode.errors import PolhodeError
 
@@ -176,7 +177,7 @@ def ray_kappa(constants: ArrayLike) -> Any:
     >>> float(ray_kappa([3.0, 2.0, 1.0]))
     0.0
     """
-    a, b, c = np.moveaxis(np.asarray(constants, dtype=np.float64), -1, 0)
+    a, b, c = np.moveaxis(_core.real_numbers(constants, "constants"), -1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         return ((b - c) - (a - b)) / (a - c)
 
@@ -233,7 +234,7 @@ def planar_moments(moments: ArrayLike) -> Floats:
 
 
 def _components(moments: ArrayLike) -> Any:
-    inertia = np.asarray(moments, dtype=np.float64)
+    inertia = _core.real_numbers(moments, "moments")
     if inertia.shape[-1:] != (3,):
         raise ValueError(f"moments: expected shape (..., 3), got {inertia.shape}")
     return np.moveaxis(inertia, -1, 0)

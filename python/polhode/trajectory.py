@@ -220,7 +220,7 @@ class Trajectory:
         words = {"center_of_mass": self.body.center_of_mass, "origin": np.zeros(3)}
         if isinstance(r, str) and r not in words:
             raise ValueError(f"r: {r!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
-        place = words[r] if isinstance(r, str) else np.asarray(r, dtype=float)
+        place = words[r] if isinstance(r, str) else _core.real_numbers(r, "r")
         if place.shape[-1:] != (3,):
             raise ValueError(f"r: expected shape (..., 3), got {place.shape}")
         arm = place - self.about
@@ -387,7 +387,7 @@ class Trajectory:
         >>> first.resume([1, 2]).quaternion[-1].round(6)
         array([0.      , 0.      , 0.841471, 0.540302])
         """
-        start = np.asarray(t, dtype=float).reshape(-1)[:1]
+        start = _core.real_numbers(t, "t").reshape(-1)[:1]
         if not np.array_equal(start, self.t[-1:]):
             raise ValueError(f"t: the motion goes on from t = {float(self.t[-1])!r}, got {start.tolist()}")
         state = self.state()
@@ -431,7 +431,7 @@ class Trajectory:
             self.angular_acceleration(),
             self.quaternion,
             gravity=gravity,
-            force=self.force() + np.asarray(force, dtype=float),
+            force=self.force() + _core.real_numbers(force, "force"),
         )
 
     def save(self, path: str | PathLike[str]) -> None:

@@ -16,6 +16,9 @@ from .spoilt import Planned
 ERRORS = (ValueError, TypeError, OverflowError, MemoryError, IndexError, Planned)
 """Every error of polhode is a ValueError."""
 
+TOLD_BY_NUMPY = ("Casting complex values", "Warning: converting a masked element", "overflow encountered")
+"""How the warnings begin by which NumPy itself tells what a scalar of another kind loses."""
+
 
 class Wrong(AssertionError):  # noqa: N818
     """A call did what the contract forbids."""

@@ -107,6 +107,10 @@ def judge(made: Made) -> str:
     before = [(array, array.tobytes()) for array in verdict.arrays(list(made.arguments.values()))]
     try:
         result = made.make(made.arguments)
+    except Warning as told:
+        if not str(told).startswith(verdict.TOLD_BY_NUMPY):
+            raise
+        outcome, result = "warned", None
     except verdict.ERRORS as error:
         if not isinstance(error, spoilt.Planned | MemoryError) and not str(error):
             raise verdict.Wrong("an error without a word") from error

@@ -61,7 +61,7 @@ pub fn any(draw: &mut Draw<'_>) -> Result<(Option<RigidBody>, f64)> {
         11 => of_density(draw)?.ok(),
         12 => {
             let points = draw.list(8, Draw::numbers)?;
-            curve::curve(&points, amount(draw)?).ok()
+            curve::curve(&points, amount(draw)?, &mut patience(1000)).ok()
         }
         _ => {
             let parts = draw.list(3, solid)?;
@@ -167,7 +167,7 @@ fn of_mesh(draw: &mut Draw<'_>) -> Result<Option<RigidBody>> {
     let (orient, check) = (draw.coin()?, draw.up_to(3)? > 0);
     let options = Options { orient, check };
     let watch = &mut patience(1000);
-    if let Ok(area) = area(vertices, faces) {
+    if let Ok(area) = area(vertices, faces, watch) {
         assert!(area >= 0.0, "area {area:?}");
     }
     let body = match draw.up_to(5)? {
@@ -295,7 +295,10 @@ fn flat(draw: &mut Draw<'_>) -> Result<Made> {
         5 => rods::rod(a, amount),
         6 => rods::ring(a, amount),
         7 => rods::arc(a, b, amount),
-        _ => laminae::polygon(&draw.list(9, Draw::numbers)?, amount),
+        _ => {
+            let corners = draw.list(9, Draw::numbers)?;
+            laminae::polygon(&corners, amount, &mut patience(1000))
+        }
     })
 }
 
@@ -332,7 +335,7 @@ fn of_density(draw: &mut Draw<'_>) -> Result<Made> {
         ),
         _ => {
             let mesh = mesh(draw)?;
-            Region::mesh(&mesh.vertices, &mesh.faces)
+            Region::mesh(&mesh.vertices, &mesh.faces, &mut patience(1000))
         }
     };
     let density = |points: &[[f64; 3]], out: &mut [f64]| {

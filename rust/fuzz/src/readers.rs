@@ -277,7 +277,7 @@ fn put(bytes: &mut Vec<u8>, kind: &str, number: f64, big: bool) {
 
 fn text(text: &str) {
     for base in [0, 1] {
-        if let Ok(mesh) = plates::read(text, base) {
+        if let Ok(mesh) = plates::read(text, base, &mut patience(1000)) {
             assert!(!mesh.faces.is_empty());
             let lines = text.lines().count();
             assert!(mesh.vertices.len() <= lines);

@@ -2,17 +2,24 @@
 
 use std::convert::Infallible;
 
-use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, Vector3, Vector6};
 use numpy::ndarray::ArrayViewD;
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    Element, IntoPyArray, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyFloat, PyInt, PyList, PyModule, PyTuple};
+use pyo3::types::{PyFloat, PyInt, PyList, PyString, PyTuple};
 
 use crate::errors::{at_row, to_py, wrong_shape};
+use crate::foreign::AXES;
+pub(crate) use crate::foreign::{as_array, contiguous, numpy};
 use crate::hints;
-use crate::stack::{Stack, tuple};
+use crate::interrupt::Beat;
+pub(crate) use crate::items::Item;
+use crate::items::size;
+use crate::memory;
+use crate::stack::{BLOCK, Stack, tuple};
 
 /// Numbers that are sooner copied than handed over.
 const FEW: usize = 1024;
@@ -36,150 +43,70 @@ impl<'py> FromPyObject<'_, 'py> for Argument<'py> {
     }
 }
 
-/// A value that stands in the last axes of an array.
-pub(crate) trait Item: Sized {
-    /// Those axes.
-    const TAIL: &'static [usize];
-    /// From its numbers in C order.
-    fn read(numbers: &[f64]) -> Self;
-    /// Its numbers in C order.
-    fn write(&self, out: &mut Vec<f64>);
-}
-
-impl Item for f64 {
-    const TAIL: &'static [usize] = &[];
-
-    fn read(numbers: &[f64]) -> Self {
-        numbers[0]
-    }
-
-    fn write(&self, out: &mut Vec<f64>) {
-        out.push(*self);
-    }
-}
-
-macro_rules! fixed_length {
-    ($($n:literal)*) => {$(
-        impl Item for [f64; $n] {
-            const TAIL: &'static [usize] = &[$n];
-
-            fn read(numbers: &[f64]) -> Self {
-                std::array::from_fn(|i| numbers[i])
-            }
-
-            fn write(&self, out: &mut Vec<f64>) {
-                out.extend_from_slice(self);
-            }
-        }
-    )*};
-}
-fixed_length!(2 3 4 10 33);
-
-/// The corners of a triangle in the plane.
-impl Item for [[f64; 2]; 3] {
-    const TAIL: &'static [usize] = &[3, 2];
-
-    fn read(numbers: &[f64]) -> Self {
-        std::array::from_fn(|i| [numbers[2 * i], numbers[2 * i + 1]])
-    }
-
-    fn write(&self, out: &mut Vec<f64>) {
-        out.extend(self.as_flattened());
-    }
-}
-
-impl Item for Vector3<f64> {
-    const TAIL: &'static [usize] = &[3];
-
-    fn read(numbers: &[f64]) -> Self {
-        Self::new(numbers[0], numbers[1], numbers[2])
-    }
-
-    fn write(&self, out: &mut Vec<f64>) {
-        out.extend_from_slice(self.as_slice());
-    }
-}
-
-macro_rules! square_matrix {
-    ($($matrix:ident $n:literal)*) => {$(
-        impl Item for $matrix<f64> {
-            const TAIL: &'static [usize] = &[$n, $n];
-
-            fn read(numbers: &[f64]) -> Self {
-                Self::from_row_slice(numbers)
-            }
-
-            fn write(&self, out: &mut Vec<f64>) {
-                out.extend_from_slice(self.transpose().as_slice()); // nalgebra stores columns
-            }
-        }
-    )*};
-}
-square_matrix!(Matrix3 3 Matrix4 4 Matrix6 6);
-
-impl Item for Matrix6x3<f64> {
-    const TAIL: &'static [usize] = &[6, 3];
-
-    fn read(numbers: &[f64]) -> Self {
-        Self::from_row_slice(numbers)
-    }
-
-    fn write(&self, out: &mut Vec<f64>) {
-        out.extend_from_slice(self.transpose().as_slice()); // nalgebra stores columns
-    }
-}
-
-impl Item for Vector6<f64> {
-    const TAIL: &'static [usize] = &[6];
-
-    fn read(numbers: &[f64]) -> Self {
-        Self::from_row_slice(numbers)
-    }
-
-    fn write(&self, out: &mut Vec<f64>) {
-        out.extend_from_slice(self.as_slice());
-    }
-}
-
 /// Items over the last axes and a stack over the leading ones.
 pub(crate) fn read<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Stack<T>> {
-    if let Some(numbers) = plain(object) {
-        return stacked(name, &[numbers.len()], &numbers);
+    let py = object.py();
+    if let Some(numbers) = plain(object)? {
+        return stacked(py, name, &[numbers.len()], &numbers);
     }
     let array = floats(object, name)?;
-    stacked(name, array.shape(), array.as_slice()?)
+    stacked(py, name, array.shape(), array.as_slice()?)
 }
 
 /// The items of an array with these numbers.
-fn stacked<T: Item>(name: &str, shape: &[usize], numbers: &[f64]) -> PyResult<Stack<T>> {
+fn stacked<T: Item>(
+    py: Python<'_>,
+    name: &str,
+    shape: &[usize],
+    numbers: &[f64],
+) -> PyResult<Stack<T>> {
     let depth = (shape.len().checked_sub(T::TAIL.len()))
         .filter(|&depth| shape[depth..] == *T::TAIL)
         .ok_or_else(|| wrong_shape(name, T::TAIL, shape))?;
-    Ok(Stack {
-        shape: shape[..depth].to_vec(),
-        rows: numbers.chunks_exact(size::<T>()).map(T::read).collect(),
-    })
+    let shape = shape[..depth].to_vec();
+    let mut rows = memory::vector(name, &shape, 0)?;
+    let mut beat = Beat::new(py);
+    for block in numbers.chunks(BLOCK * size::<T>()) {
+        beat.mark()?;
+        rows.extend(block.chunks_exact(size::<T>()).map(T::read));
+    }
+    Ok(Stack { shape, rows })
 }
 
 /// The numbers of a list or tuple that holds floats and integers alone, as NumPy would read them and much sooner.
-fn plain(object: &Bound<'_, PyAny>) -> Option<Vec<f64>> {
-    let number = |item: Bound<'_, PyAny>| {
-        if let Ok(float) = item.cast::<PyFloat>() {
-            return Some(float.value());
-        }
-        let integer = item.cast_exact::<PyInt>().ok()?;
-        Some(integer.extract::<i64>().ok()? as f64)
-    };
+fn plain(object: &Bound<'_, PyAny>) -> PyResult<Option<Vec<f64>>> {
     if let Ok(list) = object.cast_exact::<PyList>() {
-        list.iter().map(number).collect()
+        all_numbers(object.py(), list.len(), list.iter())
+    } else if let Ok(tuple) = object.cast_exact::<PyTuple>() {
+        all_numbers(object.py(), tuple.len(), tuple.iter())
     } else {
-        object
-            .cast_exact::<PyTuple>()
-            .ok()?
-            .iter()
-            .map(number)
-            .collect()
+        Ok(None)
     }
+}
+
+/// Those numbers, unless something else is among them.
+fn all_numbers<'py>(
+    py: Python<'py>,
+    count: usize,
+    items: impl Iterator<Item = Bound<'py, PyAny>>,
+) -> PyResult<Option<Vec<f64>>> {
+    let mut numbers = memory::vector("list", &[count], 0)?;
+    let mut beat = Beat::new(py);
+    for (row, item) in items.enumerate() {
+        if row % BLOCK == 0 {
+            beat.mark()?;
+        }
+        if let Ok(float) = item.cast::<PyFloat>() {
+            numbers.push(float.value());
+        } else if let Some(integer) =
+            (item.cast_exact::<PyInt>().ok()).and_then(|integer| integer.extract::<i64>().ok())
+        {
+            numbers.push(integer as f64);
+        } else {
+            return Ok(None);
+        }
+    }
+    Ok(Some(numbers))
 }
 
 /// As [`read`] for items in a row, shape (n, tail) or (..., n, tail): `leading` names the axes before the tail.
@@ -232,9 +159,9 @@ pub(crate) fn write<'py, T: Item>(
     py: Python<'py>,
     stack: &Stack<T>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let mut numbers = Vec::with_capacity(stack.rows.len() * size::<T>());
-    stack.rows.iter().for_each(|row| row.write(&mut numbers));
-    shaped::<T>(py, numbers, &stack.shape)
+    let mut numbers = Numbers::of::<T>(py, "result", &stack.shape)?;
+    numbers.put(&stack.rows, T::write)?;
+    numbers.finish::<T>(&stack.shape)
 }
 
 /// The array of one item for each row of a stack.
@@ -243,18 +170,56 @@ pub(crate) fn write_of<'py, R, T: Item>(
     stack: &Stack<R>,
     item: impl Fn(&R) -> T,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let mut numbers = Vec::with_capacity(stack.rows.len() * size::<T>());
-    (stack.rows.iter()).for_each(|row| item(row).write(&mut numbers));
-    shaped::<T>(py, numbers, &stack.shape)
+    let mut numbers = Numbers::of::<T>(py, "result", &stack.shape)?;
+    numbers.put(&stack.rows, |row, out| item(row).write(out))?;
+    numbers.finish::<T>(&stack.shape)
 }
 
-/// How many numbers an item has.
-fn size<T: Item>() -> usize {
-    T::TAIL.iter().product()
+/// The numbers of an array that is being made: room for all of them was found before the first was computed.
+pub(crate) struct Numbers<'py> {
+    found: Vec<f64>,
+    beat: Beat<'py>,
+    py: Python<'py>,
+}
+
+impl<'py> Numbers<'py> {
+    /// None yet, of an array of items under a shape; `what` asks for it.
+    pub(crate) fn of<T: Item>(py: Python<'py>, what: &str, shape: &[usize]) -> PyResult<Self> {
+        Ok(Self {
+            found: match memory::few(shape, size_of::<f64>() * size::<T>()) {
+                Some(rows) => Vec::with_capacity(rows * size::<T>()),
+                None => memory::vector(what, &[shape, T::TAIL].concat(), 0)?,
+            },
+            beat: Beat::new(py),
+            py,
+        })
+    }
+
+    /// Those of some further rows.
+    pub(crate) fn put<R>(
+        &mut self,
+        rows: impl IntoIterator<Item = R>,
+        write: impl Fn(R, &mut Vec<f64>),
+    ) -> PyResult<()> {
+        let mut rows = rows.into_iter();
+        loop {
+            let before = self.found.len();
+            (rows.by_ref().take(BLOCK)).for_each(|row| write(row, &mut self.found));
+            if self.found.len() == before {
+                return Ok(());
+            }
+            self.beat.mark()?;
+        }
+    }
+
+    /// The array.
+    pub(crate) fn finish<T: Item>(self, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        shaped::<T>(self.py, self.found, shape)
+    }
 }
 
 /// An array of items with these numbers: in the memory they are in, or, as is sooner done with few, in its own.
-pub(crate) fn shaped<'py, T: Item>(
+fn shaped<'py, T: Item>(
     py: Python<'py>,
     numbers: Vec<f64>,
     shape: &[usize],
@@ -266,6 +231,18 @@ pub(crate) fn shaped<'py, T: Item>(
         return Ok(PyArrayDyn::from_array(py, &view));
     }
     numbers.into_pyarray(py).reshape(shape)
+}
+
+/// As [`write_numbers`], of one number for each row of a stack.
+pub(crate) fn write_numbers_of<'py, R>(
+    py: Python<'py>,
+    stack: &Stack<R>,
+    number: impl Fn(&R) -> f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    if stack.is_one() {
+        return Ok(number(&stack[0]).into_pyobject(py)?.into_any());
+    }
+    Ok(write_of(py, stack, number)?.into_any())
 }
 
 /// A float for one value, an array for a stack.
@@ -284,8 +261,10 @@ pub(crate) fn floats<'py>(
     object: &Bound<'py, PyAny>,
     name: &str,
 ) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
-    if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
+    if let Ok(array) = object.cast_exact::<PyArrayDyn<f64>>()
         && array.is_c_contiguous()
+        && array.is_aligned()
+        && array.ndim() <= AXES
     {
         return Ok(array.readonly());
     }
@@ -298,10 +277,30 @@ pub(crate) fn floats<'py>(
             hints::for_kind(&kind)
         )));
     }
-    let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "float64"))?;
-    // ascontiguousarray makes one axis of none.
-    let array = array.call_method1("reshape", (as_array(object, name)?.getattr("shape")?,))?;
+    let array = contiguous(&array, name, "float64")?;
     Ok(array.cast_into::<PyArrayDyn<f64>>()?.readonly())
+}
+
+/// The float64 array of real numbers that an argument is, for the Python part of the package.
+///
+/// Parameters
+/// ----------
+/// object : array_like
+/// name : str
+///     What errors call it.
+///
+/// Returns
+/// -------
+/// numpy.ndarray
+///     C-ordered; the object itself where it is so already.
+#[pyfunction]
+pub(crate) fn real_numbers<'py>(
+    object: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let array = floats(object, name)?;
+    let array: &Bound<'py, PyArrayDyn<f64>> = &array;
+    Ok(array.clone())
 }
 
 /// Rows of N indices, or the row that has a negative index, and that index.
@@ -330,10 +329,14 @@ pub(crate) fn read_indices<const N: usize>(
             tuple(&shape)
         )));
     }
-    let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "int64"))?;
+    let array = contiguous(&array, name, "int64")?;
     let array = array.cast_into::<PyArrayDyn<i64>>()?.readonly();
-    let mut rows = Vec::with_capacity(shape[0]);
+    let mut rows = memory::vector(name, &shape[..1], 0)?;
+    let mut beat = Beat::new(object.py());
     for (row, numbers) in array.as_slice()?.chunks_exact(N).enumerate() {
+        if row % BLOCK == 0 {
+            beat.mark()?;
+        }
         let mut indices = [0; N];
         for (index, &number) in indices.iter_mut().zip(numbers) {
             match usize::try_from(number) {
@@ -352,30 +355,65 @@ pub(crate) fn try_rows<T, R>(
     stack: &Stack<T>,
     f: impl Fn(&T) -> Result<R, polhode::Error>,
 ) -> PyResult<Stack<R>> {
-    let rows = (stack.rows.iter().enumerate())
-        .map(|(row, value)| {
-            f(value).map_err(|error| at_row(&stack.shape, row, &to_py(py, &error), py))
-        })
-        .collect::<PyResult<_>>()?;
+    let mut rows = memory::vector("result", &stack.shape, 0)?;
+    let mut beat = Beat::new(py);
+    for (row, value) in stack.rows.iter().enumerate() {
+        if row % BLOCK == 0 {
+            beat.mark()?;
+        }
+        let made = f(value);
+        rows.push(made.map_err(|error| at_row(&stack.shape, row, &to_py(py, &error), py))?);
+    }
     Ok(Stack {
         shape: stack.shape.clone(),
         rows,
     })
 }
 
-pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    let py = object.py();
-    numpy(py)?
-        .call_method1("asarray", (object,))
-        .map_err(|error| {
-            PyErr::from_type(error.get_type(py), format!("{name}: {}", error.value(py)))
-        })
+/// An array of zeros in NumPy's own memory, whose large pages are there sooner than those of a plain vector.
+pub(crate) fn zeros<'py>(
+    py: Python<'py>,
+    what: &str,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    memory::room(what, shape, size_of::<f64>())?;
+    let array = numpy(py)?.call_method1("zeros", (shape,))?;
+    Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// The module numpy.
-pub(crate) fn numpy(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
-    static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
-    Ok(MODULE
-        .get_or_try_init(py, || py.import("numpy").map(Bound::unbind))?
-        .bind(py))
+/// The array of one flag or integer for each row of a stack.
+pub(crate) fn write_any_of<'py, R, T: Element>(
+    py: Python<'py>,
+    stack: &Stack<R>,
+    item: impl FnMut(&R) -> T,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Stack { shape, rows } = stack.map(py, item)?;
+    PyArray1::from_vec(py, rows).call_method1("reshape", (shape,))
+}
+
+/// The array of one word for each row of a stack; a string for one value.
+pub(crate) fn write_words_of<'py, R, W: AsRef<str>>(
+    py: Python<'py>,
+    stack: &Stack<R>,
+    word: impl Fn(&R) -> W,
+    dtype: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    if stack.is_one() {
+        return Ok(PyString::new(py, word(&stack[0]).as_ref()).into_any());
+    }
+    let np = numpy(py)?;
+    let (mut pieces, mut beat) = (Vec::new(), Beat::new(py));
+    for block in stack.rows.chunks(16 * BLOCK) {
+        beat.mark()?;
+        let words = PyList::empty(py);
+        for row in block {
+            words.append(word(row).as_ref())?;
+        }
+        pieces.push(np.call_method1("array", (words, dtype))?);
+    }
+    if pieces.is_empty() {
+        pieces.push(np.call_method1("array", (PyList::empty(py), dtype))?);
+    }
+    np.call_method1("concatenate", (pieces,))?
+        .call_method1("reshape", (&stack.shape,))
 }

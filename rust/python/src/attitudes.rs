@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
 use crate::arrays::{as_array, read, try_rows};
+use crate::depth::Deeper;
 use crate::stack::Stack;
 
 /// Attitudes: quaternions (..., 4) as (x, y, z, w), or whatever has `as_quat()`; nothing is the identity.
@@ -57,7 +58,7 @@ pub(crate) fn read_rotation(
             return read(object, name);
         }
     }
-    Ok(read_attitude(Some(object), name)?.map(|q| q.to_rotation_matrix().into_inner()))
+    read_attitude(Some(object), name)?.map(object.py(), |q| q.to_rotation_matrix().into_inner())
 }
 
 /// What `as_quat()` returns, where there is such a method.
@@ -68,6 +69,7 @@ fn as_quaternion<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, 
     if has_none {
         return Ok(None);
     }
+    let _deeper = Deeper::argument("as_quat")?;
     object
         .getattr_opt("as_quat")?
         .map(|method| method.call0())

@@ -1,13 +1,14 @@
 //! Motions in closed form at the times asked for, as a `Trajectory`.
 
 use nalgebra::Vector3;
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use polhode::motion::state::{ClosedForm, sample_many};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{floats, numpy, write};
+use crate::arrays::{floats, numpy, write, zeros};
 use crate::interrupt::Interrupt;
+use crate::memory;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::Stack;
 
@@ -24,11 +25,10 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let times = floats(t, "t")?;
     let shape = [&motions.shape[..], times.shape()].concat();
-    // NumPy's own memory, in large pages: the pages of a plain vector take longer to come by than the states.
-    let array = |components: usize| {
-        PyArrayDyn::<f64>::zeros(py, [&shape[..], &[components]].concat(), false)
-    };
-    let (quaternion, omega) = (array(4), array(3));
+    // Quaternions, angular velocities, and zeros that are positions and velocities.
+    memory::room("t", &shape, (4 + 3 + 3) * size_of::<f64>())?;
+    let array = |components: usize| zeros(py, "t", &[&shape[..], &[components]].concat());
+    let (quaternion, omega) = (array(4)?, array(3)?);
     let interrupt = Interrupt::new(None);
     {
         let (mut quaternion, mut omega) = (quaternion.readwrite(), omega.readwrite());
@@ -46,7 +46,7 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
         interrupt.finish(py, outcome.is_ok())?;
     }
     let np = numpy(py)?;
-    let still = np.call_method1("zeros", ([&shape[..], &[3]].concat(),))?;
+    let still = array(3)?;
     let none = np.call_method1("zeros", (motions.shape.clone(), "int64"))?;
     fields.set_item("body", body)?;
     fields.set_item("t", np.call_method1("array", (&*times,))?)?;

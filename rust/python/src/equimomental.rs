@@ -1,11 +1,10 @@
 //! Equimomental systems of particles.
 
-use numpy::PyArray1;
 use polhode::mass::equimomental::{Particles, equimomental_particles, stick as stick_of};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::read;
+use crate::arrays::{Numbers, read};
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
@@ -44,7 +43,7 @@ impl PyRigidBody {
     fn equimomental_particles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let grid = Broadcast::of(["body"], [&self.bodies.shape])?;
         let found = grid.try_map(py, |[b]| equimomental_particles(&self.bodies[b]))?;
-        let counts: Vec<usize> = found.rows.iter().map(|row| row.masses.len()).collect();
+        let counts = found.map(py, |row| row.masses.len())?.rows;
         // A stack of no bodies has as many as solids have.
         let first = counts.first().copied().unwrap_or(4);
         if let Some(row) = counts.iter().position(|&count| count != first) {
@@ -112,15 +111,16 @@ fn to_python<'py>(
     found: &Stack<Particles>,
     count: usize,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let array = |numbers: Vec<f64>, tail: &[usize]| {
-        PyArray1::from_vec(py, numbers)
-            .call_method1("reshape", ([&found.shape[..], tail].concat(),))
-    };
-    let masses = found.rows.iter().flat_map(|row| row.masses.iter().copied());
-    let positions = (found.rows.iter()).flat_map(|row| row.positions.iter().flatten().copied());
+    let shape = [&found.shape[..], &[count]].concat();
+    let mut masses = Numbers::of::<f64>(py, "masses", &shape)?;
+    masses.put(&found.rows, |row, out| out.extend(&row.masses))?;
+    let mut positions = Numbers::of::<[f64; 3]>(py, "positions", &shape)?;
+    positions.put(&found.rows, |row, out| {
+        out.extend(row.positions.as_flattened());
+    })?;
     let parts = (
-        array(masses.collect(), &[count])?,
-        array(positions.collect(), &[count, 3])?,
+        masses.finish::<f64>(&shape)?,
+        positions.finish::<[f64; 3]>(&shape)?,
     );
     py.import("polhode.results")?
         .getattr("Particles")?

@@ -1,7 +1,7 @@
 //! Triangles from files.
 
 use std::fs::File;
-use std::io::{self, BufRead};
+use std::io::{self, BufRead, Read};
 use std::path::{Path, PathBuf};
 
 use numpy::{PyArray2, PyArrayMethods};
@@ -12,12 +12,15 @@ use polhode::io::{FileFault, StreamError, TriangleMesh, TriangleStream, plates};
 use polhode::mass::polyhedron::Options;
 use polhode::mass::polyhedron::streamed::streamed;
 use polhode::mass::surface;
+use polhode::numerics::threads::Halt;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::depth::Deeper;
 use crate::errors::{new, to_py};
 use crate::interrupt::Interrupt;
 use crate::meshes::{read_mesh, with_mesh};
+use crate::particles::watched;
 use crate::rigid_body::PyRigidBody;
 use crate::solids::amount;
 use crate::stack::Stack;
@@ -28,14 +31,17 @@ type Arrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>);
 /// Vertices (n, 3) and faces (m, 3) of a binary STL; corners with equal coordinates become one vertex.
 #[pyfunction]
 pub(crate) fn read_stl(py: Python<'_>, path: PathBuf) -> PyResult<Arrays<'_>> {
+    let interrupt = Interrupt::new(None);
     let mesh = py.detach(|| {
         let file = File::open(&path)?;
         let held = file.metadata()?;
         if held.is_dir() {
             return Err(StreamError::Io(io::ErrorKind::IsADirectory.into()));
         }
-        stl::read(io::BufReader::new(file), held.len())
+        let source = Watched(file, &interrupt);
+        stl::read(io::BufReader::with_capacity(1 << 18, source), held.len())
     });
+    interrupt.finish(py, false)?;
     match mesh {
         Ok(mesh) => to_arrays(py, mesh),
         Err(error) => Err(stream_error(py, &path, error)),
@@ -55,6 +61,7 @@ pub(crate) fn stream_solid(
     orient: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(PyRigidBody, usize, f64, f64)> {
+    let _deeper = Deeper::run("from_file")?;
     let amount = amount(mass, density)?;
     let options = Options {
         orient,
@@ -81,6 +88,18 @@ pub(crate) fn stream_solid(
     let solid = outcome.map_err(|error| stream_error(py, &path, error))?;
     let body = Stack::one(solid.body).into();
     Ok((body, solid.triangles, solid.volume, solid.area))
+}
+
+/// A file that Ctrl-C ends, however long it is.
+struct Watched<'a, R>(R, &'a Interrupt);
+
+impl<R: Read> Read for Watched<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.1.poll(None).is_break() {
+            return Err(io::Error::other("stopped"));
+        }
+        self.0.read(buffer)
+    }
 }
 
 /// An error with the file's name in front.
@@ -112,9 +131,23 @@ pub(crate) fn read_plates(
             "index_base: expected 0 or 1, got {index_base}"
         )));
     }
-    let bytes = std::fs::read(&path).map_err(|error| os_error(&path, &error))?;
-    let mesh = py.detach(|| plates::read(&String::from_utf8_lossy(&bytes), index_base));
-    to_arrays(py, mesh.map_err(|fault| file_error(py, &path, &fault))?)
+    let interrupt = Interrupt::new(None);
+    let mesh = py.detach(|| {
+        let mut bytes = Vec::new();
+        Watched(File::open(&path)?, &interrupt).read_to_end(&mut bytes)?;
+        let watch = &mut |_| interrupt.poll(None);
+        Ok(plates::read(
+            &String::from_utf8_lossy(&bytes),
+            index_base,
+            watch,
+        ))
+    });
+    interrupt.finish(py, false)?;
+    match mesh.map_err(|error: io::Error| os_error(&path, &error))? {
+        Ok(mesh) => to_arrays(py, mesh),
+        Err(Halt::Failed(fault)) => Err(file_error(py, &path, &fault)),
+        Err(Halt::Stopped) => Err(to_py(py, &Error::Stopped)),
+    }
 }
 
 /// Area of a triangle mesh, open or closed.
@@ -125,8 +158,9 @@ pub(crate) fn surface_area(
     faces: &Bound<'_, PyAny>,
 ) -> PyResult<f64> {
     let mesh = read_mesh(vertices, faces)?;
-    let area = with_mesh!(mesh, |vertices, faces| py
-        .detach(|| surface::area(vertices, faces)));
+    let area = with_mesh!(mesh, |vertices, faces| {
+        watched(py, |watch| surface::area(vertices, faces, watch))?
+    });
     area.map_err(|error| to_py(py, &error))
 }
 

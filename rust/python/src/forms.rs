@@ -7,7 +7,7 @@ use polhode::mass::forms::SpatialOrder;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Argument, read, read_or, try_rows, write};
+use crate::arrays::{Argument, read, read_or, try_rows, write, write_of};
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
@@ -94,10 +94,10 @@ pub(crate) fn to_positive_products<'py>(
     py: Python<'py>,
     body: &PyRigidBody,
 ) -> PyResult<(Floats<'py>, Floats<'py>)> {
-    let both = body.bodies.map(RigidBody::positive_products);
+    let both = body.bodies.map(py, RigidBody::positive_products)?;
     Ok((
-        write(py, &both.map(|(moments, _)| *moments))?,
-        write(py, &both.map(|(_, products)| *products))?,
+        write_of(py, &both, |(moments, _)| *moments)?,
+        write_of(py, &both, |(_, products)| *products)?,
     ))
 }
 
@@ -123,7 +123,7 @@ pub(crate) fn to_positive_products<'py>(
 ///        [ 0.,  0., 12., 12.]])
 #[pyfunction]
 pub(crate) fn to_pseudo_inertia<'py>(py: Python<'py>, body: &PyRigidBody) -> Array<'py> {
-    write(py, &body.bodies.map(RigidBody::pseudo_inertia))
+    write_of(py, &body.bodies, RigidBody::pseudo_inertia)
 }
 
 /// Body with this pseudo-inertia about the origin.
@@ -181,7 +181,7 @@ pub(crate) fn to_spatial_inertia<'py>(
     order: &str,
 ) -> Array<'py> {
     let order = spatial_order(order)?;
-    write(py, &body.bodies.map(|body| body.spatial_inertia(order)))
+    write_of(py, &body.bodies, |body| body.spatial_inertia(order))
 }
 
 /// Body with this spatial inertia about the origin.
@@ -237,7 +237,7 @@ pub(crate) fn from_spatial_inertia(
 /// array([12.,  0.,  0., 12., 25.,  0., 22.,  0.,  0.,  5.])
 #[pyfunction]
 pub(crate) fn to_parameters<'py>(py: Python<'py>, body: &PyRigidBody) -> Array<'py> {
-    write(py, &body.bodies.map(RigidBody::parameters))
+    write_of(py, &body.bodies, RigidBody::parameters)
 }
 
 /// Body with these ten parameters about the origin.

@@ -67,8 +67,8 @@ impl PyFreeMotion {
         Ok(Self { body, motions })
     }
 
-    fn centers(&self) -> Stack<Vector3<f64>> {
-        self.body.get().bodies.map(RigidBody::center_of_mass)
+    fn centers(&self, py: Python<'_>) -> PyResult<Stack<Vector3<f64>>> {
+        self.body.get().bodies.map(py, RigidBody::center_of_mass)
     }
 }
 
@@ -175,7 +175,7 @@ impl PyFreeMotion {
     ///        [-0.1,  0. , 10. ]])
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let fields = PyDict::new(py);
-        trajectory(py, &self.body, &self.motions, t, &self.centers(), fields)
+        trajectory(py, &self.body, &self.motions, t, &self.centers(py)?, fields)
     }
 
     fn __reduce__<'py>(
@@ -197,9 +197,9 @@ impl PyFreeMotion {
         quaternion: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
-        let attitude = quaternion.map(|&[x, y, z, w]| {
+        let attitude = quaternion.map(py, |&[x, y, z, w]| {
             UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
-        });
+        })?;
         Self::new(py, body, &read(omega, "omega")?, &attitude)
     }
 

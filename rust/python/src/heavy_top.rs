@@ -8,7 +8,9 @@ use polhode::principal::TOP_RTOL;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{numpy, read, write, write_numbers};
+use crate::arrays::{
+    Numbers, read, write, write_numbers, write_numbers_of, write_of, write_words_of,
+};
 use crate::attitudes::read_attitude_exactly;
 use crate::closed_form::trajectory;
 use crate::rigid_body::PyRigidBody;
@@ -113,10 +115,7 @@ impl PyHeavyTop {
             } = start(row);
             HeavyTop::of(&top, &omega, &attitude, &gravity)
         })?;
-        let starts = Stack {
-            shape: grid.shape.clone(),
-            rows: grid.rows().map(start).collect(),
-        };
+        let starts = grid.try_map(py, |row| Ok(start(row)))?;
         Ok(Self {
             body,
             starts,
@@ -126,7 +125,7 @@ impl PyHeavyTop {
     }
 
     fn numbers<'py>(&self, py: Python<'py>, of: fn(&Nutation) -> f64) -> Array<'py> {
-        write_numbers(py, &self.motions.map(|motion| of(motion.nutation())))
+        write_numbers_of(py, &self.motions, |motion| of(motion.nutation()))
     }
 }
 
@@ -194,20 +193,20 @@ impl PyHeavyTop {
     /// Angular velocity at t = 0.
     #[getter]
     fn omega<'py>(&self, py: Python<'py>) -> Array<'py> {
-        Ok(write(py, &self.starts.map(|start| start.omega))?.into_any())
+        Ok(write_of(py, &self.starts, |start| start.omega)?.into_any())
     }
 
     /// Attitude at t = 0.
     #[getter]
     fn quaternion<'py>(&self, py: Python<'py>) -> Array<'py> {
-        let quaternions = self.starts.map(|start| components(&start.attitude));
+        let quaternions = self.starts.map(py, |start| components(&start.attitude))?;
         Ok(write(py, &quaternions)?.into_any())
     }
 
     /// The acceleration of free fall.
     #[getter]
     fn gravity<'py>(&self, py: Python<'py>) -> Array<'py> {
-        Ok(write(py, &self.starts.map(|start| start.gravity))?.into_any())
+        Ok(write_of(py, &self.starts, |start| start.gravity)?.into_any())
     }
 
     /// The shape of the stack of motions.
@@ -219,19 +218,18 @@ impl PyHeavyTop {
     /// What the axis draws on a sphere about the pivot.
     #[getter]
     fn path<'py>(&self, py: Python<'py>) -> Array<'py> {
-        let name = |motion: &HeavyTop| motion.nutation().path.name();
-        if self.motions.is_one() {
-            return Ok(name(&self.motions[0]).into_pyobject(py)?.into_any());
-        }
-        let names: Vec<&str> = self.motions.rows.iter().map(name).collect();
-        let names = numpy(py)?.call_method1("array", (names, "U10"))?;
-        names.call_method1("reshape", (self.motions.shape.clone(),))
+        write_words_of(
+            py,
+            &self.motions,
+            |motion| motion.nutation().path.name(),
+            "<U10",
+        )
     }
 
     /// Least and largest inclination of the axis from the upward vertical.
     #[getter]
     fn nutation_limits<'py>(&self, py: Python<'py>) -> Array<'py> {
-        let limits = self.motions.map(|motion| motion.nutation().inclination);
+        let limits = (self.motions).map(py, |motion| motion.nutation().inclination)?;
         Ok(write(py, &limits)?.into_any())
     }
 
@@ -256,7 +254,7 @@ impl PyHeavyTop {
     /// The component of ω along the axis.
     #[getter]
     fn axial_spin<'py>(&self, py: Python<'py>) -> Array<'py> {
-        let spins = self.starts.map(|start| start.omega.dot(&start.top.axis));
+        let spins = (self.starts).map(py, |start| start.omega.dot(&start.top.axis))?;
         write_numbers(py, &spins)
     }
 
@@ -264,7 +262,7 @@ impl PyHeavyTop {
     #[getter]
     fn sleeping_limit<'py>(&self, py: Python<'py>) -> Array<'py> {
         let limit = |start: &Start| start.top.least_spin(0.0, &start.gravity);
-        write_numbers(py, &self.starts.map(limit))
+        write_numbers_of(py, &self.starts, limit)
     }
 
     /// Effective potential of the inclination: ``I_t θ̇²/2 + V(θ)`` is constant, the energy less that of the axial spin.
@@ -296,19 +294,19 @@ impl PyHeavyTop {
     ) -> Array<'py> {
         let angles: Stack<f64> = read(inclination, "inclination")?;
         let shape = [&self.motions.shape[..], &angles.shape].concat();
-        let rows = (self.starts.rows.iter())
-            .flat_map(|start| {
-                angles.rows.iter().map(|&angle| {
-                    start.top.effective_potential(
-                        &start.omega,
-                        &start.attitude,
-                        &start.gravity,
-                        angle,
-                    )
-                })
-            })
-            .collect();
-        Ok(write(py, &Stack { shape, rows })?.into_any())
+        let mut numbers = Numbers::of::<f64>(py, "inclination", &shape)?;
+        for start in &self.starts.rows {
+            numbers.put(&angles.rows, |&angle, out| {
+                let Start {
+                    top,
+                    omega,
+                    attitude,
+                    gravity,
+                } = start;
+                out.push(top.effective_potential(omega, attitude, gravity, angle));
+            })?;
+        }
+        Ok(numbers.finish::<f64>(&shape)?.into_any())
     }
 
     /// Attitude and angular velocity at the times asked for.
@@ -348,7 +346,7 @@ impl PyHeavyTop {
         let fields = PyDict::new(py);
         fields.set_item("load", gravity)?;
         fields.set_item("pivoted", true)?;
-        let origins = (self.body.get().bodies).map(|_: &RigidBody| Vector3::zeros());
+        let origins = (self.body.get().bodies).map(py, |_: &RigidBody| Vector3::zeros())?;
         trajectory(py, &self.body, &self.motions, t, &origins, fields)
     }
 
@@ -380,9 +378,9 @@ impl PyHeavyTop {
         rtol: f64,
     ) -> PyResult<Self> {
         let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
-        let attitude = quaternion.map(|&[x, y, z, w]| {
+        let attitude = quaternion.map(py, |&[x, y, z, w]| {
             UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
-        });
+        })?;
         let (omega, gravity) = (read(omega, "omega")?, read(gravity, "gravity")?);
         Self::new(py, body, &omega, &attitude, &gravity, rtol)
     }

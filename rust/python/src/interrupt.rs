@@ -4,12 +4,51 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 
-/// How often Python is asked, in milliseconds; fast enough to feel immediate, rare enough to cost nothing.
-const INTERVAL: u64 = 50;
+use crate::depth;
+
+/// How often Python is asked for signals, in milliseconds: fast enough to feel immediate, rare enough to cost nothing.
+const INTERVAL: u64 = 20;
+/// How often a progress callback is told, in milliseconds.
+const TELLING: u64 = 50;
+/// How long a pass over many rows holds Python alone.
+const HOLD: Duration = Duration::from_millis(20);
+
+/// The beat of a pass over many rows that holds the GIL: Ctrl-C ends it, other threads of Python have their turn.
+pub(crate) struct Beat<'py> {
+    py: Python<'py>,
+    /// When Python was looked at last; short passes never ask for the time.
+    looked: Option<Instant>,
+    begun: bool,
+}
+
+impl<'py> Beat<'py> {
+    pub(crate) fn new(py: Python<'py>) -> Self {
+        Self {
+            py,
+            looked: None,
+            begun: false,
+        }
+    }
+
+    /// Called between blocks of rows, each of far less than a hundredth of a second.
+    pub(crate) fn mark(&mut self) -> PyResult<()> {
+        if !self.begun {
+            self.begun = true;
+            return Ok(());
+        }
+        let looked = *self.looked.get_or_insert_with(Instant::now);
+        if looked.elapsed() >= HOLD {
+            self.py.check_signals()?;
+            self.py.detach(|| ());
+            self.looked = Some(Instant::now());
+        }
+        Ok(())
+    }
+}
 
 /// A run that Python may stop: by Ctrl-C, or by an exception from its progress callback.
 pub(crate) struct Interrupt {
@@ -17,16 +56,25 @@ pub(crate) struct Interrupt {
     /// When Python is to be asked next, in milliseconds since the start: with a progress callback at once, so that the
     /// quickest run tells of itself too.
     due: AtomicU64,
+    interval: u64,
     stopped: AtomicBool,
     error: Mutex<Option<PyErr>>,
     progress: Option<Py<PyAny>>,
+    /// How deep the run is within other runs; its threads are as deep.
+    depth: usize,
 }
 
 impl Interrupt {
     pub(crate) fn new(progress: Option<Py<PyAny>>) -> Self {
         Self {
+            depth: depth::current(),
             start: Instant::now(),
             due: AtomicU64::new(if progress.is_some() { 0 } else { INTERVAL }),
+            interval: if progress.is_some() {
+                TELLING
+            } else {
+                INTERVAL
+            },
             stopped: AtomicBool::new(false),
             error: Mutex::new(None),
             progress,
@@ -37,12 +85,17 @@ impl Interrupt {
     ///
     /// Called from any thread, attached or not. Signals are only seen by Python's main thread.
     pub(crate) fn poll(&self, fraction: Option<f64>) -> ControlFlow<()> {
-        let now = u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX - INTERVAL);
+        let now = u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX - TELLING);
         let due = self.due.load(Ordering::Relaxed);
         if now >= due
             && self
                 .due
-                .compare_exchange(due, now + INTERVAL, Ordering::Relaxed, Ordering::Relaxed)
+                .compare_exchange(
+                    due,
+                    now + self.interval,
+                    Ordering::Relaxed,
+                    Ordering::Relaxed,
+                )
                 .is_ok()
         {
             self.ask(fraction);
@@ -58,17 +111,27 @@ impl Interrupt {
         let answer = Python::attach(|py| {
             py.check_signals()?;
             if let (Some(progress), Some(fraction)) = (&self.progress, fraction) {
-                progress.call1(py, (fraction,))?;
+                depth::within(self.depth, || progress.call1(py, (fraction,)))?;
             }
             Ok(())
         });
         if let Err(error) = answer {
-            self.error
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .get_or_insert(error);
-            self.stopped.store(true, Ordering::Relaxed);
+            self.stop(error);
         }
+    }
+
+    /// Ends the run by this exception, unless another one has done so.
+    pub(crate) fn stop(&self, error: PyErr) {
+        self.error
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get_or_insert(error);
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether an exception ends the run.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
     }
 
     /// The end of the run: the exception that stopped it, or a last word to the progress callback when it is complete.

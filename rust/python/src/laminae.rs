@@ -209,8 +209,8 @@ pub(crate) fn polygon(
     let (n, amounts) = (*n, amounts(mass, density)?);
     let grid = Broadcast::of(["vertices", "mass or density"], [shape, &amounts.shape])?;
     Ok(grid
-        .try_map(py, |[v, a]| {
-            laminae::polygon(&corners.rows[v * n..(v + 1) * n], amounts[a])
+        .try_map_watched(py, |[v, a], watch| {
+            laminae::polygon(&corners.rows[v * n..(v + 1) * n], amounts[a], watch)
         })?
         .into())
 }

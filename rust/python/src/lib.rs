@@ -2,11 +2,14 @@
 //!
 //! | file | what it knows |
 //! |---|---|
-//! | `arrays`, `meshes` | NumPy layout |
+//! | `arrays`, `items`, `meshes` | NumPy layout |
+//! | `foreign` | what other objects become as arrays, and what would be lost on the way |
+//! | `memory` | whether there is room for a result |
 //! | `stack` | shape arithmetic |
 //! | `errors` | which exception an error of the core becomes |
 //! | `hints` | the way out of mistakes that many make |
 //! | `interrupt` | Ctrl-C and progress |
+//! | `depth` | functions of Python that call the package anew |
 //! | `closed_form` | exact motions at many times |
 //! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
@@ -18,20 +21,24 @@ mod accumulator;
 mod arrays;
 mod attitudes;
 mod closed_form;
+mod depth;
 mod environment;
 mod equimomental;
 mod errors;
 mod euler_rates;
 mod events;
 mod files;
+mod foreign;
 mod forms;
 mod free_motion;
 mod heavy_top;
 mod hints;
 mod interrupt;
+mod items;
 mod kinematics;
 mod laminae;
 mod loads;
+mod memory;
 mod meshes;
 mod parallel_axis;
 mod particles;
@@ -55,6 +62,8 @@ mod _core {
 
     #[pymodule_export]
     use crate::accumulator::PyMassAccumulator;
+    #[pymodule_export]
+    use crate::arrays::real_numbers;
     #[pymodule_export]
     use crate::equimomental::stick;
     #[pymodule_export]

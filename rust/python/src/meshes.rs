@@ -6,7 +6,7 @@ use polhode::numerics::threads::Halt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::{as_array, floats, numpy};
+use crate::arrays::{as_array, contiguous, floats};
 use crate::errors::to_py;
 use crate::interrupt::Interrupt;
 use crate::stack::tuple;
@@ -86,20 +86,20 @@ fn read_faces<'py>(object: &Bound<'py, PyAny>) -> PyResult<Faces<'py>> {
             tuple(&shape)
         )));
     }
-    if let Some(array) = contiguous(&array) {
+    if let Some(array) = as_it_is(&array) {
         return Ok(Faces::I64(array));
     }
-    if let Some(array) = contiguous(&array) {
+    if let Some(array) = as_it_is(&array) {
         return Ok(Faces::I32(array));
     }
-    if let Some(array) = contiguous(&array) {
+    if let Some(array) = as_it_is(&array) {
         return Ok(Faces::U32(array));
     }
-    if let Some(array) = contiguous(&array) {
+    if let Some(array) = as_it_is(&array) {
         return Ok(Faces::U64(array));
     }
     let wide = if kind == "u" { "uint64" } else { "int64" };
-    let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, wide))?;
+    let array = contiguous(&array, "faces", wide)?;
     if kind == "u" {
         return Ok(Faces::U64(array.cast_into::<PyArrayDyn<u64>>()?.readonly()));
     }
@@ -107,7 +107,7 @@ fn read_faces<'py>(object: &Bound<'py, PyAny>) -> PyResult<Faces<'py>> {
 }
 
 /// The array when it has this type of elements, in C order.
-fn contiguous<'py, T: Element>(array: &Bound<'py, PyAny>) -> Option<PyReadonlyArrayDyn<'py, T>> {
+fn as_it_is<'py, T: Element>(array: &Bound<'py, PyAny>) -> Option<PyReadonlyArrayDyn<'py, T>> {
     let array = array.cast::<PyArrayDyn<T>>().ok()?;
     array.is_c_contiguous().then(|| array.readonly())
 }

@@ -5,7 +5,7 @@ use polhode::mass::particles::{Particles, Watch};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::{as_array, list_floats, numpy};
+use crate::arrays::{as_array, contiguous, list_floats};
 use crate::interrupt::Interrupt;
 
 /// Arrays of masses (..., n) and positions (..., n, 3).
@@ -99,8 +99,7 @@ pub(crate) fn read_labels<'py>(
             "labels: expected integers, got dtype {dtype}"
         )));
     }
-    let array = numpy(object.py())?.call_method1("ascontiguousarray", (&array, "int64"))?;
-    array.extract()
+    contiguous(&array, "labels", "int64")?.extract()
 }
 
 /// Work that Ctrl-C may end, without the interpreter lock.

@@ -9,11 +9,12 @@ use polhode::principal as core;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyString, PyType};
+use pyo3::types::PyType;
 
-use crate::arrays::{Item, floats, numpy, read, write, write_numbers, write_of};
+use crate::arrays::{Item, floats, numpy, read, write, write_numbers_of, write_of, write_words_of};
 use crate::errors::{at_row, to_py, wrong_shape};
 use crate::interrupt::Interrupt;
+use crate::memory;
 use crate::stack::{Broadcast, Stack};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
@@ -80,7 +81,10 @@ pub(crate) fn principal_axes<'py>(
             core::principal_axes_many(tensors, ASYMMETRY, moments, axes, watch)
         })?;
         if canonical {
-            py.detach(|| core::canonical_many(moments, axes, core::TOP_RTOL));
+            let interrupt = Interrupt::new(None);
+            let watch = &mut |_| interrupt.poll(None);
+            let outcome = py.detach(|| core::canonical_many(moments, axes, core::TOP_RTOL, watch));
+            interrupt.finish(py, outcome.is_ok())?;
         }
     }
     results(py)?.call1((moments, axes))
@@ -132,6 +136,7 @@ fn results(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
 
 /// An array to be filled. NumPy's own allocation comes in large pages, which is faster by a multiple for large stacks.
 fn empty<'py>(py: Python<'py>, leading: &[usize], tail: &[usize]) -> Array<'py> {
+    memory::room("inertia", &[leading, tail].concat(), size_of::<f64>())?;
     let array = numpy(py)?.call_method1("empty", ([leading, tail].concat(),))?;
     Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
@@ -245,16 +250,12 @@ pub(crate) fn principal_derivative<'py>(
         };
         Ok(core::derivative(&principal, &tangents[t], rtol))
     })?;
-    let pairs: Vec<bool> = found
-        .rows
-        .iter()
-        .flat_map(|derivative| derivative.degenerate)
-        .collect();
-    let pairs = PyArray1::from_vec(py, pairs)
+    let pairs: Vec<[bool; 3]> = found.map(py, |derivative| derivative.degenerate)?.rows;
+    let pairs = PyArray1::from_vec(py, pairs.into_flattened())
         .call_method1("reshape", ([&grid.shape[..], &[3]].concat(),))?;
     Ok((
-        write(py, &found.map(|d| d.moments))?,
-        write(py, &found.map(|d| d.axes))?,
+        write_of(py, &found, |d| d.moments)?,
+        write_of(py, &found, |d| d.axes)?,
         pairs,
     ))
 }
@@ -265,10 +266,7 @@ pub(crate) fn ray_kappa<'py>(
     py: Python<'py>,
     moments: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    write_numbers(
-        py,
-        &read::<[f64; 3]>(moments, "moments")?.map(core::ray_kappa),
-    )
+    write_numbers_of(py, &read::<[f64; 3]>(moments, "moments")?, core::ray_kappa)
 }
 
 fn check_rtol(rtol: f64) -> PyResult<()> {
@@ -286,7 +284,7 @@ pub(crate) fn principal_gaps<'py>(
     py: Python<'py>,
     moments: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    Ok(write(py, &read::<[f64; 3]>(moments, "moments")?.map(core::gaps))?.into_any())
+    Ok(write_of(py, &read::<[f64; 3]>(moments, "moments")?, core::gaps)?.into_any())
 }
 
 /// Class of the top with ascending moments, at a relative tolerance: a string, or an array of them.
@@ -297,12 +295,11 @@ pub(crate) fn classify_tops<'py>(
     rtol: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     check_rtol(rtol)?;
-    let classes =
-        read::<[f64; 3]>(moments, "moments")?.map(|moments| core::classify(moments, rtol).as_str());
-    if classes.is_one() {
-        return Ok(PyString::new(py, classes[0]).into_any());
-    }
-    numpy(py)?
-        .call_method1("array", (classes.rows,))?
-        .call_method1("reshape", (classes.shape,))
+    let moments = read::<[f64; 3]>(moments, "moments")?;
+    write_words_of(
+        py,
+        &moments,
+        |moments| core::classify(moments, rtol).as_str(),
+        "str",
+    )
 }

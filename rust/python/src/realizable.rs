@@ -5,7 +5,7 @@ use numpy::PyArrayDyn;
 use polhode::mass::realizable;
 use pyo3::prelude::*;
 
-use crate::arrays::{read, try_rows, write, write_numbers};
+use crate::arrays::{read, try_rows, write_numbers_of, write_of};
 use crate::rigid_body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
@@ -18,8 +18,8 @@ pub(crate) fn nearest_valid<'py>(
     let tensors: Stack<Matrix3<f64>> = read(inertia, "inertia")?;
     let nearest = try_rows(py, &tensors, realizable::nearest_valid)?;
     Ok((
-        write(py, &nearest.map(|(tensor, _)| *tensor))?,
-        write_numbers(py, &nearest.map(|(_, distance)| *distance))?,
+        write_of(py, &nearest, |(tensor, _)| *tensor)?,
+        write_numbers_of(py, &nearest, |(_, distance)| *distance)?,
     ))
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn within_box<'py>(
     })?;
     let axes = |verdict: &realizable::BoxVerdict| verdict.axes.map(|axis| [0.0, 1.0, 2.0][axis]);
     Ok((
-        write_numbers(py, &verdicts.map(|verdict| verdict.margin))?,
-        write(py, &verdicts.map(axes))?,
+        write_numbers_of(py, &verdicts, |verdict| verdict.margin)?,
+        write_of(py, &verdicts, axes)?,
     ))
 }

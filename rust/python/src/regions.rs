@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Argument, Item, read, read_or};
 use crate::errors::to_py;
 use crate::meshes::{read_mesh, with_mesh};
+use crate::particles::watched;
 use crate::stack::{Stack, tuple};
 
 /// A region of space: where there is matter. Made by the functions of :mod:`polhode.regions`.
@@ -208,7 +209,8 @@ pub(crate) fn mesh(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyR
     let mesh = read_mesh(vertices, faces)?;
     with_mesh!(mesh, |vertices, faces| {
         let told = format!("<Region inside a mesh of {} faces>", faces.len());
-        made(py, Region::mesh(vertices, faces), told)
+        let region = watched(py, |watch| Region::mesh(vertices, faces, watch))?;
+        made(py, region, told)
     })
 }
 

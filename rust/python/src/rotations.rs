@@ -8,7 +8,7 @@ use polhode::motion::euler_angles::Sequence;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{read, try_rows, write};
+use crate::arrays::{read, try_rows, write, write_of};
 use crate::attitudes::read_quaternion;
 use crate::errors::to_py;
 use crate::stack::{Broadcast, Stack};
@@ -61,7 +61,7 @@ pub(crate) fn quaternion_from_euler_angles<'py>(
     let sequence = parse_sequence(py, sequence)?;
     let angles: Stack<[f64; 3]> = read(angles, "angles")?;
     let attitudes = try_rows(py, &angles, |angles| sequence.to_quaternion(angles))?;
-    write(py, &attitudes.map(components))
+    write_of(py, &attitudes, components)
 }
 
 /// Euler angles of attitudes.
@@ -127,7 +127,8 @@ pub(crate) fn quaternion_from_matrix<'py>(
     matrix: &Bound<'py, PyAny>,
 ) -> Array<'py> {
     let matrices: Stack<Matrix3<f64>> = read(matrix, "matrix")?;
-    write(py, &try_rows(py, &matrices, from_matrix)?.map(components))
+    let attitudes = try_rows(py, &matrices, from_matrix)?;
+    write_of(py, &attitudes, components)
 }
 
 /// Vectors (..., 3) turned by unit quaternions (..., 4): q v q*, or q* v q.

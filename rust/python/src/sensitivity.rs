@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use nalgebra::{Matrix6, UnitQuaternion, Vector3};
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
+use numpy::PyArrayDyn;
 use polhode::RigidBody;
 use polhode::motion::integrate::variation::{Variation, parameters, variations};
 use polhode::motion::loads::Term;
@@ -13,12 +13,13 @@ use polhode::numerics::threads::fill_blocks;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{read, write_of};
+use crate::arrays::{Numbers, read, write_of};
 use crate::attitudes::read_attitude;
 use crate::errors::{at_row, new, to_py};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Beat, Interrupt};
 use crate::loads::{PyLoad, is_pivot};
-use crate::rigid_body::PyRigidBody;
+use crate::memory;
+use crate::rigid_body::{PyRigidBody, read_times};
 use crate::stack::{Broadcast, Stack};
 
 /// The derivatives of motions from states at the first of the times.
@@ -41,13 +42,13 @@ pub(crate) fn motion_sensitivity<'py>(
             .to_owned();
         return Err(new(py, "PolhodeError", message));
     }
-    let times: Stack<f64> = read(t, "t")?;
+    let times = read_times(py, t)?;
     let motions = Motions {
         bodies: &body.get().bodies,
         omega: read(omega, "omega")?,
         attitude: read_attitude(Some(quaternion), "quaternion")?,
-        terms: load.terms()?,
-        times: &times.rows,
+        terms: load.terms(py)?,
+        times: &times,
         pivoted: is_pivot(about)?,
         tolerance: Tolerance::new(1e-10, 0.0).map_err(|error| to_py(py, &error))?,
     };
@@ -86,7 +87,9 @@ impl Motions<'_> {
             &self.terms.shape,
         ];
         let grid = Broadcast::of(["body", "omega", "quaternion", "load"], shapes)?;
-        let mut rows = Vec::new();
+        let shape = [&grid.shape[..], &[self.times.len()]].concat();
+        let mut found = memory::vector("sensitivity", &shape, 2)?;
+        let mut rows = memory::vector("sensitivity", &grid.shape, 0)?;
         rows.resize_with(grid.len(), || None);
         let interrupt = Interrupt::new(None);
         let outcome = py.detach(|| {
@@ -97,15 +100,13 @@ impl Motions<'_> {
             })
         });
         interrupt.finish(py, outcome.is_ok())?;
-        let mut found = Vec::with_capacity(grid.len() * self.times.len());
+        let mut beat = Beat::new(py);
         for (row, slopes) in rows.into_iter().flatten().enumerate() {
+            beat.mark()?;
             let slopes = slopes.map_err(|error| at_row(&grid.shape, row, &to_py(py, &error), py));
             found.extend(slopes?);
         }
-        Ok(Stack {
-            shape: [&grid.shape[..], &[self.times.len()]].concat(),
-            rows: found,
-        })
+        Ok(Stack { shape, rows: found })
     }
 
     fn of(
@@ -156,14 +157,13 @@ fn columns_of<'py>(
     columns: std::ops::Range<usize>,
     shape: &[usize],
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let mut numbers = Vec::with_capacity(found.rows.len() * columns.len() * 6);
-    for slopes in &found.rows {
+    let shape = [&found.shape[..], &[6], shape].concat();
+    let mut numbers = Numbers::of::<f64>(py, "sensitivity", &shape)?;
+    numbers.put(&found.rows, |slopes, out| {
         let columns = &slopes.load[columns.clone()];
         for row in 0..6 {
-            numbers.extend(columns.iter().map(|column| column[row]));
+            out.extend(columns.iter().map(|column| column[row]));
         }
-    }
-    numbers
-        .into_pyarray(py)
-        .reshape([&found.shape[..], &[6], shape].concat())
+    })?;
+    numbers.finish::<f64>(&shape)
 }

@@ -1,17 +1,23 @@
 //! Shape arithmetic: stacks of values and how they broadcast, as in NumPy.
+//!
+//! Every pass over many rows looks for Ctrl-C on the way, and asks for memory by [`memory`](crate::memory) before it begins.
 
 use std::ops::Index;
 
 use polhode::Error;
-use polhode::numerics::threads::{Halt, fill_blocks};
+use polhode::numerics::threads::{Halt, Watch, fill_blocks};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::{at_row, to_py};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Beat, Interrupt};
+use crate::memory::{self, Names};
 
-/// Rows of a large map done at a time by one thread.
-const BLOCK: usize = 1024;
+/// Rows of a large map done at a time by one thread, or between two looks at Python's signals.
+pub(crate) const BLOCK: usize = 1024;
+
+/// Rows of a small map done between two looks at the clock.
+const FEW: usize = 16;
 
 /// Values in C order under a shape; one value has the empty shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,12 +38,30 @@ impl<T> Stack<T> {
         self.shape.is_empty()
     }
 
-    pub(crate) fn map<R>(&self, f: impl FnMut(&T) -> R) -> Stack<R> {
-        Stack {
+    /// `f` of every row.
+    pub(crate) fn map<R>(&self, py: Python<'_>, f: impl FnMut(&T) -> R) -> PyResult<Stack<R>> {
+        let mut rows = memory::vector("result", &self.shape, 0)?;
+        extend(py, &mut rows, &self.rows, f)?;
+        Ok(Stack {
             shape: self.shape.clone(),
-            rows: self.rows.iter().map(f).collect(),
-        }
+            rows,
+        })
     }
+}
+
+/// `f` of all `rows`, put into `out`, which has room for them.
+pub(crate) fn extend<T, R>(
+    py: Python<'_>,
+    out: &mut Vec<R>,
+    rows: &[T],
+    mut f: impl FnMut(&T) -> R,
+) -> PyResult<()> {
+    let mut beat = Beat::new(py);
+    for block in rows.chunks(BLOCK) {
+        beat.mark()?;
+        out.extend(block.iter().map(&mut f));
+    }
+    Ok(())
 }
 
 impl<T> Index<usize> for Stack<T> {
@@ -49,15 +73,18 @@ impl<T> Index<usize> for Stack<T> {
 }
 
 /// How K stacks line up row by row.
-pub(crate) struct Broadcast<const K: usize> {
+pub(crate) struct Broadcast<'a, const K: usize> {
+    names: [&'a str; K],
     pub(crate) shape: Vec<usize>,
     /// For each stack the distance in rows that one step along each axis makes.
     strides: [Vec<usize>; K],
 }
 
-impl<const K: usize> Broadcast<K> {
+impl<'a, const K: usize> Broadcast<'a, K> {
     /// NumPy's rule: shapes are aligned at their ends, and a length of one stretches.
-    pub(crate) fn of(names: [&str; K], shapes: [&[usize]; K]) -> PyResult<Self> {
+    ///
+    /// What stretches beyond all memory is refused here, before anybody counts its rows.
+    pub(crate) fn of(names: [&'a str; K], shapes: [&[usize]; K]) -> PyResult<Self> {
         let depth = shapes.iter().map(|shape| shape.len()).max().unwrap_or(0);
         let mut shape = vec![1; depth];
         for operand in shapes {
@@ -78,7 +105,12 @@ impl<const K: usize> Broadcast<K> {
             }
             strides
         });
-        Ok(Self { shape, strides })
+        memory::room(Names(&names), &shape, size_of::<f64>())?;
+        Ok(Self {
+            names,
+            shape,
+            strides,
+        })
     }
 
     /// The row of each stack that the flat index `row` of the result takes.
@@ -107,22 +139,44 @@ impl<const K: usize> Broadcast<K> {
         py: Python<'_>,
         f: impl Fn([usize; K]) -> Result<R, Error> + Sync,
     ) -> PyResult<Stack<R>> {
-        let count = self.len();
-        let named = |(row, error): (usize, Error)| at_row(&self.shape, row, &to_py(py, &error), py);
-        let run = |from: usize, to: usize| -> Result<Vec<R>, (usize, Error)> {
-            (from..to)
-                .map(|row| f(self.operands(row)).map_err(|error| (row, error)))
-                .collect()
-        };
-        if count <= BLOCK {
-            let rows = run(0, count).map_err(named)?;
-            return Ok(Stack {
-                shape: self.shape.clone(),
-                rows,
-            });
+        if self.len() > BLOCK {
+            return self.on_all_cores(py, BLOCK, |row, _| f(row));
         }
+        let mut rows = Vec::with_capacity(self.len());
+        let mut beat = Beat::new(py);
+        for (row, operands) in self.rows().enumerate() {
+            if row % FEW == FEW - 1 {
+                beat.mark()?;
+            }
+            let value = f(operands);
+            rows.push(value.map_err(|error| at_row(&self.shape, row, &to_py(py, &error), py))?);
+        }
+        Ok(Stack {
+            shape: self.shape.clone(),
+            rows,
+        })
+    }
+
+    /// As [`try_map`](Self::try_map) where a single row may take long: each asks now and then whether to go on.
+    pub(crate) fn try_map_watched<R: Send>(
+        &self,
+        py: Python<'_>,
+        f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
+    ) -> PyResult<Stack<R>> {
+        self.on_all_cores(py, if self.len() > BLOCK { BLOCK } else { 1 }, f)
+    }
+
+    fn on_all_cores<R: Send>(
+        &self,
+        py: Python<'_>,
+        size: usize,
+        f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
+    ) -> PyResult<Stack<R>> {
+        let count = self.len();
+        // First what all blocks go into in the end, so that it is known to be there.
+        let mut rows = memory::vector(Names(&self.names), &self.shape, 1)?;
         let mut blocks: Vec<Vec<R>> = Vec::new();
-        blocks.resize_with(count.div_ceil(BLOCK), Vec::new);
+        blocks.resize_with(count.div_ceil(size), Vec::new);
         let interrupt = Interrupt::new(None);
         let outcome = py.detach(|| {
             fill_blocks(
@@ -130,18 +184,36 @@ impl<const K: usize> Broadcast<K> {
                 1,
                 &mut |_| interrupt.poll(None),
                 |block, out| {
-                    out[0] = run(block * BLOCK, count.min((block + 1) * BLOCK))?;
+                    let end = count.min((block + 1) * size);
+                    (out[0].try_reserve_exact(size)).map_err(|_| Fault::NoMemory)?;
+                    let watch = &mut |_| interrupt.poll(None);
+                    for row in block * size..end {
+                        let value = f(self.operands(row), watch);
+                        out[0].push(value.map_err(|error| Fault::Row(row, error))?);
+                    }
                     Ok(())
                 },
             )
         });
         interrupt.finish(py, outcome.is_ok())?;
-        if let Err(Halt::Failed(fault)) = outcome {
-            return Err(named(fault));
+        match outcome {
+            Err(Halt::Failed(Fault::Row(row, error))) => {
+                return Err(at_row(&self.shape, row, &to_py(py, &error), py));
+            }
+            Err(Halt::Failed(Fault::NoMemory)) => {
+                let what = Names(&self.names);
+                return Err(memory::refused(what, &self.shape, 2 * size_of::<R>()));
+            }
+            Err(Halt::Stopped) | Ok(()) => (),
+        }
+        let mut beat = Beat::new(py);
+        for block in blocks {
+            beat.mark()?;
+            rows.extend(block);
         }
         Ok(Stack {
             shape: self.shape.clone(),
-            rows: blocks.into_iter().flatten().collect(),
+            rows,
         })
     }
 
@@ -149,6 +221,12 @@ impl<const K: usize> Broadcast<K> {
     pub(crate) fn rows(&self) -> impl Iterator<Item = [usize; K]> + '_ {
         (0..self.len()).map(|row| self.operands(row))
     }
+}
+
+/// Why a block of a large map was left.
+enum Fault {
+    Row(usize, Error),
+    NoMemory,
 }
 
 fn mismatch<const K: usize>(names: [&str; K], shapes: [&[usize]; K]) -> PyErr {

@@ -8,7 +8,7 @@ use polhode::motion::heavy_top::PivotedTop;
 use polhode::principal::{SymmetricTop, TOP_RTOL};
 use pyo3::prelude::*;
 
-use crate::arrays::{Argument, read, read_or, write, write_numbers};
+use crate::arrays::{Argument, read, read_or, write, write_numbers, write_numbers_of, write_of};
 use crate::rigid_body::{PyRigidBody, points};
 use crate::stack::{Broadcast, Stack};
 
@@ -61,16 +61,16 @@ pub(crate) fn free_precession<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let bodies = &body.get().bodies;
     let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
-    let about = points(bodies, about.given(), "about")?;
+    let about = points(py, bodies, about.given(), "about")?;
     let shapes = [&bodies.shape[..], &omega.shape, &about.shape];
     let grid = Broadcast::of(["body", "omega", "about"], shapes)?;
     let found = grid.try_map(py, |[b, w, p]| {
         let top = SymmetricTop::of(&bodies[b].principal_about(&about[p]), rtol)?;
         free_precession_of(&top, &omega[w])
     })?;
-    let number = |part: fn(&FreePrecession) -> f64| write_numbers(py, &found.map(part));
+    let number = |part: fn(&FreePrecession) -> f64| write_numbers_of(py, &found, part);
     let parts = (
-        write(py, &found.map(|motion| motion.axis))?,
+        write_of(py, &found, |motion| motion.axis)?,
         number(|motion| motion.body_rate)?,
         number(|motion| motion.space_rate)?,
         number(|motion| motion.body_cone)?,

@@ -4,29 +4,37 @@
 //! corners become a fan of triangles, `i/t/n` is vertex i, negative numbers count back from the last vertex so far.
 //! Counted: a first line with the numbers of vertices and faces, then that many lines of three numbers each.
 
+use std::ops::ControlFlow;
 use std::str::SplitWhitespace;
 
 use super::{FileFault, TriangleMesh};
+use crate::numerics::threads::{Halt, Watch};
 
 /// Reads `text`, in which faces count vertices from `index_base` (0 or 1).
 ///
+/// Now and then `watch` gets the fraction read.
+///
 /// # Errors
 /// [`FileFault`] with the line that cannot be understood. Whether a face names a vertex that exists is left to the check
-/// of the mesh.
-pub fn read(text: &str, index_base: usize) -> Result<TriangleMesh, FileFault> {
+/// of the mesh. [`Halt::Stopped`] where `watch` said so.
+pub fn read(
+    text: &str,
+    index_base: usize,
+    watch: &mut Watch<'_>,
+) -> Result<TriangleMesh, Halt<FileFault>> {
     let first = text.lines().find(|line| !is_blank(line));
     let mesh = if first.is_some_and(|line| {
         line.split_whitespace()
             .all(|word| word.parse::<f64>().is_ok())
     }) {
-        counted(text, index_base)?
+        counted(text, index_base, watch)?
     } else {
-        lettered(text, index_base)?
+        lettered(text, index_base, watch)?
     };
     if mesh.faces.is_empty() {
-        return Err(FileFault::NoFaces {
+        return Err(Halt::Failed(FileFault::NoFaces {
             vertices: mesh.vertices.len(),
-        });
+        }));
     }
     Ok(mesh)
 }
@@ -36,23 +44,50 @@ fn is_blank(line: &str) -> bool {
     line.is_empty() || line.starts_with('#')
 }
 
-fn lettered(text: &str, index_base: usize) -> Result<TriangleMesh, FileFault> {
+/// Lines read between two looks at the watch.
+const MANY: usize = 4096;
+
+/// Asks the watch at some lines.
+fn ask(
+    text: &str,
+    number: usize,
+    line: &str,
+    watch: &mut Watch<'_>,
+) -> Result<(), Halt<FileFault>> {
+    if !number.is_multiple_of(MANY) {
+        return Ok(());
+    }
+    let read = line.as_ptr() as usize - text.as_ptr() as usize;
+    match watch(read as f64 / text.len() as f64) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(Halt::Stopped),
+    }
+}
+
+fn lettered(
+    text: &str,
+    index_base: usize,
+    watch: &mut Watch<'_>,
+) -> Result<TriangleMesh, Halt<FileFault>> {
     let mut mesh = TriangleMesh {
         vertices: Vec::new(),
         faces: Vec::new(),
     };
     for (number, line) in (1..).zip(text.lines()).filter(|(_, line)| !is_blank(line)) {
+        ask(text, number, line, watch)?;
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => mesh.vertices.push(vertex(number, words)?),
-            Some("f") => fan(number, words, index_base, &mut mesh)?,
+            Some("v") => mesh
+                .vertices
+                .push(vertex(number, words).map_err(Halt::Failed)?),
+            Some("f") => fan(number, words, index_base, &mut mesh).map_err(Halt::Failed)?,
             Some(word) if is_keyword(word) => {}
             _ => {
                 let why = format!(
                     "neither a vertex, a face nor another OBJ keyword: {:?}",
                     shortened(line)
                 );
-                return Err(FileFault::BadLine { line: number, why });
+                return Err(Halt::Failed(FileFault::BadLine { line: number, why }));
             }
         }
     }
@@ -65,7 +100,11 @@ fn is_keyword(word: &str) -> bool {
         && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
-fn counted(text: &str, index_base: usize) -> Result<TriangleMesh, FileFault> {
+fn counted(
+    text: &str,
+    index_base: usize,
+    watch: &mut Watch<'_>,
+) -> Result<TriangleMesh, Halt<FileFault>> {
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !is_blank(line));
     let (number, header) = lines.next().unwrap_or((1, ""));
     let counts: Vec<usize> = header
@@ -77,25 +116,27 @@ fn counted(text: &str, index_base: usize) -> Result<TriangleMesh, FileFault> {
             "expected the numbers of vertices and of faces, got {:?}",
             shortened(header)
         );
-        return Err(FileFault::BadLine { line: number, why });
+        return Err(Halt::Failed(FileFault::BadLine { line: number, why }));
     };
     let mut mesh = TriangleMesh {
         vertices: Vec::new(),
         faces: Vec::new(),
     };
     for (number, line) in lines {
+        ask(text, number, line, watch)?;
         let words = line.split_whitespace();
         if mesh.vertices.len() < vertices {
-            mesh.vertices.push(vertex(number, words)?);
+            mesh.vertices
+                .push(vertex(number, words).map_err(Halt::Failed)?);
         } else {
-            fan(number, words, index_base, &mut mesh)?;
+            fan(number, words, index_base, &mut mesh).map_err(Halt::Failed)?;
         }
     }
     if (mesh.vertices.len(), mesh.faces.len()) != (vertices, faces) {
         let (v, f) = (mesh.vertices.len(), mesh.faces.len());
         let why =
             format!("promises {vertices} vertices and {faces} triangles, but {v} and {f} follow");
-        return Err(FileFault::BadLine { line: number, why });
+        return Err(Halt::Failed(FileFault::BadLine { line: number, why }));
     }
     Ok(mesh)
 }
@@ -175,6 +216,14 @@ fn shortened(line: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read(text: &str, index_base: usize) -> Result<TriangleMesh, FileFault> {
+        let read = super::read(text, index_base, &mut |_| ControlFlow::Continue(()));
+        read.map_err(|halt| match halt {
+            Halt::Failed(fault) => fault,
+            Halt::Stopped => panic!("nobody stops it"),
+        })
+    }
 
     #[test]
     fn obj_geometry() {

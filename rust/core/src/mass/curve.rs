@@ -1,7 +1,6 @@
 //! Thin wires: straight segments from point to point, with a mass per length.
 
 use nalgebra::Vector3;
-use std::ops::ControlFlow;
 
 use super::body::RigidBody;
 use super::error_bound::UNIT;
@@ -11,6 +10,7 @@ use super::simplex::{Corners, Frame, Wire};
 use super::solids::Amount;
 use super::surface::{finish, thin};
 use crate::error::{Error, all_finite};
+use crate::numerics::threads::Watch;
 
 /// Points joined by straight segments.
 struct Polyline<'a>(&'a [[f64; 3]]);
@@ -29,11 +29,17 @@ impl Corners<2> for Polyline<'_> {
 /// A thin wire of uniform mass per length through the points: `∫ r rᵀ dm = λ L (a aᵀ + b bᵀ + s sᵀ)/6` for a segment
 /// (a, b) of length L, `s = a + b`.
 ///
-/// `amount` is the total mass or the mass per length λ. A closed wire ends at its first point.
+/// `amount` is the total mass or the mass per length λ. A closed wire ends at its first point. `watch` is asked about every
+/// 20 ms whether to go on.
 ///
 /// # Errors
-/// When a coordinate is not finite, the wire has no length, or the amount is not positive.
-pub fn curve(points: &[[f64; 3]], amount: Amount) -> Result<RigidBody, Error> {
+/// When a coordinate is not finite, the wire has no length, or the amount is not positive; [`Error::Stopped`] where `watch`
+/// said so.
+pub fn curve(
+    points: &[[f64; 3]],
+    amount: Amount,
+    watch: &mut Watch<'_>,
+) -> Result<RigidBody, Error> {
     all_finite("points", points.as_flattened())?;
     let line = Polyline(points);
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -48,8 +54,7 @@ pub fn curve(points: &[[f64; 3]], amount: Amount) -> Result<RigidBody, Error> {
         });
     }
     let frame = Frame::of_box(&Vector3::from(low), &Vector3::from(high));
-    let go_on = &mut |_| ControlFlow::Continue(());
-    let found = thin::<_, Wire, 2>(&line, &frame, || frame, go_on);
+    let found = thin::<_, Wire, 2>(&line, &frame, || frame, watch);
     let (sums, moments) = found.ok_or(Error::Stopped)?;
     // Each end of a segment is off by a unit of rounding of the extent, its length by four.
     let error =
@@ -64,7 +69,13 @@ pub fn curve(points: &[[f64; 3]], amount: Amount) -> Result<RigidBody, Error> {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
+
+    fn curve(points: &[[f64; 3]], amount: Amount) -> Result<RigidBody, Error> {
+        super::curve(points, amount, &mut |_| ControlFlow::Continue(()))
+    }
 
     #[test]
     fn straight_wire_is_a_rod() {

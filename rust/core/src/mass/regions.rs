@@ -4,10 +4,11 @@ use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
 use super::amount::{Amount, length, ordered};
-use super::polyhedron::{Index, polyhedron};
+use super::polyhedron::{Index, Options, polyhedron_watched};
 use crate::error::{Error, all_finite};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::quadrature::{Cell, Rule};
+use crate::numerics::threads::Watch;
 
 /// Where there is matter. Its boundary is where a density may end with a jump.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,10 +121,20 @@ impl Region {
     /// The inside of a closed, consistently wound triangle mesh.
     ///
     /// # Errors
-    /// When the mesh does not bound a solid.
-    pub fn mesh<I: Index>(vertices: &[[f64; 3]], faces: &[[I; 3]]) -> Result<Self, Error> {
+    /// When the mesh does not bound a solid; [`Error::Stopped`] where `watch` said so.
+    pub fn mesh<I: Index>(
+        vertices: &[[f64; 3]],
+        faces: &[[I; 3]],
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Error> {
         // Whatever is wrong with the mesh is told here.
-        let solid = polyhedron(vertices, faces, Amount::Mass(1.0), false)?;
+        let solid = polyhedron_watched(
+            vertices,
+            faces,
+            Amount::Mass(1.0),
+            Options::default(),
+            watch,
+        )?;
         Ok(Self(Kind::Mesh {
             apex: solid.center_of_mass(),
             faces: faces

@@ -1,7 +1,5 @@
 //! Thin shells: triangles, open or closed, with a mass per area.
 
-use std::ops::ControlFlow;
-
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::polyhedron::{Index, MeshFault, View, in_units, is_settled, matter};
@@ -69,15 +67,19 @@ pub fn surface<I: Index>(
 /// Area of a triangle mesh, open or closed.
 ///
 /// # Errors
-/// When a face names no vertex or a coordinate is not finite.
-pub fn area<I: Index>(vertices: &[[f64; 3]], faces: &[[I; 3]]) -> Result<f64, Error> {
+/// When a face names no vertex or a coordinate is not finite; [`Error::Stopped`] where `watch` said so.
+pub fn area<I: Index>(
+    vertices: &[[f64; 3]],
+    faces: &[[I; 3]],
+    watch: &mut Watch<'_>,
+) -> Result<f64, Error> {
     let mesh = View { vertices, faces };
     if faces.is_empty() {
         return Err(MeshFault::NoFaces.into());
     }
     let frame = mesh.frame();
-    let go_on = &mut |_| ControlFlow::Continue(());
-    let area = sums::<_, Shell, 3>(&mesh, &frame, go_on).map_or(f64::NAN, |sums| sums.content);
+    let found = sums::<_, Shell, 3>(&mesh, &frame, watch);
+    let area = found.ok_or(Error::Stopped)?.content;
     if !area.is_finite()
         && let Some(fault) = mesh.find_unusable()
     {
@@ -141,6 +143,8 @@ pub(super) fn finish(
 mod tests {
     use nalgebra::Vector3;
 
+    use std::ops::ControlFlow;
+
     use super::*;
 
     #[test]
@@ -166,6 +170,7 @@ mod tests {
         assert!((body.mass() - 18.0).abs() < 1e-14);
         assert!((body.center_of_mass() - Vector3::repeat(0.5)).norm() < 1e-15);
         assert!((body.principal().moments[0] - 5.0).abs() < 1e-14);
-        assert!((area(&vertices, &faces).expect("area") - 6.0).abs() < 1e-15);
+        let go_on = &mut |_| ControlFlow::Continue(());
+        assert!((area(&vertices, &faces, go_on).expect("area") - 6.0).abs() < 1e-15);
     }
 }

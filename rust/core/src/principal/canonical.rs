@@ -3,9 +3,13 @@
 //! Every axis of a sphere is principal, and every axis across the symmetry axis of a top. An eigensolver then returns axes
 //! that hang on the last bits of the tensor. The canonical choice depends on the body alone.
 
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::axes::{PrincipalAxes, with_sign_rule};
+use crate::numerics::threads::{Halt, fill_blocks};
 
 /// Projections whose squares are this close count as equal, and the earlier body axis is taken.
 const TIE: f64 = 1e-8;
@@ -52,20 +56,36 @@ pub fn canonical(principal: &PrincipalAxes, rtol: f64) -> PrincipalAxes {
 
 /// As [`canonical`] for a stack in place, axes row-major.
 ///
+/// About every 20 ms `watch` gets the fraction done; [`ControlFlow::Break`] ends the job.
+///
+/// # Errors
+/// [`Halt::Stopped`] if `watch` said so.
+///
 /// # Panics
 /// If the lengths differ.
-pub fn canonical_many(moments: &[[f64; 3]], axes: &mut [[f64; 9]], rtol: f64) {
+pub fn canonical_many(
+    moments: &[[f64; 3]],
+    axes: &mut [[f64; 9]],
+    rtol: f64,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<(), Halt<Infallible>> {
     assert_eq!(
         moments.len(),
         axes.len(),
         "as many triples of axes as of moments"
     );
-    for (&moments, row) in moments.iter().zip(axes) {
-        let axes = Matrix3::from_row_slice(row);
-        let found = canonical(&PrincipalAxes { moments, axes }, rtol);
-        row.copy_from_slice(found.axes.transpose().as_slice());
-    }
+    fill_blocks(axes, BLOCK, watch, |start, block| {
+        for (&moments, row) in moments[start..].iter().zip(block) {
+            let axes = Matrix3::from_row_slice(row);
+            let found = canonical(&PrincipalAxes { moments, axes }, rtol);
+            row.copy_from_slice(found.axes.transpose().as_slice());
+        }
+        Ok(())
+    })
 }
+
+/// Rows that one thread does at a time.
+const BLOCK: usize = 1024;
 
 /// The direction, across the unit vector n, of the projection of the body axis that has the longest.
 fn nearest_across(n: &Vector3<f64>) -> Vector3<f64> {
@@ -81,7 +101,7 @@ fn nearest_across(n: &Vector3<f64>) -> Vector3<f64> {
 mod tests {
     use nalgebra::{Matrix3, Rotation3, Vector3};
 
-    use super::{canonical, canonical_many};
+    use super::{ControlFlow, canonical, canonical_many};
     use crate::principal::principal_axes;
 
     #[test]
@@ -143,7 +163,9 @@ mod tests {
                 .try_into()
                 .unwrap()
         });
-        canonical_many(&found.map(|row| row.moments), &mut rows, 1e-6);
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let moments = found.map(|row| row.moments);
+        canonical_many(&moments, &mut rows, 1e-6, go_on).expect("nobody stops it");
         for (row, alone) in rows.iter().zip(&found) {
             assert_eq!(Matrix3::from_row_slice(row), canonical(alone, 1e-6).axes);
         }

@@ -6,17 +6,16 @@ use polhode::motion::free::{FreeMotion, Invariants};
 use polhode::motion::stability::stability;
 use polhode::numerics::double_double::DoubleDouble;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
 
 use super::PyFreeMotion;
-use crate::arrays::{Item, numpy, write, write_numbers};
+use crate::arrays::{Item, Numbers, write_any_of, write_numbers_of, write_of, write_words_of};
 use crate::stack::Stack;
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
 impl PyFreeMotion {
-    fn invariants(&self) -> Stack<Invariants> {
-        self.motions.map(Invariants::of_motion)
+    fn invariants(&self, py: Python<'_>) -> PyResult<Stack<Invariants>> {
+        self.motions.map(py, Invariants::of_motion)
     }
 
     /// A float for one motion, an array for a stack.
@@ -25,7 +24,7 @@ impl PyFreeMotion {
         py: Python<'py>,
         f: fn(&Invariants) -> f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        write_numbers(py, &self.invariants().map(f))
+        write_numbers_of(py, &self.invariants(py)?, f)
     }
 }
 
@@ -75,19 +74,13 @@ impl PyFreeMotion {
     /// short-axis long-axis steady
     #[getter]
     fn mode<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let modes = self.motions.map(|motion| motion.mode.as_str());
-        if modes.is_one() {
-            return Ok(PyString::new(py, modes[0]).into_any());
-        }
-        numpy(py)?
-            .call_method1("array", (modes.rows, "<U10"))?
-            .call_method1("reshape", (modes.shape,))
+        write_words_of(py, &self.motions, |motion| motion.mode.as_str(), "<U10")
     }
 
     /// Angular momentum about the centre of mass, components in space, shape (..., 3): constant.
     #[getter]
     fn angular_momentum<'py>(&self, py: Python<'py>) -> Array<'py> {
-        write(py, &self.motions.map(FreeMotion::angular_momentum))
+        write_of(py, &self.motions, FreeMotion::angular_momentum)
     }
 
     /// Kinetic energy of the rotation, ½ ω·I ω: constant.
@@ -138,12 +131,12 @@ impl PyFreeMotion {
     /// 7.366
     #[getter]
     fn periods<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let periods = self.invariants().map(Invariants::periods);
+        let periods = self.invariants(py)?.map(py, Invariants::periods)?;
         let parts = (
-            write_numbers(py, &periods.map(|periods| periods.rotation))?,
-            write_numbers(py, &periods.map(|periods| periods.precession))?,
-            write_numbers(py, &periods.map(|periods| periods.flip))?,
-            write(py, &periods.map(|periods| periods.rates))?,
+            write_numbers_of(py, &periods, |periods| periods.rotation)?,
+            write_numbers_of(py, &periods, |periods| periods.precession)?,
+            write_numbers_of(py, &periods, |periods| periods.flip)?,
+            write_of(py, &periods, |periods| periods.rates)?,
         );
         tuple(py, "Periods", parts)
     }
@@ -166,10 +159,9 @@ impl PyFreeMotion {
     ///        [ 2.862,  2.862]])
     #[getter]
     fn nutation<'py>(&self, py: Python<'py>) -> Array<'py> {
-        write(
-            py,
-            &self.invariants().map(|motion| Ranges(motion.nutation())),
-        )
+        write_of(py, &self.invariants(py)?, |motion| {
+            Ranges(motion.nutation())
+        })
     }
 
     /// Body cone and space cone: half their openings, least and greatest.
@@ -191,19 +183,16 @@ impl PyFreeMotion {
     /// (2, array([0.0997, 0.0997]), array([0.0497, 0.0497]))
     #[getter]
     fn cones<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let cones = self.invariants().map(Invariants::cones);
+        let cones = self.invariants(py)?.map(py, Invariants::cones)?;
         let axis = if cones.is_one() {
             cones[0].axis.into_pyobject(py)?.into_any()
         } else {
-            let axes: Vec<usize> = cones.rows.iter().map(|cones| cones.axis).collect();
-            numpy(py)?
-                .call_method1("array", (axes, "int64"))?
-                .call_method1("reshape", (cones.shape.clone(),))?
+            write_any_of(py, &cones, |cones| i64::try_from(cones.axis).unwrap_or(2))?
         };
         let parts = (
             axis,
-            write(py, &cones.map(|cones| cones.body))?,
-            write(py, &cones.map(|cones| cones.space))?,
+            write_of(py, &cones, |cones| cones.body)?,
+            write_of(py, &cones, |cones| cones.space)?,
         );
         tuple(py, "Cones", parts)
     }
@@ -222,7 +211,7 @@ impl PyFreeMotion {
     /// array([ 4.8 , -0.8 ,  0.96])
     #[getter]
     fn stability<'py>(&self, py: Python<'py>) -> Array<'py> {
-        let squares = self.motions.map(|motion| {
+        write_of(py, &self.motions, |motion| {
             let moments = motion.moments.map(DoubleDouble::rounded);
             let momentum = Invariants::of_motion(motion).angular_momentum();
             std::array::from_fn::<_, 3, _>(|k| {
@@ -232,8 +221,7 @@ impl PyFreeMotion {
                     f64::NAN
                 }
             })
-        });
-        write(py, &squares)
+        })
     }
 
     /// The polhode: the closed curve of the angular velocity in the body, exact.
@@ -261,23 +249,18 @@ impl PyFreeMotion {
     /// >>> brick.kinetic_energy(curve).rotational.round(12)
     /// array([1.5975, 1.5975, 1.5975, 1.5975, 1.5975])
     #[pyo3(signature = (n=181))]
-    fn polhode<'py>(&self, py: Python<'py>, n: usize) -> PyResult<Bound<'py, PyAny>> {
+    fn polhode<'py>(&self, py: Python<'py>, n: i128) -> PyResult<Bound<'py, PyAny>> {
         if n < 2 {
             return Err(pyo3::exceptions::PyValueError::new_err(format!(
                 "n: expected at least 2 points of a closed curve, got {n}"
             )));
         }
-        let points: Vec<Vector3<f64>> = (self.motions.rows.iter())
-            .flat_map(|motion| motion.polhode(n))
-            .collect();
+        let n = usize::try_from(n).unwrap_or(usize::MAX); // far beyond all memory, which is told below
         let shape = [&self.motions.shape[..], &[n]].concat();
-        Ok(write(
-            py,
-            &Stack {
-                shape,
-                rows: points,
-            },
-        )?
-        .into_any())
+        let mut numbers = Numbers::of::<Vector3<f64>>(py, "n", &shape)?;
+        for motion in &self.motions.rows {
+            numbers.put(motion.polhode_points(n), |point, out| point.write(out))?;
+        }
+        Ok(numbers.finish::<Vector3<f64>>(&shape)?.into_any())
     }
 }

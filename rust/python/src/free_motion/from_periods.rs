@@ -120,7 +120,8 @@ impl PyRigidBody {
                 attitude_about(&principal.moments, &principal.axes, &omega, &direction[d])?;
             Ok::<_, Error>((principal.axes * omega, attitude))
         })?;
-        let (omega, attitude) = (starts.map(|start| start.0), starts.map(|start| start.1));
+        let omega = starts.map(py, |start| start.0)?;
+        let attitude = starts.map(py, |start| start.1)?;
         PyFreeMotion::new(py, slf, &omega, &attitude)
     }
 }

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::PyFreeMotion;
 use super::constants::tuple;
-use crate::arrays::{read, write, write_numbers, write_of};
+use crate::arrays::{read, write, write_numbers_of, write_of};
 use crate::stack::{Broadcast, Stack};
 
 impl PyFreeMotion {
@@ -90,7 +90,7 @@ impl PyFreeMotion {
     fn poinsot<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let plane = self
             .motions
-            .map(|motion| Invariants::of_motion(motion).poinsot());
+            .map(py, |motion| Invariants::of_motion(motion).poinsot())?;
         let normal = |motion: &FreeMotion| -> Vector3<f64> {
             let momentum = motion.angular_momentum();
             let size = momentum.amax();
@@ -98,10 +98,10 @@ impl PyFreeMotion {
             (momentum / size).normalize()
         };
         let parts = (
-            write(py, &plane.map(|plane| plane.semi_axes))?,
+            write_of(py, &plane, |plane| plane.semi_axes)?,
             write_of(py, &self.motions, normal)?,
-            write_numbers(py, &plane.map(|plane| plane.distance))?,
-            write(py, &plane.map(|plane| plane.radii))?,
+            write_numbers_of(py, &plane, |plane| plane.distance)?,
+            write_of(py, &plane, |plane| plane.radii)?,
             self.herpolhode(py, t)?,
         );
         tuple(py, "Poinsot", parts)
@@ -148,8 +148,8 @@ impl PyFreeMotion {
     ) -> PyResult<Bound<'py, PyAny>> {
         let found = self.each_time(py, t, FreeMotion::sensitivity)?;
         let parts = (
-            write(py, &found.map(|at| Matrix6::from(at.state)))?,
-            write(py, &found.map(|at| at.moments))?,
+            write_of(py, &found, |at| Matrix6::from(at.state))?,
+            write_of(py, &found, |at| at.moments)?,
         );
         tuple(py, "Sensitivity", parts)
     }
@@ -197,8 +197,8 @@ impl PyFreeMotion {
         }
         let bars = self.each_time(py, t, |motion, t| motion.error_bar(t, rtol))?;
         let parts = (
-            write_numbers(py, &bars.map(|bar| bar.attitude))?,
-            write_numbers(py, &bars.map(|bar| bar.omega))?,
+            write_numbers_of(py, &bars, |bar| bar.attitude)?,
+            write_numbers_of(py, &bars, |bar| bar.omega)?,
         );
         tuple(py, "ErrorBar", parts)
     }

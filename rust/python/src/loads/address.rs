@@ -34,6 +34,10 @@ unsafe impl Send for Compiled {}
 unsafe impl Sync for Compiled {}
 
 impl Compiled {
+    pub(super) fn owner(&self) -> &Py<PyAny> {
+        &self.owner
+    }
+
     pub(super) fn copied(&self, py: Python<'_>) -> Self {
         Self {
             owner: self.owner.clone_ref(py),

@@ -34,6 +34,10 @@ enum Gives {
 }
 
 impl Callback {
+    pub(super) fn function(&self) -> &Py<PyAny> {
+        &self.function
+    }
+
     pub(super) fn copied(&self, py: Python<'_>) -> Self {
         Self {
             function: self.function.clone_ref(py),

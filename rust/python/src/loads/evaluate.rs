@@ -10,11 +10,14 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::{Acting, Fault, PyLoad, is_pivot};
-use crate::arrays::{read, write, write_of};
+use crate::arrays::{Numbers, read, write_of};
 use crate::attitudes::read_quaternion;
+use crate::depth::Deeper;
 use crate::errors::{at_row, to_py};
+use crate::interrupt::Beat;
+use crate::memory;
 use crate::rigid_body::PyRigidBody;
-use crate::stack::{Broadcast, Stack};
+use crate::stack::{BLOCK, Broadcast, Stack};
 
 impl PyLoad {
     /// Force and torque at each row of times, states and bodies.
@@ -31,7 +34,12 @@ impl PyLoad {
         about: &str,
         start: Option<f64>,
     ) -> PyResult<Stack<Wrench>> {
-        let (terms, bodies) = (self.terms()?, self.bodies(py, body)?);
+        let _deeper = Deeper::run("load")?;
+        let terms = self.terms(py)?;
+        let bodies = match body {
+            Some(body) => &body.get().bodies,
+            None => &unit(py, &terms)?,
+        };
         let pivoted = is_pivot(about)?;
         let t: Stack<f64> = read(t, "t")?;
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
@@ -62,8 +70,13 @@ impl PyLoad {
             &velocity.shape,
         ];
         let grid = Broadcast::of(names, shapes)?;
-        let rows = (grid.rows().enumerate())
-            .map(|(row, [l, b, k, w, q, r, v])| {
+        let mut found = memory::vector("result", &grid.shape, 1)?;
+        let mut beat = Beat::new(py);
+        for (row, [l, b, k, w, q, r, v]) in grid.rows().enumerate() {
+            if row % BLOCK == 0 {
+                beat.mark()?;
+            }
+            let wrench = || {
                 if quaternion[q].iter().any(|x| x.is_nan()) {
                     let nan = Vector3::repeat(f64::NAN);
                     return Ok(Wrench {
@@ -94,29 +107,11 @@ impl PyLoad {
                         Fault::Core(error) => at_row(&grid.shape, row, &to_py(py, &error), py),
                         Fault::Python(error) => error,
                     })
-            })
-            .collect::<PyResult<_>>()?;
-        let shape = grid.shape;
-        Ok(Stack { shape, rows })
-    }
-
-    /// The bodies it acts on; a load that does not depend on the body acts on any.
-    fn bodies(
-        &self,
-        py: Python<'_>,
-        body: Option<&Bound<'_, PyRigidBody>>,
-    ) -> PyResult<Stack<RigidBody>> {
-        match body {
-            Some(body) => Ok(body.get().bodies.clone()),
-            None if self.terms()?.rows.iter().flatten().any(Term::needs_body) => {
-                Err(PyTypeError::new_err(
-                    "body: the weight, the point of a force and the gravity gradient depend on the body; pass body=",
-                ))
-            }
-            None => RigidBody::new(1.0, &nalgebra::Matrix3::identity(), &Vector3::zeros(), 0.0)
-                .map(Stack::one)
-                .map_err(|error| to_py(py, &error)),
+            };
+            found.push(wrench()?);
         }
+        let shape = grid.shape;
+        Ok(Stack { shape, rows: found })
     }
 }
 
@@ -235,7 +230,7 @@ impl PyLoad {
         if !self.is_analytic() {
             return Ok(None);
         }
-        let (terms, bodies, pivoted) = (self.terms()?, &body.get().bodies, is_pivot(about)?);
+        let (terms, bodies, pivoted) = (self.terms(py)?, &body.get().bodies, is_pivot(about)?);
         let quaternion = read_quaternion(quaternion, "quaternion")?;
         let position = position.map_or_else(
             || Ok(Stack::one(Vector3::zeros())),
@@ -264,9 +259,17 @@ impl PyLoad {
                 .map(|term| term.potential(&subject, &phase))
                 .sum::<Option<f64>>()
         });
-        let rows: Option<Vec<f64>> = energies.collect();
-        let shape = grid.shape.clone();
-        rows.map(|rows| write(py, &Stack { shape, rows }))
+        let mut numbers = Numbers::of::<f64>(py, "result", &grid.shape)?;
+        let mut known = true;
+        numbers.put(
+            energies.map_while(|energy| {
+                known = energy.is_some();
+                energy
+            }),
+            |energy, out| out.push(energy),
+        )?;
+        known
+            .then(|| numbers.finish::<f64>(&grid.shape))
             .transpose()
     }
 
@@ -290,9 +293,9 @@ impl PyLoad {
         if !self.is_analytic() {
             return Ok(None);
         }
-        let kept = (self.terms()?).map(|terms| {
+        let kept = (self.terms(py)?).map(py, |terms| {
             (terms.iter()).fold(Kept::All, |kept, term| kept.and(term.keeps(pivoted)))
-        });
+        })?;
         if kept.rows.iter().all(|kept| *kept == Kept::All) {
             return Ok(Some(true.into_pyobject(py)?.to_owned().into_any()));
         }
@@ -305,4 +308,16 @@ impl PyLoad {
         })?;
         Ok(Some(axes.into_any()))
     }
+}
+
+/// The bodies it acts on; a load that does not depend on the body acts on any.
+fn unit(py: Python<'_>, terms: &Stack<Vec<Term>>) -> PyResult<Stack<RigidBody>> {
+    if terms.rows.iter().flatten().any(Term::needs_body) {
+        return Err(PyTypeError::new_err(
+            "body: the weight, the point of a force and the gravity gradient depend on the body; pass body=",
+        ));
+    }
+    RigidBody::new(1.0, &nalgebra::Matrix3::identity(), &Vector3::zeros(), 0.0)
+        .map(Stack::one)
+        .map_err(|error| to_py(py, &error))
 }

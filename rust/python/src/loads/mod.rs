@@ -20,6 +20,7 @@ use polhode::motion::loads::Term;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyNotImplemented, PyTuple};
+use pyo3::{PyTraverseError, PyVisit};
 
 pub(crate) use self::acting::{Acting, Cause, Fault};
 use self::address::Compiled;
@@ -56,16 +57,13 @@ impl PyLoad {
         }
     }
 
-    pub(crate) fn copied(&self, py: Python<'_>) -> Self {
-        Self {
-            parts: self.parts.iter().map(|part| part.copied(py)).collect(),
-        }
+    pub(crate) fn copied(&self, py: Python<'_>) -> PyResult<Self> {
+        self.map(|part| part.copied(py))
     }
 
     fn plus(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
-        let mut sum = self.copied(py);
-        sum.parts
-            .extend(other.parts.iter().map(|part| part.copied(py)));
+        let mut sum = self.copied(py)?;
+        sum.parts.append(&mut other.copied(py)?.parts);
         sum.stack_shape()?;
         Ok(sum)
     }
@@ -83,19 +81,27 @@ impl PyLoad {
     }
 
     /// The analytic terms of each row.
-    pub(crate) fn terms(&self) -> PyResult<Stack<Vec<Term>>> {
+    pub(crate) fn terms(&self, py: Python<'_>) -> PyResult<Stack<Vec<Term>>> {
         let shape = self.stack_shape()?;
-        let count = shape.iter().product();
-        let mut rows = vec![Vec::new(); count];
-        for part in &self.parts {
-            if let Acts::Term(terms) = &part.acts {
-                let grid = Broadcast::of(["load", "load"], [&shape, &terms.shape])?;
-                for (row, [_, own]) in rows.iter_mut().zip(grid.rows()) {
-                    row.push(terms[own].clone());
-                }
-            }
-        }
-        Ok(Stack { shape, rows })
+        let analytic = self.parts.iter().filter_map(|part| match &part.acts {
+            Acts::Term(terms) => Some(terms),
+            _ => None,
+        });
+        let parts = analytic
+            .map(|terms| {
+                Ok((
+                    terms,
+                    Broadcast::of(["load", "load"], [&shape, &terms.shape])?,
+                ))
+            })
+            .collect::<PyResult<Vec<_>>>()?;
+        Broadcast::of(["load"], [&shape])?.try_map(py, |[row]| {
+            let terms = parts.iter().map(|(terms, grid)| {
+                let [_, own] = grid.operands(row);
+                terms[own].clone()
+            });
+            Ok(terms.collect())
+        })
     }
 
     fn callbacks(&self) -> impl Iterator<Item = &Callback> {
@@ -136,6 +142,13 @@ pub(crate) fn is_pivot(about: &str) -> PyResult<bool> {
 
 #[pymethods]
 impl PyLoad {
+    /// What the garbage collector may find a cycle through: a function that knows the load it is part of.
+    ///
+    /// Nothing is cleared here: a load never changes, so that every cycle passes through something else that does.
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.parts.iter().try_for_each(|part| part.traverse(&visit))
+    }
+
     fn __getitem__(&self, py: Python<'_>, key: &Bound<'_, PyAny>) -> PyResult<Self> {
         let shape = self.stack_shape()?;
         self.map(|part| part.picked(py, &shape, key))
@@ -150,12 +163,12 @@ impl PyLoad {
     /// The load with orbits that have no epoch beginning at `t`: for the rest of a motion that started then.
     fn anchored(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
         self.map(|part| {
-            let mut part = part.copied(py);
+            let mut part = part.copied(py)?;
             if let Acts::Term(terms) = &part.acts
                 && terms.rows.iter().any(Term::needs_epoch)
             {
                 part.recipe = recipe(py, "_anchored", (&part.recipe, t))?;
-                part.acts = Acts::Term(terms.map(|term| term.clone().anchored(t)));
+                part.acts = Acts::Term(terms.map(py, |term| term.clone().anchored(t))?);
             }
             Ok(part)
         })
@@ -181,7 +194,7 @@ impl PyLoad {
         if other.is_exact_instance_of::<PyInt>()
             && other.extract::<i64>().is_ok_and(|zero| zero == 0)
         {
-            return Ok(self.copied(py).into_pyobject(py)?.into_any());
+            return Ok(self.copied(py)?.into_pyobject(py)?.into_any());
         }
         Ok(PyNotImplemented::get(py).to_owned().into_any())
     }
@@ -224,11 +237,11 @@ impl PyLoad {
         self.__mul__(py, factor)
     }
 
-    fn __copy__(&self, py: Python<'_>) -> Self {
+    fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
         self.copied(py)
     }
 
-    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
         self.copied(py)
     }
 
@@ -249,10 +262,10 @@ impl PyLoad {
 
     /// The load that `__reduce__` took apart.
     #[staticmethod]
-    fn _from_parts(py: Python<'_>, parts: Vec<(String, Bound<'_, PyTuple>)>) -> PyResult<Self> {
+    fn _from_parts(py: Python<'_>, parts: Vec<Bound<'_, PyTuple>>) -> PyResult<Self> {
         let mut sum = Self::default();
-        for (name, arguments) in parts {
-            sum.parts.extend(made(py, &name, &arguments)?.parts);
+        for recipe in parts {
+            sum.parts.extend(made(py, &recipe)?.parts);
         }
         Ok(sum)
     }

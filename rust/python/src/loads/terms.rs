@@ -357,7 +357,7 @@ pub(crate) fn feedback(
     let terms = grid.try_map(py, |[k, d, q]| {
         Feedback::new(&stiffness[k], &rates[d], &attitude[q]).map(Term::Feedback)
     })?;
-    let attitude = attitude.map(polhode::motion::attitude::components);
+    let attitude = attitude.map(py, polhode::motion::attitude::components)?;
     let arguments = (
         write(py, &stiffness)?,
         write(py, &rates)?,
@@ -384,5 +384,5 @@ fn matrices(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Stack<Mat
         };
         return Err(to_py(object.py(), &error));
     }
-    Ok(number.map(|&x| Matrix3::from_diagonal_element(x)))
+    number.map(object.py(), |&x| Matrix3::from_diagonal_element(x))
 }

@@ -1,11 +1,11 @@
 //! Composites: parts taken out, stacks put together.
 
-use numpy::{PyArrayDyn, PyArrayMethods};
 use polhode::mass::composites::combined;
 use pyo3::prelude::*;
 use pyo3::types::{PyNotImplemented, PyTuple};
 
 use super::PyRigidBody;
+use super::container::{picked_rows, to_index};
 use crate::arrays::numpy;
 use crate::stack::Broadcast;
 
@@ -69,17 +69,11 @@ impl PyRigidBody {
         let shape: Vec<usize> = kept.iter().map(|&k| self.bodies.shape[k]).collect();
         let count: usize = axes.iter().map(|&k| self.bodies.shape[k]).product();
         let order = [&kept[..], &axes].concat();
-        let rows = np
-            .call_method1("transpose", (rows, order))?
-            .call_method1("astype", ("int64",))?
-            .cast_into::<PyArrayDyn<i64>>()?;
-        let parts: Vec<_> = rows
-            .readonly()
-            .as_array()
-            .iter()
-            .filter_map(|&row| usize::try_from(row).ok())
-            .map(|row| self.bodies[row])
-            .collect();
+        let rows = picked_rows(&np.call_method1("transpose", (rows, order))?)?;
+        let rows = rows.as_slice()?;
+        let parts = Broadcast::of(["body"], [&[rows.len()]])?
+            .try_map(py, |[k]| Ok(self.bodies[to_index(rows[k])]))?
+            .rows;
         let grid = Broadcast::of(["body"], [&shape])?;
         Ok(Self::from(grid.try_map(py, |[row]| {
             combined(&parts[row * count..(row + 1) * count])

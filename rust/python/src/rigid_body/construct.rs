@@ -10,7 +10,9 @@ use super::PyRigidBody;
 use crate::arrays::{Argument, read, read_or};
 use crate::attitudes::read_rotation;
 use crate::hints::refuse_unknown;
-use crate::stack::{Broadcast, Stack};
+use crate::interrupt::Beat;
+use crate::memory;
+use crate::stack::{BLOCK, Broadcast, Stack, extend};
 
 /// An optional argument of any array-like kind.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -214,9 +216,17 @@ impl PyRigidBody {
     /// array([1., 2.])
     #[staticmethod]
     fn stack(bodies: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = bodies.py();
+        let mut beat = Beat::new(py);
         let bodies = bodies
             .try_iter()?
-            .map(|body| Ok(body?.cast_into::<Self>()?))
+            .enumerate()
+            .map(|(row, body)| {
+                if row % BLOCK == 0 {
+                    beat.mark()?;
+                }
+                Ok(body?.cast_into::<Self>()?)
+            })
             .collect::<PyResult<Vec<_>>>()?;
         let Some(first) = bodies.first() else {
             return Err(PyValueError::new_err(
@@ -232,10 +242,13 @@ impl PyRigidBody {
             )));
         }
         let shape = [&[bodies.len()], &shape[..]].concat();
-        let rows = bodies
-            .iter()
-            .flat_map(|body| body.get().bodies.rows.iter().copied())
-            .collect();
+        let mut rows = memory::vector("bodies", &shape, 0)?;
+        for (row, body) in bodies.iter().enumerate() {
+            if row % BLOCK == 0 {
+                beat.mark()?;
+            }
+            extend(py, &mut rows, &body.get().bodies.rows, |body| *body)?;
+        }
         Ok(Stack { shape, rows }.into())
     }
 }

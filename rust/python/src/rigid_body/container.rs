@@ -3,14 +3,17 @@
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyTypeError;
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use polhode::RigidBody;
+use pyo3::exceptions::{PyMemoryError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyList, PyTuple};
 
 use super::PyRigidBody;
-use crate::arrays::{numpy, read, write};
-use crate::stack::{Stack, tuple};
+use crate::arrays::{contiguous, numpy, read, write_of};
+use crate::interrupt::Beat;
+use crate::memory;
+use crate::stack::{BLOCK, Broadcast, Stack, extend, tuple};
 
 #[pymethods]
 impl PyRigidBody {
@@ -36,23 +39,12 @@ impl PyRigidBody {
 
     /// NumPy's indexing over the stack: integers, slices, masks, arrays, ``...`` and ``None``.
     fn __getitem__(&self, py: Python<'_>, key: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let np = numpy(py)?;
-        // NumPy itself tells which rows the key picks.
-        let rows = np
-            .call_method1("arange", (self.bodies.rows.len(),))?
-            .call_method1("reshape", (self.shape(py)?,))?;
-        let picked = np
-            .call_method1("asarray", (rows.get_item(key)?, "int64"))?
-            .cast_into::<PyArrayDyn<i64>>()?;
+        let picked = picked_by(py, &self.bodies.shape, key)?;
         let shape = picked.shape().to_vec();
-        let rows = picked
-            .readonly()
-            .as_array()
-            .iter()
-            .filter_map(|&row| usize::try_from(row).ok())
-            .map(|row| self.bodies[row])
-            .collect();
-        Ok(Stack { shape, rows }.into())
+        let grid = Broadcast::of(["key"], [&shape])?;
+        let picked = picked.as_slice()?;
+        let bodies = grid.try_map(py, |[k]| Ok(self.bodies[to_index(picked[k])]))?;
+        Ok(bodies.into())
     }
 
     fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
@@ -63,32 +55,37 @@ impl PyRigidBody {
         }
         let shape = self.bodies.shape[1..].to_vec();
         let size = shape.iter().product::<usize>();
-        let parts = (0..self.bodies.shape[0]).map(|i| {
-            let rows = self.bodies.rows[i * size..(i + 1) * size].to_vec();
-            Self::from(Stack {
-                shape: shape.clone(),
-                rows,
-            })
-        });
-        PyList::new(
-            py,
-            parts
-                .map(|part| Py::new(py, part))
-                .collect::<PyResult<Vec<_>>>()?,
-        )?
-        .try_iter()
+        let parts = PyList::empty(py);
+        let mut beat = Beat::new(py);
+        for i in 0..self.bodies.shape[0] {
+            if (i * size.max(1)) % BLOCK < size.max(1) {
+                beat.mark()?;
+            }
+            let mut rows = memory::vector("bodies", &shape, 0)?;
+            extend(
+                py,
+                &mut rows,
+                &self.bodies.rows[i * size..(i + 1) * size],
+                |body| *body,
+            )?;
+            let shape = shape.clone();
+            parts.append(Py::new(py, Self::from(Stack { shape, rows }))?)?;
+        }
+        parts.try_iter()
     }
 
-    fn __hash__(&self) -> u64 {
+    fn __hash__(&self, py: Python<'_>) -> PyResult<u64> {
         let mut hasher = DefaultHasher::new();
         self.bodies.shape.hash(&mut hasher);
-        for row in &self.numbers().rows {
+        let mut beat = Beat::new(py);
+        for (row, body) in self.bodies.rows.iter().enumerate() {
+            if row % BLOCK == 0 {
+                beat.mark()?;
+            }
             // Equal bodies have equal hashes: zero is one number.
-            row[..22]
-                .iter()
-                .for_each(|x| (x + 0.0).to_bits().hash(&mut hasher)); // without the bounds, as ==
+            (body.to_array()[..22].iter()).for_each(|x| (x + 0.0).to_bits().hash(&mut hasher)); // without the bounds, as ==
         }
-        hasher.finish()
+        Ok(hasher.finish())
     }
 
     fn __reduce__<'py>(
@@ -96,7 +93,10 @@ impl PyRigidBody {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = py.get_type::<Self>().getattr("_from_numbers")?;
-        Ok((restore, PyTuple::new(py, [write(py, &self.numbers())?])?))
+        Ok((
+            restore,
+            PyTuple::new(py, [write_of(py, &self.bodies, RigidBody::to_array)?])?,
+        ))
     }
 
     /// The bodies that `__reduce__` took apart, shape (..., 33); for pickle.
@@ -134,4 +134,36 @@ impl PyRigidBody {
             rows.join(", ")
         )
     }
+}
+
+/// The rows of a stack that a key picks, as NumPy itself tells.
+pub(crate) fn picked_by<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    key: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
+    let rows = numpy(py)?
+        .call_method1("arange", (shape.iter().product::<usize>(),))?
+        .call_method1("reshape", (PyTuple::new(py, shape)?,))?;
+    picked_rows(&rows.get_item(key).map_err(|error| {
+        if error.is_instance_of::<PyMemoryError>(py) {
+            PyMemoryError::new_err(format!("key: {}", error.value(py)))
+        } else {
+            error
+        }
+    })?)
+}
+
+/// The rows that NumPy picked of their numbers, C-ordered.
+pub(super) fn picked_rows<'py>(
+    picked: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
+    let picked = numpy(picked.py())?.call_method1("asarray", (picked,))?;
+    let picked = contiguous(&picked, "key", "int64")?;
+    picked.extract()
+}
+
+/// The number of a row that NumPy picked: never a negative one.
+pub(crate) fn to_index(row: i64) -> usize {
+    usize::try_from(row).unwrap_or_default()
 }

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use super::PyRigidBody;
 use crate::arrays::{Item, read, read_indices, read_list, write};
+use crate::depth::Deeper;
 use crate::errors::{new, to_py};
 use crate::regions::PyRegion;
 use crate::stack::{Stack, tuple};
@@ -118,13 +119,14 @@ impl PyRigidBody {
         density: &Bound<'_, PyAny>,
         bounds: &Bound<'_, PyAny>,
         rtol: f64,
-        max_evaluations: usize,
+        max_evaluations: i128,
     ) -> PyResult<Self> {
+        let _deeper = Deeper::run("from_density")?;
         callable(density)?;
         let region = region(bounds)?;
         let effort = Effort {
             rtol,
-            max_evaluations,
+            max_evaluations: count(max_evaluations)?,
         };
         let at = |points: &[[f64; 3]], values: &mut [f64]| ask(density, points, values);
         finished(py, from_density(&region, at, effort))
@@ -173,8 +175,9 @@ impl PyRigidBody {
         density: &Bound<'_, PyAny>,
         radii: &Bound<'_, PyAny>,
         rtol: f64,
-        max_evaluations: usize,
+        max_evaluations: i128,
     ) -> PyResult<Self> {
+        let _deeper = Deeper::run("from_radial_density")?;
         callable(density)?;
         let radii: Stack<f64> = read(radii, "radii")?;
         let boundaries = match radii.shape[..] {
@@ -189,7 +192,7 @@ impl PyRigidBody {
         };
         let effort = Effort {
             rtol,
-            max_evaluations,
+            max_evaluations: count(max_evaluations)?,
         };
         let at = |points: &[f64], values: &mut [f64]| ask(density, points, values);
         finished(py, from_radial_density(&boundaries, at, effort))
@@ -264,6 +267,16 @@ fn ask<T: Item + Copy>(
     }
     values.copy_from_slice(&densities.rows);
     Ok(())
+}
+
+/// How many evaluations are allowed.
+fn count(max_evaluations: i128) -> PyResult<usize> {
+    if max_evaluations < 0 {
+        return Err(PyValueError::new_err(format!(
+            "max_evaluations: expected a count, got {max_evaluations}"
+        )));
+    }
+    Ok(usize::try_from(max_evaluations).unwrap_or(usize::MAX))
 }
 
 fn callable(density: &Bound<'_, PyAny>) -> PyResult<()> {

@@ -8,7 +8,7 @@ use polhode::motion::kinetic_energy::{KineticEnergy, kinetic_energy};
 use pyo3::prelude::*;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{Argument, read, read_or, write, write_numbers};
+use crate::arrays::{Argument, read, read_or, write, write_numbers_of, write_of};
 use crate::stack::{Broadcast, Stack};
 
 #[pymethods]
@@ -52,7 +52,7 @@ impl PyRigidBody {
     ) -> PyResult<Bound<'py, PyAny>> {
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let velocity = read_or(&velocity, "velocity", Vector3::zeros())?;
-        let about = points(&self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &omega.shape,
@@ -68,7 +68,7 @@ impl PyRigidBody {
                 &about[p],
             ))
         })?;
-        let part = |part: fn(&KineticEnergy) -> f64| write_numbers(py, &energy.map(part));
+        let part = |part: fn(&KineticEnergy) -> f64| write_numbers_of(py, &energy, part);
         let parts = (
             part(|t| t.translational)?,
             part(|t| t.mixed)?,
@@ -118,7 +118,7 @@ impl PyRigidBody {
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let velocity = read_or(&velocity, "velocity", Vector3::zeros())?;
         let position = read_or(&position, "position", Vector3::zeros())?;
-        let about = points(&self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &omega.shape,
@@ -136,7 +136,7 @@ impl PyRigidBody {
                 &about[p],
             ))
         })?;
-        let part = |part: fn(&AngularMomentum) -> Vector3<f64>| write(py, &momentum.map(part));
+        let part = |part: fn(&AngularMomentum) -> Vector3<f64>| write_of(py, &momentum, part);
         let parts = (part(|l| l.orbital)?, part(|l| l.mixed)?, part(|l| l.spin)?);
         py.import("polhode.results")?
             .getattr("AngularMomentum")?
@@ -183,7 +183,7 @@ impl PyRigidBody {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let torque = read_or(&torque, "torque", Vector3::zeros())?;
-        let about = points(&self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &omega.shape,
@@ -237,7 +237,7 @@ impl PyRigidBody {
             "angular_acceleration",
             Vector3::zeros(),
         )?;
-        let about = points(&self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &omega.shape,

@@ -16,9 +16,10 @@ use pyo3::prelude::*;
 use super::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Beat, Interrupt};
 use crate::loads::{Acting, Cause, Fault, PyLoad};
-use crate::stack::{Broadcast, Stack};
+use crate::memory;
+use crate::stack::{BLOCK, Broadcast, Stack};
 
 /// Bodies, their states at the start and the analytic terms of the load on each.
 pub(super) struct Start<'a> {
@@ -32,7 +33,7 @@ pub(super) struct Start<'a> {
 }
 
 impl Start<'_> {
-    pub(super) fn grid(&self) -> PyResult<Broadcast<6>> {
+    pub(super) fn grid(&self) -> PyResult<Broadcast<'static, 6>> {
         Broadcast::of(
             ["body", "omega", "attitude", "position", "velocity", "load"],
             [
@@ -59,7 +60,7 @@ pub(super) fn footing(body: &RigidBody, times: &[f64], pivoted: bool) -> Footing
 /// All that a run needs.
 pub(super) struct Ensemble<'a> {
     pub(super) start: &'a Start<'a>,
-    pub(super) grid: Broadcast<6>,
+    pub(super) grid: Broadcast<'a, 6>,
     /// Of the body, where there is one alone.
     pub(super) footing: Option<Footing>,
     pub(super) times: &'a [f64],
@@ -108,11 +109,11 @@ impl Ensemble<'_> {
         interrupt: &Interrupt,
     ) -> Results<'py> {
         if self.load.calls_python() || !self.events.is_empty() {
-            self.results(py, body, load, self.attached(py, interrupt))
+            self.results(py, body, load, self.attached(py, interrupt)?, interrupt)
         } else if self.method == Method::Taylor {
-            self.results(py, body, load, self.abreast(py, interrupt))
+            self.results(py, body, load, self.abreast(py, interrupt)?, interrupt)
         } else {
-            self.results(py, body, load, self.detached(py, interrupt))
+            self.results(py, body, load, self.detached(py, interrupt)?, interrupt)
         }
     }
 
@@ -122,6 +123,7 @@ impl Ensemble<'_> {
         body: &Bound<'py, PyRigidBody>,
         load: Option<&Bound<'py, PyAny>>,
         runs: Runs<E>,
+        interrupt: &Interrupt,
     ) -> Results<'py> {
         for (row, run) in runs.iter().enumerate() {
             if let Some(Run {
@@ -138,13 +140,30 @@ impl Ensemble<'_> {
                 }
             }
         }
-        self.trajectory(py, body, load, runs)
+        self.trajectory(py, body, load, runs, interrupt)
+    }
+
+    /// As many as there are rows, none of them begun, and room for their states and the arrays of these.
+    fn none_yet<E>(&self, py: Python<'_>) -> PyResult<Runs<E>> {
+        let numbers = size_of::<Phase>().saturating_mul(2 * self.times.len());
+        let what = "simulate: rows of the stack times output times";
+        let states = [&self.grid.shape[..], &[self.times.len()]].concat();
+        memory::room(what, &states, 2 * size_of::<Phase>())?;
+        let each = numbers.saturating_add(size_of::<Option<Run<E>>>());
+        let count = memory::room(what, &self.grid.shape, each)?;
+        let mut runs = memory::vector(what, &self.grid.shape, 0)?;
+        let mut beat = Beat::new(py);
+        while runs.len() < count {
+            beat.mark()?;
+            runs.resize_with(count.min(runs.len() + BLOCK), || None);
+        }
+        Ok(runs)
     }
 
     /// Every row, one by one, with Python at hand.
-    fn attached(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs<Fault> {
+    fn attached(&self, py: Python<'_>, interrupt: &Interrupt) -> PyResult<Runs<Fault>> {
         let count = self.grid.len();
-        let mut runs: Runs<Fault> = (0..count).map(|_| None).collect();
+        let mut runs = self.none_yet::<Fault>(py)?;
         for (row, slot) in runs.iter_mut().enumerate() {
             let watch = |part: f64| interrupt.poll(Some((row as f64 + part) / count as f64));
             let run = self.one(row, Some(py), &mut self.events.calling(py), watch);
@@ -154,13 +173,13 @@ impl Ensemble<'_> {
                 break;
             }
         }
-        runs
+        Ok(runs)
     }
 
     /// Every row by itself, on all cores.
-    fn detached(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs<Fault> {
+    fn detached(&self, py: Python<'_>, interrupt: &Interrupt) -> PyResult<Runs<Fault>> {
         let count = self.grid.len();
-        let mut runs: Runs<Fault> = (0..count).map(|_| None).collect();
+        let mut runs = self.none_yet::<Fault>(py)?;
         let fraction = |of_row: f64| (count == 1).then_some(of_row);
         // Where a run ends all, the rows begun so far are kept.
         let _ended = py.detach(|| {
@@ -173,13 +192,13 @@ impl Ensemble<'_> {
                 if over { Err(()) } else { Ok(()) }
             })
         });
-        runs
+        Ok(runs)
     }
 
     /// Every row by Taylor series, eight side by side.
-    fn abreast(&self, py: Python<'_>, interrupt: &Interrupt) -> Runs<polhode::Error> {
+    fn abreast(&self, py: Python<'_>, interrupt: &Interrupt) -> PyResult<Runs<polhode::Error>> {
         let count = self.grid.len();
-        let mut runs: Runs<polhode::Error> = (0..count).map(|_| None).collect();
+        let mut runs = self.none_yet::<polhode::Error>(py)?;
         py.detach(|| {
             if count == 1 {
                 let mut watch = |part| interrupt.poll(Some(part));
@@ -191,7 +210,7 @@ impl Ensemble<'_> {
                 taylor::solve_many(&task, &terms, &mut runs, &poll);
             }
         });
-        runs
+        Ok(runs)
     }
 
     fn ends_all(&self, run: &Run<Fault>) -> bool {

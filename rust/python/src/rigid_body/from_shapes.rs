@@ -1,9 +1,9 @@
 //! Bodies from meshes, surfaces and curves.
 
 use numpy::{PyArrayDyn, PyArrayMethods};
-use polhode::RigidBody;
 use polhode::mass::polyhedron::{Options, closure, polyhedron_watched};
 use polhode::mass::{Amount, curve, surface, thick_shell};
+use polhode::numerics::threads::Watch;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -229,10 +229,10 @@ impl PyRigidBody {
             return Err(PyValueError::new_err("points: expected a list of points"));
         };
         let grid = Broadcast::of(["points"], [shape])?;
-        let body = |[row]: [usize; 1]| -> Result<RigidBody, polhode::Error> {
-            curve::curve(&points.rows[row * n..(row + 1) * n], amount)
+        let body = |[row]: [usize; 1], watch: &mut Watch<'_>| {
+            curve::curve(&points.rows[row * n..(row + 1) * n], amount, watch)
         };
-        Ok(grid.try_map(py, body)?.into())
+        Ok(grid.try_map_watched(py, body)?.into())
     }
 }
 

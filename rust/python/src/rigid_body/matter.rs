@@ -189,7 +189,7 @@ impl PyRigidBody {
             let message = format!("origin: expected shape (3,), got {}", tuple(&origin.shape));
             return Err(PyValueError::new_err(message));
         }
-        if let Ok(array) = density.cast::<PyArrayDyn<f32>>()
+        if let Ok(array) = density.cast_exact::<PyArrayDyn<f32>>()
             && array.is_c_contiguous()
         {
             let array = array.readonly();

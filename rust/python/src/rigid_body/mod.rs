@@ -20,6 +20,8 @@ use polhode::RigidBody;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+pub(crate) use self::container::{picked_by, to_index};
+pub(crate) use self::simulate::read_times;
 use crate::arrays::read;
 use crate::stack::Stack;
 
@@ -85,15 +87,16 @@ impl From<Stack<RigidBody>> for PyRigidBody {
 
 /// The points that an argument `about` (or `point`) stands for.
 pub(crate) fn points(
+    py: Python<'_>,
     bodies: &Stack<RigidBody>,
     about: Option<&Bound<'_, PyAny>>,
     name: &str,
 ) -> PyResult<Stack<Vector3<f64>>> {
     let Some(about) = about else {
-        return Ok(bodies.map(RigidBody::center_of_mass));
+        return bodies.map(py, RigidBody::center_of_mass);
     };
     match about.extract::<String>() {
-        Ok(word) if word == "center_of_mass" => Ok(bodies.map(RigidBody::center_of_mass)),
+        Ok(word) if word == "center_of_mass" => bodies.map(py, RigidBody::center_of_mass),
         Ok(word) if word == "origin" => Ok(Stack::one(Vector3::zeros())),
         Ok(word) => Err(PyValueError::new_err(format!(
             "{name}: expected \"center_of_mass\", \"origin\" or a point of shape (..., 3), got \"{word}\""

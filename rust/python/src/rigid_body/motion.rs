@@ -56,10 +56,10 @@ impl PyRigidBody {
         velocity: Argument<'py>,
         about: Argument<'py>,
     ) -> Array<'py> {
-        let r = points(&self.bodies, Some(r), "r")?;
+        let r = points(py, &self.bodies, Some(r), "r")?;
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let velocity = read_or(&velocity, "velocity", Vector3::zeros())?;
-        let about = points(&self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.given(), "about")?;
         let shapes = [
             &self.bodies.shape[..],
             &r.shape,
@@ -120,11 +120,11 @@ impl PyRigidBody {
         about: Argument<'py>,
     ) -> Array<'py> {
         let zero = Vector3::zeros();
-        let r = points(&self.bodies, Some(r), "r")?;
+        let r = points(py, &self.bodies, Some(r), "r")?;
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let angular = read_or(&angular_acceleration, "angular_acceleration", zero)?;
         let linear = read_or(&acceleration, "acceleration", zero)?;
-        let about = points(&self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.given(), "about")?;
         let names = [
             "body",
             "r",
@@ -207,7 +207,7 @@ impl PyRigidBody {
         let gravity = read_or(&gravity, "gravity", zero)?;
         let force = read_or(&force, "force", zero)?;
         let about = match about.given() {
-            Some(about) => points(&self.bodies, Some(about), "about")?,
+            Some(about) => points(py, &self.bodies, Some(about), "about")?,
             None => Stack::one(zero),
         };
         let names = [
@@ -282,7 +282,7 @@ impl PyRigidBody {
         about: Argument<'py>,
     ) -> Array<'py> {
         let rate: Stack<f64> = read(rate, "rate")?;
-        let about = points(&self.bodies, about.given(), "about")?;
+        let about = points(py, &self.bodies, about.given(), "about")?;
         let shapes = [&self.bodies.shape[..], &rate.shape, &about.shape];
         let squares =
             Broadcast::of(["body", "rate", "about"], shapes)?.try_map(py, |[b, w, p]| {

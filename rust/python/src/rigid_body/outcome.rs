@@ -5,6 +5,7 @@ use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode};
 use polhode::motion::attitude::components;
 use polhode::motion::simulate::{Crossing, Effort, End, Run};
 use polhode::motion::state::Phase;
+use pyo3::exceptions::PyMemoryError;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -12,9 +13,11 @@ use pyo3::types::{PyDict, PyTuple};
 
 use super::PyRigidBody;
 use super::ensemble::{Ensemble, Results, Runs};
-use crate::arrays::{shaped, write, write_of};
+use crate::arrays::{Item, Numbers, write, write_of};
 use crate::errors::at_row;
+use crate::interrupt::Interrupt;
 use crate::loads::Cause;
+use crate::memory;
 use crate::stack::Stack;
 
 /// What a run gave besides the states: as arrays and tables for those who ask.
@@ -26,9 +29,22 @@ pub(crate) struct Outcome {
     efforts: Vec<Effort>,
     /// Each with its row.
     crossings: Vec<(usize, Crossing)>,
+    /// The states of a run that Ctrl-C ended: to put them into arrays takes too long for whoever pressed it.
+    samples: Vec<Option<Vec<Phase>>>,
 }
 
 impl Outcome {
+    /// An array of states that are not in arrays yet.
+    fn array<'py, T: Item>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&Phase) -> T,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let shape = [&self.shape[..], &[self.times.len()]].concat();
+        let rows = self.samples.iter().map(Option::as_deref);
+        array(py, &shape, rows, of)
+    }
+
     fn counts<'py>(&self, py: Python<'py>, of: fn(&Effort) -> u64) -> PyResult<Bound<'py, PyAny>> {
         let count = |effort| i64::try_from(of(effort)).unwrap_or(i64::MAX);
         let counts = self.efforts.iter().map(count).collect();
@@ -57,6 +73,26 @@ impl Outcome {
     #[getter]
     fn evaluations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.counts(py, |effort| effort.evaluations)
+    }
+
+    #[getter]
+    fn omega<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.array(py, |phase| phase.omega)
+    }
+
+    #[getter]
+    fn quaternion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.array(py, |phase| components(&phase.attitude))
+    }
+
+    #[getter]
+    fn position<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.array(py, |phase| phase.position)
+    }
+
+    #[getter]
+    fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.array(py, |phase| phase.velocity)
     }
 
     /// The events of all rows, one after the other.
@@ -94,6 +130,7 @@ impl Ensemble<'_> {
         body: &Bound<'py, PyRigidBody>,
         load: Option<&Bound<'py, PyAny>>,
         runs: Runs<E>,
+        interrupt: &Interrupt,
     ) -> Results<'py> {
         let failures = self.failures(py, &runs)?;
         let fields = PyDict::new(py);
@@ -102,42 +139,38 @@ impl Ensemble<'_> {
         fields.set_item(intern!(py, "failures"), &failures)?;
         fields.set_item(intern!(py, "load"), load)?;
         fields.set_item(intern!(py, "pivoted"), self.pivoted)?;
-        let unknown = vec![Phase::nan(); self.times.len()];
-        let count = runs.len() * self.times.len();
-        let (mut omega, mut quaternion) =
-            (Vec::with_capacity(3 * count), Vec::with_capacity(4 * count));
-        let (mut position, mut velocity) =
-            (Vec::with_capacity(3 * count), Vec::with_capacity(3 * count));
-        let mut efforts = Vec::with_capacity(runs.len());
-        let mut crossings = Vec::new();
-        for (row, run) in runs.into_iter().enumerate() {
-            for phase in run.as_ref().map_or(&unknown, |run| &run.samples) {
-                omega.extend_from_slice(phase.omega.as_slice());
-                quaternion.extend_from_slice(&components(&phase.attitude));
-                position.extend_from_slice(phase.position.as_slice());
-                velocity.extend_from_slice(phase.velocity.as_slice());
-            }
-            efforts.push(run.as_ref().map_or_else(Effort::default, |run| run.effort));
-            let found = run.into_iter().flat_map(|run| run.crossings);
-            crossings.extend(found.map(|crossing| (row, crossing)));
-        }
         let shape = [&self.grid.shape[..], &[self.times.len()]].concat();
-        let quaternion = shaped::<[f64; 4]>(py, quaternion, &shape)?;
-        let vectors = |numbers| shaped::<Vector3<f64>>(py, numbers, &shape);
-        fields.set_item(intern!(py, "omega"), vectors(omega)?)?;
-        fields.set_item(intern!(py, "quaternion"), quaternion)?;
-        fields.set_item(intern!(py, "position"), vectors(position)?)?;
-        fields.set_item(intern!(py, "velocity"), vectors(velocity)?)?;
+        if !interrupt.is_stopped()
+            && let Err(error) = put_states(py, &fields, &shape, &runs)
+        {
+            if error.is_instance_of::<PyMemoryError>(py) {
+                return Err(error);
+            }
+            interrupt.stop(error);
+        }
+        let keeps = interrupt.is_stopped();
+        let mut efforts = memory::vector("result", &self.grid.shape, 0)?;
+        let (mut crossings, mut samples) = (Vec::new(), Vec::new());
+        for (row, run) in runs.into_iter().enumerate() {
+            efforts.push(run.as_ref().map_or_else(Effort::default, |run| run.effort));
+            let (states, found) = run.map(|run| (run.samples, run.crossings)).unzip();
+            let found = found.into_iter().flatten();
+            crossings.extend(found.map(|crossing| (row, crossing)));
+            if keeps {
+                samples.push(states);
+            }
+        }
         let outcome = Outcome {
             times: self.times.to_vec(),
             shape: self.grid.shape.clone(),
             about: if self.pivoted {
                 Stack::one(Vector3::zeros())
             } else {
-                self.start.bodies.map(polhode::RigidBody::center_of_mass)
+                (self.start.bodies).map(py, polhode::RigidBody::center_of_mass)?
             },
             efforts,
             crossings,
+            samples,
         };
         fields.set_item(intern!(py, "_outcome"), Bound::new(py, outcome)?)?;
         let motion = of_run(py)?.call1((fields,))?;
@@ -197,6 +230,43 @@ impl Ensemble<'_> {
         )?;
         Ok(error)
     }
+}
+
+/// The states of all rows as the arrays of a trajectory.
+fn put_states<E>(
+    py: Python<'_>,
+    fields: &Bound<'_, PyDict>,
+    shape: &[usize],
+    runs: &Runs<E>,
+) -> PyResult<()> {
+    let rows = || (runs.iter()).map(|run| run.as_ref().map(|run| &run.samples[..]));
+    let omega = array(py, shape, rows(), |phase| phase.omega)?;
+    let quaternion = array(py, shape, rows(), |phase| components(&phase.attitude))?;
+    let position = array(py, shape, rows(), |phase| phase.position)?;
+    let velocity = array(py, shape, rows(), |phase| phase.velocity)?;
+    fields.set_item(intern!(py, "omega"), omega)?;
+    fields.set_item(intern!(py, "quaternion"), quaternion)?;
+    fields.set_item(intern!(py, "position"), position)?;
+    fields.set_item(intern!(py, "velocity"), velocity)
+}
+
+/// One item for each state of each row; not numbers for a row that was not begun.
+fn array<'a, 'py, T: Item>(
+    py: Python<'py>,
+    shape: &[usize],
+    rows: impl Iterator<Item = Option<&'a [Phase]>>,
+    of: impl Fn(&Phase) -> T,
+) -> PyResult<Bound<'py, PyAny>> {
+    let times = shape.last().copied().unwrap_or(0);
+    let unknown = Phase::nan();
+    let mut numbers = Numbers::of::<T>(py, "result", shape)?;
+    for row in rows {
+        match row {
+            Some(states) => numbers.put(states, |phase, out| of(phase).write(out))?,
+            None => numbers.put(0..times, |_, out| of(&unknown).write(out))?,
+        }
+    }
+    Ok(numbers.finish::<T>(shape)?.into_any())
 }
 
 /// `polhode.trajectory.Trajectory._of_run`.

@@ -9,10 +9,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyNotImplemented;
 
 use super::{PyRigidBody, points};
-use crate::arrays::{Argument, read, read_or, write, write_numbers, write_of};
+use crate::arrays::{
+    Argument, read, read_or, write, write_any_of, write_numbers, write_numbers_of, write_of,
+};
 use crate::attitudes::read_rotation;
+use crate::interrupt::Beat;
 use crate::principal::{to_python, to_python_of};
-use crate::stack::{Broadcast, Stack};
+use crate::stack::{BLOCK, Broadcast, Stack};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
@@ -21,7 +24,7 @@ impl PyRigidBody {
     /// Mass: a float, or an array of the stack's shape.
     #[getter]
     fn mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        write_numbers(py, &self.bodies.map(RigidBody::mass))
+        write_numbers_of(py, &self.bodies, RigidBody::mass)
     }
 
     /// Centre of mass C from the origin of the body frame, shape (..., 3).
@@ -81,7 +84,7 @@ impl PyRigidBody {
     ///        [-3.,  8., -3.],
     ///        [-3., -3.,  8.]])
     fn inertia_about<'py>(&self, py: Python<'py>, point: &Bound<'py, PyAny>) -> Array<'py> {
-        let points = points(&self.bodies, Some(point), "point")?;
+        let points = points(py, &self.bodies, Some(point), "point")?;
         let grid = self.with("point", &points)?;
         write(
             py,
@@ -114,7 +117,7 @@ impl PyRigidBody {
         axis: &Bound<'py, PyAny>,
         point: Argument<'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = points(&self.bodies, point.given(), "point")?;
+        let points = points(py, &self.bodies, point.given(), "point")?;
         let axes: Stack<Vector3<f64>> = read(axis, "axis")?;
         let shapes = [&self.bodies.shape[..], &axes.shape, &points.shape];
         let grid = Broadcast::of(["body", "axis", "point"], shapes)?;
@@ -146,7 +149,7 @@ impl PyRigidBody {
         py: Python<'py>,
         point: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let points = points(&self.bodies, Some(point), "point")?;
+        let points = points(py, &self.bodies, Some(point), "point")?;
         let grid = self.with("point", &points)?;
         to_python(
             py,
@@ -261,15 +264,13 @@ impl PyRigidBody {
         atol: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let grid = self.with("other", &other.bodies)?;
-        let close: Vec<bool> = grid
-            .rows()
-            .map(|[a, b]| self.bodies[a].is_close(&other.bodies[b], rtol, atol))
-            .collect();
-        if grid.shape.is_empty() {
+        let close = grid.try_map(py, |[a, b]| {
+            Ok(self.bodies[a].is_close(&other.bodies[b], rtol, atol))
+        })?;
+        if close.is_one() {
             return Ok(close[0].into_pyobject(py)?.to_owned().into_any());
         }
-        let flat = numpy::PyArray1::from_vec(py, close);
-        flat.call_method1("reshape", (grid.shape,))
+        write_any_of(py, &close, |close| *close)
     }
 
     /// A body is no array: NumPy leaves ``array == body`` and ``array + body`` to the body.
@@ -301,7 +302,8 @@ impl PyRigidBody {
         other: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         if other.extract::<i64>().is_ok_and(|zero| zero == 0) {
-            return Ok(self.clone().into_pyobject(py)?.into_any());
+            let same: Self = self.bodies.map(py, |body| *body)?.into();
+            return Ok(same.into_pyobject(py)?.into_any());
         }
         Ok(PyNotImplemented::get(py).to_owned().into_any())
     }
@@ -315,7 +317,13 @@ impl PyRigidBody {
         let Ok(other) = other.cast::<Self>() else {
             return Ok(PyNotImplemented::get(py).to_owned().into_any());
         };
-        let equal = self.bodies == other.get().bodies;
+        let (own, other) = (&self.bodies, &other.get().bodies);
+        let mut equal = own.shape == other.shape;
+        let mut beat = Beat::new(py);
+        for (own, other) in own.rows.chunks(BLOCK).zip(other.rows.chunks(BLOCK)) {
+            beat.mark()?;
+            equal = equal && own == other;
+        }
         match op {
             CompareOp::Eq => Ok(equal.into_pyobject(py)?.to_owned().into_any()),
             CompareOp::Ne => Ok((!equal).into_pyobject(py)?.to_owned().into_any()),
@@ -328,13 +336,8 @@ impl PyRigidBody {
 
 impl PyRigidBody {
     /// The bodies lined up with one other argument.
-    fn with<T>(&self, name: &str, other: &Stack<T>) -> PyResult<Broadcast<2>> {
+    fn with<'a, T>(&self, name: &'a str, other: &Stack<T>) -> PyResult<Broadcast<'a, 2>> {
         Broadcast::of(["body", name], [&self.bodies.shape, &other.shape])
-    }
-
-    /// One body's numbers for each row.
-    pub(super) fn numbers(&self) -> Stack<[f64; 33]> {
-        self.bodies.map(RigidBody::to_array)
     }
 
     /// Bodies from their numbers.

@@ -10,6 +10,7 @@ use super::PyRigidBody;
 use super::ensemble::{Ensemble, Start, footing};
 use crate::arrays::read;
 use crate::attitudes::read_attitude_exactly;
+use crate::depth::Deeper;
 use crate::errors::to_py;
 use crate::events::Functions;
 use crate::hints;
@@ -125,6 +126,7 @@ impl PyRigidBody {
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
+        let _deeper = Deeper::run("simulate")?;
         let pivoted = is_pivot(about)?;
         if pivoted && velocity.is_some() {
             return Err(PyValueError::new_err(
@@ -158,16 +160,14 @@ impl PyRigidBody {
             attitude: read_attitude_exactly(attitude, "attitude")?,
             position: at_start(position, "position")?,
             velocity: at_start(velocity, "velocity")?,
-            terms: acts.terms()?,
+            terms: acts.terms(py)?,
         };
         let events = Functions::read(events)?;
         let of_first = start.terms.rows.first().map_or(&[][..], Vec::as_slice);
+        let interrupt = Interrupt::new(progress);
         let are_tops = || {
-            start
-                .bodies
-                .rows
-                .iter()
-                .all(|body| closed_top(body).is_ok())
+            (start.bodies.rows.iter())
+                .all(|body| interrupt.poll(None).is_continue() && closed_top(body).is_ok())
         };
         let method = parse_method(method)?
             .serving(
@@ -193,7 +193,6 @@ impl PyRigidBody {
             raises,
         };
         ensemble.check(py)?;
-        let interrupt = Interrupt::new(progress);
         let (trajectory, has_failures) = ensemble.run(py, slf, load, &interrupt)?;
         let failure = raises && has_failures;
         if let Err(stop) = interrupt.finish(py, !failure) {
@@ -253,7 +252,7 @@ fn at_start(vector: Given<'_, '_>, name: &str) -> PyResult<Stack<Vector3<f64>>> 
     )
 }
 
-fn read_times(py: Python<'_>, t: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+pub(crate) fn read_times(py: Python<'_>, t: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let times: Stack<f64> = read(t, "t")?;
     if times.shape.len() != 1 {
         return Err(PyValueError::new_err(format!(

@@ -6,8 +6,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use super::PyRigidBody;
-use crate::arrays::{numpy, write_numbers};
-use crate::stack::Stack;
+use crate::arrays::{write_any_of, write_numbers_of, write_words_of};
 
 #[pymethods]
 impl PyRigidBody {
@@ -22,17 +21,24 @@ impl PyRigidBody {
     /// mesh of 4 elements; checked: indices, finite, closed, winding, orientation, volume, duplicates, cavities; moments from the second moment
     #[getter]
     fn provenance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let provenance = self.bodies.map(RigidBody::provenance);
-        let words = |of: fn(&Provenance) -> String| write_any(py, provenance.map(of));
-        let counts = |of: fn(&Provenance) -> usize| write_any(py, provenance.map(of));
+        let provenance = self.bodies.map(py, RigidBody::provenance)?;
+        let words = |of: fn(&Provenance) -> String| write_words_of(py, &provenance, of, "str");
+        let counts = |of: fn(&Provenance) -> usize| -> PyResult<Bound<'py, PyAny>> {
+            if provenance.is_one() {
+                return of(&provenance[0]).into_bound_py_any(py);
+            }
+            write_any_of(py, &provenance, |p| {
+                i64::try_from(of(p)).unwrap_or(i64::MAX)
+            })
+        };
         let closure = |p: &Provenance| p.closure.map(|closure| closure.to_string());
         let fields = (
             words(|p| p.source.to_string())?,
             counts(|p| p.elements)?,
             words(|p| p.checks.to_string())?,
             counts(|p| p.welded)?,
-            write_any(py, provenance.map(|p| closure(p).unwrap_or_default()))?,
-            write_numbers(py, &provenance.map(|p| p.volume_change))?,
+            write_words_of(py, &provenance, |p| closure(p).unwrap_or_default(), "str")?,
+            write_numbers_of(py, &provenance, |p| p.volume_change)?,
             words(|p| p.moments.to_string())?,
             counts(|p| p.rounded_to_zero)?,
         );
@@ -58,7 +64,7 @@ impl PyRigidBody {
     #[getter]
     fn error_bound<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let of = |f: fn(&ErrorBound) -> f64| {
-            write_numbers(py, &self.bodies.map(|body| f(&body.error_bound())))
+            write_numbers_of(py, &self.bodies, |body| f(&body.error_bound()))
         };
         let fields = (
             of(|bound| bound.mass)?,
@@ -71,7 +77,7 @@ impl PyRigidBody {
     }
 
     /// The same bodies, of meshes of which so many corners were joined to others on request.
-    fn _welded(&self, corners: usize) -> Self {
+    fn _welded(&self, py: Python<'_>, corners: usize) -> PyResult<Self> {
         let welded = |body: &RigidBody| {
             let provenance = Provenance {
                 welded: corners,
@@ -79,19 +85,6 @@ impl PyRigidBody {
             };
             body.with_provenance(provenance)
         };
-        self.bodies.map(welded).into()
+        Ok(self.bodies.map(py, welded)?.into())
     }
-}
-
-/// One object for one value, an array of them for a stack.
-fn write_any<'py, T>(py: Python<'py>, stack: Stack<T>) -> PyResult<Bound<'py, PyAny>>
-where
-    T: IntoPyObject<'py> + Clone,
-{
-    if stack.is_one() {
-        return stack.rows[0].clone().into_bound_py_any(py);
-    }
-    numpy(py)?
-        .call_method1("array", (stack.rows,))?
-        .call_method1("reshape", (stack.shape,))
 }

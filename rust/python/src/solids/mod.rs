@@ -34,9 +34,9 @@ pub(crate) fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount
 /// Exactly one of masses and densities.
 pub(crate) fn amounts(mass: Given<'_, '_>, density: Given<'_, '_>) -> PyResult<Stack<Amount>> {
     match (mass, density) {
-        (Some(mass), None) => Ok(read::<f64>(mass, "mass")?.map(|&mass| Amount::Mass(mass))),
+        (Some(mass), None) => read::<f64>(mass, "mass")?.map(mass.py(), |&mass| Amount::Mass(mass)),
         (None, Some(density)) => {
-            Ok(read::<f64>(density, "density")?.map(|&density| Amount::Density(density)))
+            read::<f64>(density, "density")?.map(density.py(), |&density| Amount::Density(density))
         }
         _ => Err(PyTypeError::new_err(
             "give exactly one of mass= and density=",

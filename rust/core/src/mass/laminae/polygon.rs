@@ -15,6 +15,7 @@ use super::super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
 use crate::numerics::reduce::{depth, sum_terms};
 use crate::numerics::split_vector::{SplitVector, cross2};
+use crate::numerics::threads::Watch;
 
 /// Why corners do not bound a polygon.
 #[derive(Clone, Debug, PartialEq, ThisError)]
@@ -87,15 +88,22 @@ pub fn triangle(vertices: &[[f64; 2]; 3], amount: Amount) -> Result<RigidBody, E
 /// Triangles (C, a, b) from a reference to each edge, signed: `A = Σ D/2`, `∫ d dA = Σ D (a + b)/6`,
 /// `∫ d dᵀ dA = Σ D (a aᵀ + b bᵀ + s sᵀ)/24` with `D = a × b` and `s = a + b`.
 ///
+/// `watch` is asked now and then whether to go on: edges that lie above each other are compared pair by pair.
+///
 /// # Errors
-/// [`PolygonFault`] when edges cross or enclose nothing; when a coordinate is not finite, or the amount is not positive.
-pub fn polygon(vertices: &[[f64; 2]], amount: Amount) -> Result<RigidBody, Error> {
+/// [`PolygonFault`] when edges cross or enclose nothing; when a coordinate is not finite, or the amount is not positive;
+/// [`Error::Stopped`] where `watch` said so.
+pub fn polygon(
+    vertices: &[[f64; 2]],
+    amount: Amount,
+    watch: &mut Watch<'_>,
+) -> Result<RigidBody, Error> {
     let count = vertices.len();
     if count < 3 {
         return Err(PolygonFault::TooFew { count }.into());
     }
     check_finite(vertices)?;
-    check_simple(vertices)?;
+    check_simple(vertices, watch)?;
     let (low, high) = vertices.iter().fold(
         (
             Vector2::repeat(f64::INFINITY),
@@ -213,7 +221,7 @@ fn check_finite(vertices: &[[f64; 2]]) -> Result<(), Error> {
 }
 
 /// No two edges cross; edges that touch within rounding pass, since they bound the same area either way.
-fn check_simple(vertices: &[[f64; 2]]) -> Result<(), PolygonFault> {
+fn check_simple(vertices: &[[f64; 2]], watch: &mut Watch<'_>) -> Result<(), Error> {
     let count = vertices.len();
     let ends = |k: usize| (vertices[k], vertices[(k + 1) % count]);
     let range = |k: usize, axis: usize| {
@@ -223,21 +231,33 @@ fn check_simple(vertices: &[[f64; 2]]) -> Result<(), PolygonFault> {
     // Along x, each edge against those that start before it ends.
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&i, &j| range(i, 0).0.total_cmp(&range(j, 0).0));
+    let mut compared = 0;
     for (place, &i) in order.iter().enumerate() {
         let ((_, end), (low, high)) = (range(i, 0), range(i, 1));
         let overlapping = order[place + 1..]
             .iter()
             .take_while(|&&j| range(j, 0).0 <= end)
+            .inspect(|_| compared += 1)
             .filter(|&&j| range(j, 1).0 <= high && range(j, 1).1 >= low);
         for &j in overlapping {
             if cross(ends(i), ends(j)) {
                 let (first, second) = (i.min(j), i.max(j));
-                return Err(PolygonFault::Crossing { first, second });
+                return Err(PolygonFault::Crossing { first, second }.into());
+            }
+        }
+        compared += 1;
+        if compared > MANY {
+            compared = 0;
+            if watch(place as f64 / count as f64).is_break() {
+                return Err(Error::Stopped);
             }
         }
     }
     Ok(())
 }
+
+/// Edges that are compared between two questions whether to go on.
+const MANY: usize = 100_000;
 
 /// Whether the ends of each edge lie on different sides of the other.
 fn cross((a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])) -> bool {
@@ -260,7 +280,13 @@ fn cross((a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
+
+    fn polygon(vertices: &[[f64; 2]], amount: Amount) -> Result<RigidBody, Error> {
+        super::polygon(vertices, amount, &mut |_| ControlFlow::Continue(()))
+    }
 
     #[test]
     fn polygon_is_its_triangle_and_its_rectangle() {

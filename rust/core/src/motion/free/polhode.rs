@@ -9,16 +9,20 @@ impl FreeMotion {
     /// `count` points of the polhode, components in B: see [`Invariants::polhode`].
     #[must_use]
     pub fn polhode(&self, count: usize) -> Vec<Vector3<f64>> {
-        let mut points: Vec<_> = (Invariants::of_motion(self).polhode(count).iter())
-            .map(|omega| self.axes * omega)
-            .collect();
-        // Exactly where the motion starts and the curve closes.
-        for end in [0, count.saturating_sub(1)] {
-            if let Some(point) = points.get_mut(end) {
-                *point = self.initial.omega;
+        self.polhode_points(count).collect()
+    }
+
+    /// The points of [`polhode`](Self::polhode), one by one.
+    pub fn polhode_points(&self, count: usize) -> impl Iterator<Item = Vector3<f64>> {
+        let points = Invariants::of_motion(self).polhode_points(count);
+        points.enumerate().map(move |(j, omega)| {
+            // Exactly where the motion starts and the curve closes.
+            if j == 0 || j + 1 == count {
+                self.initial.omega
+            } else {
+                self.axes * omega
             }
-        }
-        points
+        })
     }
 }
 
@@ -31,23 +35,28 @@ impl Invariants {
     /// the curves beside it, which goes from one intermediate pole to the other and back. A constant ω is repeated.
     #[must_use]
     pub fn polhode(&self, count: usize) -> Vec<Vector3<f64>> {
+        self.polhode_points(count).collect()
+    }
+
+    /// The points of [`polhode`](Self::polhode), one by one.
+    pub fn polhode_points(&self, count: usize) -> impl Iterator<Item = Vector3<f64>> + use<> {
+        let motion = *self;
         let start = self.omega * self.rate_unit;
-        if self.is_steady() {
-            return vec![start; count];
-        }
+        let is_steady = self.is_steady();
         let a = self.amplitudes();
         let [x, z] = self.planar_axes();
         // ω̇₂ = α₂ω₃ω₁: φ runs forward where the circled component is positive.
         let sense = 1.0_f64.copysign(self.omega[z]);
         let first = (self.omega.y / a.y).atan2(self.omega[x] / a[x]);
         let steps = count.saturating_sub(1).max(1);
-        let fraction = |j: usize| j as f64 / steps as f64;
-        (0..count)
-            .map(|j| {
-                let phi = first + sense * std::f64::consts::TAU * fraction(j);
-                self.on_polhode(phi.sin_cos(), sense) * self.rate_unit
-            })
-            .collect()
+        let fraction = move |j: usize| j as f64 / steps as f64;
+        (0..count).map(move |j| {
+            if is_steady {
+                return start;
+            }
+            let phi = first + sense * std::f64::consts::TAU * fraction(j);
+            motion.on_polhode(phi.sin_cos(), sense) * motion.rate_unit
+        })
     }
 
     /// The axis in whose plane with axis 2 ω circles, and the circled one.

@@ -54,13 +54,21 @@ impl Windows {
     /// Where both it and `other` are on.
     #[must_use]
     pub fn within(&self, other: &Self) -> Self {
-        let common = self.0.iter().flat_map(|&(on, off)| {
-            other.0.iter().filter_map(move |&(from, to)| {
-                let (start, end) = (on.max(from), off.min(to));
-                (start < end).then_some((start, end))
-            })
-        });
-        Self(common.collect())
+        let (mut own, mut others) = (self.0.iter().peekable(), other.0.iter().peekable());
+        let mut common = Vec::new();
+        while let (Some(&&(on, off)), Some(&&(from, to))) = (own.peek(), others.peek()) {
+            let (start, end) = (on.max(from), off.min(to));
+            if start < end {
+                common.push((start, end));
+            }
+            // Nothing later meets the one that ends first.
+            if off <= to {
+                own.next();
+            } else {
+                others.next();
+            }
+        }
+        Self(common)
     }
 }
 
