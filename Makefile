@@ -6,7 +6,7 @@ export CARGO_TERM_COLOR ?= auto
 
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
 
-.PHONY: help setup build demo test test-rust test-python test-long lint format docs figures package bench clean
+.PHONY: help setup build demo test test-rust test-python test-long fuzz coverage lint format docs figures package bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -29,6 +29,14 @@ test-python: build ## the tests of the package
 
 test-long: build ## the tests that take minutes: more random cases than `make test` draws
 	$(BIN)/python -m pytest -m long
+
+TIME ?= 1800
+fuzz: build ## hostile input, TIME= seconds a harness, going on where the last run ended; then long tests of hostile calls
+	TIME=$(TIME) rust/fuzz/run
+	$(BIN)/python -m pytest -m long -k "hostile or damage"
+
+coverage: build ## lines of the core that tests execute; needs llvm-tools of rustup or LLVM as new as rustc's
+	$(BIN)/python rust/coverage.py --least 95
 
 lint: build ## formatting, lints, types, stubs
 	cargo fmt --all --check

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _core
+from polhode._lengths import lengths
 from polhode.events import Events
 from polhode.results import AngularMomentum, Invariants, KineticEnergy, MotionSensitivity, State
 
@@ -298,7 +299,7 @@ class Trajectory:
         energy = None if potential is None else kinetic + potential
         kept = self._kept_directions()
         along = None if kept is None else spin if kept is True else np.einsum("...ti,...i->...t", spin, kept)
-        size = np.linalg.norm(spin, axis=-1)
+        size = lengths(spin)
         return Invariants(
             energy,
             along,
@@ -611,7 +612,7 @@ class Trajectory:
 def _drift(values: Floats, size: Floats) -> Any:
     """Give the largest change of numbers or vectors since the start, relative to the largest size."""
     change = values - values[..., :1, :] if values.ndim > size.ndim else values - values[..., :1]
-    change = np.linalg.norm(change, axis=-1) if values.ndim > size.ndim else np.abs(change)
+    change = lengths(change) if values.ndim > size.ndim else np.abs(change)
     largest = np.nanmax(size, axis=-1)
     drift = np.divide(
         np.nanmax(change, axis=-1), largest, out=np.zeros_like(largest), where=np.asarray(largest > 0)

@@ -20,8 +20,9 @@ DIGITS = 50
 class Thin:
     """Points with weights that stand for a distribution of matter up to second moments."""
 
-    def __init__(self, weighted: list[tuple[Any, list[Any]]]) -> None:
-        with mpmath.workdps(DIGITS):
+    def __init__(self, weighted: list[tuple[Any, list[Any]]], digits: int = DIGITS) -> None:
+        self.digits = digits
+        with mpmath.workdps(digits):
             self.content = mpmath.fsum(w for w, _ in weighted)
             self.center = [mpmath.fsum(w * r[k] for w, r in weighted) / self.content for k in range(3)]
             arms = [(w, [x - c for x, c in zip(r, self.center, strict=True)]) for w, r in weighted]
@@ -32,7 +33,7 @@ class Thin:
     @property
     def moments(self) -> list[Any]:
         """Principal moments, ascending."""
-        with mpmath.workdps(DIGITS):
+        with mpmath.workdps(self.digits):
             return sorted(mpmath.eigsy(mpmath.matrix(self.inertia), eigvals_only=True))
 
 
@@ -48,9 +49,9 @@ def _middle(a: list[Any], b: list[Any]) -> list[Any]:
     return [(x + y) / 2 for x, y in zip(a, b, strict=True)]
 
 
-def shell(vertices: Any, faces: Any) -> Thin:
+def shell(vertices: Any, faces: Any, digits: int = DIGITS) -> Thin:
     """Triangles of mass one per area."""
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(digits):
         points = _points(vertices)
         weighted = []
         for i, j, k in np.asarray(faces).tolist():
@@ -59,15 +60,15 @@ def shell(vertices: Any, faces: Any) -> Thin:
             normal = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]]
             weight = _norm(normal) / 6
             weighted += [(weight, _middle(a, b)), (weight, _middle(b, c)), (weight, _middle(c, a))]
-        return Thin(weighted)
+        return Thin(weighted, digits)
 
 
-def wire(points: Any) -> Thin:
+def wire(points: Any, digits: int = DIGITS) -> Thin:
     """Segments of mass one per length."""
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(digits):
         rows = _points(points)
         weighted = []
         for a, b in pairwise(rows):
             sixth = _norm([y - x for x, y in zip(a, b, strict=True)]) / 6
             weighted += [(sixth, a), (4 * sixth, _middle(a, b)), (sixth, b)]
-        return Thin(weighted)
+        return Thin(weighted, digits)

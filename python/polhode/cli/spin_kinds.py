@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._lengths import lengths
 from polhode.cli.layout import Field
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class FreeKind:
         """Give what stays: the energy and the angular momentum."""
         motion, unit = self._motion, f"{moment_unit}/s"
         momentum = motion.angular_momentum
-        size = float(np.linalg.norm(momentum))
+        size = float(lengths(momentum))
         return [
             Field("kinetic_energy", "kinetic energy", motion.kinetic_energy, f"{moment_unit}/s^2"),
             Field("angular_momentum", "|L|", size, unit),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
+from polhode._lengths import lengths
 from polhode._sampling import drawn_times
 from polhode.plot._ellipsoid import _beside, _one, _upright
 from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_3d
@@ -41,7 +42,7 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     """
     _one(motion.shape, "motion")
     momentum = motion.angular_momentum
-    size = float(np.linalg.norm(momentum))
+    size = float(lengths(momentum))
     if not size > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = axes_3d(ax)

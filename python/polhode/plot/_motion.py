@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from polhode._lengths import lengths
 from polhode.plot._style import AXIS_COLORS, AXIS_DASHES, axes_2d, tidy
 
 if TYPE_CHECKING:
@@ -158,7 +159,7 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
             "trajectory: its load keeps neither the energy nor a component of the angular momentum"
         )
     ax = axes_2d(ax)
-    size = np.linalg.norm(trajectory.angular_momentum().spin, axis=-1)
+    size = lengths(trajectory.angular_momentum().spin)
     shown = [
         (kept.energy, None if kept.energy is None else np.abs(kept.energy), "energy", 0),
         (kept.angular_momentum, size, "angular momentum", 1),
@@ -168,7 +169,7 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
             continue
         vectors = values.ndim > scale.ndim
         start = values[..., :1, :] if vectors else values[..., :1]
-        change = np.linalg.norm(values - start, axis=-1) if vectors else np.abs(values - start)
+        change = lengths(values - start) if vectors else np.abs(values - start)
         largest = np.nanmax(scale, axis=-1, keepdims=True)
         change = change / np.where(largest > 0.0, largest, 1.0)
         curves = np.maximum(change, 0.5 * np.finfo(float).eps).reshape(-1, len(trajectory))

@@ -24,6 +24,8 @@ pub enum Kind {
     Quadrature,
     /// An integration that could not go on.
     Integration,
+    /// More than there is memory for.
+    Memory,
 }
 
 /// An input that breaks a law of mechanics, of geometry or of the numbers themselves.
@@ -116,6 +118,19 @@ pub enum Error {
         evaluations: usize,
         /// The body as far as it is known.
         estimate: Box<crate::RigidBody>,
+    },
+    /// A number of the body that float64 does not hold with all its digits.
+    #[error(
+        "the {what} would be {}, and float64 holds 2.2e-308 to 1.8e+308 with all digits: choose other units of length or mass",
+        decimal(*mantissa, *exponent)
+    )]
+    OutOfRange {
+        /// Which number.
+        what: &'static str,
+        /// The number is this times `2^exponent`.
+        mantissa: f64,
+        /// The power of two.
+        exponent: i32,
     },
     /// The total mass is not positive.
     #[error("mass must be positive, got {mass:?}")]
@@ -559,9 +574,29 @@ pub enum Error {
         /// Where.
         time: f64,
     },
+    /// More results than there is memory for; nothing has been computed.
+    #[error(
+        "{count} {what} would take {bytes:.3e} bytes, for which there is no memory: ask for fewer at a time"
+    )]
+    NoMemory {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        count: usize,
+        /// All together.
+        bytes: f64,
+    },
     /// Whoever watched the work asked it to stop.
     #[error("the computation was stopped before it was finished")]
     Stopped,
+}
+
+/// Three digits of `mantissa·2^exponent`, which may lie beyond all doubles.
+fn decimal(mantissa: f64, exponent: i32) -> String {
+    let logarithm = mantissa.abs().log10() + f64::from(exponent) * std::f64::consts::LOG10_2;
+    let digits = 10.0_f64.powf(logarithm - logarithm.floor());
+    let sign = if mantissa < 0.0 { "-" } else { "" };
+    format!("{sign}{digits:.2}e{}", logarithm.floor())
 }
 
 impl From<Halt<Infallible>> for Error {
@@ -593,6 +628,7 @@ impl Error {
                 ..
             }
             | Self::NonPositiveMass { .. }
+            | Self::OutOfRange { .. }
             | Self::NegativeMass { .. }
             | Self::NegativeDensity { .. }
             | Self::NoMass { .. }
@@ -610,6 +646,7 @@ impl Error {
             Self::StepTooSmall { .. }
             | Self::TooManySteps { .. }
             | Self::NotFiniteMotion { .. } => Kind::Integration,
+            Self::NoMemory { .. } => Kind::Memory,
             _ => Kind::Argument,
         }
     }

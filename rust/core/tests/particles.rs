@@ -141,6 +141,31 @@ fn whoever_watches_may_stop_the_work() {
     set_thread_limit(None);
 }
 
+#[test]
+fn numbers_of_particles_end_below_two_to_the_64() {
+    let (masses, positions) = cloud(5, 0.5, 1);
+    let at = |start: u64| {
+        let mut sums = MassAccumulator::new();
+        let added = sums.add(&masses, &positions, Some(start), &mut go_on);
+        added.map(|()| sums)
+    };
+    let last = u64::MAX - 5;
+    let mut sums = at(last).expect("just in reach");
+    assert!(matches!(
+        at(last + 1),
+        Err(Error::OutOfDomain { what: "start", .. })
+    ));
+    // What has no places comes after the last, where there is no room.
+    let mut other = MassAccumulator::new();
+    (other.add(&masses, &positions, None, &mut go_on)).expect("particles");
+    let before = sums.clone();
+    assert!(matches!(
+        sums.merge(&other),
+        Err(Error::OutOfDomain { what: "start", .. })
+    ));
+    assert_eq!(sums, before);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyList, PyString, PyTuple};
 
 use crate::errors::{at_row, to_py, wrong_shape};
+use crate::foreign::AXES;
 pub(crate) use crate::foreign::{as_array, contiguous, numpy};
 use crate::hints;
 use crate::interrupt::Beat;
@@ -262,6 +263,8 @@ pub(crate) fn floats<'py>(
 ) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     if let Ok(array) = object.cast_exact::<PyArrayDyn<f64>>()
         && array.is_c_contiguous()
+        && array.is_aligned()
+        && array.ndim() <= AXES
     {
         return Ok(array.readonly());
     }

@@ -2,7 +2,7 @@
 
 use polhode::Error;
 use polhode::error::Kind;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
@@ -19,6 +19,7 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
         Kind::SingularAttitude => "SingularAttitudeError",
         Kind::Quadrature => "QuadratureError",
         Kind::Integration => "IntegrationError",
+        Kind::Memory => return PyMemoryError::new_err(error.to_string()),
         _ => "PolhodeError",
     };
     new(py, name, error.to_string())

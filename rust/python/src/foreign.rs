@@ -19,6 +19,9 @@ const PIECE: usize = 1 << 18;
 /// How deep lists may lie in lists: as many axes as an array of NumPy may have.
 const DEPTH: usize = 64;
 
+/// The most axes that an argument may have: the views that the core is handed have no more.
+pub(crate) const AXES: usize = 32;
+
 /// The module numpy.
 pub(crate) fn numpy(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
     static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
@@ -39,7 +42,7 @@ pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<
         }
     }
     let _deeper = Deeper::argument(name)?;
-    numpy(py)?
+    let array = numpy(py)?
         .call_method1(intern!(py, "asarray"), (object,))
         .map_err(|error| {
             // What else the object raised comes back as it was.
@@ -49,7 +52,14 @@ pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<
             } else {
                 error
             }
-        })
+        })?;
+    let axes = array.cast::<PyUntypedArray>()?.ndim();
+    if axes > AXES {
+        return Err(PyValueError::new_err(format!(
+            "{name}: an array of {axes} axes, where {AXES} are the most; reshape it"
+        )));
+    }
+    Ok(array)
 }
 
 /// Refuses what has masked elements or units, in lists too.
@@ -226,7 +236,7 @@ pub(crate) fn contiguous<'py>(
     let known = array.cast::<PyUntypedArray>()?;
     let wanted = np.call_method1("dtype", (dtype,))?;
     let shape = known.shape().to_vec();
-    if known.is_c_contiguous() && known.dtype().eq(&wanted)? {
+    if known.is_c_contiguous() && known.is_aligned() && known.dtype().eq(&wanted)? {
         return Ok(array.clone());
     }
     memory::room(name, &shape, size_of::<f64>())?;

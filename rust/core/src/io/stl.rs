@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
 
 use super::{BLOCK, FileFault, StreamError, Triangle, TriangleMesh, TriangleStream};
@@ -22,7 +22,9 @@ const CHUNK: usize = 1024;
 pub fn read(mut source: impl Read, held: u64) -> Result<TriangleMesh, StreamError> {
     let count = triangles(&mut source, held)?;
     let mut welder = Welder::default();
-    let mut faces = Vec::with_capacity(count);
+    let mut faces = Vec::new();
+    // A sparse file can be longer than memory.
+    (faces.try_reserve_exact(count)).map_err(|_| io::Error::from(ErrorKind::OutOfMemory))?;
     let mut buffer = vec![0; RECORD * CHUNK.min(count)];
     while faces.len() < count {
         let records = &mut buffer[..RECORD * CHUNK.min(count - faces.len())];

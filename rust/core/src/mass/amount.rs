@@ -7,6 +7,7 @@ use super::error_bound::ErrorBound;
 use super::provenance::{Checks, Provenance, Source};
 use super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// How much matter: exactly one of the two.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +24,27 @@ impl Amount {
     /// # Errors
     /// When mass or density is not positive and finite.
     pub fn mass(self, measure: f64) -> Result<f64, Error> {
+        let value = self.checked()?;
+        Ok(match self {
+            Self::Mass(_) => value,
+            Self::Density(_) => value * measure,
+        })
+    }
+
+    /// The same as `mantissa·2^power` of a measure in some unit, so that neither a small volume times a large density nor the reverse leaves the range
+    /// of float64.
+    pub(super) fn mass_in_units(self, measure: f64) -> Result<(f64, i32), Error> {
+        let value = self.checked()?;
+        let power = exponent(value);
+        let own = times_power_of_two(value, -power);
+        Ok(match self {
+            Self::Mass(_) => (own, power),
+            Self::Density(_) => (own * measure, power),
+        })
+    }
+
+    /// Mass or density, positive and finite.
+    fn checked(self) -> Result<f64, Error> {
         let (what, value) = match self {
             Self::Mass(mass) => ("mass", mass),
             Self::Density(density) => ("density", density),
@@ -35,10 +57,7 @@ impl Amount {
                 value,
             });
         }
-        Ok(match self {
-            Self::Mass(mass) => mass,
-            Self::Density(density) => density * measure,
-        })
+        Ok(value)
     }
 }
 
@@ -112,13 +131,20 @@ pub(super) fn closed_form(amount: Amount, mass: f64, trace: f64) -> ErrorBound {
     }
 }
 
-/// A length is finite and not negative.
+/// A length is finite and not negative, and where it is not zero neither is its square.
 pub(super) fn length(what: &'static str, value: f64) -> Result<f64, Error> {
     finite(what, value)?;
     if value < 0.0 {
         return Err(Error::OutOfDomain {
             what,
             law: "zero or more",
+            value,
+        });
+    }
+    if value > 0.0 && value * value == 0.0 {
+        return Err(Error::OutOfDomain {
+            what,
+            law: "zero, or more than 1.6e-162 so that its square is a number (take a smaller unit of length)",
             value,
         });
     }

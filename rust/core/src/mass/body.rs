@@ -10,7 +10,7 @@ use super::validity::{
     ROUNDING, check_mass, check_moments, check_rotation, check_rtol, mean_of_halves, symmetrized,
     trace,
 };
-use crate::error::{Error, all_finite};
+use crate::error::{Error, all_finite, finite};
 use crate::numerics::eigen3::{Eigen3, eigen3};
 use crate::principal::{PrincipalAxes, TOP_RTOL, principal_axes, rounding_rtols, with_sign_rule};
 
@@ -150,6 +150,14 @@ impl RigidBody {
         all_finite("center_of_mass", &matter.center_of_mass)?;
         let inertia = matter.inertia();
         all_finite("inertia", &inertia)?;
+        let spread = matter.central.trace();
+        if spread > 0.0 && spread < f64::MIN_POSITIVE {
+            return Err(Error::OutOfRange {
+                what: "sum of the second moments",
+                mantissa: spread,
+                exponent: 0,
+            });
+        }
         Ok(Self {
             mass: matter.mass,
             center_of_mass: matter.center_of_mass,
@@ -170,6 +178,8 @@ impl RigidBody {
         hint: &'static str,
     ) -> Result<Self, Error> {
         all_finite("inertia", &inertia)?;
+        // All that is rounding is relative to it; a trace beyond all numbers would admit anything.
+        finite("the trace of inertia", scale)?;
         let principal = principal_axes(&inertia);
         check_moments(
             &principal.moments,
@@ -319,7 +329,7 @@ impl RigidBody {
     pub fn radii_of_gyration(&self) -> [f64; 3] {
         self.principal
             .moments
-            .map(|moment| (moment / self.mass).sqrt())
+            .map(|moment| root_of_ratio(moment, self.mass))
     }
 
     /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows, bounds,
@@ -362,13 +372,25 @@ impl RigidBody {
         check_rotation("axes", &axes)?;
         let principal = PrincipalAxes { moments, axes };
         let difference = (inertia - tensor(&principal)).abs().max();
-        if difference > 1e-12 * trace(&inertia) || !(0.0 <= i1 && i1 <= i2 && i2 <= i3) {
+        // The least numbers of float64 have few digits.
+        let rounding = 1e-12 * trace(&inertia) + f64::MIN_POSITIVE * 64.0 * f64::EPSILON;
+        if difference > rounding || !(0.0 <= i1 && i1 <= i2 && i2 <= i3) {
             let law = "that of the ascending principal moments and the axes stored beside it";
             return Err(Error::OutOfDomain {
                 what: "inertia",
                 law,
                 value: difference,
             });
+        }
+        for (what, value) in [
+            ("error_bound.mass", error_bound.mass),
+            ("error_bound.center_of_mass", error_bound.center_of_mass),
+            ("error_bound.inertia", error_bound.inertia),
+        ] {
+            if value.is_nan() || value < 0.0 {
+                let law = "zero or more";
+                return Err(Error::OutOfDomain { what, law, value });
+            }
         }
         Ok(Self {
             mass,
@@ -384,12 +406,31 @@ impl RigidBody {
     /// to `rtol` of its distance from the origin or of the radius of gyration, whichever is larger; each `+ atol`.
     #[must_use]
     pub fn is_close(&self, other: &Self, rtol: f64, atol: f64) -> bool {
-        let size = (trace(&other.inertia) / other.mass)
-            .sqrt()
-            .max(other.center_of_mass.norm());
+        let size =
+            root_of_ratio(trace(&other.inertia), other.mass).max(length(&other.center_of_mass));
         (self.mass - other.mass).abs() <= atol + rtol * other.mass
-            && (self.center_of_mass - other.center_of_mass).norm() <= atol + rtol * size
+            && length(&(self.center_of_mass - other.center_of_mass)) <= atol + rtol * size
             && (self.inertia - other.inertia).abs().max() <= atol + rtol * other.inertia.abs().max()
+    }
+}
+
+/// The length of a vector, which may be large beyond the root of the largest number.
+fn length(vector: &Vector3<f64>) -> f64 {
+    let largest = vector.amax();
+    if largest > 1e150 {
+        (vector / largest).norm() * largest
+    } else {
+        vector.norm()
+    }
+}
+
+/// `√(a/b)`, where a/b may be beyond all numbers too.
+fn root_of_ratio(a: f64, b: f64) -> f64 {
+    let ratio = a / b;
+    if ratio.is_normal() || a == 0.0 {
+        ratio.sqrt()
+    } else {
+        a.sqrt() / b.sqrt()
     }
 }
 
@@ -448,6 +489,52 @@ mod tests {
                 body(1.0, 1.0, -1.0),
                 Err(Error::NegativeMoment { .. })
             ));
+        }
+    }
+
+    #[test]
+    fn radii_of_what_is_very_heavy_and_light() {
+        for (mass, moment, radius) in [
+            (1e-200, 1e200, 1e200),
+            (1e200, 1e-200, 1e-200),
+            (2.0, 8.0, 2.0),
+        ] {
+            let body = RigidBody::new(
+                mass,
+                &diagonal(moment, moment, moment),
+                &Vector3::zeros(),
+                0.0,
+            );
+            let [found, ..] = body.expect("body").radii_of_gyration();
+            assert!((found / radius - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn numbers_at_the_ends_of_float64() {
+        let most = f64::MAX;
+        let wild = Matrix3::new(-4.0, most, most, most, -most, 4.0, most, 4.0, -most);
+        for tensor in [wild, diagonal(most, most, most)] {
+            let fault = RigidBody::new(1.0, &tensor, &Vector3::zeros(), 0.0).expect_err("no trace");
+            assert!(matches!(fault, Error::NonFinite { .. }), "{fault}");
+        }
+        let far = Vector3::new(1.0, -3e279, 4e279);
+        let body = RigidBody::new(1.0, &diagonal(1.0, 1.0, 1.0), &far, 0.0).expect("far away");
+        assert!(body.is_close(&body, 0.0, 0.0));
+        let least = Matrix3::new(5.0, 1.0, -1.0, 1.0, 5.0, -1.0, -1.0, -1.0, 6.0) * 5e-323;
+        let body = RigidBody::new(1.0, &least, &Vector3::zeros(), 0.0).expect("tiny");
+        assert_eq!(RigidBody::from_array(&body.to_array()).as_ref(), Ok(&body));
+    }
+
+    #[test]
+    fn negative_bounds_are_no_bounds() {
+        let body = RigidBody::new(1.0, &diagonal(1.0, 1.0, 1.0), &Vector3::zeros(), 0.0);
+        let mut numbers = body.expect("body").to_array();
+        for (place, value) in [(22, -1.0), (23, f64::NAN), (24, -0.5)] {
+            let before = std::mem::replace(&mut numbers[place], value);
+            let read = RigidBody::from_array(&numbers);
+            assert!(matches!(read, Err(Error::OutOfDomain { .. })), "{read:?}");
+            numbers[place] = before;
         }
     }
 

@@ -60,7 +60,7 @@ pub fn curve(
     let error =
         sums.roundings() * sums.content + 8.0 * UNIT * sums.extent.norm() * sums.count as f64;
     let checks = Checks::FINITE.and(Checks::VOLUME);
-    let body = finish(&sums, sums.content * sums.frame.unit, 2.0 * error, amount)?;
+    let body = finish(&sums, 1, 2.0 * error, amount)?;
     Ok(body.with_provenance(Provenance {
         moments,
         ..Provenance::of_matter(Source::Curve, sums.count, checks)

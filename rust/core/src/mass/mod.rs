@@ -27,6 +27,7 @@
 //! | thin shells | [`surface`] |
 //! | shells of finite thickness | [`thick_shell`] |
 //! | thin wires | [`curve`] |
+//! | powers of two as units, so that nothing under- or overflows on the way | `units` |
 //! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
 
 pub mod accumulator;
@@ -53,6 +54,7 @@ pub mod solids;
 pub mod surface;
 pub mod tetrahedra;
 pub mod thick_shell;
+mod units;
 pub mod validity;
 pub mod voxels;
 

@@ -265,9 +265,9 @@ impl Provenance {
         };
         Self {
             source: Source::Bodies,
-            elements: parts(self) + parts(other),
+            elements: parts(self).saturating_add(parts(other)),
             checks: self.checks.and(other.checks),
-            welded: self.welded + other.welded,
+            welded: self.welded.saturating_add(other.welded),
             closure: self.closure.or(other.closure),
             volume_change: self.volume_change + other.volume_change,
             moments: MomentsFrom::Tensor,

@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use super::amount::{Amount, length, ordered};
 use super::polyhedron::{Index, Options, polyhedron_watched};
 use crate::error::{Error, all_finite};
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::quadrature::{Cell, Rule};
 use crate::numerics::threads::Watch;
 
@@ -130,7 +131,7 @@ impl Region {
         let solid = polyhedron_watched(
             vertices,
             faces,
-            Amount::Density(1.0),
+            Amount::Mass(1.0),
             Options::default(),
             watch,
         )?;
@@ -141,6 +142,55 @@ impl Region {
                 .map(|face| face.map(|k| Vector3::from(vertices[k.position()])))
                 .collect(),
         }))
+    }
+
+    /// The region in units of its own size, and which power of two they are.
+    pub(super) fn in_units(&self) -> (Self, i32) {
+        let size = match &self.0 {
+            Kind::Box { low, high } => (high * 0.5 - low * 0.5).amax(),
+            Kind::Ellipsoid { semi_axes, .. } => semi_axes.amax(),
+            Kind::Cylinder { radius, height, .. } => radius.max(*height),
+            Kind::Mesh { apex, faces } => (faces.iter().flatten())
+                .fold(0.0, |size: f64, corner| {
+                    size.max((corner * 0.5 - apex * 0.5).amax())
+                }),
+        };
+        let power = exponent(size);
+        let own = |x: f64| times_power_of_two(x, -power);
+        let scaled = match &self.0 {
+            Kind::Box { low, high } => Kind::Box {
+                low: low.map(own),
+                high: high.map(own),
+            },
+            Kind::Ellipsoid {
+                center,
+                semi_axes,
+                inner,
+            } => Kind::Ellipsoid {
+                center: center.map(own),
+                semi_axes: semi_axes.map(own),
+                inner: *inner,
+            },
+            Kind::Cylinder {
+                center,
+                inner_radius,
+                radius,
+                height,
+            } => Kind::Cylinder {
+                center: center.map(own),
+                inner_radius: own(*inner_radius),
+                radius: own(*radius),
+                height: own(*height),
+            },
+            Kind::Mesh { apex, faces } => Kind::Mesh {
+                apex: apex.map(own),
+                faces: faces
+                    .iter()
+                    .map(|face| face.map(|corner| corner.map(own)))
+                    .collect(),
+            },
+        };
+        (Self(scaled), power)
     }
 
     /// The rule that suits the size of the region's charts: a mesh has many small ones.

@@ -2,10 +2,11 @@
 
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
-use super::polyhedron::{Index, MeshFault, View, is_settled, matter};
+use super::polyhedron::{Index, MeshFault, View, in_units, is_settled, matter};
 use super::provenance::{Checks, MomentsFrom, Provenance, Source};
-use super::simplex::{Corners, Frame, Kind, Shell, Sums, sums};
+use super::simplex::{Corners, FaintShell, Frame, Kind, Shell, Sums, sums};
 use super::solids::Amount;
+use super::units::QUANTUM;
 use crate::error::Error;
 use crate::numerics::threads::{Halt, Watch};
 use crate::principal::principal_axes;
@@ -31,7 +32,12 @@ pub fn surface<I: Index>(
         return Err(failed(MeshFault::NoFaces));
     }
     let found = thin::<_, Shell, 3>(&mesh, &mesh.frame(), || mesh.used_frame(), watch);
-    let (sums, moments) = found.ok_or(Halt::Stopped)?;
+    let (mut sums, mut moments) = found.ok_or(Halt::Stopped)?;
+    // A normal below 2⁻⁵³⁷ vanishes in its square: then most of this area may have.
+    if sums.content < faces.len() as f64 * 2.0_f64.powi(-470) {
+        let again = thin::<_, FaintShell, 3>(&mesh, &mesh.frame(), || mesh.used_frame(), watch);
+        (sums, moments) = again.ok_or(Halt::Stopped)?;
+    }
     if !sums.magnitude.is_finite()
         && let Some(fault) = mesh.find_unusable()
     {
@@ -45,9 +51,10 @@ pub fn surface<I: Index>(
     }
     // The normal of a triangle is off by a few units of rounding of its products; its corners by one of the extent.
     let error = sums.roundings() * sums.content
-        + UNIT * (8.0 * sums.scale.x + 8.0 * sums.extent.max() * sums.scale.y);
+        + UNIT * (8.0 * sums.scale.x + 8.0 * sums.extent.max() * sums.scale.y)
+        + 8.0 * QUANTUM * faces.len() as f64;
     let checks = Checks::INDICES.and(Checks::FINITE).and(Checks::VOLUME);
-    finish(&sums, area, 2.0 * error, amount)
+    finish(&sums, 2, 2.0 * error, amount)
         .map(|body| {
             body.with_provenance(Provenance {
                 moments,
@@ -112,14 +119,15 @@ pub(super) fn thin<C: Corners<N>, K: Kind<N>, const N: usize>(
     Some((found, MomentsFrom::OwnAxes))
 }
 
-/// The body of these sums, whose content in the user's units is given and off by `error` in the unit of the frame.
+/// The body of these sums, whose content, a length, area or volume by its `dimension`, is off by `error` in the unit of the
+/// frame.
 pub(super) fn finish(
     sums: &Sums,
-    content: f64,
+    dimension: i32,
     error: f64,
     amount: Amount,
 ) -> Result<RigidBody, Error> {
-    let mass = amount.mass(content)?;
+    let (mass, units) = in_units(sums, dimension, amount)?;
     let relative = error / sums.content;
     let bound = ErrorBound {
         mass: match amount {
@@ -128,7 +136,7 @@ pub(super) fn finish(
         },
         ..ErrorBound::default()
     };
-    matter(sums, mass, relative, bound)
+    matter(sums, mass, relative, bound, units)
 }
 
 #[cfg(test)]

@@ -8,10 +8,12 @@ use super::error_bound::ErrorBound;
 use super::particles::sums::{Turned, block_sums};
 use super::particles::{Watch, is_thin};
 use super::second_moment::SecondMoment;
+use super::units::Units;
 use crate::error::{Error, all_finite, finite};
 use crate::mass::provenance::{Checks, Provenance, Source};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::reduce::{depth, sum_blocks, sum_terms};
 use crate::numerics::threads::fill_blocks;
 
@@ -65,26 +67,68 @@ pub fn voxels<T: Voxel>(grid: &Grid<'_, T>, watch: &mut Watch<'_>) -> Result<Rig
         }
     }
     all_finite("origin", &grid.origin)?;
-    let middle = Vector3::from(grid.shape.map(|count| (count / 2) as f64));
-    let mut found = grid.second_moment(middle, watch)?;
-    let d = found.center_of_mass - grid.place(&middle);
-    if found.mass * d.norm_squared() > found.central.trace() {
-        found = grid.second_moment(grid.cell(&found.center_of_mass), watch)?;
+    let [x, y, z] = grid.spacing.map(exponent);
+    let length = x.max(y).max(z);
+    let mut units = Units {
+        mass: x + y + z,
+        length,
+        place: length,
+    };
+    let own = |lengths: [f64; 3]| lengths.map(|x| times_power_of_two(x, -length));
+    let near = Grid {
+        spacing: own(grid.spacing),
+        origin: own(grid.origin),
+        ..*grid
+    };
+    let found = near.about_center(watch)?;
+    // Sums this small may have lost digits to underflow, larger ones overflowed: densities too are counted in units.
+    let range = 2.0_f64.powi(-800)..2.0_f64.powi(900);
+    if range.contains(&found.mass) {
+        return units.told(near.body(&found, watch)?);
     }
-    let provenance = Provenance::of_matter(
-        Source::Voxels,
-        grid.shape.iter().product(),
-        Checks::FINITE.and(Checks::MASSES),
-    );
-    let body = RigidBody::from_second_moment(&found)?;
-    if is_thin(&body) {
-        let again = RigidBody::from_second_moment(&grid.in_own_axes(&body, watch)?)?;
-        return Ok(again.with_provenance(provenance.in_own_axes()));
-    }
-    Ok(body.with_provenance(provenance))
+    grid.check()?;
+    let densities = || grid.density.iter().map(|&density| density.into());
+    let densest = densities().fold(0.0, f64::max);
+    units.mass += exponent(densest);
+    let scaled: Vec<f64> = densities()
+        .map(|density| times_power_of_two(density, -exponent(densest)))
+        .collect();
+    let scaled = Grid {
+        density: &scaled,
+        shape: near.shape,
+        spacing: near.spacing,
+        origin: near.origin,
+    };
+    units.told(scaled.body(&scaled.about_center(watch)?, watch)?)
 }
 
 impl<T: Voxel> Grid<'_, T> {
+    /// Second moment about the centre of mass in body axes.
+    fn about_center(&self, watch: &mut Watch<'_>) -> Result<SecondMoment, Error> {
+        let middle = Vector3::from(self.shape.map(|count| (count / 2) as f64));
+        let found = self.second_moment(middle, watch)?;
+        let d = found.center_of_mass - self.place(&middle);
+        if found.mass * d.norm_squared() > found.central.trace() {
+            return self.second_moment(self.cell(&found.center_of_mass), watch);
+        }
+        Ok(found)
+    }
+
+    /// The body of this second moment, taken again in its own axes where it is thin.
+    fn body(&self, found: &SecondMoment, watch: &mut Watch<'_>) -> Result<RigidBody, Error> {
+        let provenance = Provenance::of_matter(
+            Source::Voxels,
+            self.density.len(),
+            Checks::FINITE.and(Checks::MASSES),
+        );
+        let body = RigidBody::from_second_moment(found)?;
+        if is_thin(&body) {
+            let again = RigidBody::from_second_moment(&self.in_own_axes(&body, watch)?)?;
+            return Ok(again.with_provenance(provenance.in_own_axes()));
+        }
+        Ok(body.with_provenance(provenance))
+    }
+
     /// The point at these indices, whole or not.
     fn place(&self, index: &Vector3<f64>) -> Vector3<f64> {
         Vector3::from(self.origin) + Vector3::from(self.spacing).component_mul(index)
@@ -103,8 +147,9 @@ impl<T: Voxel> Grid<'_, T> {
             .map(f64::round)
     }
 
+    /// The volume of a cell, divided by a power of two for each edge.
     fn volume(&self) -> f64 {
-        let [x, y, z] = self.spacing;
+        let [x, y, z] = (self.spacing).map(|edge| times_power_of_two(edge, -exponent(edge)));
         x * y * z
     }
 

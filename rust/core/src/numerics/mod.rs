@@ -8,6 +8,7 @@
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
 //! | [`quad_double`] | four times the precision, where differences decide |
+//! | [`expansion`] | sums and determinants without any rounding |
 //! | [`twofold`] | numbers of twice the precision in kernels |
 //! | [`number`] | one algorithm for doubles and for numbers of twice the precision |
 //! | [`power_of_two`] | scales that keep all digits |
@@ -29,6 +30,7 @@ pub mod dispatch;
 pub mod double_double;
 pub mod eigen3;
 pub mod elliptic;
+pub mod expansion;
 pub mod jacobi;
 pub mod jet;
 pub mod lane;

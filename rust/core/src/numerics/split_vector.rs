@@ -22,6 +22,15 @@ impl<const N: usize> SplitVector<N> {
         }
     }
 
+    /// The vector times a power of two, exactly while nothing leaves the range of float64.
+    #[must_use]
+    pub fn scaled(&self, power_of_two: f64) -> Self {
+        Self {
+            high: self.high.map(|x| x * power_of_two),
+            low: self.low.map(|x| x * power_of_two),
+        }
+    }
+
     /// `v·n`, rounded about once even where large terms cancel.
     #[must_use]
     pub fn dot(&self, n: &[f64; N]) -> f64 {
@@ -43,6 +52,16 @@ pub fn cross2(a: &SplitVector<2>, b: &SplitVector<2>) -> f64 {
     let low = (a.high[0] * b.low[1] - a.high[1] * b.low[0])
         + (a.low[0] * b.high[1] - a.low[1] * b.high[0]);
     value + (rest + low)
+}
+
+/// `a × b`, each component rounded about once.
+#[must_use]
+pub fn cross(a: &SplitVector<3>, b: &SplitVector<3>) -> [f64; 3] {
+    let plane = |v: &SplitVector<3>, j: usize, k: usize| SplitVector {
+        high: [v.high[j], v.high[k]],
+        low: [v.low[j], v.low[k]],
+    };
+    [[1, 2], [2, 0], [0, 1]].map(|[j, k]| cross2(&plane(a, j, k), &plane(b, j, k)))
 }
 
 /// `det(a, b, c)`, rounded about once.
@@ -92,6 +111,7 @@ mod tests {
             low: [v.low[0], v.low[1]],
         };
         assert_eq!(cross2(&plane(a), &plane(b)), 1.0);
+        assert_eq!(cross(&a, &b), [0.0, 0.0, 1.0]);
     }
 
     #[test]

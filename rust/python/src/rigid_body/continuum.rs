@@ -74,9 +74,11 @@ impl PyRigidBody {
 
     /// Body that fills a region of space with a density given as a function.
     ///
-    /// The integrals are taken by adaptive cubature. The density must be smooth within the region: let a
-    /// jump be a boundary, with one region on each side of it and the bodies added. A feature much
-    /// smaller than a tenth of the region may be missed: draw the bounds closely.
+    /// The integrals are taken by adaptive cubature. The density should be smooth within the region: let a
+    /// jump be a boundary, with one region on each side of it and the bodies added. A jump inside is counted
+    /// in the error wherever it is; a plane across a box along its faces, a sphere about the centre of a
+    /// ball and the like still converge to any tolerance, others to a few digits. A feature much smaller
+    /// than a tenth of the region may be missed: draw the bounds closely.
     ///
     /// Parameters
     /// ----------
@@ -89,7 +91,8 @@ impl PyRigidBody {
     ///     Bound on the estimated error of the mass, relative; of the centre of mass, relative to the
     ///     radius of gyration; and of the second moments, relative to their sum.
     /// max_evaluations : int, optional
-    ///     At how many points the density may be asked for at most.
+    ///     At how many points the density may be asked for at most; to look for jumps beside the faces of the
+    ///     cells takes up to a sixth more.
     ///
     /// Returns
     /// -------
@@ -142,7 +145,8 @@ impl PyRigidBody {
     /// rtol : float, optional
     ///     Bound on the estimated relative errors of mass and moments.
     /// max_evaluations : int, optional
-    ///     At how many radii the density may be asked for at most.
+    ///     At how many radii the density may be asked for at most; to look for jumps beside the boundaries
+    ///     takes up to twice as many more.
     ///
     /// Returns
     /// -------

@@ -35,6 +35,10 @@ impl Scalar {
         })
     }
 
+    pub(super) fn is_integer(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -52,11 +56,36 @@ pub(super) enum Property {
     List(String, Scalar, Scalar),
 }
 
+impl Property {
+    /// What it is called; the two names that a list of corners goes by are one.
+    pub(super) fn name(&self) -> &str {
+        match self {
+            Self::List(name, ..) if name == "vertex_index" => "vertex_indices",
+            Self::Number(name, _) | Self::List(name, ..) => name,
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: usize,
     pub(super) properties: Vec<Property>,
+}
+
+impl Element {
+    /// Two properties of one name would leave open which of them counts.
+    fn add(&mut self, property: Property) -> Result<(), StreamError> {
+        let name = property.name();
+        if self.properties.iter().any(|other| other.name() == name) {
+            let element = &self.name;
+            return Err(bad(format!(
+                "its element {element} has two properties named {name}"
+            )));
+        }
+        self.properties.push(property);
+        Ok(())
+    }
 }
 
 pub(super) fn bad(why: impl Into<String>) -> StreamError {
@@ -80,6 +109,9 @@ pub(super) fn header(source: &mut impl BufRead) -> Result<(bool, Vec<Element>), 
             _ if number == 0 => return Err(bad("it does not begin with the line ply")),
             ["format", "binary_little_endian", ..] => big_endian = Some(false),
             ["format", "binary_big_endian", ..] => big_endian = Some(true),
+            ["element", name, _] if elements.iter().any(|element| element.name == name) => {
+                return Err(bad(format!("it has two elements named {name}")));
+            }
             ["element", name, count] => elements.push(Element {
                 name: name.to_owned(),
                 count: count
@@ -90,7 +122,7 @@ pub(super) fn header(source: &mut impl BufRead) -> Result<(bool, Vec<Element>), 
             ["property", ref rest @ ..] => {
                 let property = property(rest);
                 match (elements.last_mut(), property) {
-                    (Some(element), Some(property)) => element.properties.push(property),
+                    (Some(element), Some(property)) => element.add(property)?,
                     _ => return Err(bad(format!("header line {:?}", line.trim_end()))),
                 }
             }
@@ -111,7 +143,7 @@ fn property(words: &[&str]) -> Option<Property> {
     match words {
         ["list", count, item, name] => Some(Property::List(
             (*name).to_owned(),
-            Scalar::named(count)?,
+            Scalar::named(count).filter(|count| count.is_integer())?,
             Scalar::named(item)?,
         )),
         [kind, name] => Some(Property::Number((*name).to_owned(), Scalar::named(kind)?)),

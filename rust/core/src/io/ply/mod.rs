@@ -79,13 +79,11 @@ impl<R: BufRead + Seek> TriangleStream for PlyStream<R> {
         let mut corners = Vec::new();
         for face in 0..self.faces.count {
             corners.clear();
-            let truncated = |error| truncated(&self.faces, face)(error);
+            let truncated = |error| truncated(&self.faces, face, error);
             for property in &self.faces.properties {
                 match property {
-                    Property::List(name, count, item)
-                        if name == "vertex_indices" || name == "vertex_index" =>
-                    {
-                        let count = reader.integer(*count).map_err(truncated)?;
+                    Property::List(_, count, item) if property.name() == "vertex_indices" => {
+                        let count = reader.count(*count).map_err(truncated)?;
                         for _ in 0..count {
                             corners.push(reader.integer(*item).map_err(truncated)?);
                         }
@@ -197,6 +195,71 @@ mod tests {
             ];
             assert_eq!(triangles(&square(big_endian)).expect("square"), expected);
         }
+    }
+
+    #[test]
+    fn what_has_no_bytes_takes_no_time() {
+        let mut bytes = square(false);
+        let end = b"element edge 1\nproperty int a\n";
+        let place = (bytes.windows(end.len())).position(|window| window == end);
+        let place = place.expect("the last element");
+        let empty = b"element nothing 18446744073709551615\n";
+        bytes.splice(place..place, empty.iter().copied());
+        assert_eq!(triangles(&bytes).expect("square").len(), 2);
+    }
+
+    #[test]
+    fn headers_that_leave_open_what_counts() {
+        let refused = |from: &str, to: &str| {
+            let bytes = square(false);
+            let text = String::from_utf8_lossy(&bytes).replacen(from, to, 1);
+            assert_ne!(text.as_bytes(), bytes, "{from}");
+            let Err(StreamError::Failed(error)) = triangles(text.as_bytes()) else {
+                return String::new();
+            };
+            error.to_string()
+        };
+        for (from, to, told) in [
+            (
+                "property short s",
+                "property list uchar int vertex_index",
+                "two properties named vertex_indices",
+            ),
+            (
+                "property uchar red",
+                "property float x",
+                "two properties named x",
+            ),
+            (
+                "element edge 1",
+                "element face 1",
+                "two elements named face",
+            ),
+            (
+                "list uchar int",
+                "list float int",
+                "property list float int vertex_indices",
+            ),
+        ] {
+            let message = refused(from, to);
+            assert!(message.contains(told), "{to}: {message}");
+        }
+    }
+
+    #[test]
+    fn a_list_of_fewer_than_no_items() {
+        let text = "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\nproperty float y\n\
+                    property float z\nelement edge 1\nproperty list char int a\nelement face 0\nend_header\n";
+        let bytes = [text.as_bytes(), &[0xff]].concat();
+        let Err(StreamError::Failed(error)) = triangles(&bytes) else {
+            panic!("accepted");
+        };
+        assert!(
+            error
+                .to_string()
+                .contains("a list of -1 items in edge number 0"),
+            "{error}"
+        );
     }
 
     #[test]

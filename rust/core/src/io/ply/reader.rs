@@ -1,6 +1,6 @@
 //! The bytes of a PLY: numbers of any type in either order, and the vertices.
 
-use std::io::Read;
+use std::io::{self, Error, ErrorKind, Read};
 
 use super::header::{Element, Property, Scalar, bad};
 use crate::io::{FileFault, StreamError};
@@ -40,7 +40,7 @@ impl<'a, R: Read> Reader<'a, R> {
         Self { source, big_endian }
     }
 
-    fn bytes<const N: usize>(&mut self) -> std::io::Result<[u8; N]> {
+    fn bytes<const N: usize>(&mut self) -> io::Result<[u8; N]> {
         let mut bytes = [0; N];
         self.source.read_exact(&mut bytes)?;
         if self.big_endian {
@@ -50,7 +50,7 @@ impl<'a, R: Read> Reader<'a, R> {
     }
 
     /// A number of any type; all integers of PLY are exact as doubles.
-    fn number(&mut self, scalar: Scalar) -> std::io::Result<f64> {
+    fn number(&mut self, scalar: Scalar) -> io::Result<f64> {
         Ok(match scalar {
             Scalar::I8 => f64::from(i8::from_le_bytes(self.bytes()?)),
             Scalar::U8 => f64::from(u8::from_le_bytes(self.bytes()?)),
@@ -63,12 +63,12 @@ impl<'a, R: Read> Reader<'a, R> {
         })
     }
 
-    /// A number that counts or numbers something; −1 for one that is none.
+    /// A number that numbers something; −1 for one that does not.
     #[expect(
         clippy::cast_possible_truncation,
-        reason = "it is an integer below 2^32"
+        reason = "the cast saturates, and no list is so long"
     )]
-    pub(super) fn integer(&mut self, scalar: Scalar) -> std::io::Result<i64> {
+    pub(super) fn integer(&mut self, scalar: Scalar) -> io::Result<i64> {
         let number = self.number(scalar)?;
         Ok(if number.fract() == 0.0 {
             number as i64
@@ -77,24 +77,34 @@ impl<'a, R: Read> Reader<'a, R> {
         })
     }
 
-    fn skip(&mut self, bytes: usize) -> std::io::Result<()> {
-        let mut rest = self.source.take(bytes as u64);
-        if std::io::copy(&mut rest, &mut std::io::sink())? < bytes as u64 {
-            return Err(std::io::ErrorKind::UnexpectedEof.into());
+    /// How many items a list has; a number below zero is no count.
+    pub(super) fn count(&mut self, scalar: Scalar) -> io::Result<u64> {
+        let number = self.integer(scalar)?;
+        u64::try_from(number).map_err(|_| {
+            let why = format!("a list of {number} items");
+            Error::new(ErrorKind::InvalidData, why)
+        })
+    }
+
+    fn skip(&mut self, bytes: u64) -> io::Result<()> {
+        let mut rest = self.source.take(bytes);
+        if io::copy(&mut rest, &mut io::sink())? < bytes {
+            return Err(ErrorKind::UnexpectedEof.into());
         }
         Ok(())
     }
 }
 
 /// The end of the file as the fault that it is.
-pub(super) fn truncated(element: &Element, held: usize) -> impl Fn(std::io::Error) -> StreamError {
-    let fault = FileFault::TruncatedPly {
-        element: element.name.clone(),
-        promised: element.count,
-        held,
-    };
-    move |error| match error.kind() {
-        std::io::ErrorKind::UnexpectedEof => fault.clone().into(),
+pub(super) fn truncated(element: &Element, held: usize, error: Error) -> StreamError {
+    match error.kind() {
+        ErrorKind::UnexpectedEof => FileFault::TruncatedPly {
+            element: element.name.clone(),
+            promised: element.count,
+            held,
+        }
+        .into(),
+        ErrorKind::InvalidData => bad(format!("{error} in {} number {held}", element.name)),
         _ => error.into(),
     }
 }
@@ -103,9 +113,15 @@ pub(super) fn skip<R: Read>(
     reader: &mut Reader<'_, R>,
     element: &Element,
 ) -> Result<(), StreamError> {
-    for row in 0..element.count {
+    // What has no bytes takes none, however many of it the header promises.
+    let rows = if element.properties.is_empty() {
+        0
+    } else {
+        element.count
+    };
+    for row in 0..rows {
         for property in &element.properties {
-            skip_property(reader, property).map_err(truncated(element, row))?;
+            skip_property(reader, property).map_err(|error| truncated(element, row, error))?;
         }
     }
     Ok(())
@@ -114,12 +130,12 @@ pub(super) fn skip<R: Read>(
 pub(super) fn skip_property<R: Read>(
     reader: &mut Reader<'_, R>,
     property: &Property,
-) -> std::io::Result<()> {
+) -> io::Result<()> {
     match property {
-        Property::Number(_, scalar) => reader.skip(scalar.size()),
+        Property::Number(_, scalar) => reader.skip(scalar.size() as u64),
         Property::List(_, count, item) => {
-            let count = usize::try_from(reader.integer(*count)?).unwrap_or(0);
-            reader.skip(count * item.size())
+            let count = reader.count(*count)?;
+            reader.skip(count * item.size() as u64)
         }
     }
 }
@@ -147,20 +163,22 @@ pub(super) fn read_vertices<R: Read>(
     let size: usize = types.iter().map(|scalar| scalar.size()).sum();
     let room = usize::try_from(held).unwrap_or(usize::MAX) / size.max(1);
     if room < element.count {
-        let fault = truncated(element, room);
-        return Err(fault(std::io::ErrorKind::UnexpectedEof.into()));
+        return Err(truncated(element, room, ErrorKind::UnexpectedEof.into()));
     }
     let is_single = [x, y, z].iter().all(|&place| types[place] == Scalar::F32);
     let (mut single, mut double) = (Vec::new(), Vec::new());
-    if is_single {
-        single.reserve_exact(element.count);
+    let reserved = if is_single {
+        single.try_reserve_exact(element.count)
     } else {
-        double.reserve_exact(element.count);
-    }
+        double.try_reserve_exact(element.count)
+    };
+    reserved.map_err(|_| Error::from(ErrorKind::OutOfMemory))?;
     let mut row = vec![0.0; types.len()];
     for vertex in 0..element.count {
         for (number, scalar) in row.iter_mut().zip(&types) {
-            *number = reader.number(*scalar).map_err(truncated(element, vertex))?;
+            *number = reader
+                .number(*scalar)
+                .map_err(|error| truncated(element, vertex, error))?;
         }
         let point = [row[x], row[y], row[z]];
         if is_single {

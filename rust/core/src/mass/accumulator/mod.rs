@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 use self::moments::Moments;
 use super::body::RigidBody;
-use super::particles::{Particles, Watch, check};
+use super::particles::{ORDINARY, Particles, Watch, check};
 use crate::error::Error;
 use crate::mass::provenance::Provenance;
 use crate::numerics::reduce::{BLOCK, depth};
@@ -110,14 +110,10 @@ impl MassAccumulator {
         let _ = Particles::new(masses, positions);
         let first = start.unwrap_or_else(|| self.end());
         let count = masses.len() as u64;
-        let end = first.checked_add(count).ok_or(Error::OutOfDomain {
-            what: "start",
-            law: "such that the last particle's number is below 2^64",
-            value: first as f64,
-        })?;
+        let end = behind(first, count)?;
         self.check_free(first, end)?;
         // Up to the first whole block, the whole blocks, and what is left.
-        let to_block = first.next_multiple_of(WHOLE) - first;
+        let to_block = first.wrapping_neg() % WHOLE;
         let head = usize::try_from(to_block.min(count)).unwrap_or(masses.len());
         let tail = head + (masses.len() - head) / BLOCK * BLOCK;
         for odd in [0..head, tail..masses.len()] {
@@ -161,6 +157,7 @@ impl MassAccumulator {
     /// When a particle with the same number is in both; then nothing is added.
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
         let shift = if other.is_placed { 0 } else { self.end() };
+        behind(shift, other.end())?;
         for (start, piece) in &other.pieces {
             self.check_free(start + shift, piece.end + shift)?;
         }
@@ -184,7 +181,18 @@ impl MassAccumulator {
     /// When particles before the last have not been added, or the total mass is not positive.
     pub fn finish(&self) -> Result<RigidBody, Error> {
         let (total, additions) = self.total()?;
-        let body = RigidBody::from_second_moment(&total.rounded(additions))?;
+        let matter = total.rounded(additions);
+        let spread = matter.central.trace();
+        // As of particles, but what underflowed in a chunk cannot be summed again.
+        if spread != 0.0 && !ORDINARY.contains(&spread) {
+            return Err(Error::OutOfDomain {
+                what: "the sum of the second moments",
+                law: "from 1.5e-241 to 1.0e+301, so that nothing under- or overflows on the way to it: add the particles in \
+                      other units of length or mass",
+                value: spread,
+            });
+        }
+        let body = RigidBody::from_second_moment(&matter)?;
         let count = usize::try_from(self.count()).unwrap_or(usize::MAX);
         Ok(body.with_provenance(Provenance::of_particles(count)))
     }
@@ -246,7 +254,7 @@ impl MassAccumulator {
         mut positions: &[[f64; 3]],
     ) -> Result<(), Error> {
         while !masses.is_empty() {
-            let left = (start + 1).next_multiple_of(WHOLE) - start;
+            let left = WHOLE - start % WHOLE;
             let count = usize::try_from(left).map_or(masses.len(), |left| left.min(masses.len()));
             let end = start + count as u64;
             let matter = Matter::Loose {
@@ -285,6 +293,15 @@ impl MassAccumulator {
             }
         }
     }
+}
+
+/// The number after the last of `count` particles from the number `first` on.
+fn behind(first: u64, count: u64) -> Result<u64, Error> {
+    first.checked_add(count).ok_or(Error::OutOfDomain {
+        what: "start",
+        law: "such that the last particle's number is below 2^64",
+        value: first as f64,
+    })
 }
 
 /// Whether two pieces that meet become one: parts of the same block, the halves of a node of the tree, or sums of which

@@ -4,11 +4,13 @@
 //! |---|---|
 //! | `sums.rs` | the sums, eight particles side by side |
 //! | `stack.rs` | many bodies at a time; frames of a trajectory |
+//! | `extreme.rs` | particles too small, too far apart, too light or too heavy to be squared |
 //! | `labelled.rs` | particles that say which body they belong to |
 //!
 //! One pass over an ordinary body, about a point that a few of its particles are asked for; a thin one is summed again in
 //! its own axes. The same bits for any number of threads, and for a body alone or in any stack.
 
+mod extreme;
 mod labelled;
 mod stack;
 pub(crate) mod sums;
@@ -17,6 +19,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix3, Vector3};
 
+use self::extreme::in_units;
 use self::sums::{Addend, Central, MOMENTS, Turned, block_sums};
 use super::body::RigidBody;
 use super::error_bound::ErrorBound;
@@ -64,7 +67,11 @@ pub fn particles_watched(
 ) -> Result<RigidBody, Error> {
     let particles = Particles::new(masses, positions);
     let provenance = Provenance::of_particles(masses.len());
-    let body = RigidBody::from_second_moment(&about_center(particles, watch)?)?;
+    let matter = about_center(particles, watch)?;
+    if !is_ordinary(&matter, particles) {
+        return in_units(particles, watch);
+    }
+    let body = RigidBody::from_second_moment(&matter)?;
     if is_thin(&body) {
         let again = RigidBody::from_second_moment(&in_own_axes(particles, &body, watch)?)?;
         return Ok(again.with_provenance(provenance.in_own_axes()));
@@ -76,6 +83,24 @@ pub fn particles_watched(
 pub(super) fn is_thin(body: &RigidBody) -> bool {
     let [smallest, _, largest] = body.principal().moments;
     smallest < THIN * largest
+}
+
+/// From 2⁻⁸⁰⁰ to 2¹⁰⁰⁰.
+pub(super) const ORDINARY: std::ops::Range<f64> =
+    f64::from_bits((1023 - 800) << 52)..f64::from_bits((1023 + 1000) << 52);
+
+/// Whether nothing can have under- or overflowed on the way to these moments.
+///
+/// A product m d below the normal numbers is off by 2⁻¹⁰⁷⁵ at most, and so is m d·d by d times as much. A particle that
+/// has any mass has 2⁻¹⁰⁷⁴ at least, so d is at most √(2¹⁰⁷⁴ tr S): all such errors together are below
+/// n·2⁻⁵³⁸ √(tr S), which is nothing beside the roundings of a trace of 2⁻⁸⁰⁰. What overflowed is not finite.
+pub(super) fn is_ordinary(matter: &SecondMoment, particles: Particles<'_>) -> bool {
+    let (spread, center) = (matter.central.trace(), matter.center_of_mass);
+    let is_point = spread == 0.0 && particles.masses.len() == 1;
+    let is_matter = ORDINARY.contains(&spread) && ORDINARY.contains(&(spread / matter.mass));
+    ORDINARY.contains(&matter.mass)
+        && (is_matter || is_point)
+        && center.iter().all(|x| x.is_finite())
 }
 
 /// Second moment about the centre of mass in body axes.

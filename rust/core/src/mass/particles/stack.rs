@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Watch, about_center, in_own_axes, is_thin, particles_watched};
+use super::extreme::in_units;
+use super::{Watch, about_center, in_own_axes, is_ordinary, is_thin, particles_watched};
 use crate::error::Error;
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::Provenance;
@@ -45,23 +46,30 @@ impl<'a> Particles<'a> {
 /// About every 20 ms `watch` gets the fraction done and may end the work.
 ///
 /// # Errors
-/// The first body that cannot be, with its index, or [`Error::Stopped`].
+/// The first body that cannot be, with its index, [`Error::NoMemory`], or [`Error::Stopped`].
 pub fn particle_stack<'a>(
     count: usize,
     row: impl Fn(usize) -> Particles<'a> + Sync,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<RigidBody>, (usize, Error)> {
+    // A point of unit mass stands in each place until it is filled.
+    let point =
+        RigidBody::from_principal(1.0, &[0.0; 3], &Matrix3::identity(), &Vector3::zeros(), 0.0);
+    let mut bodies = Vec::new();
+    let refused = |_| Error::NoMemory {
+        what: "bodies",
+        count,
+        bytes: count as f64 * size_of::<RigidBody>() as f64,
+    };
+    (bodies.try_reserve_exact(count)).map_err(|error| (0, refused(error)))?;
+    bodies.resize(count, point.map_err(|error| (0, error))?);
     let (mut largest, mut total) = (0, 0);
     for index in 0..count {
         let size = row(index).masses.len();
         (largest, total) = (size.max(largest), size + total);
     }
     let is_small = |index: usize| largest <= LARGE || row(index).masses.len() <= LARGE;
-    // A point of unit mass stands in each place until it is filled.
-    let point =
-        RigidBody::from_principal(1.0, &[0.0; 3], &Matrix3::identity(), &Vector3::zeros(), 0.0);
-    let mut bodies = vec![point.map_err(|error| (0, error))?; count];
-    let rows = (count * SHARE / total.max(1)).clamp(1, BATCH);
+    let rows = (count.saturating_mul(SHARE) / total.max(1)).clamp(1, BATCH);
     let outcome = fill_blocks(&mut bodies, rows, watch, |start, bodies| {
         let small: Vec<usize> = (0..bodies.len()).filter(|k| is_small(start + k)).collect();
         batch(&small, &|k| row(start + k), bodies).map_err(|(k, error)| (start + k, error))
@@ -87,10 +95,16 @@ fn batch<'a>(
     bodies: &mut [RigidBody],
 ) -> Result<(), (usize, Error)> {
     let watch = &mut |_: f64| ControlFlow::Continue(());
-    let particles: Vec<_> = which.iter().map(|&k| (k, row(k))).collect();
-    let mut moments = Vec::with_capacity(particles.len());
-    for &(k, row) in &particles {
-        moments.push(about_center(row, watch).map_err(|error| (k, error))?);
+    let (mut particles, mut moments) = (Vec::new(), Vec::new());
+    for &k in which {
+        let row = row(k);
+        let matter = about_center(row, watch).map_err(|error| (k, error))?;
+        if is_ordinary(&matter, row) {
+            particles.push((k, row));
+            moments.push(matter);
+        } else {
+            bodies[k] = in_units(row, watch).map_err(|error| (k, error))?;
+        }
     }
     decompose(&particles, &moments, |provenance| provenance, bodies)?;
     let is_thin = |&(k, _): &(usize, Particles<'_>)| is_thin(&bodies[k]);
@@ -131,4 +145,26 @@ fn decompose(
         body.provenance = provenance(Provenance::of_particles(row.masses.len()));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_bodies_than_memory_are_refused_before_any_is_made() {
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let row = |_| Particles::new(&[1.0], &[[0.0; 3]]);
+        match particle_stack(1 << 50, row, go_on) {
+            Err((0, Error::NoMemory { count, bytes, .. })) => {
+                assert_eq!(count, 1 << 50);
+                assert!(bytes > 1e17);
+            }
+            other => panic!(
+                "expected a refusal, got {:?}",
+                other.map(|bodies| bodies.len())
+            ),
+        }
+        assert_eq!(particle_stack(3, row, go_on).expect("bodies").len(), 3);
+    }
 }

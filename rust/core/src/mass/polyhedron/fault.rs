@@ -119,12 +119,6 @@ pub enum MeshFault {
         /// How many edges are run along in one direction only.
         count: Count,
     },
-    /// The mass properties are beyond the largest float.
-    #[error("the mesh is too large: its extent is {size:?}; choose a larger unit of length")]
-    TooLarge {
-        /// The largest extent.
-        size: f64,
-    },
     /// The normals point inward.
     #[error(
         "the mesh is inverted: its signed volume is {volume:?}, so the normals point inward; \

@@ -30,7 +30,9 @@ use super::provenance::{Checks, MomentsFrom, Provenance, Source};
 use super::second_moment::SecondMoment;
 use super::simplex::{Frame, Sums};
 use super::solids::Amount;
+use super::units::{QUANTUM, Units};
 use crate::error::Error;
+use crate::numerics::power_of_two::exponent;
 use crate::numerics::threads::{Halt, Watch};
 use crate::principal::principal_axes;
 use boundary::{Boundary, Replay, find_unbalanced};
@@ -268,10 +270,12 @@ pub(super) fn is_settled(sums: &Sums) -> bool {
 /// What rounding can have done to the volume, in units of the frame.
 ///
 /// Each corner is off by a unit of rounding of its coordinates, which moves the faces; each tetrahedron is off by a few
-/// units of the products in it, which are below the extent times `scale`; and each is rounded on its way to the total.
+/// units of the products in it, which are below the extent times `scale`; and each is rounded on its way to the total. What
+/// underflows in a unit of the body's size is some least steps of each tetrahedron.
 fn volume_error(sums: &Sums) -> f64 {
     let extent = sums.extent.add_scalar(32.0 * UNIT * sums.extent.sum());
     2.0 * (sums.roundings() * sums.magnitude + 24.0 * UNIT * extent.dot(&sums.scale))
+        + 64.0 * QUANTUM * sums.count as f64
 }
 
 /// The body of uniform density with these sums, and its volume.
@@ -286,7 +290,7 @@ fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), E
     if sums.content < 0.0 && !orient {
         return Err(MeshFault::Inverted { volume }.into());
     }
-    let mass = amount.mass(volume.abs())?;
+    let (mass, units) = in_units(sums, 3, amount)?;
     let relative = error / sums.content.abs();
     let bound = ErrorBound {
         mass: match amount {
@@ -295,7 +299,23 @@ fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), E
         },
         ..ErrorBound::default()
     };
-    Ok((matter(sums, mass, relative, bound)?, volume.abs()))
+    Ok((matter(sums, mass, relative, bound, units)?, volume.abs()))
+}
+
+/// The mass of what has these sums, a length, area or volume by its dimension, in units of the frame.
+pub(super) fn in_units(sums: &Sums, dimension: i32, amount: Amount) -> Result<(f64, Units), Error> {
+    let length = exponent(sums.frame.unit);
+    let (mass, power) = amount.mass_in_units(sums.content.abs())?;
+    let of_content = match amount {
+        Amount::Mass(_) => 0,
+        Amount::Density(_) => dimension * length,
+    };
+    let units = Units {
+        mass: power + of_content,
+        length,
+        place: 0,
+    };
+    Ok((mass, units))
 }
 
 /// The body of this mass with these sums, whose content is known to `relative`.
@@ -304,6 +324,7 @@ pub(super) fn matter(
     mass: f64,
     relative: f64,
     bound: ErrorBound,
+    units: Units,
 ) -> Result<RigidBody, Error> {
     let Frame {
         reference,
@@ -312,26 +333,23 @@ pub(super) fn matter(
     } = sums.frame;
     let axes_or = axes.unwrap_or_else(nalgebra::Matrix3::identity);
     let center_of_mass = reference + axes_or * sums.center() * unit;
-    let central = sums.central() * (mass * unit * unit);
-    if !(central.iter().all(|x| x.is_finite()) && mass.is_finite()) {
-        let size = 2.0 * sums.extent.max() * unit;
-        return Err(MeshFault::TooLarge { size }.into());
-    }
+    let central = sums.central() * mass;
     // First and second moments are off by as much as the content, times the extent once and twice.
     let extent = sums.extent.norm();
     let error_bound = ErrorBound {
         center_of_mass: 2.0 * (relative + 16.0 * UNIT) * extent * unit
-            + 4.0 * UNIT * center_of_mass.amax(),
-        inertia: 10.0 * (relative + 16.0 * UNIT) * mass * (extent * unit).powi(2),
+            + 4.0 * UNIT * center_of_mass.amax()
+            + QUANTUM,
+        inertia: 10.0 * (relative + 16.0 * UNIT) * mass * extent.powi(2),
         ..bound
     };
-    RigidBody::from_second_moment(&SecondMoment {
+    units.told(RigidBody::from_second_moment(&SecondMoment {
         mass,
         center_of_mass,
         central,
         axes: axes_or,
         error_bound,
-    })
+    })?)
 }
 
 #[cfg(test)]

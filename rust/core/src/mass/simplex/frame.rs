@@ -19,10 +19,15 @@ impl Frame {
     /// In the middle of a box, in units of its size.
     pub(in crate::mass) fn of_box(low: &Vector3<f64>, high: &Vector3<f64>) -> Self {
         let size = (high * 0.5 - low * 0.5).max();
-        let power = f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000);
+        // Of a denormal size the least normal power, whose reciprocal is a number.
+        let power = f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE);
         Self {
             reference: low * 0.5 + high * 0.5,
-            unit: if power.is_normal() { power } else { 1.0 },
+            unit: if power.is_finite() && size > 0.0 {
+                power
+            } else {
+                1.0
+            },
             axes: None,
         }
     }
@@ -167,9 +172,13 @@ mod tests {
 
     #[test]
     fn the_unit_is_a_power_of_two_of_any_size() {
-        for size in [1e-300, 3e-5, 1.0, 7e200] {
+        for size in [1e-306, 3e-5, 1.0, 7e200, 1.7e308] {
             let frame = Frame::of_box(&Vector3::zeros(), &Vector3::repeat(size));
             assert!((0.5..=1.0).contains(&(size / 2.0 / frame.unit / 2.0)));
         }
+        let denormal = Frame::of_box(&Vector3::zeros(), &Vector3::repeat(1e-310));
+        assert_eq!(denormal.unit, f64::MIN_POSITIVE);
+        let nothing = Frame::of_box(&Vector3::zeros(), &Vector3::zeros());
+        assert_eq!(nothing.unit, 1.0);
     }
 }

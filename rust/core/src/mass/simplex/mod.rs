@@ -45,6 +45,8 @@ pub(super) trait Kind<const N: usize> {
 pub(super) struct Wire;
 /// Triangles: the area.
 pub(super) struct Shell;
+/// Triangles whose normals may be too short to be squared: the area.
+pub(super) struct FaintShell;
 /// Tetrahedra from the reference to triangles: the signed volume.
 pub(super) struct Solid;
 
@@ -65,14 +67,35 @@ impl Kind<3> for Shell {
 
     #[inline(always)]
     fn content<L: Lane>(corners: &[[L; 3]; 3]) -> (L, [L; 3]) {
-        let (e, f) = edges(corners);
-        let (normal, positive) = cross(e, f);
-        let length = |v: [L; 3]| v[0].abs() + v[1].abs() + v[2].abs();
-        (
-            norm(normal),
-            [length(positive), length(e) + length(f), L::new(0.0)],
-        )
+        let (normal, scale) = area(corners);
+        (norm(normal), scale)
     }
+}
+
+impl Kind<3> for FaintShell {
+    const VERTICES: f64 = 3.0;
+    const FACTOR: f64 = 0.5;
+
+    #[inline(always)]
+    fn content<L: Lane>(corners: &[[L; 3]; 3]) -> (L, [L; 3]) {
+        let (normal, scale) = area(corners);
+        let longest = normal[0].abs().max(normal[1].abs()).max(normal[2].abs());
+        let (power, inverse) = longest.power_of_two_scale();
+        let near = [normal[0] * power, normal[1] * power, normal[2] * power];
+        (norm(near) * inverse, scale)
+    }
+}
+
+/// Twice the area of a triangle along its normal, and what its rounding errors are relative to.
+#[inline(always)]
+fn area<L: Lane>(corners: &[[L; 3]; 3]) -> ([L; 3], [L; 3]) {
+    let (e, f) = edges(corners);
+    let (normal, positive) = cross(e, f);
+    let length = |v: [L; 3]| v[0].abs() + v[1].abs() + v[2].abs();
+    (
+        normal,
+        [length(positive), length(e) + length(f), L::new(0.0)],
+    )
 }
 
 impl Kind<3> for Solid {

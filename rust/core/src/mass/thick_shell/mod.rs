@@ -75,8 +75,7 @@ pub fn thick_shell<I: Index>(
         .and(Checks::FINITE)
         .and(Checks::WINDING)
         .and(Checks::VOLUME);
-    let unit = sums.frame.unit;
-    finish(&sums, sums.content * unit * unit * unit, error, amount)
+    finish(&sums, 3, error, amount)
         .map(|body| {
             body.with_provenance(Provenance {
                 moments,

@@ -1,0 +1,5 @@
+//! The target `angles` of libFuzzer.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| polhode_fuzz::angles::run(data));

@@ -1,0 +1,5 @@
+//! The target `bodies` of libFuzzer.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| polhode_fuzz::bodies::run(data));
