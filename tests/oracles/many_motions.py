@@ -1,8 +1,8 @@
 """Many motions at once by a Runge-Kutta method of order 8 at small steps, in plain NumPy.
 
-The law of an attitude feedback changes where the scalar part w of its error passes through zero. Each row keeps the side that its
-law is for over a step; where w passes through zero within the step, or dips below it between two positive ends,
-the row steps to that place alone. The coefficients are those of SciPy's DOP853.
+The law of an attitude feedback changes where the scalar part w of its error passes through zero. Each row
+keeps the side that its law is for over a step; where w passes through zero within the step, or dips below it
+between two positive ends, the row steps to that place alone. The coefficients are those of SciPy's DOP853.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ class Motions:
         """The states (x, y, z, w, ω) at the times ``end`` from ``y`` at the times ``start``."""
         y, t = y.copy(), start.copy()
         forward = np.where(end >= start, 1.0, -1.0)
-        ends = np.concatenate([window for window in self.windows.values()] + [end[:, None]], 1)
+        ends = np.concatenate([*self.windows.values(), end[:, None]], 1)
         stop = _next(ends, t, end, forward)
         side = np.where(self._switch(y)[0] < 0, -1.0, 1.0)
         for _ in range(100_000):
@@ -135,9 +135,7 @@ class Motions:
             stop = _next(ends, t, end, forward)
         raise RuntimeError(f"the reference does not end: {busy}")
 
-    def _land(
-        self, side: Floats, y: Floats, h: Floats
-    ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    def _land(self, side: Floats, y: Floats, h: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """A step of each row: its state and length, cut where w leaves its side."""
         new = self._step(side, y, h)
         sign = np.sign(h)
@@ -173,7 +171,6 @@ class Motions:
             h[which] = some._zero(side[which], y[which], bracket, 0)
             new[which] = some._step(side[which], y[which], h[which])
         return new, h, beyond
-
 
     def _zero(self, side: Floats, y: Floats, bracket: Floats, derivative: int) -> Floats:
         """The length of step after which w, or its rate, is zero, by secants in a bracket (Illinois)."""
