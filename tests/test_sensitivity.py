@@ -247,7 +247,7 @@ def test_what_cannot_be_varied_says_so() -> None:
 
 
 def test_through_rest_under_quadratic_damping() -> None:
-    """Of ω̇ = f(ω), f = τ − E |ω| ω, the derivative of ω(t) by ω(0) is f(ω(t))/f(ω(0)); ω by tan, then tanh."""
+    """Of ω̇ = f(ω), f = τ − E |ω| ω, dω(t)/dω(0) is f(ω(t))/f(ω(0)); ω by tan, then tanh."""
     rng = np.random.default_rng(20261122)
     body = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
     worst = 0.0
