@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from oracles.many_motions import Motions
-from polhode import IntegrationError, RigidBody, loads
+from polhode import RigidBody, loads
+from polhode.errors import IntegrationError
 
 Floats = NDArray[np.float64]
 KINDS = ("body_torque", "space_torque", "linear", "quadratic", "feedback")

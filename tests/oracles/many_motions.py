@@ -36,7 +36,7 @@ def _product(p: Floats, q: Floats) -> Floats:
 
 
 def _apply(matrices: Floats, vectors: Floats) -> Floats:
-    return np.einsum("nij,nj->ni", matrices, vectors)
+    return np.asarray(np.einsum("nij,nj->ni", matrices, vectors))
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Motions:
 
     @cached_property
     def _inverse(self) -> Floats:
-        return np.linalg.inv(self.inertia)
+        return np.asarray(np.linalg.inv(self.inertia), dtype=np.float64)
 
     def rows(self, which: NDArray[np.intp]) -> Motions:
         """Some of the rows."""
@@ -190,7 +190,7 @@ class Motions:
 
 
 def _conjugate(q: Floats) -> Floats:
-    return q * np.array([-1.0, -1.0, -1.0, 1.0])
+    return np.asarray(q * np.array([-1.0, -1.0, -1.0, 1.0]))
 
 
 def _next(ends: Floats, t: Floats, end: Floats, forward: Floats) -> Floats:
