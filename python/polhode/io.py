@@ -149,7 +149,9 @@ def body_from_file(
     unit = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
     found = [isotope.mass * unit for isotope in molecule_isotopes(path, molecule, masses)]
     with _naming(path), np.errstate(over="ignore"):
-        return body_of_atoms(found, molecule.positions * scale, source=masses, rounding=molecule.rounding * scale)
+        return body_of_atoms(
+            found, molecule.positions * scale, source=masses, rounding=molecule.rounding * scale
+        )
 
 
 def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float = 0.0) -> Mesh:
