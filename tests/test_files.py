@@ -210,6 +210,9 @@ class TestOtherLibraries:
         assert own.provenance.source == "atoms, masses of their own"
         nameless = SimpleNamespace(get_masses=lambda: [16.0, 2.0, 2.0], get_positions=lambda: positions)
         assert RigidBody.from_atoms(nameless) == own
+        nameless.get_masses = lambda: np.ma.masked_array([16.0, 2.0, 2.0], mask=[False, True, False])
+        with pytest.raises(ValueError, match="masked"):
+            RigidBody.from_atoms(nameless)
         with pytest.raises(ValueError, match="conformer"):
             RigidBody.from_atoms(atoms, conformer=0)
         with pytest.raises(ValueError, match="masses: expected 'most_common' or 'average', got 'heavy'"):

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from oracles.bodies import matrix
 from polhode import RigidBody
-from polhode.errors import PolhodeError
+from polhode.errors import FileFormatError, PolhodeError
 from polhode.io import read_xyz
 from polhode.molecules import inertial_defect, isotopes, planar_moments, rotational_constants
 
@@ -299,6 +299,23 @@ class TestTheDigits:
         molecule = read_xyz(path)
         assert molecule.rounding == pytest.approx(rounding, rel=1e-12)
         np.testing.assert_array_equal(molecule.positions, [[float(word) for word in words.split()]])
+
+    @pytest.mark.parametrize(
+        "word", ["snan", "nan", "-inf", "1e999", "1e-99999999999999999999", "1,0", "0x1"]
+    )
+    def test_what_is_no_coordinate(self, word: str, tmp_path: Path) -> None:
+        path = tmp_path / "a.xyz"
+        path.write_text(f"1\n\nO 0.0 {word} 0.0\n")
+        with pytest.raises(FileFormatError, match=r"a\.xyz: line 3: expected 'symbol x y z'"):
+            read_xyz(path)
+
+    @pytest.mark.parametrize("word", ["1e-300", "5e-324", "1e-400000", "0e-999999", "1e308"])
+    def test_numbers_at_the_ends_of_the_range(self, word: str, tmp_path: Path) -> None:
+        path = tmp_path / "a.xyz"
+        path.write_text(f"1\n\nO 1.25 {word} 0.50\n")
+        molecule = read_xyz(path)
+        assert molecule.positions[0, 1] == float(word)
+        assert np.isfinite(molecule.rounding)
 
     def test_any_form_of_a_file_s_numbers(self, rng: np.random.Generator, tmp_path: Path) -> None:
         """Its digits tell at least the rounding there was, and at most ten times as much."""

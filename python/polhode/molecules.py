@@ -98,7 +98,7 @@ def isotopes(labels: Sequence[str], masses: Masses = "most_common") -> list[Isot
 
 
 def body_of_atoms(
-    masses: Sequence[float],
+    masses: ArrayLike,
     positions: ArrayLike,
     *,
     source: Masses | Literal["own"] = "most_common",
@@ -108,7 +108,7 @@ def body_of_atoms(
 
     Parameters
     ----------
-    masses : sequence of float
+    masses : array_like, shape (n,)
         Of the atoms.
     positions : array_like, shape (n, 3)
         In the unit of length of the body.
@@ -122,7 +122,7 @@ def body_of_atoms(
     -------
     RigidBody
     """
-    body = _core.RigidBody.from_particles(np.asarray(masses, dtype=np.float64), positions)
+    body = _core.RigidBody.from_particles(masses, positions)
     return body._of_atoms(source, rounding)
 
 

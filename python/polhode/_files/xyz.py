@@ -97,9 +97,10 @@ def _atom(file: Path, number: int, row: str) -> tuple[str, list[Decimal]]:
     words = row.split()
     try:
         coordinates = [Decimal(word) for word in words[1:4]]
-    except InvalidOperation:
-        coordinates = []
-    if len(coordinates) != 3 or not np.isfinite([float(x) for x in coordinates]).all():
+        position = [float(x) for x in coordinates]
+    except (InvalidOperation, ValueError):  # the latter of a signalling NaN
+        position = []
+    if len(position) != 3 or not np.isfinite(position).all():
         raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
     return words[0], coordinates
 
