@@ -236,7 +236,7 @@ impl Splitting {
             let h = self.time(self.taken + 1) - self.elapsed();
             let (error, point) = self.error(load, h)?;
             // What is not finite is refused by the caller.
-            if !(error > MOST) {
+            if error <= MOST || error.is_nan() {
                 (self.unchecked, self.speed) = (0, speed.max(self.speed));
                 self.patience = (2 * self.patience + 1).min(UNCHECKED);
                 return Ok(point);
