@@ -28,6 +28,13 @@ pub fn times_power_of_two(x: f64, e: i32) -> f64 {
     x
 }
 
+/// `2^e` as two factors that are numbers, for many products: `x·a·b`, rounded only where it is a denormal number.
+#[must_use]
+pub fn halves(e: i32) -> [f64; 2] {
+    let half = e / 2;
+    [2.0_f64.powi(half), 2.0_f64.powi(e - half)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,5 +50,15 @@ mod tests {
         assert_eq!((exponent(0.0), times_power_of_two(0.0, 99)), (0, 0.0));
         assert_eq!(times_power_of_two(1.0, -5000), 0.0);
         assert!(times_power_of_two(1.0, 5000).is_infinite());
+        for (x, e) in [
+            (3e-310, 1074),
+            (1.5, -1023),
+            (1.0, 0),
+            (-1e300, -1999),
+            (5e-324, 2000),
+        ] {
+            let [a, b] = halves(e);
+            assert_eq!(x * a * b, times_power_of_two(x, e));
+        }
     }
 }
