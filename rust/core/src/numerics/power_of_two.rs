@@ -30,6 +30,7 @@ pub fn times_power_of_two(x: f64, e: i32) -> f64 {
     x
 }
 
+<<<<<<< HEAD
 /// The length of a vector, whose squares may be beyond float64.
 #[must_use]
 pub fn length(vector: &Vector3<f64>) -> f64 {
@@ -45,6 +46,13 @@ pub fn direction_of(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
     vector
         .map(|x| times_power_of_two(x, -size))
         .try_normalize(0.0)
+=======
+/// `2^e` as two factors that are numbers, for many products: `x·a·b`, rounded only where it is a denormal number.
+#[must_use]
+pub fn halves(e: i32) -> [f64; 2] {
+    let half = e / 2;
+    [2.0_f64.powi(half), 2.0_f64.powi(e - half)]
+>>>>>>> d6a6f4a313ea838857b0ef7d91b1ddcd1268ee71
 }
 
 #[cfg(test)]
@@ -75,5 +83,15 @@ mod tests {
         assert_eq!((exponent(0.0), times_power_of_two(0.0, 99)), (0, 0.0));
         assert_eq!(times_power_of_two(1.0, -5000), 0.0);
         assert!(times_power_of_two(1.0, 5000).is_infinite());
+        for (x, e) in [
+            (3e-310, 1074),
+            (1.5, -1023),
+            (1.0, 0),
+            (-1e300, -1999),
+            (5e-324, 2000),
+        ] {
+            let [a, b] = halves(e);
+            assert_eq!(x * a * b, times_power_of_two(x, e));
+        }
     }
 }
