@@ -30,7 +30,6 @@ pub fn times_power_of_two(x: f64, e: i32) -> f64 {
     x
 }
 
-<<<<<<< HEAD
 /// The length of a vector, whose squares may be beyond float64.
 #[must_use]
 pub fn length(vector: &Vector3<f64>) -> f64 {
@@ -46,13 +45,13 @@ pub fn direction_of(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
     vector
         .map(|x| times_power_of_two(x, -size))
         .try_normalize(0.0)
-=======
+}
+
 /// `2^e` as two factors that are numbers, for many products: `x·a·b`, rounded only where it is a denormal number.
 #[must_use]
 pub fn halves(e: i32) -> [f64; 2] {
     let half = e / 2;
     [2.0_f64.powi(half), 2.0_f64.powi(e - half)]
->>>>>>> d6a6f4a313ea838857b0ef7d91b1ddcd1268ee71
 }
 
 #[cfg(test)]

@@ -173,13 +173,19 @@ pub trait Load {
 
     /// From now on its law is the one that it has at `phase`, on both sides of where a sign in it changes, until it is told again: so that
     /// it is smooth over a step. Before it is told for the first time in a span, the law changes with the state.
-    fn settle(&mut self, phase: &Phase);
+    fn settle(&mut self, phase: &Phase) {
+        let _ = phase;
+    }
 
-    /// The signs that it was settled for.
-    fn switches(&self) -> Vec<Switch>;
+    /// The signs that it was settled for; none of a law without such signs.
+    fn switches(&self) -> Vec<Switch> {
+        Vec::new()
+    }
 
     /// Changes its law to that beyond the zero of switch number `index`.
-    fn flip(&mut self, index: usize);
+    fn flip(&mut self, index: usize) {
+        let _ = index;
+    }
 
     /// Force in N and torque in B about the reference point.
     ///
