@@ -2,6 +2,7 @@
 
 Uniform parts in a uniform whole, their moments closed forms: planes across boxes, boxes in boxes, balls in
 boxes and in balls, layers of balls and cylinders, at random places and as close as 1e-6 to where cells end.
+No part is much smaller than a tenth of the whole, cores of round regions no less than a twentieth.
 """
 
 from __future__ import annotations
@@ -112,7 +113,7 @@ def body(number: int) -> Body:
         case 3:  # a layer of a ball, about its centre
             center, radius = rng.normal(size=3), rng.uniform(0.5, 2)
             whole, box = ball(center, radius), regions.ball(radius, center)
-            part = ball(center, between(rng, 0.0, radius))
+            part = ball(center, between(rng, 0.05 * radius, radius))
         case 4:  # a ball in a ball
             radius = rng.uniform(0.5, 2)
             whole, box = ball(np.zeros(3), radius), regions.ball(radius)
@@ -123,7 +124,7 @@ def body(number: int) -> Body:
             radius, height = rng.uniform(0.5, 2, 2)
             whole, box = drum(np.zeros(3), radius, height), regions.cylinder(radius, height)
             if rng.integers(2):
-                part = drum(np.zeros(3), between(rng, 0.0, radius), height)
+                part = drum(np.zeros(3), between(rng, 0.05 * radius, radius), height)
             else:
                 depth = between(rng, 0.0, height)
                 part = drum(np.array([0, 0, (depth - height) / 2]), radius, depth)

@@ -27,7 +27,7 @@ pub(super) fn largest_coordinate(nodes: &[[f64; 3]], cells: &[[usize; 4]]) -> f6
 /// Cells with their volumes and densities in units.
 pub(super) struct Cells<'a> {
     nodes: &'a [[f64; 3]],
-    cells: &'a [[usize; 4]],
+    corners: &'a [[usize; 4]],
     density: CellDensity<'a>,
     weights: Vec<Weight>,
     /// What underflow may have taken from the mass.
@@ -88,7 +88,7 @@ impl<'a> Cells<'a> {
         let mass = heaviest + 3 * place;
         Ok(Self {
             nodes,
-            cells,
+            corners: cells,
             density,
             weights,
             lost,
@@ -102,7 +102,7 @@ impl<'a> Cells<'a> {
     }
 
     pub(super) fn count(&self) -> usize {
-        self.cells.len()
+        self.corners.len()
     }
 
     /// The centre of mass of sums about a reference.
@@ -116,12 +116,12 @@ impl<'a> Cells<'a> {
         let origin: [f64; 3] = (*reference).into();
         let inverse = 1.0 / self.frame.unit;
         let [m, x, y, z, xx, xy, xz, yy, yz, zz] = sum_terms(self.count(), |cell| {
-            let corners = self.cells[cell].map(|k| self.nodes[k]);
+            let corners = self.corners[cell].map(|k| self.nodes[k]);
             let Weight {
                 volume: v,
                 density: [a, b],
             } = self.weights[cell];
-            let rho = densities(self.cells, self.density, cell).map(|rho| rho * a * b);
+            let rho = densities(self.corners, self.density, cell).map(|rho| rho * a * b);
             let d = corners.map(|r| {
                 let from = SplitVector::difference(&r, &origin).scaled(inverse);
                 Vector3::from(columns.map(|axis| from.dot(&axis)))
