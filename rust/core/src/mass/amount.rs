@@ -131,20 +131,13 @@ pub(super) fn closed_form(amount: Amount, mass: f64, trace: f64) -> ErrorBound {
     }
 }
 
-/// A length is finite and not negative, and where it is not zero neither is its square.
+/// A length is finite and not negative.
 pub(super) fn length(what: &'static str, value: f64) -> Result<f64, Error> {
     finite(what, value)?;
     if value < 0.0 {
         return Err(Error::OutOfDomain {
             what,
             law: "zero or more",
-            value,
-        });
-    }
-    if value > 0.0 && value * value == 0.0 {
-        return Err(Error::OutOfDomain {
-            what,
-            law: "zero, or more than 1.6e-162 so that its square is a number (take a smaller unit of length)",
             value,
         });
     }
