@@ -135,7 +135,7 @@ class TestNpz:
             ({"center_of_mass": np.array(["1", "2", "3"])}, "center_of_mass holds <U1"),
             ({"center_of_mass": np.array([1, 2, 3], dtype=object)}, "Object arrays|expected plain numbers"),
             ({"mass": np.zeros((), dtype=[("a", "f8")])}, "expected plain numbers"),
-            ({"numbers": np.float64(3.0)}, r"numbers: expected shape \(\.\.\., 33\)"),
+            ({"numbers": np.float64(3.0)}, r"numbers: expected shape \(\.\.\., 34\)"),
             ({"numbers": None, "inertia": np.eye(2)}, r"inertia: expected shape \(\.\.\., 3, 3\)"),
             ({"numbers": None, "mass": np.float64(np.nan)}, "mass holds nan, expected finite"),
             ({"numbers": None, "mass": np.int64(2**60)}, r"beyond 2\^53"),
