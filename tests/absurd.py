@@ -6,6 +6,7 @@ Run within an address space of 4 GB. Prints for each call its name, that of the 
 from __future__ import annotations
 
 import json
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +32,35 @@ MOTIONS, HEAVIES = COLUMN.free_motion(V), COLUMN.heavy_top(V, (np.sin(0.2), 0, 0
 LOAD = _core.constant_torque(V)
 LOADS = _core.constant_torque(np.ones((SIDE, 1, 3)))
 REGION = regions.ball(1.0)
+
+#: Homogeneous shapes and their lengths.
+SHAPES: dict[str, dict[str, Any]] = {
+    "box": {"size": (1.0, 1.0, 1.0)},
+    "cube": {"side": 1.0},
+    "wedge": {"size": (1.0, 1.0, 1.0)},
+    "pyramid": {"size": (1.0, 1.0, 1.0)},
+    "tetrahedron": {"side": 1.0},
+    "prism": {"sides": 6.0, "radius": 1.0, "height": 1.0},
+    "sphere": {"radius": 1.0},
+    "hollow_sphere": {"inner_radius": 0.5, "outer_radius": 1.0},
+    "hemisphere": {"radius": 1.0},
+    "ellipsoid": {"semi_axes": (1.0, 1.0, 1.0)},
+    "cylinder": {"radius": 1.0, "height": 1.0},
+    "tube": {"inner_radius": 0.5, "outer_radius": 1.0, "height": 1.0},
+    "cone": {"radius": 1.0, "height": 1.0},
+    "frustum": {"bottom_radius": 1.0, "top_radius": 0.5, "height": 1.0},
+    "capsule": {"radius": 1.0, "length": 1.0},
+    "torus": {"major_radius": 2.0, "minor_radius": 1.0},
+    "disk": {"radius": 1.0},
+    "annulus": {"inner_radius": 0.5, "outer_radius": 1.0},
+    "rectangle": {"size": (1.0, 1.0)},
+    "ellipse": {"semi_axes": (1.0, 1.0)},
+    "triangle": {"vertices": np.eye(3)[:, :2]},
+    "polygon": {"vertices": np.eye(3)[:, :2]},
+    "rod": {"length": 1.0},
+    "ring": {"radius": 1.0},
+    "arc": {"radius": 1.0, "angle": 1.0},
+}
 
 #: For each callable its arguments by name: one row each.
 ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
@@ -150,36 +180,7 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
         {"omega": V, "quaternion": Q},
     ),
     "real_numbers": (lambda numbers: _core.real_numbers(numbers, "numbers"), {"numbers": V}),
-    **{
-        name: (getattr(_core, name), sizes | {"mass": 1.0})
-        for name, sizes in {
-            "box": {"size": (1.0, 1.0, 1.0)},
-            "cube": {"side": 1.0},
-            "wedge": {"size": (1.0, 1.0, 1.0)},
-            "pyramid": {"size": (1.0, 1.0, 1.0)},
-            "tetrahedron": {"side": 1.0},
-            "prism": {"sides": 6.0, "radius": 1.0, "height": 1.0},
-            "sphere": {"radius": 1.0},
-            "hollow_sphere": {"inner_radius": 0.5, "outer_radius": 1.0},
-            "hemisphere": {"radius": 1.0},
-            "ellipsoid": {"semi_axes": (1.0, 1.0, 1.0)},
-            "cylinder": {"radius": 1.0, "height": 1.0},
-            "tube": {"inner_radius": 0.5, "outer_radius": 1.0, "height": 1.0},
-            "cone": {"radius": 1.0, "height": 1.0},
-            "frustum": {"bottom_radius": 1.0, "top_radius": 0.5, "height": 1.0},
-            "capsule": {"radius": 1.0, "length": 1.0},
-            "torus": {"major_radius": 2.0, "minor_radius": 1.0},
-            "disk": {"radius": 1.0},
-            "annulus": {"inner_radius": 0.5, "outer_radius": 1.0},
-            "rectangle": {"size": (1.0, 1.0)},
-            "ellipse": {"semi_axes": (1.0, 1.0)},
-            "triangle": {"vertices": np.eye(3)[:, :2]},
-            "polygon": {"vertices": np.eye(3)[:, :2]},
-            "rod": {"length": 1.0},
-            "ring": {"radius": 1.0},
-            "arc": {"radius": 1.0, "angle": 1.0},
-        }.items()
-    },
+    **{name: (getattr(_core, name), {**sizes, "mass": 1.0}) for name, sizes in SHAPES.items()},
 }
 
 #: Calls whose absurdity is of another kind than that of many rows.
@@ -267,12 +268,12 @@ def calls() -> dict[str, Callable[[], object]]:
             if argument == "mass" and name not in ("RigidBody", "stick"):
                 continue
             absurd = rows | {argument: np.broadcast_to(row, (ABSURD, *np.shape(row)))}
-            found[f"{name}, {argument}"] = lambda f=function, a=absurd: f(**a)
+            found[f"{name}, {argument}"] = partial(function, **absurd)
         names = list(rows)
         for one, other in pairwise(names):
             column = np.broadcast_to(rows[one], (SIDE, 1, *np.shape(rows[one])))
             wide = rows | {one: column, other: many(rows[other])}
-            found[f"{name}, {one} and {other}"] = lambda f=function, a=wide: f(**a)
+            found[f"{name}, {one} and {other}"] = partial(function, **wide)
     return found
 
 

@@ -73,7 +73,7 @@ def calls() -> dict[str, Callable[[], object]]:
     teeth = np.column_stack([np.tile([0.0, 1.0], 20_000), np.arange(40_000.0)])
     comb = np.vstack([teeth, [(2.0, 39_999.0), (2.0, -1.0), (0.0, -1.0)]])
     rows, columns = numbers.tolist(), vectors.tolist()
-    heavy_ones, long = np.tile(numbers, 10), np.tile(vectors, (10, 1))
+    heavy_ones, long = np.tile(numbers, 5), np.tile(vectors, (5, 1))
     turned = np.asfortranarray(long)
 
     def waves(points: NDArray[np.float64]) -> NDArray[np.float64]:

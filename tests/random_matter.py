@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -75,7 +75,7 @@ class Cells(NamedTuple):
     nodes: np.ndarray
     cells: np.ndarray
     density: Any
-    at: str | None
+    at: Literal["cells", "nodes"] | None
     corners: np.ndarray
 
 

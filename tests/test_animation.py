@@ -30,6 +30,13 @@ def racket() -> Trajectory:
     return box.simulate(np.linspace(0.0, 12.0, 481), omega=(0.05, 2.0, 0.02))
 
 
+@pytest.fixture(scope="module")
+def slow() -> Trajectory:
+    """So short that the body may be seen to turn in four pictures."""
+    box = solids.box((3.0, 2.0, 1.0), mass=2.0).translated((0.1, 0.0, 0.0))
+    return box.simulate(np.linspace(0.0, 0.75, 31), omega=(0.05, 2.0, 0.02))
+
+
 def data(page: Path) -> dict[str, Any]:
     found = re.search(r'<script type="application/json" id="motion">(.*?)</script>', page.read_text("utf-8"))
     assert found
@@ -117,10 +124,10 @@ def clock(page: Path, folder: Path, at: float | None = None) -> float:
 
 
 class TestFilm:
-    def test_a_gif_has_its_frames_and_they_differ(self, racket: Trajectory, tmp_path: Path) -> None:
+    def test_a_gif_has_its_frames_and_they_differ(self, slow: Trajectory, tmp_path: Path) -> None:
         pytest.importorskip("matplotlib")
         told: list[float] = []
-        path = racket.animate(tmp_path / "racket.GIF", frames=4, duration=2.0, progress=told.append)
+        path = slow.animate(tmp_path / "racket.GIF", frames=4, duration=2.0, progress=told.append)
         assert told == [0.25, 0.5, 0.75, 1.0]
         with warnings.catch_warnings(), Image.open(path) as film:
             assert getattr(film, "n_frames", 1) == 4
@@ -132,12 +139,12 @@ class TestFilm:
         assert all((np.abs(a - b) > 30).mean() > 0.002 for a, b in itertools.pairwise(frames))
 
     def test_a_film_shows_the_body_move(
-        self, racket: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, slow: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """By the program that the extra brings: the system's is out of reach."""
         carrier = pytest.importorskip("imageio_ffmpeg")
         monkeypatch.setenv("PATH", "")
-        path = racket.animate(tmp_path / "racket.mp4", frames=6, duration=2.0)
+        path = slow.animate(tmp_path / "racket.mp4", frames=6, duration=2.0)
         command = [carrier.get_ffmpeg_exe(), "-i", path, "-f", "rawvideo", "-pix_fmt", "gray", "-"]
         done = subprocess.run(command, capture_output=True, timeout=60, check=True)
         assert re.search(rb"Video: h264.* 480x480.* 3 fps", done.stderr)
@@ -146,14 +153,14 @@ class TestFilm:
         assert all((np.abs(a - b) > 30).mean() > 0.002 for a, b in itertools.pairwise(frames))
 
     def test_without_ffmpeg_it_says_what_does_without(
-        self, racket: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, slow: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setenv("PATH", "")
         monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
         with pytest.raises(
             FileNotFoundError, match=r'racket\.mp4 needs .*"polhode\[film\]".*\.gif or \.html'
         ):
-            racket.animate(tmp_path / "racket.mp4", frames=3)
+            slow.animate(tmp_path / "racket.mp4", frames=4)
 
 
 class TestRefusals:

@@ -8,7 +8,8 @@ import sys
 from typing import TYPE_CHECKING
 
 import numpy as np
-from command_line import run
+from command_line import run, write_obj
+from oracles.meshes import cube
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -51,6 +52,31 @@ def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     for moment, want in ((0.02, 0), (1, 1)):
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(ROBOT.format(moment).encode())))
         assert run("check", "-")[0] == want
+
+
+def test_meshes_elsewhere_are_read_where_that_is_allowed(tmp_path: Path) -> None:
+    """A cube of side 1 and 6 kg: m a²/6 = 1, beside the model's folder."""
+    write_obj(tmp_path / "cube.obj", *cube(1.0))
+    path = tmp_path / "arm" / "r.urdf"
+    path.parent.mkdir()
+    mesh = '<mesh filename="../cube.obj"/>'
+    path.write_text(ROBOT.format(1).replace('"5"', '"6"').replace('<sphere radius="0.1"/>', mesh))
+    code, out, err = run("check", path)
+    assert (code, err) == (1, "")
+    assert f"line 5: mesh ../cube.obj lies outside {path.parent}" in out
+    assert "name the folder of its package with --packages, or pass --allow-outside" in out
+    assert run("check", path, "--allow-outside")[0] == 0
+    assert run("check", path, "--packages", tmp_path)[0] == 0
+    better = tmp_path / "better.urdf"
+    assert run("check", path, "--allow-outside", "--strict", "--fix", better)[0] == 0
+    assert better.read_text() == path.read_text()
+
+
+def test_control_characters_of_a_file_do_not_reach_the_terminal(tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf"
+    path.write_text(ROBOT.format(1).replace('<sphere radius="0.1"/>', '<mesh filename="a\x9b2J\u202e"/>'))
+    _, out, _ = run("check", path)
+    assert "mesh a\\x9b2J\\u202e was not found" in out
 
 
 def test_tutorial_robot(shared_data: Path, tmp_path: Path) -> None:

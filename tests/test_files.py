@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from polhode import RigidBody, Trajectory, files, loads, solids
 from polhode.errors import FileFormatError
+from polhode.molecules import isotopes
 
 TILT = np.array([0.3, -0.1, 0.4, 0.86]) / np.linalg.norm([0.3, -0.1, 0.4, 0.86])
 BODIES = {
@@ -179,29 +180,58 @@ class TestOtherLibraries:
             RigidBody.from_mesh_object(3.0, density=1.0)
 
     def test_ase(self) -> None:
-        """Water as ASE gives it: a stand-in with its two methods where ASE is not installed."""
+        """Water as ASE gives it: a stand-in with its methods where ASE is not installed."""
         positions = np.array([(0.0, 0.0, 0.119262), (0.0, 0.763239, -0.477047), (0.0, -0.763239, -0.477047)])
-        masses = np.array([15.999, 1.008, 1.008])
         try:
             import ase  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
             atoms = ase.Atoms("OH2", positions=positions)
+            heavy = ase.Atoms("OH2", positions=positions, masses=[16.0, 2.0, 2.0])
         except ImportError:
-            atoms = SimpleNamespace(get_masses=lambda: masses, get_positions=lambda: positions)
-        assert RigidBody.from_atoms(atoms) == RigidBody.from_particles(masses, positions)
+            atoms = SimpleNamespace(
+                get_chemical_symbols=lambda: ["O", "H", "H"],
+                get_masses=lambda: np.array([15.999, 1.008, 1.008]),
+                get_positions=lambda: positions,
+                has=lambda name: name == "positions",
+            )
+            heavy = SimpleNamespace(
+                **vars(atoms) | {"get_masses": lambda: np.array([16.0, 2.0, 2.0]), "has": lambda _: True}
+            )
+        body = RigidBody.from_atoms(atoms)
+        assert body == RigidBody.from_particles(
+            [isotope.mass for isotope in isotopes(["O", "H", "H"])], positions
+        )
+        assert str(body.provenance).startswith("3 atoms, most common isotopes; ")
+        average = RigidBody.from_atoms(atoms, masses="average")
+        np.testing.assert_allclose(average.mass, 15.999 + 2 * 1.008, atol=1e-3)
+        assert average.provenance.source == "atoms, average masses"
+        own = RigidBody.from_atoms(heavy)
+        assert own == RigidBody.from_particles([16.0, 2.0, 2.0], positions)
+        assert own.provenance.source == "atoms, masses of their own"
+        nameless = SimpleNamespace(get_masses=lambda: [16.0, 2.0, 2.0], get_positions=lambda: positions)
+        assert RigidBody.from_atoms(nameless) == own
+        nameless.get_masses = lambda: np.ma.masked_array([16.0, 2.0, 2.0], mask=[False, True, False])
+        with pytest.raises(ValueError, match="masked"):
+            RigidBody.from_atoms(nameless)
         with pytest.raises(ValueError, match="conformer"):
             RigidBody.from_atoms(atoms, conformer=0)
+        with pytest.raises(ValueError, match="masses: expected 'most_common' or 'average', got 'heavy'"):
+            RigidBody.from_atoms(atoms, masses="heavy")  # type: ignore[arg-type]
 
     def test_rdkit(self) -> None:
         """Two conformers of a diatomic molecule, as a stand-in with RDKit's names."""
         conformers = {0: np.array([(0.0, 0, 0), (1.0, 0, 0)]), 3: np.array([(0.0, 0, 0), (2.0, 0, 0)])}
-        atoms = [SimpleNamespace(GetMass=lambda: 12.011), SimpleNamespace(GetMass=lambda: 15.999)]
+        atoms = [
+            SimpleNamespace(GetSymbol=lambda: "C", GetIsotope=lambda: 13),
+            SimpleNamespace(GetSymbol=lambda: "O", GetIsotope=lambda: 0),
+        ]
         molecule = SimpleNamespace(
             GetAtoms=lambda: atoms,
             GetNumConformers=lambda: len(conformers),
             GetConformer=lambda number: SimpleNamespace(GetPositions=lambda: conformers[max(number, 0)]),
         )
-        reduced = 12.011 * 15.999 / (12.011 + 15.999)
+        carbon, oxygen = (isotope.mass for isotope in isotopes(["13C", "16O"]))
+        reduced = carbon * oxygen / (carbon + oxygen)
         for number, length in ((None, 1.0), (0, 1.0), (3, 2.0)):
             moments = RigidBody.from_atoms(molecule, conformer=number).principal_moments
             np.testing.assert_allclose(moments, (0.0, reduced * length**2, reduced * length**2), rtol=1e-14)

@@ -31,7 +31,7 @@ def callback(method: str) -> Callable[[], object]:
     return again
 
 
-def evaluated() -> object:
+def evaluated() -> Any:
     load = loads.torque_callback(lambda *_: evaluated())
     return load.torque(0.0, SPIN, (0.0, 0.0, 0.0, 1.0))
 
@@ -59,7 +59,7 @@ class Array:
     """An argument that makes a body of itself on its way to an array."""
 
     def __array__(self, *_: Any, **__: Any) -> Any:
-        return RigidBody(self, np.eye(3)).inertia  # type: ignore[arg-type]
+        return RigidBody(self, np.eye(3)).inertia
 
 
 class Rotation:
@@ -77,8 +77,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "progress": lambda: progress(0.0),
     "density": lambda: RigidBody.from_density(density, regions.ball(1.0)),
     "radial density": lambda: RigidBody.from_radial_density(radial, 1.0),
-    "array": lambda: RigidBody(Array(), np.eye(3)),  # type: ignore[arg-type]
-    "array in a list": lambda: RigidBody([Array()], np.eye(3)),  # type: ignore[list-item]
+    "array": lambda: RigidBody(Array(), np.eye(3)),
+    "array in a list": lambda: RigidBody([Array()], np.eye(3)),
     "rotation": lambda: BODY.rotated(Rotation()),
 }
 
@@ -112,7 +112,7 @@ def test_a_small_stack_suffices(name: str) -> None:
 
 def test_the_depth_is_of_what_is_under_way() -> None:
     """Neither errors nor many calls one after the other use it up; a few within each other are allowed."""
-    depth = []
+    depth: list[int] = []
 
     def nested(levels: int) -> None:
         def torque(*_: Any) -> tuple[float, float, float]:
@@ -142,7 +142,8 @@ def test_loads_made_of_very_many_steps() -> None:
     for _ in range(5000):
         load = -load
     assert repr(load).count("-1.0 * ") == 5000
-    restore, parts = load.__reduce__()[:2]  # type: ignore[misc]
+    reduced: Any = load.__reduce__()
+    restore, parts = reduced
     assert np.array_equal(restore(*parts).torque(0.0, SPIN, (0.0, 0.0, 0.0, 1.0)), np.array([0.0, 0.0, 1.0]))
     timed = loads.schedule(2.0 * loads.schedule(load, [(0.0, 1.0)]), [(0.0, 0.5)])
     assert repr(timed).startswith("<Load: schedule(2.0 * schedule(-1.0 * ")

@@ -78,7 +78,6 @@ class TestMuJoCoInclude:
             ('<include file="loop.xml"/>', "line 1 of loop.xml: loop.xml is included twice"),
             ('<include file="cut.xml"/>', "cut.xml: line 1: not well-formed XML"),
             ('<include file="bomb.xml"/>', "bomb.xml: line 1: declares a document type or entities"),
-            ('<include file="bad.xml"/>', "line 3 of bad.xml: mass is 'heavy'"),
             ('<include file="http://127.0.0.1:9/a.xml"/>', "there is no file http://127.0.0.1:9/a.xml"),
         ],
     )
@@ -90,11 +89,25 @@ class TestMuJoCoInclude:
             loop_xml='<x><include file="loop.xml"/></x>',
             cut_xml="<x><body>",
             bomb_xml='<!DOCTYPE x [<!ENTITY a "b">]><x><body name="&a;"/></x>',
-            bad_xml='<x>\n<body><geom size="1"/></body>\n<body><geom mass="heavy" size="1"/></body></x>',
         )
         with pytest.raises(FileFormatError, match=says) as told:
             judged(main)
         assert str(told.value).startswith(f"{main}: ")
+
+    def test_a_bad_number_ends_the_verdict_of_its_own_body_alone(self, tmp_path: Path) -> None:
+        main = write(
+            tmp_path,
+            main_xml=WORLD.format("", f'<include file="bad.xml"/><body name="a">{BALL}</body>'),
+            bad_xml='<x>\n<body name="b"><geom size="1"/></body>\n'
+            '<body name="c"><geom mass="heavy" size="1"/></body></x>',
+        )
+        found = judged(main)
+        assert {name: verdict.verdict for name, verdict in found.items()} == {
+            "b": "inferred",
+            "c": "unreadable",
+            "a": "good",
+        }
+        assert found["c"].reason == "line 3 of bad.xml: mass is 'heavy' where a finite number has to stand"
 
 
 class TestMuJoCoParts:
@@ -249,6 +262,29 @@ class TestSdfInclude:
             lost.reason == "line 3: model://gone was not found; name the folder that holds it with --packages"
         )
         assert robot.notes == ("https://example.org/sun is not judged: nothing is fetched from a network",)
+
+    @pytest.mark.parametrize(
+        ("text", "says"),
+        [
+            ("<sdf><model>", "part.xml: line 1: not well-formed XML"),
+            ("<html/>", "line 3: the root of part.xml is <html>, not <sdf> or <robot>"),
+            ('<!DOCTYPE x [<!ENTITY a "b">]><sdf/>', "part.xml: line 1: declares a document type"),
+        ],
+    )
+    def test_what_cannot_be_read_is_one_too(self, tmp_path: Path, text: str, says: str) -> None:
+        include = "<include><uri>part.xml</uri></include>"
+        main = write(tmp_path, main_sdf=sdf(LINK.format("own", 0.02, SPHERE), include), part_xml=text)
+        own, lost = judged(main).values()
+        assert (own.verdict, lost.verdict) == ("good", "unreadable")
+        assert lost.reason.startswith("line 3: ")
+        assert says in lost.reason
+
+    def test_what_is_mjcf_is_told(self, tmp_path: Path) -> None:
+        include = "<include><uri>part.xml</uri></include>"
+        text = WORLD.format("", "<body/>")
+        robot = robots.read_robot(write(tmp_path, main_sdf=sdf('<link name="own"/>', include), part_xml=text))
+        assert [link.name for link in robot.links] == ["own"]
+        assert robot.notes[1] == "part.xml is not judged: it is MJCF, to be checked for itself"
 
     def test_a_model_within_itself_is_refused(self, tmp_path: Path) -> None:
         main = write(tmp_path, main_sdf=sdf("<include><uri>main.sdf</uri></include>"))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from mpmath import mp, mpf
 from oracles.load_cases import ATTITUDE
 from oracles.load_variations import NAMES, Setting, jacobian, setting, table
 from polhode import MotionSensitivity, RigidBody, loads
@@ -243,3 +244,25 @@ def test_what_cannot_be_varied_says_so() -> None:
     run = BRICK.simulate([0.0, 1.0], OMEGA, load=loads.torque_callback(torque))
     with pytest.raises(PolhodeError, match=r"call a function.*rtol=1e-13"):
         run.sensitivity()
+
+
+def test_through_rest_under_quadratic_damping() -> None:
+    """Of ω̇ = f(ω), f = τ − E |ω| ω, dω(t)/dω(0) is f(ω(t))/f(ω(0)); ω by tan, then tanh."""
+    rng = np.random.default_rng(20261122)
+    body = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
+    worst = 0.0
+    for _ in range(60):
+        tau, drag = 10.0 ** rng.uniform(-1, 1, 2)
+        start = -float(10.0 ** rng.uniform(-2, 1))
+        ratio, rate = np.sqrt(tau / drag), np.sqrt(tau * drag)
+        rest = np.arctan(-start / ratio) / rate  # when ω is zero
+        t = float(rest + rng.uniform(0.1, 2.0) / rate)
+        load = loads.constant_torque((0, 0, tau)) + loads.damping(np.zeros((3, 3)), drag)
+        found = body.simulate([0, t], (0, 0, start), load=load).sensitivity().state[-1][5, 5]
+        with mp.workdps(40):
+            a, e, w = mpf(tau), mpf(drag), mpf(start)
+            scale, speed = mpmath.sqrt(a / e), mpmath.sqrt(a * e)
+            last = scale * mpmath.tanh(speed * mpf(t) - mpmath.atan(-w / scale))
+            exact = (a - e * last**2) / (a + e * w**2)
+        worst = max(worst, float(abs(found - exact) / exact))
+    assert worst < 1e-12

@@ -132,7 +132,8 @@ class TestMotion:
     ) -> None:
         """In a window: here one without a screen."""
         monkeypatch.setattr(pyvista, "OFF_SCREEN", False)
-        plotter = view.motion(motion, pyvista.Plotter(off_screen=False), duration=0.2)
+        with pytest.warns(UserWarning, match="duration: .* turns by up to 96.9 deg"):
+            plotter = view.motion(motion, pyvista.Plotter(off_screen=False), duration=0.2)
         slider = getattr(plotter, "widgets", plotter).slider_widgets[0]
         slider.GetRepresentation().SetValue(float(motion.t[37]))
         slider.InvokeEvent("InteractionEvent")

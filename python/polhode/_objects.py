@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _core
+from polhode.molecules import body_of_atoms, isotopes
+
+if TYPE_CHECKING:
+    from polhode.molecules import Masses
 
 __all__ = ["body_from_atoms", "body_from_mesh"]
 
@@ -32,8 +36,10 @@ def body_from_mesh(mesh: Any, **options: Any) -> _core.RigidBody:
     return _core.RigidBody.from_mesh(vertices, index.reshape(-1)[np.asarray(found.faces)], **options)
 
 
-def body_from_atoms(atoms: Any, conformer: int | None = None) -> _core.RigidBody:
-    """Take masses and positions: what ``RigidBody.from_atoms`` does.
+def body_from_atoms(
+    atoms: Any, conformer: int | None = None, masses: Masses = "most_common"
+) -> _core.RigidBody:
+    """Take symbols and positions: what ``RigidBody.from_atoms`` does.
 
     Parameters
     ----------
@@ -41,22 +47,29 @@ def body_from_atoms(atoms: Any, conformer: int | None = None) -> _core.RigidBody
         ASE's ``Atoms`` or RDKit's ``Mol``.
     conformer : int, optional
         Which of an RDKit molecule's.
+    masses : {"most_common", "average"}
+        Of each element, where the object was not given masses (ASE) or isotopes (RDKit) of its own.
     """
     if hasattr(atoms, "get_masses") and hasattr(atoms, "get_positions"):
         if conformer is not None:
             raise ValueError("conformer: only an RDKit molecule has some")
-        masses, positions = atoms.get_masses(), atoms.get_positions()
+        positions = atoms.get_positions()
+        was_set = hasattr(atoms, "has") and atoms.has("masses")  # by ASE's set_masses
+        if was_set or not hasattr(atoms, "get_chemical_symbols"):
+            return body_of_atoms(atoms.get_masses(), positions, source="own")
+        labels = atoms.get_chemical_symbols()
     elif hasattr(atoms, "GetAtoms") and hasattr(atoms, "GetConformer"):
         if not atoms.GetNumConformers():
             raise ValueError(
                 "atoms: the molecule has no conformer, and so no positions; "
                 "rdkit.Chem.AllChem.EmbedMolecule makes one"
             )
-        masses = [atom.GetMass() for atom in atoms.GetAtoms()]
+        labels = [f"{atom.GetIsotope() or ''}{atom.GetSymbol()}" for atom in atoms.GetAtoms()]
         positions = atoms.GetConformer(-1 if conformer is None else conformer).GetPositions()
     else:
         raise TypeError(
             f"atoms: expected ASE's Atoms or RDKit's Mol, got {type(atoms).__name__}; "
             "RigidBody.from_particles takes masses and positions"
         )
-    return _core.RigidBody.from_particles(masses, positions)
+    found = [isotope.mass for isotope in isotopes(labels, masses)]
+    return body_of_atoms(found, positions, source=masses)

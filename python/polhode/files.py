@@ -7,18 +7,21 @@ them.
 
 from __future__ import annotations
 
-import json
-import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _core
+from polhode._files.fields import counts, numbers, read_json, read_npz, write_json
+from polhode._files.writing import writing
 from polhode.errors import FileFormatError, PolhodeError
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from os import PathLike
+
+    from numpy.typing import NDArray
 
     from polhode import RigidBody, Trajectory
 
@@ -36,6 +39,12 @@ _BODY_FORMAT, _TRAJECTORY_FORMAT = "polhode.RigidBody/1", "polhode.Trajectory/1"
 _BODY_ARRAYS = ("mass", "center_of_mass", "inertia")
 _STATES = {"t": 0, "omega": 3, "quaternion": 4, "position": 3, "velocity": 3}
 _COUNTS = ("steps", "evaluations")
+_ENDS = ("complete", "stopped", "failed")
+_OFF_UNITY = 1e-6
+_BODY_FIELDS = (*_BODY_ARRAYS, "principal_moments", "principal_axes", "numbers")
+_TRAJECTORY_FIELDS = ("about", *_STATES, *_COUNTS, "status", "pivoted")
+_TRAJECTORY_ARRAYS = (*_TRAJECTORY_FIELDS, *_BODY_ARRAYS, *(f"body_{name}" for name in _BODY_FIELDS))
+_WORDS = ("format", "comment")
 
 
 def _array(text: str) -> dict[str, object]:
@@ -61,6 +70,8 @@ BODY_SCHEMA: dict[str, object] = {
             "the last bit, and must agree with mass, center_of_mass and inertia"
         ),
     },
+    "patternProperties": {"^comment$": {"description": "for the reader of the file"}},
+    "additionalProperties": False,
 }
 """What a body's JSON file holds, as JSON Schema."""
 
@@ -74,7 +85,7 @@ TRAJECTORY_SCHEMA: dict[str, object] = {
         "body": BODY_SCHEMA,
         "about": _array("the point of reference in the body, shape (..., 3)"),
         "pivoted": {"description": "whether that point is fixed in space", "type": "boolean"},
-        "t": _array("times, shape (T,)"),
+        "t": _array("times, shape (T,); of a closed form any shape, which stands for (T,) in those below"),
         "omega": _array("angular velocity in the body, shape (..., T, 3)"),
         "quaternion": _array("attitude R_NB as x, y, z, w, shape (..., T, 4)"),
         "position": _array("of the point of reference in space, shape (..., T, 3)"),
@@ -83,6 +94,8 @@ TRAJECTORY_SCHEMA: dict[str, object] = {
         "steps": _array("accepted steps, shape (...)"),
         "evaluations": _array("of the equations of motion, shape (...)"),
     },
+    "patternProperties": {"^comment$": {"description": "for the reader of the file"}},
+    "additionalProperties": False,
 }
 """What a motion's JSON file holds, as JSON Schema; a state that is not a number is null."""
 
@@ -100,10 +113,10 @@ def save_body(body: RigidBody, path: str | PathLike[str]) -> None:
     file = Path(path)
     fields = _body_fields(body)
     if _suffix(file) == ".json":
-        _write_json(file, {"format": _BODY_FORMAT} | fields)
+        _check_has_bodies(body, file)
+        write_json(file, _listed({"format": _BODY_FORMAT} | fields, file))
     else:
-        with file.open("wb") as stream:
-            np.savez(stream, format=np.array(_BODY_FORMAT), **fields)
+        _write_npz(file, _BODY_FORMAT, fields)
 
 
 def load_body(path: str | PathLike[str]) -> RigidBody:
@@ -115,7 +128,7 @@ def load_body(path: str | PathLike[str]) -> RigidBody:
         Ends in ``.json`` or ``.npz``.
     """
     file = Path(path)
-    return _body(_read(file, _BODY_FORMAT), file)
+    return _body(_read(file, _BODY_FORMAT, _BODY_FIELDS), file)
 
 
 def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
@@ -126,9 +139,11 @@ def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
     trajectory : Trajectory
     path : pathlib.Path
     """
-    fields: dict[str, Any] = {"format": _TRAJECTORY_FORMAT, "body": _listed(_body_fields(trajectory.body))}
-    fields |= {name: getattr(trajectory, name) for name in ("about", *_STATES, *_COUNTS, "status")}
-    _write_json(path, fields | {"pivoted": trajectory.pivoted})
+    _check_has_bodies(trajectory.body, path)
+    fields: dict[str, Any] = {"format": _TRAJECTORY_FORMAT}
+    fields["body"] = _listed(_body_fields(trajectory.body), path)
+    fields |= {name: getattr(trajectory, name) for name in _TRAJECTORY_FIELDS}
+    write_json(path, _listed(fields, path))
 
 
 def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
@@ -139,11 +154,10 @@ def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
     trajectory : Trajectory
     path : pathlib.Path
     """
-    arrays = {name: getattr(trajectory, name) for name in ("about", *_STATES, *_COUNTS, "status", "pivoted")}
+    arrays = {name: getattr(trajectory, name) for name in _TRAJECTORY_FIELDS}
     arrays |= {name: getattr(trajectory.body, name) for name in _BODY_ARRAYS}
     arrays |= {f"body_{name}": value for name, value in _body_fields(trajectory.body).items()}
-    with path.open("wb") as stream:  # numpy would add its suffix to a name that ends in .NPZ
-        np.savez(stream, format=np.array(_TRAJECTORY_FORMAT), **arrays)
+    _write_npz(path, _TRAJECTORY_FORMAT, arrays)
 
 
 def load_trajectory(path: str | PathLike[str]) -> Trajectory:
@@ -157,41 +171,73 @@ def load_trajectory(path: str | PathLike[str]) -> Trajectory:
     from polhode.trajectory import Trajectory
 
     file = Path(path)
-    fields = _read(file, _TRAJECTORY_FORMAT)
-    body = fields.get("body")
+    fields = _read(file, _TRAJECTORY_FORMAT, (*_TRAJECTORY_FIELDS, "body"), _TRAJECTORY_ARRAYS)
     if file.suffix.lower() == ".npz":
-        body = {
+        fields["body"] = {
             name.removeprefix("body_"): value for name, value in fields.items() if name.startswith("body_")
         }
-    elif not isinstance(body, dict):
+    elif not isinstance(fields.get("body"), dict):
         raise FileFormatError(f"{file}: body is not an object with the fields of a body")
-    loaded = _body(body, file)
-    arrays = {name: _numbers(fields, name, file) for name in ("about", *_STATES)}
-    times = (*loaded.shape, len(arrays["t"]) if arrays["t"].ndim == 1 else -1)
+    else:
+        _check_names(fields["body"], (*_BODY_FIELDS, *_WORDS), f"{file}: body")
+    body = _body(fields["body"], file)
+    t = numbers(_required(fields, "t", file), "t", file)
+    states = {"t": t, "about": numbers(_required(fields, "about", file), "about", file)}
+    expected: dict[str, tuple[int, ...]] = {"about": (*body.shape, 3)}
     for name, width in _STATES.items():
-        expected = (*times, width) if width else times[-1:]
-        if arrays[name].shape != expected:
-            raise FileFormatError(f"{file}: {name} has shape {arrays[name].shape}, expected {expected}")
-    if arrays["about"].shape != (*loaded.shape, 3):
-        raise FileFormatError(
-            f"{file}: about has shape {arrays['about'].shape}, expected {(*loaded.shape, 3)}"
-        )
-    none = np.zeros(loaded.shape, dtype=np.int64)
-    counts = {name: np.asarray(fields.get(name, none), dtype=np.int64) for name in _COUNTS}
-    status = np.asarray(fields.get("status", "complete"))
+        if width:
+            states[name] = numbers(_required(fields, name, file), name, file, with_holes=True)
+            expected[name] = (*body.shape, *t.shape, width)
+    for name, shape in expected.items():
+        if states[name].shape != shape:
+            raise FileFormatError(f"{file}: {name} has shape {states[name].shape}, expected {shape}")
+    _check_unit(states["quaternion"], file)
+    none = np.zeros(body.shape, dtype=np.int64)
+    given = {name: counts(fields.get(name, none), name, file, body.shape) for name in _COUNTS}
     return Trajectory(
-        body=loaded,
-        t=arrays["t"],
-        omega=arrays["omega"],
-        quaternion=arrays["quaternion"],
-        position=arrays["position"],
-        velocity=arrays["velocity"],
-        about=arrays["about"],
-        steps=counts["steps"],
-        evaluations=counts["evaluations"],
-        status=status if status.ndim else str(status),
-        pivoted=bool(fields.get("pivoted", False)),
+        body=body,
+        t=t,
+        omega=states["omega"],
+        quaternion=states["quaternion"],
+        position=states["position"],
+        velocity=states["velocity"],
+        about=states["about"],
+        steps=given["steps"],
+        evaluations=given["evaluations"],
+        status=_status(fields, file, body.shape),
+        pivoted=_pivoted(fields, file),
     )
+
+
+def _status(fields: dict[str, Any], file: Path, shape: tuple[int, ...]) -> Any:
+    held = fields.get("status", "complete")
+    status = np.array(held, dtype=object)
+    others = [word for word in status.reshape(-1).tolist() if word not in _ENDS]
+    if others:
+        raise FileFormatError(
+            f"{file}: status holds {repr(others[0])[:60]}, expected one of {', '.join(_ENDS)}"
+        )
+    if status.shape not in ((), shape):
+        raise FileFormatError(f"{file}: status has shape {status.shape}, expected {shape}")
+    return status.astype(str) if status.ndim else str(held)
+
+
+def _pivoted(fields: dict[str, Any], file: Path) -> bool:
+    held = fields.get("pivoted", False)
+    if isinstance(held, np.ndarray) and held.dtype == np.bool_ and held.ndim == 0:
+        return bool(held)
+    if not isinstance(held, bool):
+        found = f"{held.dtype} of shape {held.shape}" if isinstance(held, np.ndarray) else repr(held)[:60]
+        raise FileFormatError(f"{file}: pivoted is {found}, expected true or false")
+    return held
+
+
+def _check_unit(quaternion: NDArray[np.float64], file: Path) -> None:
+    with np.errstate(over="ignore"):
+        squares = np.square(quaternion).sum(axis=-1)
+    off = squares[np.abs(squares - 1.0) > _OFF_UNITY]
+    if off.size:
+        raise FileFormatError(f"{file}: a quaternion has the norm {np.sqrt(off[0]):.9g}, expected 1")
 
 
 def _body_fields(body: RigidBody) -> dict[str, Any]:
@@ -205,12 +251,13 @@ def _body_fields(body: RigidBody) -> dict[str, Any]:
 
 
 def _body(fields: dict[str, Any], file: Path) -> RigidBody:
-    given = {name: _numbers(fields, name, file) for name in _BODY_ARRAYS}
+    given = {name: numbers(_required(fields, name, file), name, file) for name in _BODY_ARRAYS}
     try:
         if "numbers" not in fields:
             return _core.RigidBody(given["mass"], given["inertia"], given["center_of_mass"])
-        numbers = _numbers(fields, "numbers", file)
-        body = _core.RigidBody._from_numbers(numbers)
+        body = _core.RigidBody._from_numbers(numbers(fields["numbers"], "numbers", file))
+    except FileFormatError:
+        raise
     except PolhodeError as error:
         raise FileFormatError(f"{file}: {error}") from error
     except ValueError as error:
@@ -223,34 +270,37 @@ def _body(fields: dict[str, Any], file: Path) -> RigidBody:
     return body
 
 
-def _numbers(fields: dict[str, Any], name: str, file: Path) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _required(fields: dict[str, Any], name: str, file: Path) -> Any:
     if name not in fields:
         raise FileFormatError(f"{file}: {name} is missing")
-    try:
-        return np.asarray(fields[name], dtype=np.float64)
-    except (TypeError, ValueError):
-        raise FileFormatError(f"{file}: {name} is not an array of numbers") from None
+    return fields[name]
 
 
-def _read(file: Path, expected: str) -> dict[str, Any]:
-    """Read the fields of a file of the expected format."""
+def _read(
+    file: Path, expected: str, in_json: Collection[str], in_npz: Collection[str] | None = None
+) -> dict[str, Any]:
+    """Read the fields of a file of the expected format, which may hold these fields alone."""
+    fields: dict[str, Any]
     if _suffix(file) == ".json":
-        try:
-            fields = json.loads(file.read_text(encoding="utf-8"))
-        except (UnicodeDecodeError, json.JSONDecodeError) as error:
-            raise FileFormatError(f"{file}: not JSON: {error}") from None
+        known = {*in_json, *_WORDS}
+        fields = read_json(file)
     else:
-        try:
-            with np.load(file, allow_pickle=False) as archive:
-                fields = {name: archive[name] for name in archive}
-        except (ValueError, EOFError, zipfile.BadZipFile) as error:
-            raise FileFormatError(f"{file}: not an npz file: {error}") from None
-        if "format" in fields:
-            fields["format"] = str(fields["format"])
-    found = fields.get("format") if isinstance(fields, dict) else None
+        known = {*(in_npz or in_json), *_WORDS}
+        fields = dict(read_npz(file))
+    found = fields.get("format")
+    found = str(found) if isinstance(found, np.ndarray) else found
     if found != expected:
         raise FileFormatError(f"{file}: its format is {found!r}, expected {expected!r}")
-    return dict(fields)
+    _check_names(fields, known, str(file))
+    return fields
+
+
+def _check_names(fields: dict[str, Any], known: Collection[str], where: str) -> None:
+    other = next((name for name in fields if name not in known), None)
+    if other is not None:
+        raise FileFormatError(
+            f"{where}: {other[:40]!r} is no field of this format; words for the reader may stand in 'comment'"
+        )
 
 
 def _suffix(file: Path) -> str:
@@ -260,15 +310,23 @@ def _suffix(file: Path) -> str:
     return suffix
 
 
-def _write_json(file: Path, fields: dict[str, Any]) -> None:
-    if fields.get("mass") is not None and not np.size(fields["mass"]):
+def _check_has_bodies(body: RigidBody, file: Path) -> None:
+    if not np.size(body.mass):
         raise ValueError(f"path: {file}: JSON does not tell the shape of an empty stack; .npz does")
-    # Python writes the shortest decimal that gives the same float64 back.
-    file.write_text(json.dumps(_listed(fields), indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def _listed(fields: dict[str, Any]) -> dict[str, Any]:
+def _write_npz(file: Path, name: str, arrays: dict[str, Any]) -> None:
+    with writing(file) as stream:  # given a path, numpy would add its suffix to one that ends in .NPZ
+        np.savez(stream, format=np.array(name), **arrays)
+
+
+def _listed(fields: dict[str, Any], file: Path) -> dict[str, Any]:
     """Turn arrays into lists in which what is not a number is null."""
+    for name, value in fields.items():
+        if isinstance(value, np.ndarray) and value.dtype.kind == "f" and np.isinf(value).any():
+            raise ValueError(
+                f"path: {file}: {name} is infinite somewhere, which JSON does not have; .npz does"
+            )
     return {name: _plain(value) for name, value in fields.items()}
 
 

@@ -8,6 +8,7 @@ triangle's corners anew.
 from __future__ import annotations
 
 import os
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -21,12 +22,13 @@ from polhode._files.mesh import Mesh
 from polhode._files.scene import read_scene
 from polhode._files.xyz import Molecule, read_xyz
 from polhode.errors import FileFormatError, MeshError, PolhodeError
-from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, isotopes
+from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, body_of_atoms, isotopes
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
+    from polhode.molecules import Masses
 
 __all__ = [
     "MOLECULE_SUFFIX",
@@ -81,6 +83,7 @@ def body_from_file(
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
     index_base: int = 1,
+    masses: Masses = "most_common",
     progress: Callable[[float], object] | None = None,
 ) -> _core.RigidBody:
     """Read the body a file describes: what ``RigidBody.from_file`` does.
@@ -97,6 +100,8 @@ def body_from_file(
         masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
     weld, closure, orient, index_base
         Of a mesh; see :func:`solid_from_file`.
+    masses : {"most_common", "average"}
+        Of a molecule; see :func:`polhode.molecules.isotopes`.
     progress : callable, optional
         Is told the fraction of a large mesh file done, now and then; an exception it raises ends the reading.
 
@@ -117,6 +122,8 @@ def body_from_file(
         _check_amount(name, value, path)
     scale = 1.0 if length_unit is None else metres_per(length_unit)
     if not _is_molecule(path):
+        if masses != "most_common":
+            raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
         return solid_from_file(
             path,
             density=density,
@@ -139,10 +146,11 @@ def body_from_file(
         if is_given:
             raise PolhodeError(f"{name}: {os.fspath(path)} is a molecule, {reason}; leave it out")
     molecule = read_xyz(path)
-    masses = np.array([isotope.mass for isotope in molecule_isotopes(path, molecule)])
-    if length_unit is not None:
-        masses *= ATOMIC_MASS_CONSTANT
-    return _core.RigidBody.from_particles(masses, molecule.positions * scale)
+    unit = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
+    found = [isotope.mass * unit for isotope in molecule_isotopes(path, molecule, masses)]
+    with _naming(path), np.errstate(over="ignore"):
+        rounding = molecule.rounding * scale
+        return body_of_atoms(found, molecule.positions * scale, source=masses, rounding=rounding)
 
 
 def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float = 0.0) -> Mesh:
@@ -152,8 +160,8 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
     ----------
     path : str or os.PathLike
         Binary and ASCII STL, and ``v``/``f`` text (``.obj``, ``.tab``, ``.txt``) are read without any
-        further library; PLY, OFF, GLB and what else trimesh knows by trimesh (extra ``mesh``). Nodes of a
-        scene are placed by their transforms and taken together.
+        further library; PLY, OFF and GLB by trimesh (extra ``mesh``), and no other format. Nodes of a scene
+        are placed by their transforms and taken together.
     index_base : {1, 0}
         What ``v``/``f`` text counts its vertices from: 1 in OBJ and in most plate files, 0 in some.
     weld : float
@@ -238,9 +246,10 @@ def solid_from_file(
     streamed = _stream_format(file) if weld == 0.0 and index_base == 1 and closure is None else None
     if streamed is not None:
         try:
-            body, faces, volume, area = _core.stream_solid(
-                str(file), scale=scale, density=density, mass=mass, orient=orient, progress=progress
-            )
+            with _naming(file):
+                body, faces, volume, area = _core.stream_solid(
+                    str(file), scale=scale, density=density, mass=mass, orient=orient, progress=progress
+                )
         except MeshError as error:
             is_told = streamed == "PLY" or " is not closed" not in str(error)
             if is_told or file.stat().st_size > _SMALL_FILE:
@@ -251,7 +260,8 @@ def solid_from_file(
     corners = len(mesh.vertices)
     if weld != 0.0:
         mesh = meshes.weld_within(mesh, weld)
-    vertices = mesh.vertices * scale
+    with np.errstate(over="ignore"):  # what is beyond float64 is refused as infinite, with its number
+        vertices = mesh.vertices * scale
 
     def solid(density: float | None, mass: float | None = None) -> _core.RigidBody:
         return _core.RigidBody.from_mesh(
@@ -259,17 +269,20 @@ def solid_from_file(
         )
 
     try:
-        body = solid(density, mass)
-        volume = float(body.mass) / density if density is not None else float(solid(1.0).mass)
+        with _naming(file):
+            body = solid(density, mass)
+            volume = float(body.mass) / density if density is not None else float(solid(1.0).mass)
+            area = _core.surface_area(vertices, mesh.faces)
     except MeshError as error:
-        raise MeshError(_with_weld(f"{file}: {error}", mesh)) from None
-    area = _core.surface_area(vertices, mesh.faces)
+        raise MeshError(_with_weld(str(error), mesh)) from None
     welded = corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
 
 
-def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[Isotope]:
+def molecule_isotopes(
+    path: str | os.PathLike[str], molecule: Molecule, masses: Masses = "most_common"
+) -> list[Isotope]:
     """Find the nuclides of a molecule's atoms, naming the file in what goes wrong.
 
     Parameters
@@ -278,6 +291,8 @@ def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[
         Where the molecule comes from.
     molecule : Molecule
         What was read.
+    masses : {"most_common", "average"}
+        See :func:`polhode.molecules.isotopes`.
 
     Returns
     -------
@@ -285,7 +300,7 @@ def molecule_isotopes(path: str | os.PathLike[str], molecule: Molecule) -> list[
         In the order of the atoms.
     """
     try:
-        return isotopes(molecule.labels)
+        return isotopes(molecule.labels, masses)
     except PolhodeError as error:
         raise FileFormatError(f"{os.fspath(path)}: {error}") from None
 
@@ -299,7 +314,9 @@ def _read(file: Path, suffix: str, index_base: int) -> Mesh:
         # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
         return Mesh(*_core.read_stl(str(file)), "binary STL")
     if suffix in (".obj", ".tab", ".txt"):
-        return Mesh(*_core.read_plates(str(file), index_base), "v/f text")
+        mesh = Mesh(*_core.read_plates(str(file), index_base), "v/f text")
+        meshes.check_faces(mesh, str(file))
+        return mesh
     return read_scene(file, readable=tuple(known for known in EXPECTED_CONTENT if known != MOLECULE_SUFFIX))
 
 
@@ -333,6 +350,17 @@ def _with_weld(message: str, mesh: Mesh) -> str:
     hint = f"{near} {lie} within {resolution:g} of another, weld={resolution:g} joins {them}"
     fault, others, remedies = message.partition("; close the mesh ")
     return f"{fault}; {hint}; or close the mesh {remedies}" if others else f"{message} ({hint})"
+
+
+@contextmanager
+def _naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Let what is wrong with a body tell the file that it is read from."""
+    try:
+        yield
+    except PolhodeError as error:
+        if str(error).startswith(f"{os.fspath(path)}: "):
+            raise
+        raise type(error)(f"{os.fspath(path)}: {error}") from None
 
 
 def _check_amount(name: str, value: object, path: str | os.PathLike[str]) -> None:

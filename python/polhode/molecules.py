@@ -7,7 +7,7 @@ moment of inertia is then in u angstrom^2.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -43,27 +43,31 @@ SPEED_OF_LIGHT: Final = 299792458.0
 ATOMIC_MASS_CONSTANT: Final = 1.66053906892e-27
 """One u in kg; standard uncertainty 0.00000000052e-27."""
 
+Masses: TypeAlias = Literal["most_common", "average"]
+
 _ANGSTROM: Final = 1e-10
 _LABEL: Final = re.compile(r"(?P<mass_number>\d+)?(?P<symbol>[A-Za-z]{1,2})|(?P<number>\d+)")
 _HYDROGEN: Final = {"D": 2, "T": 3}
 
 
 class Isotope(NamedTuple):
-    """One atom's nuclide: its name such as ``"16O"`` and its atomic mass in u."""
+    """One atom's nuclide: its name such as ``"16O"``, or of an average ``"O"``, and its atomic mass in u."""
 
     name: str
     mass: float
 
 
-def isotopes(labels: Sequence[str]) -> list[Isotope]:
+def isotopes(labels: Sequence[str], masses: Masses = "most_common") -> list[Isotope]:
     """Find the nuclide each label stands for.
 
     Parameters
     ----------
     labels : sequence of str
         Element symbols (``"O"``) or atomic numbers (``"8"``) stand for the most abundant isotope, as
-        spectroscopists read them (never the average mass of the element); ``"18O"``, ``"D"`` and
-        ``"T"`` for themselves.
+        spectroscopists read them; ``"18O"``, ``"D"`` and ``"T"`` for themselves.
+    masses : {"most_common", "average"}
+        Give an element its average mass over its isotopes instead, as in a bottle; its name is then the
+        symbol alone.
 
     Returns
     -------
@@ -84,14 +88,45 @@ def isotopes(labels: Sequence[str]) -> list[Isotope]:
     ['12C', '16O', '18O', '2H']
     """
     table = require("periodictable", extra="chem", purpose="reading isotope masses").elements
+    if masses not in ("most_common", "average"):
+        raise ValueError(f"masses: expected 'most_common' or 'average', got {masses!r}")
     known: dict[str, Isotope] = {}
     for label in labels:
         if label not in known:
-            known[label] = _isotope(table, label)
+            known[label] = _isotope(table, label, masses)
     return [known[label] for label in labels]
 
 
-def _isotope(table: Any, label: str) -> Isotope:
+def body_of_atoms(
+    masses: ArrayLike,
+    positions: ArrayLike,
+    *,
+    source: Masses | Literal["own"] = "most_common",
+    rounding: float = 0.0,
+) -> _core.RigidBody:
+    """Make the body of a molecule, whether its atoms come from a file or from another library's object.
+
+    Parameters
+    ----------
+    masses : array_like, shape (n,)
+        Of the atoms.
+    positions : array_like, shape (n, 3)
+        In the unit of length of the body.
+    source : {"most_common", "average", "own"}
+        Whose masses they are: of isotopes, of elements, or given with the atoms. `provenance` tells it.
+    rounding : float
+        By how much each coordinate was rounded at most, where that is known. The class of the top then takes
+        moments as equal that differ by no more than this can make.
+
+    Returns
+    -------
+    RigidBody
+    """
+    body = _core.RigidBody.from_particles(masses, positions)
+    return body._of_atoms(source, rounding)
+
+
+def _isotope(table: Any, label: str, masses: Masses) -> Isotope:
     match = _LABEL.fullmatch(label)
     if match is None:
         raise PolhodeError(f"{label!r} is not an element; write a symbol (O), isotope (18O) or number (8)")
@@ -106,6 +141,8 @@ def _isotope(table: Any, label: str) -> Isotope:
     # Entry 0 of the table is the neutron; "D" and "T" are its names of nuclides, not of elements.
     if element is None or element.number == 0 or symbol in _HYDROGEN:
         raise PolhodeError(f"{label!r} is not an element; check the symbol")
+    if mass_number is None and masses == "average":
+        return Isotope(element.symbol, float(element.mass))
     if mass_number is None:
         # Of equal abundances (none exists in nature) the lightest, so that the choice never wavers.
         mass_number = max(element.isotopes, key=lambda a: (element[a].abundance, -a))
@@ -195,7 +232,8 @@ def inertial_defect(moments: ArrayLike) -> Any:
     Returns
     -------
     float or numpy.ndarray, shape (...)
-        In the same unit; never positive for a rigid body. That of a vibrating planar molecule is.
+        In the same unit; never positive for a rigid body, but for the rounding of the moments, a few units in
+        the last place of the largest. That of a vibrating planar molecule is.
 
     Examples
     --------
@@ -220,8 +258,8 @@ def planar_moments(moments: ArrayLike) -> Floats:
     Returns
     -------
     numpy.ndarray, shape (..., 3)
-        :math:`P_{aa} \ge P_{bb} \ge P_{cc} \ge 0` in the same unit; the last is half of minus the inertial
-        defect.
+        :math:`P_{aa} \ge P_{bb} \ge P_{cc} \ge 0` in the same unit, but for the rounding of the moments; the
+        last is half of minus the inertial defect.
 
     Examples
     --------

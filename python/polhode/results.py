@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = [
+    "TOP_RTOL",
     "AngularMomentum",
     "BoxFit",
     "ErrorBound",
@@ -33,6 +34,10 @@ __all__ = [
 ]
 
 
+TOP_RTOL: Final = 1e-6
+"""Moments closer than this, relative to the largest, count as equal unless more is known of them."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class PrincipalAxes:
     """Principal moments and axes of one tensor or of a stack.
@@ -44,10 +49,15 @@ class PrincipalAxes:
     axes : numpy.ndarray, shape (..., 3, 3)
         The axes are the **columns**, right-handed: ``inertia = axes @ diag(moments) @ axes.T`` and
         ``v_body = axes @ v_principal``.
+    top_rtol : float or numpy.ndarray, shape (..., 3)
+        At which `top` is decided, relative to the largest moment: 1e-6, or for a molecule from a file of few
+        digits one each for I1 = 0, I1 = I2 and I2 = I3, as much as the rounding of its coordinates can make
+        and at least 1e-6.
     """
 
     moments: Floats
     axes: Floats
+    top_rtol: Any = TOP_RTOL
 
     def __repr__(self) -> str:
         shape = self.moments.shape[:-1]
@@ -67,7 +77,7 @@ class PrincipalAxes:
 
     @cached_property
     def top(self) -> Any:
-        """Class of the top, decided on `gaps` at a relative tolerance of 1e-6.
+        """Class of the top, decided on `gaps` at the relative tolerance `top_rtol`.
 
         ``"spherical"`` (I1 = I2 = I3), ``"oblate"`` (I1 = I2 < I3), ``"prolate"`` (I1 < I2 = I3),
         ``"asymmetric"``, ``"linear"`` (0 = I1 < I2 = I3), ``"point"`` (all zero), ``"none"`` where the
@@ -76,9 +86,20 @@ class PrincipalAxes:
         """
         return self.classify()
 
-    def classify(self, rtol: float = 1e-6) -> Any:
-        """Class of the top with moments closer than ``rtol`` times the largest taken as equal."""
-        return _core.classify_tops(self.moments, rtol)
+    def classify(self, rtol: ArrayLike | None = None) -> Any:
+        """Class of the top with moments closer than ``rtol`` times the largest taken as equal.
+
+        Parameters
+        ----------
+        rtol : float or array_like, shape (..., 3), optional
+            One number, or one each for I1 = 0, I1 = I2 and I2 = I3; `top_rtol` by default.
+
+        Returns
+        -------
+        str or numpy.ndarray of str, shape (...)
+            As `top`.
+        """
+        return _core.classify_tops(self.moments, self.top_rtol if rtol is None else rtol)
 
     @cached_property
     def kappa(self) -> Any:
@@ -109,7 +130,8 @@ class PrincipalAxes:
                [ 1.,  0.,  0.],
                [ 0.,  0., -1.]])
         """
-        return PrincipalAxes(self.moments, _core.canonical_axes(self.moments, self.axes, rtol))
+        axes = _core.canonical_axes(self.moments, self.axes, rtol)
+        return PrincipalAxes(self.moments, axes, self.top_rtol)
 
     def derivative(self, tangent: ArrayLike, rtol: float = 1e-12) -> PrincipalDerivative:
         """Change of moments and axes for a change of the tensor.
@@ -258,7 +280,8 @@ class Provenance:
     source : str
         What the body was made of: ``"tensor"``, ``"principal moments"``, ``"particles"``, ``"mesh"``,
         ``"surface"``, ``"curve"``, ``"tetrahedra"``, ``"voxels"``, ``"density"``, ``"solid"``, ``"lamina"``,
-        ``"rod"``, ``"bodies"``, ``"second moment"``.
+        ``"rod"``, ``"bodies"``, ``"second moment"``; of a molecule ``"atoms, most common isotopes"``,
+        ``"atoms, average masses"`` or ``"atoms, masses of their own"`` (set in ASE).
     elements : int
         How many of them: particles, triangles, segments, cells, bodies; 1 for one tensor or solid.
     checked : str
@@ -275,6 +298,9 @@ class Provenance:
         is rounded to a tensor) or ``"second moment in own axes"`` (summed again, for thin bodies).
     rounded_to_zero : int
         Principal moments that rounding had left, or a table had admitted, and that are stored as zero.
+    rounding : float
+        By how much each coordinate of the particles was rounded at most, in the unit of length, where a
+        file's digits tell it; else 0. The class of the top follows it.
     """
 
     source: Any
@@ -285,14 +311,20 @@ class Provenance:
     volume_change: Any
     moments: Any
     rounded_to_zero: Any
+    rounding: Any
 
     def __repr__(self) -> str:
         shape = np.shape(self.source)
-        return f"<Provenance stack of shape {shape}>" if shape else one_line(self, vars(self))
+        if shape:
+            return f"<Provenance stack of shape {shape}>"
+        told = {name: value for name, value in vars(self).items() if name != "rounding" or value}
+        return one_line(self, told)
 
     def __str__(self) -> str:
         """Tell it in one line, for one body."""
         made = self.source if self.elements == 1 else f"{self.source} of {self.elements} elements"
+        if self.source.startswith("atoms, "):
+            made = f"{self.elements} {self.source}" if self.elements > 1 else f"1 atom{self.source[5:]}"
         parts = [made, f"checked: {self.checked}"]
         if self.welded:
             parts.append(f"{self.welded} corners welded")
@@ -303,6 +335,8 @@ class Provenance:
         )
         if self.rounded_to_zero:
             parts.append(f"{self.rounded_to_zero} rounded to zero")
+        if self.rounding:
+            parts.append(f"coordinates to {self.rounding:.3g} by their digits")
         return "; ".join(parts)
 
 

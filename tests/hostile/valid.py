@@ -86,7 +86,7 @@ VALUES: dict[str, Any] = {
     "parameters": [2.0, 0.5, 0.0, 1.0, 5.0, 0.0, 5.0, -0.25, 0.0, 4.0], "angles": [0.5, 1.0, 1.5],
     "sequence": "ZXZ", "quaternion": QUATERNION, "singular": "raise", "rates": [0.5, 1.0, -0.25],
     "rate_in_frame": [0.5, 0.0, 0.25], "frame_omega": [0.0, 0.0, 1.0], "a": 0.5, "b": 0.25, "spin": 8.0,
-    "inverse": False, "name": "omega", "object": OMEGA, "direction": 0.0, "terminal": False, "index": -1,
+    "inverse": False, "name": "omega", "values": OMEGA, "direction": 0.0, "terminal": False, "index": -1,
     "constants": [3.0, 2.0, 1.0],
     "unwrap": False, "options": {}, "unit": "MHz", "factor": 2.0, "key": 0, "user_data": None,
     "labels_of_atoms": ["C", "O"],

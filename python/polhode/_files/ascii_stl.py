@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -26,6 +27,7 @@ _KEYWORDS: Final = dict(
 _WORDS_PER_FACET: Final = 21
 _COORDINATES: Final = tuple(7 + 4 * corner + axis for corner in range(3) for axis in (1, 2, 3))
 _FACETS_PER_BLOCK: Final = 4096
+_LONGEST_LINE: Final = 1 << 20
 
 
 def read_ascii_stl(file: Path) -> NDArray[np.float64]:
@@ -52,8 +54,10 @@ def read_ascii_stl(file: Path) -> NDArray[np.float64]:
     number = 0
     try:
         with file.open(encoding="utf-8", errors="surrogateescape") as lines:  # names may be in any encoding
-            for line in lines:
+            for line in iter(partial(lines.readline, _LONGEST_LINE), ""):
                 number += 1
+                if len(line) == _LONGEST_LINE:
+                    raise ValueError(f"a line is longer than {_LONGEST_LINE - 1} characters")
                 first = line.split(maxsplit=1)[:1]
                 keyword = first[0].lower() if first else ""
                 if keyword in ("solid", "endsolid"):

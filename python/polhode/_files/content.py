@@ -7,6 +7,7 @@ import os
 import struct
 from typing import TYPE_CHECKING, Final
 
+from polhode._files.reading import check_ordinary, naming
 from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
@@ -70,9 +71,8 @@ def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
 
 def checked_format(file: Path) -> str | None:
     """Tell the format of the content where that can be; an error where it is not the suffix's."""
-    if file.is_dir():
-        raise FileFormatError(f"{file}: is a directory; name a file in it")
-    with file.open("rb") as stream:
+    check_ordinary(file)
+    with naming(file), file.open("rb") as stream:
         head = stream.read(4096)
         size = os.fstat(stream.fileno()).st_size
     if not head:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from polhode._repr import short
+from polhode.errors import MeshError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
-__all__ = ["Mesh", "weld", "weld_within"]
+__all__ = ["Mesh", "check_faces", "weld", "weld_within"]
 
 
 class Mesh(NamedTuple):
@@ -36,6 +37,17 @@ class Mesh(NamedTuple):
 
     def __repr__(self) -> str:
         return short(self)
+
+
+def check_faces(mesh: Mesh, file: str) -> None:
+    """Refuse faces that name vertices which the file does not hold."""
+    beyond = (mesh.faces < 0) | (mesh.faces >= len(mesh.vertices))
+    if beyond.any():
+        row = int(np.flatnonzero(beyond.any(axis=1))[0])
+        raise MeshError(
+            f"{file}: faces[{row}] names vertex {mesh.faces[row][beyond[row]][0]}, but there are "
+            f"{len(mesh.vertices)} vertices, numbered from 0; is the file cut short?"
+        )
 
 
 def weld(vertices: Floats, faces: Integers, name: str) -> Mesh:

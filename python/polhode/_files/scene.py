@@ -1,19 +1,36 @@
-"""Meshes and scenes by trimesh: PLY, OFF, GLB and what else it knows."""
+"""Meshes and scenes by trimesh: PLY, OFF and GLB, each held against what it says of itself."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
 
 from polhode._extras import require
+from polhode._files.glb import check_glb
 from polhode._files.mesh import Mesh, weld
+from polhode._files.promises import check_off, check_ply, check_ply_lists, check_ply_size
+from polhode._files.reading import naming
 from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 __all__ = ["read_scene"]
+
+_READ: Final = (".ply", ".off", ".glb")
+_PROMISING: Final = {"ply": check_ply, "off": check_off}
+_MOST_TRIANGLES: Final = 100_000_000
+"""Placed by the nodes of a scene: a small file can name one mesh again and again."""
+
+
+class _Alone:
+    """Where trimesh would look for other files: nothing but the file itself is read."""
+
+    def get(self, name: str) -> NoReturn:
+        raise ValueError(f"it names another file, {name!r}; write all into one")
+
+    __getitem__ = get
 
 
 def read_scene(file: Path, readable: tuple[str, ...]) -> Mesh:
@@ -24,33 +41,45 @@ def read_scene(file: Path, readable: tuple[str, ...]) -> Mesh:
     file : pathlib.Path
         The file.
     readable : tuple of str
-        Suffixes to name where this file's is none that trimesh knows.
+        Suffixes to name where this file's is none that is read.
 
     Returns
     -------
     Mesh
     """
     suffix = file.suffix.lower()
-    trimesh: Any = require("trimesh", extra="mesh", purpose=f"{file}: reading {suffix or 'it'} files")
-    kind = suffix.removeprefix(".")
-    if kind not in trimesh.available_formats():
+    if suffix not in _READ:  # trimesh knows more: archives that unpack without end, drawings, voxels
         name = f"files named {suffix}" if suffix else "files without a suffix"
         raise FileFormatError(f"{file}: {name} are not read; use one of {', '.join(readable)}")
+    trimesh: Any = require("trimesh", extra="mesh", purpose=f"{file}: reading {suffix} files")
+    kind = suffix.removeprefix(".")
     try:
         # Its own processing would merge, drop and reorder; only the stored triangles are wanted.
-        scene = trimesh.load_scene(str(file), file_type=kind, process=False)
+        with naming(file):
+            scene = _loaded(trimesh, file, kind)
+    except (MemoryError, OSError, FileFormatError):
+        raise
     except Exception as error:  # a damaged file can raise anything in there, from KeyError to struct.error
         reason = " ".join(str(error).split()) or type(error).__name__
         raise FileFormatError(f"{file}: not a readable {kind.upper()} file: {reason[:200]}") from error
     vertices, faces = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)]
-    offset = 0
+    offset = placed_faces = 0
     for node in scene.graph.nodes_geometry:
         transform, name = scene.graph[node]
         geometry = scene.geometry[name]
         if not isinstance(geometry, trimesh.Trimesh):
             raise FileFormatError(f"{file}: holds points or lines ({name}) where triangles are needed")
+        placed_faces += len(geometry.faces)
+        if placed_faces > _MOST_TRIANGLES:
+            raise FileFormatError(
+                f"{file}: its nodes place more than {_MOST_TRIANGLES} triangles; place fewer"
+            )
         corners = np.asarray(geometry.faces, dtype=np.int64)
         placed = np.asarray(geometry.vertices, dtype=np.float64)
+        if corners.size == 0:
+            corners = np.empty((0, 3), dtype=np.int64)
+        if corners.shape[1:] != (3,) or placed.shape[1:] != (3,):
+            raise FileFormatError(f"{file}: its faces or vertices are not rows of three numbers")
         if corners.size and not (corners.min() >= 0 and corners.max() < len(placed)):
             row = int(np.flatnonzero((corners < 0).any(axis=1) | (corners >= len(placed)).any(axis=1))[0])
             raise FileFormatError(f"{file}: face {row} names a vertex that the file does not hold")
@@ -65,44 +94,24 @@ def read_scene(file: Path, readable: tuple[str, ...]) -> Mesh:
     mesh = weld(np.concatenate(vertices), np.concatenate(faces), kind.upper())
     if not len(mesh.faces):
         raise FileFormatError(f"{file}: holds no triangles")
-    _check_promise(file, kind, len(mesh.faces))
+    if kind in _PROMISING:
+        try:
+            _PROMISING[kind](file, len(mesh.faces))
+        except (ValueError, IndexError) as error:
+            raise FileFormatError(f"{file}: not a whole {kind.upper()} file: {error}") from None
     return mesh
 
 
-def _check_promise(file: Path, kind: str, triangles: int) -> None:
-    """Text formats cut at the end of a line still parse: hold what was read against the header's counts."""
-    if kind == "ply":
-        faces, needed, held = _ply_counts(file)
-    elif kind == "off":
-        faces, needed, held = _off_counts(file)
-    else:
-        return
-    if triangles < faces or held < needed:
-        raise FileFormatError(
-            f"{file}: the header promises {faces} faces, but the file holds fewer; is it cut short?"
+def _loaded(trimesh: Any, file: Path, kind: str) -> Any:
+    """Give trimesh's scene of a file that can be what it says."""
+    if kind == "glb":
+        check_glb(file)
+    elif kind == "ply":
+        check_ply_size(file)
+    with file.open("rb") as stream:
+        scene = trimesh.load_scene(
+            stream, file_type=kind, resolver=_Alone(), process=False, skip_materials=True
         )
-
-
-def _ply_counts(file: Path) -> tuple[int, int, int]:
-    """Faces and rows that the header promises, and rows held; binary PLY's length trimesh has checked."""
-    counts: dict[bytes, int] = {}
-    is_ascii = False
-    with file.open("rb") as lines:
-        for line in lines:
-            words = line.split()
-            if words[:1] == [b"element"]:
-                counts[words[1]] = int(words[2])
-            is_ascii |= words[:2] == [b"format", b"ascii"]
-            if words == [b"end_header"]:
-                break
-        held = sum(1 for line in lines if line.strip()) if is_ascii else 0
-    return counts.get(b"face", 0), sum(counts.values()) if is_ascii else 0, held
-
-
-def _off_counts(file: Path) -> tuple[int, int, int]:
-    """Faces and rows that the header promises, and rows held."""
-    with file.open("rb") as lines:
-        rows = (words for line in lines if (words := line.partition(b"#")[0].split()))
-        counts = next(rows)[1:] or next(rows)  # the counts may stand beside the word OFF
-        held = sum(1 for _ in rows)
-    return int(counts[1]), int(counts[0]) + int(counts[1]), held
+    if kind == "ply":
+        check_ply_lists(scene)
+    return scene

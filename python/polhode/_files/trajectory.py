@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._files.writing import writing
 from polhode.files import save_trajectory_json, save_trajectory_npz
 
 if TYPE_CHECKING:
@@ -46,6 +47,11 @@ def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
 
 
 def _save_csv(trajectory: Trajectory, file: Path) -> None:
+    if trajectory.t.ndim != 1:
+        raise ValueError(
+            f"path: {file}: a table has one row for each time, and these are of shape {trajectory.t.shape}; "
+            "give times in one row, or save as .npz"
+        )
     shape = trajectory.omega.shape[:-2]
     names = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
     names.append("t")
@@ -58,4 +64,5 @@ def _save_csv(trajectory: Trajectory, file: Path) -> None:
     rows = np.stack([np.asarray(column, dtype=np.float64).reshape(-1) for column in columns], axis=-1)
     # 17 significant digits give the same float64 back.
     formats = ["%d"] * len(shape) + ["%.17g"] * (len(names) - len(shape))
-    np.savetxt(file, rows, fmt=formats, delimiter=",", header=",".join(names), comments="", encoding="utf-8")
+    with writing(file) as stream:
+        np.savetxt(stream, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")

@@ -16,13 +16,31 @@ from polhode.errors import FileFormatError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-__all__ = ["Edit", "Element", "edited", "parse_xml", "remove_attribute", "set_attribute", "set_text"]
+__all__ = [
+    "Budget",
+    "Edit",
+    "Element",
+    "blanks_of",
+    "edited",
+    "parse_xml",
+    "remove_attribute",
+    "set_attribute",
+    "set_text",
+]
 
 _START_TAG: Final = re.compile(rb"<[^\"'<>]*(?:\"[^\"]*\"[^\"'<>]*|'[^']*'[^\"'<>]*)*>")
-_TOO_DEEP: Final = 200
+_DEEPEST: Final = 200
+_MOST_ELEMENTS: Final = 1_000_000
 
 
-@dataclass(eq=False)
+@dataclass
+class Budget:
+    """How many elements a document and the files it includes may still have, so that there is an end."""
+
+    elements: int = _MOST_ELEMENTS
+
+
+@dataclass(eq=False, slots=True)
 class Element:
     """One element.
 
@@ -39,6 +57,8 @@ class Element:
         Its own characters, those of its children left out.
     file : str
         The file that it stands in, where that is included by another one.
+    depth : int
+        How many elements are open where it stands, itself and those around an included file counted.
     """
 
     tag: str
@@ -51,6 +71,7 @@ class Element:
     text: str = ""
     children: list[Element] = field(default_factory=list)
     file: str = ""
+    depth: int = 1
 
     @property
     def where(self) -> str:
@@ -67,10 +88,12 @@ class Element:
 
     def descendants(self, tag: str) -> Iterator[Element]:
         """Give the elements of that name at any depth, in the order of the document."""
-        for child in self.children:
-            if child.tag == tag:
-                yield child
-            yield from child.descendants(tag)
+        waiting = self.children[::-1]
+        while waiting:
+            element = waiting.pop()
+            if element.tag == tag:
+                yield element
+            waiting += reversed(element.children)
 
 
 class Edit(NamedTuple):
@@ -81,8 +104,10 @@ class Edit(NamedTuple):
     text: str
 
 
-def parse_xml(source: bytes, name: str, *, file: str = "") -> Element:
-    """Parse a document.
+def parse_xml(
+    source: bytes, name: str, *, file: str = "", above: int = 0, budget: Budget | None = None
+) -> Element:
+    """Parse a document, in a time proportional to its length.
 
     Parameters
     ----------
@@ -92,6 +117,10 @@ def parse_xml(source: bytes, name: str, *, file: str = "") -> Element:
         Of the file, for what is wrong with it.
     file : str
         What the elements say they stand in.
+    above : int
+        How deep what includes the file stands.
+    budget : Budget, optional
+        Is spent by its elements; each document has its own by default.
 
     Returns
     -------
@@ -101,28 +130,40 @@ def parse_xml(source: bytes, name: str, *, file: str = "") -> Element:
     Raises
     ------
     FileFormatError
-        If it is no well-formed XML, declares entities or a document type, or is nested beyond reason.
+        If it is no well-formed XML, declares entities or a document type, is nested beyond reason or has
+        too many elements.
     """
-    if source.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if source.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in source[:4]:
         raise FileFormatError(f"{name}: is in UTF-16; save it as UTF-8")
+    spent = budget if budget is not None else Budget()
     parser = expat.ParserCreate()
+    parser.buffer_text = True
     root: list[Element] = []
     stack: list[Element] = []
+    texts: list[list[str]] = []  # of the open elements, joined when they end: each character is copied once
 
     def start(tag: str, attributes: dict[str, str]) -> None:
-        at = parser.CurrentByteIndex
+        at, line, depth = parser.CurrentByteIndex, parser.CurrentLineNumber, above + len(stack) + 1
+        if depth > _DEEPEST:
+            raise FileFormatError(
+                f"{name}: line {line}: elements are nested more than {_DEEPEST} deep; check the file"
+            )
+        spent.elements -= 1
+        if spent.elements < 0:
+            raise FileFormatError(
+                f"{name}: line {line}: there are more than {_MOST_ELEMENTS} elements, those of included "
+                "files counted; divide the file"
+            )
         match = _START_TAG.match(source, at)
         inside = match.end() if match else at
-        element = Element(tag, attributes, parser.CurrentLineNumber, at, inside, file=file)
+        element = Element(tag, attributes, line, at, inside, file=file, depth=depth)
         (stack[-1].children if stack else root).append(element)
         stack.append(element)
-        if len(stack) > _TOO_DEEP:
-            raise FileFormatError(
-                f"{name}: line {element.line}: elements are nested more than {_TOO_DEEP} deep"
-            )
+        texts.append([])
 
     def end(_: str) -> None:
         element = stack.pop()
+        element.text = "".join(texts.pop())
         if source[element.inside - 2 : element.inside] == b"/>":
             element.outside = element.end = element.inside
         else:
@@ -130,8 +171,8 @@ def parse_xml(source: bytes, name: str, *, file: str = "") -> Element:
             element.end = source.index(b">", element.outside) + 1
 
     def characters(text: str) -> None:
-        if stack:
-            stack[-1].text += text
+        if texts:
+            texts[-1].append(text)
 
     def refuse(*_: object) -> None:
         raise FileFormatError(
@@ -149,14 +190,25 @@ def parse_xml(source: bytes, name: str, *, file: str = "") -> Element:
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
         raise FileFormatError(f"{name}: line {error.lineno}: not well-formed XML: {reason}") from None
+    except FileFormatError:
+        raise
+    except (LookupError, ValueError) as error:  # of an encoding that Python does not know, or of many bytes
+        raise FileFormatError(
+            f"{name}: line 1: the encoding that it declares is not read ({error}); save it as UTF-8"
+        ) from None
     return root[0]
 
 
 def edited(source: bytes, edits: Iterable[Edit]) -> bytes:
-    """Apply edits that do not overlap."""
-    for edit in sorted(edits, reverse=True):
-        source = source[: edit.start] + edit.text.encode() + source[edit.end :]
-    return source
+    """Apply edits that do not overlap, in one pass."""
+    pieces: list[bytes] = []
+    done = 0
+    for edit in sorted(edits):
+        if edit.start < done:
+            raise ValueError(f"edits: one starts at byte {edit.start}, within another; divide them")
+        pieces += (source[done : edit.start], edit.text.encode())
+        done = edit.end
+    return b"".join([*pieces, source[done:]])
 
 
 def set_attribute(source: bytes, element: Element, name: str, value: str) -> Edit:
@@ -182,6 +234,11 @@ def set_text(element: Element, value: str) -> Edit:
     if element.outside == element.inside == element.end:
         return Edit(element.start, element.end, f"<{element.tag}>{value}</{element.tag}>")
     return Edit(element.inside, element.outside, value)
+
+
+def blanks_of(between: bytes) -> str:
+    """Give what stands before an element if it is blanks alone, so that one put there stands alike."""
+    return between.decode() if between.isspace() else ""
 
 
 def _attribute(source: bytes, element: Element, name: str) -> re.Match[bytes] | None:

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from decimal import Decimal, InvalidOperation
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from polhode._files.content import checked_format
+from polhode._files.reading import read_text
 from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
 __all__ = ["Molecule", "read_xyz"]
+
+_MOST_DIGITS: Final = 18
 
 
 class Molecule(NamedTuple):
@@ -29,11 +34,15 @@ class Molecule(NamedTuple):
         In the unit of the file: angstrom by the format's custom.
     comment : str
         The second line of the file.
+    rounding : float
+        By how much each coordinate was rounded at most, in the unit of the file: half a unit of the last
+        digit that the file prints. 0 where no coordinate has a digit behind the point, which tells nothing.
     """
 
     labels: tuple[str, ...]
     positions: NDArray[np.float64]
     comment: str
+    rounding: float = 0.0
 
 
 def read_xyz(path: str | os.PathLike[str]) -> Molecule:
@@ -57,12 +66,9 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
     """
     file = Path(path)
     checked_format(file)
-    try:
-        lines = file.read_text(encoding="utf-8").splitlines()
-    except UnicodeDecodeError:
-        raise FileFormatError(f"{file}: not a text file, so not an XYZ file") from None
+    lines = read_text(file, "an XYZ file").splitlines()
     count_text = lines[0].strip()
-    if not count_text.isdecimal() or int(count_text) == 0:
+    if not (count_text.isdecimal() and len(count_text) <= _MOST_DIGITS) or int(count_text) == 0:
         raise FileFormatError(
             f"{file}: line 1 of an XYZ file is the number of atoms, not {count_text[:40]!r}"
         )
@@ -81,16 +87,39 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
             f"{file}: text after atom {count}, the last by line 1; correct the count or keep one frame a file"
         )
     atoms = [_atom(file, number, row) for number, row in enumerate(rows, start=3)]
-    labels, positions = zip(*atoms, strict=True)
-    return Molecule(labels, np.array(positions), comment)
+    labels, coordinates = zip(*atoms, strict=True)
+    positions = np.array(coordinates, dtype=np.float64)
+    return Molecule(labels, positions, comment, _rounding([x for row in coordinates for x in row]))
 
 
-def _atom(file: Path, number: int, row: str) -> tuple[str, list[float]]:
+def _atom(file: Path, number: int, row: str) -> tuple[str, list[Decimal]]:
+    """Split a row into the atom's label and its coordinates, digit by digit."""
     words = row.split()
     try:
-        position = [float(word) for word in words[1:4]]
-    except ValueError:
+        coordinates = [Decimal(word) for word in words[1:4]]
+        position = [float(x) for x in coordinates]
+    except (InvalidOperation, ValueError):  # the latter of a signalling NaN
         position = []
     if len(position) != 3 or not np.isfinite(position).all():
         raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
-    return words[0], position
+    return words[0], coordinates
+
+
+def _rounding(numbers: Sequence[Decimal]) -> float:
+    """Find half a unit of the last digit that was printed, of the coordinate for which it is the largest.
+
+    Programs print a fixed number of decimals or of significant digits, and some then cut zeros off at the
+    end. Of the two the one counts by which fewer zeros are missing.
+    """
+    # How many decimals each shows, and of those that are not zero the place of the first digit (0: the ones).
+    decimals = [max(0, -int(number.as_tuple().exponent)) for number in numbers]
+    finest = max(decimals)
+    if finest == 0:
+        return 0.0
+    shown = [(places, x.adjusted()) for places, x in zip(decimals, numbers, strict=True) if x]
+    digits = max((places + first + 1 for places, first in shown), default=0)
+    missing_decimals = sum(finest - places for places, _ in shown)
+    missing_digits = sum(digits - (places + first + 1) for places, first in shown)
+    if missing_digits < missing_decimals:
+        return 0.5 * 10.0 ** (1 + max(first for _, first in shown) - digits)
+    return 0.5 * 10.0**-finest

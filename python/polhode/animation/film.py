@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
+import subprocess
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from polhode import _core
 from polhode._extras import require
+from polhode._files.writing import replacing
 from polhode.plot import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
 
 if TYPE_CHECKING:
@@ -42,23 +45,40 @@ def film(scene: Scene, file: Path, progress: Callable[[float], object] | None = 
     rate = max(1.0, len(scene.t) / scene.duration)
     if file.suffix.lower() == ".gif":
         writer = animation.PillowWriter(fps=rate)
-        program = "ffmpeg"
+        program = ""
     else:
         program = _ffmpeg(file)
         writer = animation.FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
     figure = figures.Figure(figsize=(_SIZE, _SIZE), dpi=_DPI)
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", computed_zorder=False)
     settings: Any = require("matplotlib", extra="plot", purpose="a film")
-    with (
-        settings.rc_context({"animation.ffmpeg_path": program}),
-        writer.saving(figure, str(file), dpi=_DPI),
-    ):
-        for frame in range(len(scene.t)):
-            ax.clear()
-            _draw(ax, scene, frame)
-            writer.grab_frame()
-            if progress is not None:
-                progress((frame + 1) / len(scene.t))
+    with settings.rc_context({"animation.ffmpeg_path": program or "ffmpeg"}), replacing(file) as new:
+        writer.setup(figure, str(new), dpi=_DPI)
+        try:
+            for frame in range(len(scene.t)):
+                ax.clear()
+                _draw(ax, scene, frame)
+                writer.grab_frame()
+                if progress is not None:
+                    progress((frame + 1) / len(scene.t))
+        except BaseException as error:
+            if program:
+                _end(writer, file, error)
+            raise
+        if program:
+            _end(writer, file)
+        else:
+            writer.finish()
+
+
+def _end(writer: Any, file: Path, error: BaseException | None = None) -> None:
+    """Wait for ffmpeg to end; tell what it says where it is what went wrong."""
+    try:
+        writer.finish()
+    except subprocess.CalledProcessError as failed:
+        if error is None or isinstance(error, BrokenPipeError):
+            said = failed.stderr.strip().splitlines() or ["it ended without a word"]
+            raise OSError(errno.EIO, f"ffmpeg could not write it: {said[-1]}", str(file)) from None
 
 
 def _ffmpeg(file: Path) -> str:

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
+from polhode.animation.frames import of_motion, of_samples
 from polhode.animation.shape import Shape, equivalent_box, given_shape
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from polhode import Trajectory
+    from polhode import FreeMotion, HeavyTop, Trajectory
+    from polhode.animation.frames import Moments
 
     Floats = NDArray[np.float64]
 
@@ -46,6 +48,8 @@ class Scene:
         As the viewer reads them.
     duration : float
         Seconds that the whole motion takes on the screen.
+    notes : tuple of str
+        What the viewer does not see of the motion.
     """
 
     t: Floats
@@ -60,6 +64,7 @@ class Scene:
     title: str
     time_unit: str
     duration: float
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -67,12 +72,17 @@ class Scene:
         trajectory: Trajectory,
         *,
         frames: int | None,
-        duration: float,
+        duration: float | None,
         shape: tuple[ArrayLike, ArrayLike] | None,
         title: str,
         time_unit: str,
+        is_film: bool = False,
     ) -> Scene:
-        """Choose frames evenly among the samples of a motion and work out what is drawn in them."""
+        """Choose the frames of a motion and work out what is drawn in them.
+
+        Where nothing acts on the body its motion is known between the samples too, and the frames are as many
+        as it needs; else, or where `frames` says how many, they are samples.
+        """
         if trajectory.omega.ndim != 2:
             stack = trajectory.omega.shape[:-2]
             raise ValueError(
@@ -80,12 +90,38 @@ class Scene:
             )
         if not np.isfinite(trajectory.omega).all() or not np.isfinite(trajectory.quaternion).all():
             raise ValueError("animate: the motion holds states that are not numbers; it ended early")
-        if not (duration > 0.0 and np.isfinite(duration)):
-            raise ValueError(f"duration: {duration} is not a positive number of seconds")
-        count = len(trajectory)
-        if frames is not None and not 1 <= frames <= count:
-            raise ValueError(f"frames: {frames} is not between 1 and the {count} samples of the motion")
-        chosen = np.unique(np.linspace(0, count - 1, frames or count).round().astype(int))
+        if not len(trajectory):
+            raise ValueError("animate: the motion has no times; ask for some")
+        _check_duration(duration)
+        if frames is None and trajectory.load is None and not trajectory.pivoted:
+            motion = trajectory.body.free_motion(trajectory.omega[0], trajectory.quaternion[0])
+            moments = of_motion(motion, trajectory, duration=duration, is_film=is_film, time_unit=time_unit)
+        else:
+            moments = of_samples(
+                trajectory, frames=frames, duration=duration, is_film=is_film, time_unit=time_unit
+            )
+        return cls._of_moments(moments, shape, title, time_unit)
+
+    @classmethod
+    def of_motion(
+        cls,
+        motion: FreeMotion | HeavyTop,
+        end: float,
+        *,
+        shape: tuple[ArrayLike, ArrayLike] | None,
+        title: str,
+        is_film: bool,
+    ) -> Scene:
+        """Choose the frames of a motion in closed form from 0 s to its end."""
+        ends = motion.at([0.0, end])
+        moments = of_motion(motion, ends, duration=None, is_film=is_film, time_unit="s")
+        return cls._of_moments(moments, shape, title, "s")
+
+    @classmethod
+    def _of_moments(
+        cls, moments: Moments, shape: tuple[ArrayLike, ArrayLike] | None, title: str, time_unit: str
+    ) -> Scene:
+        trajectory, chosen = moments.trajectory, moments.chosen
         about = trajectory.about
         principal = trajectory.body.principal_about(about)
         in_axes = trajectory.omega[chosen] @ principal.axes
@@ -108,5 +144,11 @@ class Scene:
             shape=equivalent_box(trajectory.body, about) if shape is None else given_shape(*shape, about),
             title=title,
             time_unit=time_unit,
-            duration=duration,
+            duration=moments.duration,
+            notes=moments.notes,
         )
+
+
+def _check_duration(duration: float | None) -> None:
+    if duration is not None and not (duration > 0.0 and np.isfinite(duration)):
+        raise ValueError(f"duration: {duration} is not a positive number of seconds")

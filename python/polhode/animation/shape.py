@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode import _core
 from polhode.plot._triangles import cut
 
 if TYPE_CHECKING:
@@ -80,7 +81,9 @@ def equivalent_box(body: RigidBody, about: Floats) -> Shape:
 
 def given_shape(vertices: ArrayLike, faces: ArrayLike, about: Floats) -> Shape:
     """Take the user's mesh, in the body frame."""
-    points, corners = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
+    points = _core.real_numbers(vertices, "shape")
+    _core.real_numbers(faces, "shape")  # neither masked nor with a unit
+    corners = np.asarray(faces)
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
         raise ValueError(f"shape: expected finite vertices of shape (n, 3), got {points.shape}")
     if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":

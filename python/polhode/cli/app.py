@@ -5,16 +5,19 @@ What a command does is imported when it runs, so that the help appears without N
 
 from __future__ import annotations
 
-import os
+import errno
 import re
 import sys
+from contextlib import suppress
 from functools import partial
-from io import TextIOWrapper
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
 from cyclopts import App, CycloptsError, Parameter
 
+from polhode._files.reading import files_read
+from polhode._files.writing import DASH, write_bytes
 from polhode.cli.options import (
     BodyOptions,
     CheckOptions,
@@ -23,6 +26,8 @@ from polhode.cli.options import (
     ReportOptions,
     SpinOptions,
 )
+from polhode.cli.outputs import check_outputs
+from polhode.cli.standard_output import ReaderLeft, standard_output
 from polhode.cli.text import in_options, printable
 
 if TYPE_CHECKING:
@@ -39,6 +44,7 @@ GOOD: Final = 0
 BAD_VERDICT: Final = 1
 BAD_INPUT: Final = 2
 INTERRUPTED: Final = 130
+NO_FAULT_OF_THE_PATH: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 
 
 def _version() -> str:
@@ -80,6 +86,7 @@ def report(
     """
     from polhode.cli.report import file_report
 
+    check_outputs([("--output", output.output)], [file, extra.expect])
     told = file_report(file, body, extra)
     differing = []
     if extra.expect is not None:
@@ -107,7 +114,10 @@ def check(
     """
     from polhode.cli.check import check_report
 
-    told, is_good = check_report(file, check)
+    check_outputs([("--fix", check.fix), ("--output", output.output)], [file])
+    with files_read() as read:
+        told, is_good = check_report(file, check)
+    check_outputs([("--output", output.output)], read)
     _show(told, output)
     return GOOD if is_good else BAD_VERDICT
 
@@ -129,6 +139,7 @@ def molecule(
     """
     from polhode.cli.molecule import molecule_report
 
+    check_outputs([("--output", output.output)], [file])
     _show(molecule_report(file, molecule), output)
     return GOOD
 
@@ -151,6 +162,7 @@ def spin(
     """
     from polhode.cli.spin import spin_report
 
+    check_outputs([*(("--save", path) for path in spin.save), ("--output", output.output)], [file])
     _show(spin_report(file, spin, body), output)
     return GOOD
 
@@ -184,13 +196,6 @@ def overview() -> str:
 
 def run(arguments: list[str]) -> int:
     """Run one command and turn every foreseen error into one line and an exit code."""
-    if arguments in ([], ["--help"], ["-h"]):
-        print(overview())
-        return GOOD
-    if isinstance(sys.stdout, TextIOWrapper):
-        sys.stdout.reconfigure(
-            errors="backslashreplace"
-        )  # a file may be named beyond the terminal's encoding
     command: Callable[[], object] = partial(
         app,
         [_as_value(argument) for argument in arguments],
@@ -198,18 +203,20 @@ def run(arguments: list[str]) -> int:
         print_error=False,
         result_action="return_value",
     )
+    if arguments in ([], ["--help"], ["-h"]):
+        command = partial(print, overview())
     try:
-        code = command()
-        sys.stdout.flush()
+        with standard_output():
+            code = command()
     except CycloptsError as error:
         return _fail(f"{error} (see polhode --help)")
-    except BrokenPipeError:
-        # The reader of a pipe has left (as `head` does); nothing is wrong and nobody is listening.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+    except ReaderLeft:
+        return GOOD
     except OSError as error:
         what = f"{error.filename}: {error.strerror}" if error.filename is not None else str(error)
-        return _fail(f"{what}; check the path")
+        return _fail(what if error.errno in NO_FAULT_OF_THE_PATH else f"{what}; check the path")
+    except MemoryError as error:
+        return _fail(f"there is not enough memory for it ({error})")
     except (ValueError, ModuleNotFoundError) as error:
         return _fail(str(error))
     except KeyboardInterrupt:
@@ -223,21 +230,24 @@ def _as_value(argument: str) -> str:
 
 
 def _fail(message: str, code: int = BAD_INPUT) -> int:
-    print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr)
+    if sys.stderr is not None:
+        with suppress(OSError):  # nobody reads it: the exit code remains
+            print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
     return code
 
 
 def _show(report: Report, options: OutputOptions) -> None:
     from rich.console import Console
 
-    path = options.output
+    path = options.output if options.output != DASH else None
     by_name = "json" if path is not None and path.suffix.lower() == ".json" else "table"
     form = options.form or by_name
     if path is None:
         _write(report, form, Console(highlight=False))
     else:
-        with path.open("w", encoding="utf-8") as stream:
-            _write(report, form, Console(file=stream, highlight=False, color_system=None))
+        text = StringIO()
+        _write(report, form, Console(file=text, highlight=False, color_system=None))
+        write_bytes(path, text.getvalue().encode(errors="backslashreplace"))
 
 
 def _write(report: Report, form: str, console: Console) -> None:

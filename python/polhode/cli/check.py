@@ -7,10 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
+from polhode._files.reading import files_read
+from polhode._files.writing import write_bytes
 from polhode.cli.layout import Column, Field, Report, Table
+from polhode.cli.outputs import check_outputs
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.robots.sources import read_stream
 
 if TYPE_CHECKING:
     from polhode.cli.options import CheckOptions
@@ -37,10 +41,12 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     is_good : bool
         Whether no link fails; of the fixed file where one is written.
     """
-    _check_options(file, options)
-    robot = _read(file, options)
+    _check_options(options)
+    with files_read() as read:
+        robot = _read(file, options)
+        verdicts = robots.check(robot, options.packages, allow_outside=options.allow_outside)
+    check_outputs([("--fix", options.fix)], read)
     failing = robots.FAILURES | ({"suspect"} if options.strict else frozenset())
-    verdicts = robots.check(robot, options.packages)
     report = Report()
     report.section(
         "",
@@ -59,7 +65,7 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
         *(Field(f"count.{word}", word, count) for word, count in counts.items()),
     )
     notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
-    report.notes += [*robot.notes, *notes]
+    report.notes += [in_options(note) for note in (*robot.notes, *notes)]
     if options.fix is None:
         if any(verdict.better is not None for verdict in bad):
             report.notes.append("--fix FILE writes better values into a copy")
@@ -67,25 +73,28 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     return report, _fix(report, robot, verdicts, failing, options)
 
 
-def _check_options(file: Path, options: CheckOptions) -> None:
+def _check_options(options: CheckOptions) -> None:
     for folder in options.packages:
         if not folder.is_dir():
             raise PolhodeError(f"--packages: there is no folder {folder}; name one that holds the packages")
-    if options.fix is None:
-        return
-    if not options.fix.parent.is_dir():
-        raise PolhodeError(f"--fix: there is no directory {options.fix.parent}; create it first")
-    if options.fix.exists() and file.exists() and options.fix.samefile(file):
-        raise PolhodeError(f"--fix: {options.fix} is the file that is read; write to another one")
 
 
 def _read(file: Path, options: CheckOptions) -> robots.Robot:
     if file != STDIN:
-        return robots.read_robot(file, options.packages)
-    source = sys.stdin.buffer.read()
+        return robots.read_robot(file, options.packages, allow_outside=options.allow_outside)
+    source = read_stream(sys.stdin.buffer, shown(file))
     if not source:
         raise FileFormatError("-: nothing came on standard input; send a file into it")
-    return robots.parse_robot(source, name=shown(file), folder=Path.cwd(), packages=options.packages)
+    return _parsed(source, shown(file), Path.cwd(), options)
+
+
+def _parsed(
+    source: bytes, name: str, folder: Path, options: CheckOptions, roots: tuple[Path, ...] = ()
+) -> robots.Robot:
+    packages = (*options.packages, *roots)
+    return robots.parse_robot(
+        source, name=name, folder=folder, packages=packages, allow_outside=options.allow_outside
+    )
 
 
 def _row(verdict: robots.Verdict) -> dict[str, Any]:
@@ -115,7 +124,7 @@ def _fix(
     if path is None:
         return False
     source = robots.fixed(robot, verdicts, failing)
-    path.write_bytes(source)
+    write_bytes(path, source)
     rows, left, elsewhere = [], [], []
     for link, verdict in zip(robot.links, verdicts, strict=True):
         if verdict.verdict not in failing:
@@ -150,6 +159,7 @@ def _fix(
         report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(left)}")
     if elsewhere:
         report.notes.append(f"left as they are, to be fixed in their own files: {', '.join(elsewhere)}")
-    fixed = robots.parse_robot(source, name=str(path), folder=robot.folder, packages=options.packages)
-    again = robots.check(fixed, options.packages)
+    fixed = _parsed(source, str(path), robot.folder, options, robot.roots)
+    packages = (*options.packages, *robot.roots)
+    again = robots.check(fixed, packages, allow_outside=options.allow_outside)
     return not any(verdict.verdict in failing for verdict in again)

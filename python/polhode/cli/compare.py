@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._files.reading import read_text
 from polhode.cli.layout import Column, Table
 from polhode.errors import FileFormatError, PolhodeError
 
@@ -57,7 +58,7 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
         if key not in flat:
             near = get_close_matches(key, flat, n=1)
             hint = f"; did you mean {near[0]!r}?" if near else "; take fields of --format json"
-            raise PolhodeError(f"--expect: {expected}: the report has no field {key!r}{hint}")
+            raise PolhodeError(f"--expect: {expected}: the report has no field {key[:60]!r}{hint}")
         unit = our_units.get(key, "")
         if known_units.get(key, unit) != unit:
             raise PolhodeError(
@@ -67,7 +68,9 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
         compared += 1
         difference = _difference(flat[key], value, length if key == "center_of_mass" else 0.0)
         if not difference <= rtol:
-            found.append({"field": key, "found": flat[key], "expected": value, "difference": difference})
+            found.append(
+                {"field": key, "found": flat[key], "expected": _shown(value), "difference": difference}
+            )
     if not compared:
         raise PolhodeError(f"--expect: {expected} holds no field of the report; save one with --format json")
     columns = (
@@ -85,12 +88,18 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        document = json.loads(path.read_text("utf-8"))
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        document = json.loads(read_text(path, "JSON"))
+    except FileFormatError as error:
+        raise FileFormatError(f"--expect: {error}; save one with --format json") from None
+    except (ValueError, RecursionError) as error:
         message = f"--expect: {path} is not JSON ({error}); save one with --format json"
         raise FileFormatError(message) from None
-    if not isinstance(document, dict):
+    if not isinstance(document, dict) or not isinstance(document.get("units", {}), dict):
         raise FileFormatError(f"--expect: {path} holds no object of fields; save one with --format json")
+    try:
+        list(_leaves(document))
+    except RecursionError:
+        raise FileFormatError(f"--expect: {path}: its fields are nested beyond reason") from None
     return document
 
 
@@ -102,13 +111,22 @@ def _leaves(value: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]
             yield f"{prefix}{key}", item
 
 
+def _shown(value: Any) -> Any:
+    """Give what was expected as it is, or as text where it is no array."""
+    try:
+        np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        return value if isinstance(value, str) else json.dumps(value)[:60]
+    return value
+
+
 def _difference(ours: Any, theirs: Any, size: float) -> float:
     """Largest difference, relative to the largest component; infinite between values of different kinds."""
     if isinstance(ours, str) or isinstance(theirs, str) or ours is None or theirs is None:
         return 0.0 if ours == theirs else math.inf
     try:
         a, b = np.asarray(ours, dtype=np.float64), np.asarray(theirs, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return 0.0 if ours == theirs else math.inf
     if a.shape != b.shape:
         return math.inf

@@ -131,7 +131,7 @@ class Report:
         if self.notes:
             write(console)
         for note in self.notes:
-            write(console, f"  note: {note}", style="yellow")
+            write(console, f"  note: {printable(note)}", style="yellow")
 
 
 def number(value: float, decimals: int | None = None) -> str:

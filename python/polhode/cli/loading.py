@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polhode import RigidBody
 from polhode.cli.progress import reading_progress
 from polhode.cli.quantities import has_unit, quantity
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
 from polhode.io import MOLECULE_SUFFIX, MeshSolid, molecule_isotopes, read_mesh, read_xyz, solid_from_file
+from polhode.molecules import body_of_atoms
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from polhode import RigidBody
     from polhode.cli.options import BodyOptions
     from polhode.io import Mesh
     from polhode.molecules import Isotope
@@ -193,5 +194,9 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
     molecule = read_xyz(file)
     atoms = molecule_isotopes(file, molecule)
     in_angstrom = metres_per(options.length_unit or "angstrom") / METRES["angstrom"]
-    body = RigidBody.from_particles([atom.mass for atom in atoms], molecule.positions * in_angstrom)
+    body = body_of_atoms(
+        [atom.mass for atom in atoms],
+        molecule.positions * in_angstrom,
+        rounding=molecule.rounding * in_angstrom,
+    )
     return LoadedBody(body=body, source=atoms, mass_unit="u", length="angstrom", comment=molecule.comment)

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import RigidBody
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
-from polhode.cli.report import FileUnits, body_fields, tensor_fields, trust_fields
+from polhode.cli.report import FileUnits, body_fields, tensor_fields, top_fields, trust_fields
 from polhode.cli.source import as_file, shown
 from polhode.errors import PolhodeError
 from polhode.io import MOLECULE_SUFFIX, molecule_isotopes, read_xyz
 from polhode.molecules import (
     Isotope,
+    body_of_atoms,
     inertial_defect,
     isotopes,
     planar_moments,
@@ -28,7 +28,9 @@ from polhode.units import METRES, metres_per
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from polhode import RigidBody
     from polhode.cli.options import MoleculeOptions
+    from polhode.io import Molecule
 
 __all__ = ["atoms_report", "molecule_report"]
 
@@ -41,17 +43,20 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
         if path.suffix.lower() != MOLECULE_SUFFIX:
             raise PolhodeError(f"{shown(file)}: a molecule is an XYZ file; polhode report reads meshes")
         molecule = read_xyz(path)
-        atoms = molecule_isotopes(path, molecule)
-    positions = molecule.positions * (metres_per(options.length_unit) / METRES["angstrom"])
-    loaded = _loaded(atoms, positions, molecule.comment)
+        atoms = molecule_isotopes(path, molecule, options.masses)
+    to_angstrom = metres_per(options.length_unit) / METRES["angstrom"]
+    molecule = molecule._replace(
+        positions=molecule.positions * to_angstrom, rounding=molecule.rounding * to_angstrom
+    )
+    loaded = _loaded(atoms, molecule, options)
     report = Report()
     _head(report, file, atoms, loaded)
-    report.section("rotation", *_rotation_fields(loaded.body))
+    report.section("rotation", *_rotation_fields(loaded, options.rtol))
     if options.isotopes:
-        rows = [_row("as above", loaded.body)]
+        rows = [_row("as above", loaded.body, options.rtol)]
         for text in options.isotopes:
             changed = _substituted(atoms, text)
-            rows.append(_row(_formula(changed), _loaded(changed, positions).body))
+            rows.append(_row(_formula(changed), _loaded(changed, molecule, options).body, options.rtol))
         columns = (
             Column("isotopes", "isotopes"),
             Column("rotational_constants_MHz", "A  B  C", "MHz", 3),
@@ -60,9 +65,11 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
             Column("top", "top"),
         )
         report.section("isotopologues", Table("isotopologues", columns, rows))
-    report.notes.append(
-        "masses of isotopes, not averages; moments of the geometry as it stands, without zero-point motion"
-    )
+    report.notes += _straightened(loaded.body, options.rtol)
+    masses = "masses of isotopes, not averages"
+    if options.masses == "average":
+        masses = "masses are averages over the isotopes of an element, which no single molecule has"
+    report.notes.append(f"{masses}; moments of the geometry as it stands, without zero-point motion")
     return report
 
 
@@ -76,12 +83,14 @@ def atoms_report(
     report.section("principal axes", *body_fields(loaded, FileUnits()))
     report.section("rotational constants", *_constant_fields(loaded.body))
     report.section("trust", *trust_fields(loaded))
+    report.notes += _straightened(loaded.body)
     return report
 
 
-def _loaded(atoms: list[Isotope], positions: Any, comment: str = "") -> LoadedBody:
-    body = RigidBody.from_particles([atom.mass for atom in atoms], positions)
-    return LoadedBody(body=body, source=atoms, mass_unit="u", length="angstrom", comment=comment)
+def _loaded(atoms: list[Isotope], molecule: Molecule, options: MoleculeOptions) -> LoadedBody:
+    masses = [atom.mass for atom in atoms]
+    body = body_of_atoms(masses, molecule.positions, source=options.masses, rounding=molecule.rounding)
+    return LoadedBody(body=body, source=atoms, mass_unit="u", length="angstrom", comment=molecule.comment)
 
 
 def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) -> None:
@@ -104,33 +113,51 @@ def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) 
     )
 
 
-def _moments(body: RigidBody) -> Any:
-    """Principal moments; the first of a linear molecule is 0, whatever the last digits of its file say."""
+def _moments(body: RigidBody, rtol: float | None = None) -> Any:
+    """Principal moments; of a linear molecule those of its atoms' places along the axis alone.
+
+    By the last digits of its file it may be bent. Then Ia is 0 and Ib = Ic is Paa, the sum of m a^2, which is
+    what one straight line has; Ia = 0 beside the other two as they stand would be no body's.
+    """
     moments = body.principal_moments
-    return np.array([0.0, *moments[1:]]) if body.principal.top == "linear" else moments
+    if body.principal.classify(rtol) != "linear":
+        return moments
+    along = planar_moments(moments)[0]
+    return np.array([0.0, along, along])
 
 
-def _constant_fields(body: RigidBody) -> list[Field]:
-    moments = _moments(body)
+def _straightened(body: RigidBody, rtol: float | None = None) -> list[str]:
+    """Say that a molecule was taken as linear that is not by all its digits."""
+    least = body.principal_moments[0]
+    if least == 0.0 or body.principal.classify(rtol) != "linear":
+        return []
+    return [
+        f"by its last digits not quite straight, Ia = {least:.3g} u angstrom^2; the constants are those of "
+        "the atoms' places along the axis, Ia = 0 and Ib = Ic = Paa"
+    ]
+
+
+def _constant_fields(body: RigidBody, rtol: float | None = None) -> list[Field]:
+    moments = _moments(body, rtol)
     frequencies = rotational_constants(moments, "MHz")
     fields = [
         Field("rotational_constants_MHz", "A  B  C", frequencies, "MHz", decimals=3),
         Field("rotational_constants_cm^-1", "", rotational_constants(moments, "cm^-1"), "cm^-1", decimals=6),
     ]
-    if body.principal.top == "asymmetric":
+    if body.principal.classify(rtol) == "asymmetric":
         fields.append(Field("ray_kappa", "Ray's kappa", ray_kappa(frequencies)))
     return fields
 
 
-def _rotation_fields(body: RigidBody) -> list[Field]:
-    moments = _moments(body)
+def _rotation_fields(loaded: LoadedBody, rtol: float | None) -> list[Field]:
+    body = loaded.body
+    moments = _moments(body, rtol)
     unit, scale = "u angstrom^2", float(moments[2])
-    top = Field("top", "top", str(body.principal.top))
     return [
-        top,
+        *top_fields(loaded, rtol),
         Field("principal_moments", "Ia Ib Ic", moments, unit),
         Field("axes", "axes a b c", body.principal.axes, hint="columns", scale=1.0),
-        *_constant_fields(body),
+        *_constant_fields(body, rtol),
         Field(
             "inertial_defect", "inertial defect", inertial_defect(moments), unit, "Ic - Ia - Ib", scale=scale
         ),
@@ -138,10 +165,10 @@ def _rotation_fields(body: RigidBody) -> list[Field]:
     ]
 
 
-def _row(name: str, body: RigidBody) -> dict[str, Any]:
-    moments = _moments(body)
+def _row(name: str, body: RigidBody, rtol: float | None) -> dict[str, Any]:
+    moments = _moments(body, rtol)
     constants = rotational_constants(moments, "MHz")
-    top = str(body.principal.top)
+    top = str(body.principal.classify(rtol))
     return {
         "isotopes": name,
         "mass": float(body.mass),

@@ -32,11 +32,11 @@ class OutputOptions:
         A table for people or the same fields as JSON, where an infinite number is the string "Infinity" and
         an undefined one is null; JSON by default where --output ends in .json.
     output
-        Write the report to this file instead of the terminal.
+        Write the report to this file instead of the terminal; - is standard output.
     """
 
     form: Annotated[Literal["table", "json"] | None, Parameter(name="--format")] = None
-    output: Annotated[Path | None, Parameter(name="--output")] = None
+    output: Annotated[Path | None, Parameter(name="--output", allow_leading_hyphen=True)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +106,10 @@ class CheckOptions:
     ----------
     packages
         A folder that holds the packages of package:// and model:// addresses. May be repeated; folders above
-        the file, ROS_PACKAGE_PATH and GZ_SIM_RESOURCE_PATH are searched too.
+        the file, ROS_PACKAGE_PATH, GZ_SIM_RESOURCE_PATH and AMENT_PREFIX_PATH are searched too.
+    allow_outside
+        Read meshes and included files wherever their names lead; without it only in the model's own package
+        and in those of --packages.
     strict
         Let links that are only suspect fail as well.
     fix
@@ -114,25 +117,34 @@ class CheckOptions:
     """
 
     packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="", show_default=False)] = ()
+    allow_outside: Annotated[bool, Parameter(name="--allow-outside", negative="")] = False
     strict: Annotated[bool, Parameter(name="--strict", negative="")] = False
     fix: Annotated[Path | None, Parameter(name="--fix")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class MoleculeOptions:
-    """Which nuclides a molecule is made of.
+    """Which nuclides a molecule is made of, and which of its moments are equal.
 
     Attributes
     ----------
     isotopes
         Nuclides to put in: for an element (18O: all its atoms) or for one atom by its number in the file
         (2=13C). May be repeated: each option is one isotopologue, in which several are separated by commas.
+    masses
+        Where a label of the file names no isotope: the most common one of the element, or the average over
+        them.
     length_unit
         Unit of the file's coordinates.
+    rtol
+        Moments closer than this times the largest count as equal, for the class of the top; by default 1e-6,
+        and more where the file has so few digits that their rounding can make more. The report tells which.
     """
 
     isotopes: Annotated[Words, Parameter(name="--isotopes", negative="", show_default=False)] = ()
+    masses: Annotated[Literal["most_common", "average"], Parameter(name="--masses")] = "most_common"
     length_unit: Annotated[LengthUnit, Parameter(name="--length-unit")] = "angstrom"
+    rtol: Annotated[float | None, Parameter(name="--rtol")] = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode import _core, plot
 from polhode._extras import require
+from polhode._files.picture import save_picture
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -46,7 +47,7 @@ def draw_flip(
     _draw_body(figure, placed, faces, trajectory)
     rates = _draw_rates(figure, trajectory, flips)
     _draw_snapshots(figure, rates, placed, faces, trajectory)
-    figure.savefig(path, dpi=160)
+    save_picture(figure, path)
 
 
 def _draw_body(figure: Any, vertices: Floats, faces: NDArray[np.int64], trajectory: Trajectory) -> None:

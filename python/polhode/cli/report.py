@@ -14,6 +14,7 @@ from polhode.cli.quantities import quantity, split_vector
 from polhode.cli.source import shown
 from polhode.errors import PolhodeError
 from polhode.io import MeshSolid
+from polhode.results import TOP_RTOL
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from polhode.cli.loading import LoadedBody
     from polhode.cli.options import BodyOptions
 
-__all__ = ["FileUnits", "body_fields", "file_report", "tensor_fields", "trust_fields"]
+__all__ = ["FileUnits", "body_fields", "file_report", "tensor_fields", "top_fields", "trust_fields"]
 
 UNKNOWN = "unit unknown"
 PLAIN = ReportOptions()
@@ -125,7 +126,29 @@ def body_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
         *units.fields("radii_of_gyration", "radii of gyration", radius, loaded.length, length=1),
         Field("axes", "e1 e2 e3", principal.axes, hint="columns", scale=1.0),
         Field("gaps", "gaps 2-1, 3-2", principal.gaps, hint="of I3"),
-        Field("top", "top", str(principal.top)),
+        *top_fields(loaded),
+    ]
+
+
+def top_fields(loaded: LoadedBody, rtol: float | None = None) -> list[Field]:
+    """Class of the top, and of a molecule the tolerance at which it is decided, and why."""
+    principal, rounding = loaded.body.principal, float(loaded.body.provenance.rounding)
+    top = Field("top", "top", str(principal.classify(rtol)))
+    if isinstance(loaded.source, MeshSolid) or not loaded.source:
+        return [top]
+    rtols = np.broadcast_to(principal.top_rtol if rtol is None else rtol, (3,))
+    if rtol is not None:
+        why = "as --rtol says"
+    elif rounding == 0.0:
+        why = "the default: the file prints no digits behind the point, by which to tell more"
+    elif rtols.max() <= TOP_RTOL:
+        why = "the default: the digits of the file tell more"
+    else:
+        why = f"what rounding of the coordinates by {rounding:.2g} {loaded.length}, by their digits, can make"
+    return [
+        top,
+        Field("top_rtol", "equal within", rtols, hint="of the largest moment: I1 = 0, I1 = I2, I2 = I3"),
+        Field("top_rtol_from", "", why),
     ]
 
 

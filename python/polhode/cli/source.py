@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import stat
 import sys
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from polhode._files.content import content_format
+from polhode._files.writing import DASH, writing
 from polhode.errors import FileFormatError, PolhodeError
 
 if TYPE_CHECKING:
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["STDIN", "as_file", "shown"]
 
-STDIN: Final = Path("-")
+STDIN: Final = DASH
 _SUFFIXES: Final = {
     "binary STL": ".stl",
     "ASCII STL": ".stl",
@@ -32,6 +35,18 @@ _SUFFIXES: Final = {
 def shown(file: Path) -> str:
     """Name a file as a report does."""
     return "standard input" if file == STDIN else str(file)
+
+
+def _begin() -> bytes:
+    """Read the first bytes of standard input, which may be a device that never ends."""
+    head: bytes = sys.stdin.buffer.read(1)
+    try:
+        is_device = stat.S_ISCHR(os.fstat(sys.stdin.fileno()).st_mode) and not sys.stdin.isatty()
+    except (OSError, ValueError):  # there is no descriptor behind it
+        is_device = False
+    if head and is_device:
+        raise FileFormatError("-: standard input is a device, which may never end; send a file into it")
+    return head
 
 
 @contextmanager
@@ -53,7 +68,8 @@ def as_file(file: Path) -> Iterator[Path]:
         return
     with TemporaryDirectory() as folder:
         raw = Path(folder, "stdin")
-        with raw.open("wb") as copy:
+        with writing(raw) as copy:
+            copy.write(_begin())
             shutil.copyfileobj(sys.stdin.buffer, copy)
         with raw.open("rb") as stream:
             head = stream.read(4096)

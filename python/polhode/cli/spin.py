@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import RigidBody
+from polhode._sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.quantities import quantities, quantity, vector
+from polhode.cli.report import top_fields
 from polhode.cli.source import shown
 from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
@@ -53,7 +55,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         "body",
         Field("mass", "mass", body.mass, loaded.mass_unit),
         Field("principal_moments", "I1 I2 I3", body.principal_moments, loaded.moment_unit),
-        Field("top", "top", str(body.principal.top)),
+        *top_fields(loaded),
     )
     report.section(
         "motion",
@@ -65,6 +67,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report.notes += _notes(loaded)
     if until is None:
         return report
+    _check_end(motion, until)
     trajectory = motion.at(np.linspace(0.0, until, spin.samples))
     angles = np.rad2deg(trajectory.euler_angles("ZXZ", singular="nan")[-1])
     report.section(
@@ -82,8 +85,9 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report.notes += [note] if note else []
     title = "" if file is None else Path(shown(file)).name
     for path in spin.save:
-        save(trajectory, path, spin, title=title, part=part)
+        told = save(motion, trajectory, path, spin, title=title, part=part)
         report.notes.append(f"saved {path}")
+        report.notes += [f"{path.name}: {note}" for note in told]
     return report
 
 
@@ -111,6 +115,18 @@ def _checked(file: Path | None, spin: SpinOptions) -> float | None:
     if until == 0.0:
         raise PolhodeError(f"--until: {until:g} is not a time other than 0")
     return until
+
+
+def _check_end(motion: FreeMotion | HeavyTop, until: float) -> None:
+    """Refuse a time after so many turns that the last digit of the angular velocity is a turn or more."""
+    rate = fastest(motion)
+    digit = rate * np.finfo(float).eps
+    if not digit * abs(until) < 1.0:
+        raise PolhodeError(
+            f"--until: after {until:g} s at {rate:.4g} rad/s the last digit of the angular velocity turns "
+            f"the body by {digit * abs(until):.2g} rad, and its attitude is not known; end before "
+            f"{1.0 / digit:.2g} s"
+        )
 
 
 def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedBody:

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 
 from polhode._extras import require
+from polhode._files.picture import save_picture
 from polhode._files.trajectory import TRAJECTORY_SUFFIXES
-from polhode.animation import ANIMATION_SUFFIXES, animate
+from polhode._sampling import TURN, motion_times, turns
+from polhode.animation import ANIMATION_SUFFIXES, animate_motion
 from polhode.cli.progress import progress
 from polhode.errors import PolhodeError
 from polhode.plot._triangles import joined
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode import Trajectory
+    from polhode import FreeMotion, HeavyTop, Trajectory
     from polhode.cli.loading import LoadedBody
     from polhode.cli.options import BodyOptions, SpinOptions
 
@@ -33,8 +35,6 @@ DRAWN: Final = (*PICTURE_SUFFIXES, *ANIMATION_SUFFIXES)
 """Of files that show the body itself."""
 _MOST: Final = 10_000
 """Triangles that are drawn of a mesh."""
-_FRAMES: Final = 300
-"""Pictures of an animation: ten seconds at thirty a second."""
 
 
 def check_paths(paths: Sequence[Path]) -> None:
@@ -42,8 +42,6 @@ def check_paths(paths: Sequence[Path]) -> None:
     for path in paths:
         if path.suffix.lower() not in _SUFFIXES:
             raise PolhodeError(f"--save: {path} does not end in one of {', '.join(_SUFFIXES)}")
-        if not path.parent.is_dir():
-            raise PolhodeError(f"--save: there is no directory {path.parent}; create it first")
 
 
 def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:
@@ -62,23 +60,49 @@ def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str
     return (vertices, faces), note
 
 
-def save(trajectory: Trajectory, path: Path, spin: SpinOptions, *, title: str, part: Part | None) -> None:
-    """Write a motion in the form that the name asks for, the body drawn as `part` or as a box."""
-    suffix = path.suffix.lower()
+def save(
+    motion: FreeMotion | HeavyTop,
+    samples: Trajectory,
+    path: Path,
+    spin: SpinOptions,
+    *,
+    title: str,
+    part: Part | None,
+) -> tuple[str, ...]:
+    """Write a motion in the form that the name asks for, the body drawn as `part` or as a box.
+
+    Numbers are those of the samples; what is drawn follows the motion. Returned is what the file does not
+    show of it.
+    """
+    suffix, end = path.suffix.lower(), float(samples.t[-1])
     if suffix in TRAJECTORY_SUFFIXES:
-        trajectory.save(path)
-    elif suffix in ANIMATION_SUFFIXES:
+        samples.save(path)
+        return _between(samples)
+    if suffix in ANIMATION_SUFFIXES:
         with progress(f"drawing {path.name}", is_long=suffix != ".html") as tell:
-            animate(
-                trajectory,
-                path,
-                frames=min(_FRAMES, len(trajectory)),
-                title=title or "Motion of a rigid body",
-                shape=part,
-                progress=tell,
+            return animate_motion(
+                motion, end, path, title=title or "Motion of a rigid body", shape=part, progress=tell
             )
-    else:
-        _draw(trajectory, path, spin, title, part)
+    span = motion_times(motion, np.array([0.0, end]))
+    _draw(motion.at(span.t), path, spin, title, part)
+    if span.is_whole:
+        return ()
+    return (
+        f"shown is the beginning, to {span.t[-1]:.6g} of {end:.6g} s: {len(span.t)} points follow the motion "
+        "no farther; an earlier --until shows all of it",
+    )
+
+
+def _between(samples: Trajectory) -> tuple[str, ...]:
+    """Say that the numbers do not tell how the body moves from one time to the next."""
+    widest = float(turns(samples.t, samples.omega).max())
+    if widest < np.pi:
+        return ()
+    needed = np.ceil(len(samples) * widest / TURN)
+    return (
+        f"from one of its times to the next the body turns by up to {np.rad2deg(widest):.4g} deg, which the "
+        f"numbers do not tell from less; --samples {needed:.7g} follows it",
+    )
 
 
 def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, part: Part | None) -> None:
@@ -99,4 +123,4 @@ def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, par
     frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
     ax = angular_velocity(trajectory, place, frame=frame, degrees=spin.degrees)
     ax.set_title(title, loc="left")
-    figure.savefig(path, dpi=160)
+    save_picture(figure, path)

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._files.writing import write_bytes
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -64,4 +66,4 @@ def write_stl(path: Path, vertices: NDArray[np.float64], faces: NDArray[np.int64
     triangles["normal"] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     triangles["corners"] = corners
     header = b"T-handle, millimetres".ljust(80)
-    path.write_bytes(header + np.uint32(len(faces)).astype("<u4").tobytes() + triangles.tobytes())
+    write_bytes(path, header + np.uint32(len(faces)).astype("<u4").tobytes() + triangles.tobytes())

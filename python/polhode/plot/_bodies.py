@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode import _core
 from polhode._extras import require
 from polhode.plot._style import AXIS_COLORS, OUTLINE_COLOR, axes_3d
 from polhode.plot._triangles import cut
@@ -55,7 +56,8 @@ def body(
     """
     art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="drawing")
     ax = axes_3d(ax)
-    points = np.asarray(vertices, dtype=np.float64)
+    points = _core.real_numbers(vertices, "vertices")
+    _core.real_numbers(faces, "faces")  # neither masked nor with a unit
     corners = np.asarray(faces, dtype=np.int64)
     size = max(float(np.ptp(points, axis=0).max()), float(np.finfo(float).tiny))
     normals = _unit_normals(points[corners])
@@ -115,7 +117,7 @@ def principal_axes(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
-    origin = np.asarray(rigid_body.center_of_mass if center is None else center, dtype=np.float64)
+    origin = _core.real_numbers(rigid_body.center_of_mass if center is None else center, "center")
     toward_viewer = _view_direction(ax)
     for color, direction, label in zip(AXIS_COLORS, rigid_body.principal.axes.T, labels, strict=True):
         for sense in (1.0, -1.0):

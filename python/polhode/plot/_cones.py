@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._lengths import lengths
+from polhode._sampling import drawn_times
 from polhode.plot._ellipsoid import _beside, _one, _upright
 from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_3d
 from polhode.plot._surfaces import arrow, fan, plain_frame
@@ -29,8 +30,9 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     motion : FreeMotion
         Of one body.
     t : array_like, shape (T,)
-        Times over which ω sweeps the space cone; the body cone is drawn as it is at the last of them. For a
-        body that is not symmetric the cones are not round, and the space cone need not close.
+        Times over which ω sweeps the space cone, between which as many more are put as it needs; the body
+        cone is drawn as it is at the last of them. For a body that is not symmetric the cones are not round,
+        and the space cone need not close.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default. L is drawn upward.
 
@@ -44,7 +46,7 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     if not size > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = axes_3d(ax)
-    times = np.asarray(t, dtype=np.float64).reshape(-1)
+    times = drawn_times(motion, t)
     upright = _upright(momentum / size)
     now = motion.at(times[-1:])
     attitude = upright @ _core.rotate(now.quaternion[0], np.eye(3)).T

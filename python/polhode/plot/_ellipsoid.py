@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
+from polhode._sampling import drawn_times
 from polhode.plot._bodies import principal_axes
 from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_3d
 from polhode.plot._surfaces import arrow, curve_on, inertia_semi_axes, plain_frame, solid_ellipsoid
@@ -53,7 +54,7 @@ def ellipsoid(
     _one(body.shape, "body")
     new = ax is None
     ax = axes_3d(ax)
-    middle = np.asarray(body.center_of_mass if center is None else center, dtype=np.float64)
+    middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
     semi_axes = inertia_semi_axes(body.principal.moments)
     semi_axes *= size / semi_axes.max()
     solid_ellipsoid(ax, semi_axes, body.principal.axes, middle, opacity)
@@ -156,7 +157,8 @@ def poinsot(
     motion : FreeMotion
         Of one body.
     t : array_like, shape (T,)
-        Times of the herpolhode; the ellipsoid is drawn as it is at the last of them.
+        Times of the herpolhode, between which as many more are put as its path needs; the ellipsoid is drawn
+        as it is at the last of them.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default. L is drawn upward.
     rate_unit : str
@@ -167,7 +169,7 @@ def poinsot(
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
     _one(motion.shape, "motion")
-    times = np.asarray(t, dtype=np.float64).reshape(-1)
+    times = drawn_times(motion, t)
     found = motion.poinsot(times)
     if not np.isfinite(found.semi_axes).all():
         raise ValueError("motion: the body has a zero moment, and its ellipsoid no end")

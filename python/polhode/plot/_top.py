@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._sampling import axis_times, drawn_times
 from polhode.plot._ellipsoid import _one, _upright
 from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_2d, axes_3d, tidy
 from polhode.plot._surfaces import arrow, curve_on, plain_frame, solid_ellipsoid
@@ -82,7 +83,8 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     top : HeavyTop
         One top, whose centre of mass is not the fixed point.
     t : array_like, shape (T,)
-        Times of the path; the axis is drawn as it is at the last of them.
+        Times of the path, between which as many more are put as it needs; the axis is drawn as it is at the
+        last of them.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default. Against gravity is upward.
 
@@ -99,7 +101,11 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
         )
     ax = axes_3d(ax)
     ax.view_init(elev=40.0, azim=-55.0)
-    path = top.at(t).point("center_of_mass") / arm @ _upright(-top.gravity / weight).T
+    path = (
+        top.at(drawn_times(top, t, axis_times)).point("center_of_mass")
+        / arm
+        @ _upright(-top.gravity / weight).T
+    )
     solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.35)
     around = np.linspace(0.0, 2.0 * np.pi, 181)
     for limit in top.nutation_limits:

@@ -8,6 +8,7 @@ values and leaves every other byte of the file as it is.
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,10 +16,12 @@ from polhode._files.content import content_format
 from polhode._files.xml_source import Edit, Element, edited, parse_xml
 from polhode.errors import FileFormatError
 from polhode.robots import mjcf, sdf, urdf
+from polhode.robots.addresses import Addresses, own_root
 from polhode.robots.geometry import GeometryReader
 from polhode.robots.model import Inertial, Link, Place, Robot, Shape
-from polhode.robots.sources import Addresses, Sources
+from polhode.robots.sources import Sources, read_source
 from polhode.robots.verdict import FAILURES, Verdict, judge
+from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -40,7 +43,12 @@ __all__ = [
 _FORMATS = {"robot": ("URDF", urdf), "sdf": ("SDF", sdf), "mujoco": ("MJCF", mjcf)}
 
 
-def read_robot(path: str | os.PathLike[str], packages: Sequence[str | os.PathLike[str]] = ()) -> Robot:
+def read_robot(
+    path: str | os.PathLike[str],
+    packages: Sequence[str | os.PathLike[str]] = (),
+    *,
+    allow_outside: bool = False,
+) -> Robot:
     """Read a robot file.
 
     Parameters
@@ -51,6 +59,9 @@ def read_robot(path: str | os.PathLike[str], packages: Sequence[str | os.PathLik
         a network.
     packages : sequence of str or os.PathLike
         Folders that hold the packages of ``package://`` and ``model://`` addresses, see :func:`check`.
+    allow_outside : bool
+        Whether what the file names may lie anywhere. By default it is read only in the model's own package
+        and in those of `packages`, see :func:`check`.
 
     Returns
     -------
@@ -64,9 +75,13 @@ def read_robot(path: str | os.PathLike[str], packages: Sequence[str | os.PathLik
         If the file cannot be read.
     """
     file = Path(path)
-    if file.is_dir():
-        raise FileFormatError(f"{file}: is a directory; name a file in it")
-    return parse_robot(file.read_bytes(), name=str(file), folder=file.absolute().parent, packages=packages)
+    source = read_source(file)
+    real, folder = Path(os.path.realpath(file)), file.absolute().parent
+    roots = (own_root(real.parent),) if real.parent != Path(os.path.realpath(folder)) else ()
+    robot = parse_robot(
+        source, name=str(file), folder=folder, packages=[*packages, *roots], allow_outside=allow_outside
+    )
+    return replace(robot, roots=roots)
 
 
 def parse_robot(
@@ -75,6 +90,7 @@ def parse_robot(
     name: str,
     folder: str | os.PathLike[str],
     packages: Sequence[str | os.PathLike[str]] = (),
+    allow_outside: bool = False,
 ) -> Robot:
     """Read a robot from the bytes of its file.
 
@@ -88,6 +104,9 @@ def parse_robot(
         Where relative addresses of meshes and included files start.
     packages : sequence of str or os.PathLike
         See :func:`check`.
+    allow_outside : bool
+        Whether what the file names may lie anywhere. By default it is read only in the model's own package
+        and in those of `packages`, see :func:`check`.
 
     Returns
     -------
@@ -107,32 +126,37 @@ def parse_robot(
     body_format, _ = content_format(source[:4096], len(source))
     if body_format is not None:
         raise FileFormatError(f"{name}: is {body_format}, not a robot; polhode report reads it")
-    root = parse_xml(source, name)
+    home = Path(folder)
+    addresses = Addresses(home, [Path(package) for package in packages], allow_outside=allow_outside)
+    sources = Sources(home, addresses)
+    root = parse_xml(source, name, budget=sources.budget)
     if root.tag not in _FORMATS:
         raise FileFormatError(
-            f"{name}: its root is <{root.tag}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); check the file"
+            f"{name}: its root is <{shortened(root.tag)}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); "
+            "check the file"
         )
     format_name, reader = _FORMATS[root.tag]
     unexpanded = next((e for e in _walk(root) if e.startswith("xacro:")), None)
     if unexpanded is not None:
-        raise FileFormatError(f"{name}: holds <{unexpanded}>; expand it first: xacro {name} > out.urdf")
-    sources = Sources(Path(folder), Addresses(Path(folder), [Path(package) for package in packages]))
+        raise FileFormatError(
+            f"{name}: holds <{shortened(unexpanded)}>; expand it first: xacro {name} > out.urdf"
+        )
     try:
         links = tuple(reader.links(root, sources))
     except ValueError as error:
         raise FileFormatError(f"{name}: {error}") from None
-    except RecursionError:
-        raise FileFormatError(f"{name}: its parts are nested beyond reason; check the file") from None
     if not links:
         raise FileFormatError(f"{name}: holds no link; check the file")
-    read = [f"read too: {', '.join(sources.names)}"] if sources.names else []
-    notes = (*read, *sources.notes)
+    read = f"read too: {', '.join(sources.names)}"
+    notes = (*([read] if sources.names else []), *sources.notes)
     model = root if format_name != "SDF" else next(root.descendants("model"), root)
-    title = model.attributes.get("name", model.attributes.get("model", ""))
-    return Robot(format_name, title, links, Path(folder), source, notes)
+    title = sources.prefix(model.attributes.get("name", model.attributes.get("model", "")))
+    return Robot(format_name, title, links, home, source, notes)
 
 
-def check(robot: Robot, packages: Sequence[str | os.PathLike[str]] = ()) -> list[Verdict]:
+def check(
+    robot: Robot, packages: Sequence[str | os.PathLike[str]] = (), *, allow_outside: bool = False
+) -> list[Verdict]:
     """Judge the inertia of every link.
 
     Parameters
@@ -141,7 +165,14 @@ def check(robot: Robot, packages: Sequence[str | os.PathLike[str]] = ()) -> list
         From :func:`read_robot`.
     packages : sequence of str or os.PathLike
         Folders that hold the packages of ``package://`` and ``model://`` addresses; folders above the file,
-        ``ROS_PACKAGE_PATH`` and ``GZ_SIM_RESOURCE_PATH`` are searched too.
+        ``ROS_PACKAGE_PATH``, ``GZ_SIM_RESOURCE_PATH`` and ``AMENT_PREFIX_PATH`` are searched too.
+    allow_outside : bool
+        Whether meshes may lie anywhere. By default they are read only in these folders and where the model
+        is: in the package that encloses it (marked by ``package.xml``, ``manifest.xml`` or
+        ``model.config``) or, without one, its checkout (``.git``, ``.hg``), its Python package, or its own
+        folder, or the one that holds that, if it is named ``urdf``, ``sdf``, ``mjcf``, ``xml``, ``robots``
+        or ``worlds``; another package above or beside it is read where it is marked as one. Links to files
+        elsewhere are not followed. What is not read is told in the notes of the link.
 
     Returns
     -------
@@ -157,7 +188,9 @@ def check(robot: Robot, packages: Sequence[str | os.PathLike[str]] = ()) -> list
     >>> verdict.verdict
     'impossible'
     """
-    return judge(robot.links, GeometryReader(robot.folder, [Path(package) for package in packages]))
+    declared = [Path(package) for package in (*packages, *robot.roots)]
+    addresses = Addresses(robot.folder, declared, allow_outside=allow_outside)
+    return judge(robot.links, GeometryReader(robot.folder, addresses))
 
 
 def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
 from polhode.io import read_mesh
-from polhode.robots.sources import Addresses
+from polhode.robots.words import quoted, shortened
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from polhode._files.mesh import Mesh
+    from polhode.robots.addresses import Addresses
     from polhode.robots.model import Link, Shape
 
     Floats = NDArray[np.float64]
@@ -58,6 +59,13 @@ class Geometry:
     notes: tuple[str, ...]
 
 
+class _Read(NamedTuple):
+    """A mesh, and those of its vertices that triangles use."""
+
+    mesh: Mesh
+    corners: Floats
+
+
 class GeometryReader:
     """Reads the shapes of links; a mesh that several links use is read once.
 
@@ -65,47 +73,53 @@ class GeometryReader:
     ----------
     folder : pathlib.Path
         Where relative addresses start.
-    packages : sequence of pathlib.Path
-        Folders that hold the packages of ``package://`` and ``model://`` addresses.
+    addresses : Addresses
+        Finds the files of meshes.
     """
 
-    def __init__(self, folder: Path, packages: Sequence[Path] = ()) -> None:
-        self._folder, self._addresses = folder, Addresses(folder, packages)
-        self._meshes: dict[tuple[Path, str], Mesh | str] = {}
+    def __init__(self, folder: Path, addresses: Addresses) -> None:
+        self._folder, self._addresses = folder, addresses
+        self._meshes: dict[tuple[Path, str], _Read | str] = {}
+        self._solids: dict[tuple[Path, str, str, tuple[float, ...]], tuple[RigidBody | None, str]] = {}
 
     def read(self, link: Link) -> Geometry:
         """Take the shapes of a link together."""
-        notes: dict[str, None] = {}
+        notes: dict[str, str] = {}  # where each was found first
         folder = link.folder or self._folder
         boxes = [self._box(shape, folder, notes) for shape in link.shapes]
-        body, role = None, ""
-        for role in ("collision", "visual"):
-            shapes = [shape for shape in link.shapes if shape.role == role]
-            bodies = [self._body(shape, folder, notes) for shape in shapes]
-            parts = [part for part in bodies if part is not None]
-            if parts and len(parts) == len(bodies):
-                body = sum(parts[1:], start=parts[0])
-                break
+        body, role = self._whole(link, folder, notes)
+        told = tuple(f"{where}: {note}" if where else note for note, where in notes.items())
         known = [box for box in boxes if box is not None]
         if not known or len(known) < len(boxes):
-            return Geometry(body, role, None, None, tuple(notes))
+            return Geometry(body, role, None, None, told)
         low = np.min([box[0] for box in known], axis=0)
         high = np.max([box[1] for box in known], axis=0)
-        return Geometry(body, role, low, high, tuple(notes))
+        if not (np.isfinite(low).all() and np.isfinite(high).all()):
+            return Geometry(body, role, None, None, (*told, "its shapes are larger than numbers reach"))
+        return Geometry(body, role, low, high, told)
 
-    def _body(self, shape: Shape, folder: Path, notes: dict[str, None]) -> RigidBody | None:
-        solid: RigidBody | None
-        if shape.kind == "mesh":
-            solid = self._mesh_body(shape, folder, notes)
-        elif shape.kind in _SOLIDS:
+    def _whole(self, link: Link, folder: Path, notes: dict[str, str]) -> tuple[RigidBody | None, str]:
+        """Add the shapes of one role, that of collisions if it serves."""
+        role = ""
+        for role in ("collision", "visual"):
+            shapes = [shape for shape in link.shapes if shape.role == role]
             try:
-                solid = _SOLIDS[shape.kind](shape.size)
-            except ValueError as error:
-                notes[f"{shape.kind}: {error}"] = None
-                solid = None
-        else:
-            notes[f"a shape of kind {shape.kind!r} has no volume that could be told"] = None
-            solid = None
+                bodies = [self._body(shape, folder, notes) for shape in shapes]
+                parts = [part for part in bodies if part is not None]
+                if parts and len(parts) == len(bodies):
+                    return sum(parts[1:], start=parts[0]), role
+            except PolhodeError as error:
+                notes.setdefault(f"the {role} shapes make no body: {error}", shapes[0].where)
+        return None, role
+
+    def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> RigidBody | None:
+        key = (folder, shape.kind, shape.mesh, shape.size)
+        if key not in self._solids:
+            is_mesh = shape.kind == "mesh"
+            self._solids[key] = self._mesh_solid(shape, folder) if is_mesh else _solid(shape)
+        solid, note = self._solids[key]
+        if note:
+            notes.setdefault(note, shape.where)
         if solid is None:
             return None
         weight = shape.density if shape.mass is None else shape.mass / float(solid.mass)
@@ -114,50 +128,62 @@ class GeometryReader:
         placed = solid.rotated(_quaternion(shape.place.rotation)).translated(shape.place.position)
         return placed.scaled(mass=weight)
 
-    def _mesh_body(self, shape: Shape, folder: Path, notes: dict[str, None]) -> RigidBody | None:
-        mesh = self._mesh(shape, folder, notes)
-        if mesh is None:
-            return None
+    def _mesh_solid(self, shape: Shape, folder: Path) -> tuple[RigidBody | None, str]:
+        """Give the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
+        read, name = self._mesh(shape.mesh, folder), shortened(shape.mesh)
+        if isinstance(read, str):
+            return None, read
+        mesh = read.mesh
         vertices = mesh.vertices * np.array(shape.size)
         try:
-            return RigidBody.from_mesh(vertices, mesh.faces, density=1.0, orient=True)
+            return RigidBody.from_mesh(vertices, mesh.faces, density=1.0, orient=True), ""
         except ValueError as error:
             first = str(error)
         try:
             hull = RigidBody.from_mesh(vertices, mesh.faces, density=1.0, closure="hull")
         except (ValueError, ModuleNotFoundError):
-            notes[f"mesh {shape.mesh}: {first}"] = None
-            return None
-        notes[f"mesh {shape.mesh} does not bound a solid: its convex hull was taken"] = None
-        return hull
+            return None, f"mesh {name}: {first}"
+        return hull, f"mesh {name} does not bound a solid: its convex hull was taken"
 
-    def _mesh(self, shape: Shape, folder: Path, notes: dict[str, None]) -> Mesh | None:
-        key = (folder, shape.mesh)
+    def _mesh(self, address: str, folder: Path) -> _Read | str:
+        key = (folder, address)
         if key not in self._meshes:
-            self._meshes[key] = self._load(shape.mesh, folder)
-        found = self._meshes[key]
-        if isinstance(found, str):
-            notes[found] = None
-            return None
-        return found
+            self._meshes[key] = self._load(address, folder)
+        return self._meshes[key]
 
-    def _load(self, address: str, folder: Path) -> Mesh | str:
-        path = self._addresses.find(address, folder)
-        if path is None or not path.is_file():
-            return f"mesh {address or '(without a name)'} was not found"
+    def _load(self, address: str, folder: Path) -> _Read | str:
+        if not address:
+            return "mesh (without a name) was not found"
+        name = shortened(address)
+        path, fault = self._addresses.find(address, folder)
+        if path is None:
+            return f"mesh {name} {fault or 'was not found'}"
+        if path.is_dir():
+            return f"mesh {name} is a directory; name a file in it"
         try:
-            return read_mesh(path)
-        except (PolhodeError, OSError, ModuleNotFoundError) as error:
-            return f"mesh {address}: {error}"
+            mesh = read_mesh(path)
+        except (ValueError, OSError, ModuleNotFoundError, MemoryError) as error:
+            return f"mesh {name}: {error}"
+        used = np.unique(mesh.faces)
+        if used.size and not (used[0] >= 0 and used[-1] < len(mesh.vertices)):
+            return f"mesh {name}: {path}: a face names a vertex that the file does not hold; check the file"
+        corners = mesh.vertices[used]
+        if not np.isfinite(corners).all():
+            vertex = int(used[np.flatnonzero(~np.isfinite(corners).all(axis=1))[0]])
+            return f"mesh {name}: {path}: vertex {vertex} is not finite; check the file"
+        return _Read(mesh, corners)
 
-    def _box(self, shape: Shape, folder: Path, notes: dict[str, None]) -> tuple[Floats, Floats] | None:
+    def _box(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[Floats, Floats] | None:
         """Opposite corners of the box along the axes of the link around a shape."""
         rotation, position = shape.place
         if shape.kind == "mesh":
-            mesh = self._mesh(shape, folder, notes)
-            if mesh is None or not len(mesh.faces):
+            mesh = self._mesh(shape.mesh, folder)
+            if isinstance(mesh, str):
+                notes.setdefault(mesh, shape.where)
                 return None
-            corners = mesh.vertices[np.unique(mesh.faces)] * np.array(shape.size) @ rotation.T
+            if not len(mesh.corners):
+                return None
+            corners = mesh.corners * np.array(shape.size) @ rotation.T
             return corners.min(axis=0) + position, corners.max(axis=0) + position
         size = np.abs(shape.size)
         if shape.kind == "box":
@@ -174,6 +200,16 @@ class GeometryReader:
         else:
             return None
         return position - reach, position + reach
+
+
+def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
+    """Give the solid of a shape that is no mesh, or why there is none."""
+    if shape.kind not in _SOLIDS:
+        return None, f"a shape of kind {quoted(shape.kind)} has no volume that could be told"
+    try:
+        return _SOLIDS[shape.kind](shape.size), ""
+    except ValueError as error:
+        return None, f"{shape.kind}: {error}"
 
 
 def _quaternion(rotation: Floats) -> Floats:

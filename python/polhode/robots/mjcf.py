@@ -6,8 +6,9 @@ axes of the turning frame in lower case, fixed ones in upper case, the other way
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +17,9 @@ from polhode._core import rotate
 from polhode._files.xml_source import Edit, Element, remove_attribute, set_attribute
 from polhode.errors import FileFormatError
 from polhode.robots.mjcf_parts import copies, expand_includes
-from polhode.robots.model import Inertial, Link, Place, Shape, numbers
+from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
+from polhode.robots.sources import LimitError
+from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,6 +32,7 @@ __all__ = ["links"]
 _ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 _HALF_LENGTHS = {"sphere": 1, "ellipsoid": 3, "box": 3, "cylinder": 2, "capsule": 2}
 _WATER = "1000"
+_OF_GEOMS = frozenset({"type", "size", "pos", "fromto", "mesh", "mass", "density", *_ORIENTATIONS})
 
 
 def links(root: Element, sources: Sources) -> Iterator[Link]:
@@ -41,56 +45,69 @@ def links(root: Element, sources: Sources) -> Iterator[Link]:
         yield from reader.below(world, None)
 
 
+class Member(NamedTuple):
+    """An element of a body, with the frame it stands in, the class it inherits and what is wrong there."""
+
+    element: Element
+    place: Place
+    inherited: str | None
+    problem: str
+
+
 class _Reader:
     """A model's compiler settings, default classes and meshes."""
 
     def __init__(self, root: Element, folder: Path, sources: Sources, prefix: str = "") -> None:
         expand_includes(root, folder, sources)
-        self.root, self.folder, self.sources, self.prefix = root, folder, sources, prefix
+        self.root, self.folder, self.sources, self.prefix = root, folder, sources, sources.prefix(prefix)
+        self._open_copies = 0
         settings = {k: v for compiler in root.all("compiler") for k, v in compiler.attributes.items()}
         self.in_radians = settings.get("angle", "degree") == "radian"
         self.sequence = settings.get("eulerseq", "xyz").swapcase()
         self.infers_always = settings.get("inertiafromgeom", "auto") == "true"
-        self.mesh_folder = settings.get("meshdir", settings.get("assetdir", ""))
         self.geoms: dict[str, dict[str, str]] = {"main": {}}
         for default in root.all("default"):
             self._add_class(default, {}, default.attributes.get("class", "main"))
-        self.meshes: dict[str, Element] = {}
+        self.meshes: dict[str, tuple[Element, str]] = {}
+        mesh_folder = settings.get("meshdir", settings.get("assetdir", "")).rstrip("/")
         self.models: dict[str, str] = {}
         for asset in root.all("asset"):
             for mesh in asset.all("mesh"):
                 file = mesh.attributes.get("file", "")
                 name = mesh.attributes.get("name", file.rpartition("/")[2].rpartition(".")[0])
-                self.meshes[name] = mesh
+                self.meshes[name] = mesh, f"{mesh_folder}/{file}" if mesh_folder and file else file
             for model in asset.all("model"):
                 self._add_model(model)
 
     def below(self, parent: Element, inherited: str | None) -> Iterator[Link]:
         """Read the bodies and the attached models that hang on a body or the world."""
-        for child, _, name in self.members(parent, "body", Place.here(), inherited):
-            yield from self.bodies(child, name)
-        for attach, _, _ in self.members(parent, "attach", Place.here(), inherited):
-            yield from self._attached(attach)
+        for body in self.members(parent, "body", Place.here(), inherited):
+            yield from self.bodies(body.element, body.inherited, body.problem)
+        for attach in self.members(parent, "attach", Place.here(), inherited):
+            for link in self._attached(attach.element):
+                yield replace(link, problem=attach.problem or link.problem)
 
-    def bodies(self, body: Element, inherited: str | None) -> Iterator[Link]:
-        """Read a body and those that hang on it."""
+    def bodies(self, body: Element, inherited: str | None, problem: str = "") -> Iterator[Link]:
+        """Read a body, which stands in a frame with that problem, and those that hang on it."""
         inherited = body.attributes.get("childclass", inherited)
-        inertial, problem = None, ""
+        inertial: Inertial | None = None
+        shapes: tuple[Shape, ...] = ()
         declared = body.find("inertial")
-        if declared is not None and not self.infers_always:
-            try:
+        try:
+            if declared is not None and not self.infers_always:
                 inertial = self._inertial(declared)
-            except FileFormatError as error:
-                problem = str(error)
+            shapes = tuple(self._shape(geom) for geom in self.members(body, "geom", Place.here(), inherited))
+        except LimitError:
+            raise
+        except FileFormatError as error:
+            problem = problem or str(error)
+        own_name = body.attributes.get("name", f"(body of {body.where})")
         yield Link(
-            name=self.prefix + body.attributes.get("name", f"(body of {body.where})"),
+            name=self.sources.name(self.prefix, own_name, body),
             line=body.line,
             inertial=inertial,
             problem=problem,
-            shapes=tuple(
-                self._shape(geom, place, name)
-                for geom, place, name in self.members(body, "geom", Place.here(), inherited)
-            ),
+            shapes=shapes,
             inferred=declared is None or self.infers_always,
             rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
             file=body.file,
@@ -99,38 +116,52 @@ class _Reader:
         yield from self.below(body, inherited)
 
     def members(
-        self, parent: Element, tag: str, place: Place, inherited: str | None
-    ) -> Iterator[tuple[Element, Place, str | None]]:
-        """Give the elements of a body or the world, those in frames too, with the frame and its class."""
+        self, parent: Element, tag: str, place: Place, inherited: str | None, problem: str = ""
+    ) -> Iterator[Member]:
+        """Give the elements of a body or the world, those in frames too."""
         for child in parent.children:
             if child.tag == tag:
-                yield child, place, inherited
+                yield Member(child, place, inherited, problem)
             elif child.tag == "frame":
-                inside = place.then(self._place(child, child.attributes))
-                yield from self.members(child, tag, inside, child.attributes.get("childclass", inherited))
+                step, fault = self._step(child, child.attributes)
+                name = child.attributes.get("childclass", inherited)
+                yield from self.members(child, tag, place.then(step), name, problem or fault)
             elif child.tag == "replicate":
-                yield from self._copied(child, tag, place, inherited)
+                yield from self._copied(child, tag, Member(child, place, inherited, problem))
 
-    def _copied(
-        self, replicate: Element, tag: str, place: Place, inherited: str | None
-    ) -> Iterator[tuple[Element, Place, str | None]]:
+    def _step(self, element: Element, attributes: dict[str, str]) -> tuple[Place, str]:
+        """Give a frame, and what is wrong with it: that ends the verdict of what stands in it alone."""
+        try:
+            return self._place(element, attributes), ""
+        except FileFormatError as error:
+            return Place.here(), str(error)
+
+    def _copied(self, replicate: Element, tag: str, first: Member) -> Iterator[Member]:
         """Give the elements of every copy; bodies once, as they are the same in all."""
         attributes = replicate.attributes
         turn = {"pos": attributes.get("offset", "0 0 0"), "euler": attributes.get("euler", "0 0 0")}
-        step = self._place(replicate, turn)
-        for copy in copies(replicate, step, place, self.sources):
-            inside = list(self.members(replicate, tag, copy, inherited))
+        step, fault = self._step(replicate, turn)
+        count = copies(replicate)
+        is_geom, place = tag == "geom", first.place
+        if is_geom:
+            self.sources.count_copies(count, replicate)
+        for number in range(count if is_geom else 1):
+            self._open_copies += 1
+            inside = list(self.members(replicate, tag, place, first.inherited, first.problem or fault))
+            self._open_copies -= 1
+            if is_geom and number == 0:
+                self.sources.count_copied(count * len(inside), replicate, keep=self._open_copies == 0)
+            if inside and not is_geom:
+                self.sources.notes["bodies within <replicate> are judged once, their copies not"] = None
             yield from inside
-            if tag != "geom":
-                if inside:
-                    self.sources.notes["bodies within <replicate> are judged once, their copies not"] = None
-                return
+            place = place.then(step)
 
     def _add_model(self, model: Element) -> None:
         file = model.attributes.get("file", "")
         name = model.attributes.get("name")
         if name is None:  # then it goes by the name that its own file gives it
-            name = self.sources.read(self.folder / file, file, model).attributes.get("model", "")
+            path = self.sources.locate(file, self.folder, model)
+            name = self.sources.read(path, file, model).attributes.get("model", "")
         self.models[name] = file
 
     def _attached(self, attach: Element) -> Iterator[Link]:
@@ -138,10 +169,11 @@ class _Reader:
         name = attach.attributes.get("model", "")
         if name not in self.models:
             raise FileFormatError(
-                f"{attach.where}: <attach> of model {name!r}, which no <model> of the assets names; add it"
+                f"{attach.where}: <attach> of model {quoted(name)}, which no <model> of the assets "
+                "names; add it"
             )
         file = self.models[name]
-        path = self.folder / file
+        path = self.sources.locate(file, self.folder, attach)
         prefix = self.prefix + attach.attributes.get("prefix", "")
         root = self.sources.read(path, file, attach)
         with self.sources.inside(path, file, attach):
@@ -152,25 +184,30 @@ class _Reader:
                     yield from model.below(world, None)
                     continue
                 found = [
-                    each for each in model.everything(world, None) if each[0].attributes.get("name") == wanted
+                    each
+                    for each in model.everything(world, None)
+                    if each.element.attributes.get("name") == wanted
                 ]
-                for body, inherited in found:
-                    yield from model.bodies(body, inherited)
+                for body in found:
+                    yield from model.bodies(body.element, body.inherited, body.problem)
                 if found:
                     return
             if wanted is not None:
-                raise FileFormatError(f"{attach.where}: {file} has no body {wanted!r}; correct the name")
+                raise FileFormatError(
+                    f"{attach.where}: {file} has no body {quoted(wanted)}; correct the name"
+                )
 
-    def everything(self, parent: Element, inherited: str | None) -> Iterator[tuple[Element, str | None]]:
-        """Give every body below a body or the world, with the class it inherits."""
-        for body, _, name in self.members(parent, "body", Place.here(), inherited):
-            yield body, name
-            yield from self.everything(body, body.attributes.get("childclass", name))
+    def everything(self, parent: Element, inherited: str | None) -> Iterator[Member]:
+        """Give every body below a body or the world."""
+        for body in self.members(parent, "body", Place.here(), inherited):
+            yield body
+            name = body.element.attributes.get("childclass", body.inherited)
+            yield from self.everything(body.element, name)
 
     def _add_class(self, default: Element, inherited: dict[str, str], name: str) -> None:
         own = dict(inherited)
         for geom in default.all("geom"):
-            own |= geom.attributes
+            own |= {name: text for name, text in geom.attributes.items() if name in _OF_GEOMS}
         self.geoms[name] = own
         for child in default.all("default"):
             self._add_class(child, own, child.attributes.get("class", ""))
@@ -183,21 +220,29 @@ class _Reader:
         to_radians = 1.0 if self.in_radians else np.pi / 180.0
         if "quat" in attributes:
             w, x, y, z = numbers(element, attributes["quat"], 4, "quat")
-            return _matrix(_unit(element, np.array([x, y, z, w])))
+            return _matrix(unit(element, np.array([x, y, z, w])))
         if "euler" in attributes:
             angles = numbers(element, attributes["euler"], 3, "euler") * to_radians
+            if len(self.sequence) != 3 or not (
+                set(self.sequence) <= set("xyz") or set(self.sequence) <= set("XYZ")
+            ):
+                sequence = quoted(self.sequence.swapcase())
+                raise FileFormatError(
+                    f"{element.where}: euler by eulerseq {sequence}, which is not read: three letters of "
+                    "xyz or of XYZ have to stand there; give quat"
+                )
             return _matrix(euler_angles.to_quaternion(angles, self.sequence))
         if "axisangle" in attributes:
             *axis, angle = numbers(element, attributes["axisangle"], 4, "axisangle")
             half = angle * to_radians / 2.0
-            return _matrix(np.append(np.sin(half) * _unit(element, np.array(axis)), np.cos(half)))
+            return _matrix(np.append(np.sin(half) * unit(element, np.array(axis)), np.cos(half)))
         if "xyaxes" in attributes:
             values = numbers(element, attributes["xyaxes"], 6, "xyaxes")
-            x_axis = _unit(element, values[:3])
-            y_axis = _unit(element, values[3:] - values[3:] @ x_axis * x_axis)
+            x_axis = unit(element, values[:3])
+            y_axis = unit(element, values[3:] - values[3:] @ x_axis * x_axis)
             return np.stack([x_axis, y_axis, np.cross(x_axis, y_axis)], axis=-1)
         if "zaxis" in attributes:
-            return _turning_z_to(_unit(element, numbers(element, attributes["zaxis"], 3, "zaxis")))
+            return _turning_z_to(unit(element, numbers(element, attributes["zaxis"], 3, "zaxis")))
         return np.eye(3)
 
     def _inertial(self, element: Element) -> Inertial:
@@ -211,23 +256,25 @@ class _Reader:
             tensor = np.diag(numbers(element, attributes.get("diaginertia"), 3, "diaginertia"))
         return Inertial(float(mass), place.position, place.rotation @ tensor @ place.rotation.T)
 
-    def _shape(self, geom: Element, frame: Place, inherited: str | None) -> Shape:
+    def _shape(self, member: Member) -> Shape:
+        geom, frame, inherited, problem = member
+        if problem:
+            raise FileFormatError(problem)
         name = geom.attributes.get("class", inherited) or "main"
         attributes = {**self.geoms.get(name, {}), **geom.attributes}
         kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
         density = float(numbers(geom, attributes.get("density", _WATER), 1, "density")[0])
         mass = float(numbers(geom, attributes["mass"], 1, "mass")[0]) if "mass" in attributes else None
         if kind == "mesh":
-            mesh = self.meshes.get(attributes.get("mesh", ""))
             place = frame.then(self._place(geom, attributes))
-            if mesh is None:
-                return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass)
+            name = attributes.get("mesh", "")
+            if name not in self.meshes:
+                return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass, geom.where)
+            mesh, address = self.meshes[name]
             scale = tuple(numbers(mesh, mesh.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
-            file = mesh.attributes.get("file", "")
-            address = f"{self.mesh_folder.rstrip('/')}/{file}" if self.mesh_folder and file else file
-            return Shape("mesh", scale, place, "collision", address, density, mass)
+            return Shape("mesh", scale, place, "collision", address, density, mass, geom.where)
         place, size = self._sized(geom, attributes, kind)
-        return Shape(kind, size, frame.then(place), "collision", "", density, mass)
+        return Shape(kind, size, frame.then(place), "collision", "", density, mass, geom.where)
 
     def _sized(self, geom: Element, attributes: dict[str, str], kind: str) -> tuple[Place, tuple[float, ...]]:
         """Full lengths and the place; ``fromto`` gives the length and place of what is long."""
@@ -236,14 +283,17 @@ class _Reader:
             return place, ()
         size = numbers(geom, attributes.get("size", ""), None, "size").tolist()
         needed = _HALF_LENGTHS[kind]
-        if "fromto" in attributes and kind != "sphere":
+        if "fromto" in attributes and kind != "sphere" and size:
             ends = numbers(geom, attributes["fromto"], 6, "fromto")
             along = ends[3:] - ends[:3]
-            place = Place(_turning_z_to(_unit(geom, along)), (ends[:3] + ends[3:]) / 2.0)
+            place = Place(_turning_z_to(unit(geom, along)), (ends[:3] + ends[3:]) / 2.0)
             half = float(np.linalg.norm(along)) / 2.0
             size = [size[0], half] if needed == 2 else [size[0], size[min(1, len(size) - 1)], half]
-        if len(size) < needed:
-            raise FileFormatError(f"{geom.where}: a geom of type {kind} needs {needed} numbers of size")
+        if not needed <= len(size) <= 3:
+            raise FileFormatError(
+                f"{geom.where}: a geom of type {kind} needs {needed} numbers of size, at most 3, and has "
+                f"{len(size)}; correct it"
+            )
         if kind == "box":
             return place, tuple(2.0 * x for x in size[:3])
         if kind in ("cylinder", "capsule"):
@@ -253,13 +303,6 @@ class _Reader:
 
 def _matrix(quaternion: Any) -> Any:
     return np.stack([rotate(quaternion, axis) for axis in np.eye(3)], axis=-1)
-
-
-def _unit(element: Element, vector: Any) -> Any:
-    length = np.linalg.norm(vector)
-    if not length > 0.0:
-        raise FileFormatError(f"{element.where}: a direction of length zero; give one")
-    return vector / length
 
 
 def _turning_z_to(axis: Any) -> Any:

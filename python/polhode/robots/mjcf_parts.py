@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 from polhode.errors import FileFormatError
 from polhode.robots.model import numbers
+from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from polhode._files.xml_source import Element
-    from polhode.robots.model import Place
     from polhode.robots.sources import Sources
 
 __all__ = ["copies", "expand_includes"]
@@ -43,7 +42,7 @@ def expand_includes(root: Element, folder: Path, sources: Sources) -> None:
             name = child.attributes.get("file", "")
             if not name:
                 raise FileFormatError(f"{child.where}: <include> without file; name one")
-            path = folder / name
+            path = sources.locate(name, folder, child)
             if path.resolve() in included:
                 raise FileFormatError(f"{child.where}: {name} is included twice; MuJoCo allows it once")
             included.add(path.resolve())
@@ -52,16 +51,12 @@ def expand_includes(root: Element, folder: Path, sources: Sources) -> None:
         waiting += children
 
 
-def copies(replicate: Element, step: Place, start: Place, sources: Sources) -> Iterator[Place]:
-    """Give the frame of each copy: each stands in that of the one before as the step says."""
+def copies(replicate: Element) -> int:
+    """Give how many copies a ``<replicate>`` asks for."""
     text = replicate.attributes.get("count")
     (count,) = numbers(replicate, text, 1, "count")
     if count != int(count) or count < 1:
         raise FileFormatError(
-            f"{replicate.where}: count is {text!r} where a whole number from 1 has to stand"
+            f"{replicate.where}: count is {quoted(text)} where a whole number from 1 has to stand"
         )
-    place = start
-    for _ in range(int(count)):
-        sources.count_copy(replicate)
-        yield place
-        place = place.then(step)
+    return int(count)

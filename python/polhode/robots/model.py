@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
 
 from polhode.errors import FileFormatError
+from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Inertial", "Link", "Place", "Robot", "Shape", "numbers"]
+__all__ = ["Inertial", "Link", "Place", "Robot", "Shape", "numbers", "unit"]
 
 
 class Place(NamedTuple):
@@ -74,6 +75,8 @@ class Shape:
         Weighs it against the other shapes of the link.
     mass : float, optional
         Its own mass, where the file gives one.
+    where : str
+        Line, and file where that is included by another one.
     """
 
     kind: str
@@ -83,6 +86,7 @@ class Shape:
     mesh: str = ""
     density: float = 1.0
     mass: float | None = None
+    where: str = ""
 
 
 @dataclass(frozen=True)
@@ -97,7 +101,7 @@ class Link:
     inertial : Inertial or None
         What the file declares.
     problem : str
-        Why the declaration cannot be read; "" if it can.
+        Why the declaration, or a shape, cannot be read; "" if they can.
     shapes : tuple of Shape
     inferred : bool
         Whether a simulator takes the inertia from the geometry (MJCF without any, SDF where it says so).
@@ -137,6 +141,8 @@ class Robot:
         The file.
     notes : tuple of str
         What of the file is not judged.
+    roots : tuple of pathlib.Path
+        Where else its files may lie: where the file is in truth, if it was read through a link.
     """
 
     format: str
@@ -145,6 +151,13 @@ class Robot:
     folder: Path
     source: bytes
     notes: tuple[str, ...] = ()
+    roots: tuple[Path, ...] = ()
+
+
+# Longer texts hold no few numbers; the file may say them of many elements.
+_LONGEST: Final = 1000
+# Five such lengths multiply in a tensor of density 1; beyond it numbers have no room.
+_LARGEST: Final = 1e50
 
 
 def numbers(element: Element, text: str | None, count: int | None, what: str) -> Floats:
@@ -153,16 +166,41 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
     Raises
     ------
     FileFormatError
-        With the line, unless there are `count` finite numbers (any number of them for None).
+        With the line, unless there are `count` finite numbers (any number of them for None), none beyond
+        1e50 in size.
     """
-    words = (text or "").split()
+    # Python reads 1_0 and other scripts' digits as numbers, which no simulator does.
+    is_plain = text is not None and len(text) <= _LONGEST and text.isascii() and "_" not in text
     try:
-        values = np.array([float(word) for word in words])
+        values = np.array([float(word) for word in text.split()] if text and is_plain else [])
     except ValueError:
         values = np.array([np.nan])
-    if not np.isfinite(values).all() or (count is not None and len(values) != count):
+    is_wrong = bool(text) and not is_plain
+    if is_wrong or not np.isfinite(values).all() or (count is not None and len(values) != count):
         wanted = (
             "a finite number" if count == 1 else f"{count or ''} finite numbers".replace("  ", " ").strip()
         )
-        raise FileFormatError(f"{element.where}: {what} is {text!r} where {wanted} has to stand")
+        raise FileFormatError(f"{element.where}: {what} is {quoted(text)} where {wanted} has to stand")
+    if values.size and np.abs(values).max() > _LARGEST:
+        raise FileFormatError(
+            f"{element.where}: {what} is {quoted(text)}, beyond {_LARGEST:g}, where squares have no "
+            "room in numbers; correct it"
+        )
     return values
+
+
+def unit(element: Element, vector: Floats) -> Floats:
+    """Give the direction of a vector, or the quaternion of a rotation, of length 1.
+
+    Raises
+    ------
+    FileFormatError
+        With the line, if its length is zero.
+    """
+    largest = float(np.abs(vector).max())
+    if largest == 0.0:
+        raise FileFormatError(f"{element.where}: a direction of length zero; give one")
+    # A power of two changes no digit, and keeps the squares from over- and underflow.
+    scaled = np.ldexp(vector, -int(np.frexp(largest)[1])) if not 1e-100 < largest < 1e100 else vector
+    direction: Floats = scaled / np.linalg.norm(scaled)
+    return direction

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from polhode._core import rotate
-from polhode._files.xml_source import Edit, Element, set_text
+from polhode._files.xml_source import Edit, Element, blanks_of, set_text
 from polhode.errors import FileFormatError
-from polhode.robots.model import Inertial, Link, Place, Shape, numbers
+from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
 from polhode.robots.sdf_include import included
 from polhode.robots.urdf import roll_pitch_yaw, tensor_text
+from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,20 +46,22 @@ def _below(parent: Element, sources: Sources, folder: Path, prefix: str) -> Iter
         if element.tag != "link":
             yield from _below(element, sources, folder, prefix)
             continue
-        inertial, problem = None, ""
+        inertial: Inertial | None = None
+        shapes: tuple[Shape, ...] = ()
+        problem = ""
         declared = element.find("inertial")
         inferred = declared is not None and declared.attributes.get("auto", "false").lower() in ("true", "1")
-        if declared is not None and not inferred:
-            try:
-                inertial = _inertial(declared)
-            except FileFormatError as error:
-                problem = str(error)
+        try:
+            inertial = None if declared is None or inferred else _inertial(declared)
+            shapes = tuple(_shapes(element))
+        except FileFormatError as error:
+            problem = str(error)
         yield Link(
-            name=prefix + element.attributes.get("name", "(without a name)"),
+            name=sources.name(prefix, element.attributes.get("name", "(without a name)"), element),
             line=element.line,
             inertial=inertial,
             problem=problem,
-            shapes=tuple(_shapes(element)),
+            shapes=shapes,
             inferred=inferred,
             rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
             file=element.file,
@@ -70,14 +73,14 @@ def _pose(element: Element | None) -> Place:
     if element is None or not element.text.strip():
         return Place.here()
     if element.attributes.get("relative_to"):
+        frame = quoted(element.attributes["relative_to"])
         raise FileFormatError(
-            f"{element.where}: a pose relative to {element.attributes['relative_to']!r} is not followed; "
-            "give it in the link"
+            f"{element.where}: a pose relative to {frame} is not followed; give it in the link"
         )
     if element.attributes.get("rotation_format", "euler_rpy") == "quat_xyzw":
         values = numbers(element, element.text, 7, "pose")
-        rotation = np.stack([rotate(values[3:], axis) for axis in np.eye(3)], axis=-1)
-        return Place(rotation, values[:3])
+        turn = unit(element, values[3:])
+        return Place(np.stack([rotate(turn, axis) for axis in np.eye(3)], axis=-1), values[:3])
     values = numbers(element, element.text, 6, "pose")
     in_degrees = element.attributes.get("degrees", "false").lower() in ("true", "1")
     angles = np.deg2rad(values[3:]) if in_degrees else values[3:]
@@ -119,20 +122,22 @@ def _shapes(link: Element) -> Iterator[Shape]:
             if geometry is None or not geometry.children:
                 continue
             form = geometry.children[0]
-            try:
-                place = _pose(element.find("pose"))
-            except FileFormatError:
-                yield Shape("pose in another frame", (), Place.here(), role)
+            pose = element.find("pose")
+            if pose is not None and pose.attributes.get("relative_to"):
+                yield Shape("pose in another frame", (), Place.here(), role, where=element.where)
                 continue
+            place = _pose(pose)
             if form.tag in _SIZES:
                 size = tuple(x for name, count in _SIZES[form.tag] for x in _value(form, name, count))
-                yield Shape(form.tag, size, place, role)
+                yield Shape(form.tag, size, place, role, where=form.where)
             elif form.tag == "mesh" and form.find("submesh") is None:
                 uri = form.find("uri")
                 address = uri.text.strip() if uri is not None else ""
-                yield Shape("mesh", _value(form, "scale", 3, "1 1 1"), place, role, mesh=address)
+                scale = _value(form, "scale", 3, "1 1 1")
+                yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
             else:
-                yield Shape(form.tag if form.tag != "mesh" else "part of a mesh", (), place, role)
+                kind = form.tag if form.tag != "mesh" else "part of a mesh"
+                yield Shape(kind, (), place, role, where=form.where)
 
 
 def _rewrite(declared: Element, source: bytes, new: Inertial) -> list[Edit]:
@@ -167,5 +172,4 @@ def _inserted(source: bytes, parent: Element, text: str) -> Edit:
     if parent.inside == parent.end:
         return Edit(parent.start, parent.end, f"<{parent.tag}>{text}</{parent.tag}>")
     first = parent.children[0].start if parent.children else parent.outside
-    blanks = source[parent.inside : first].decode()
-    return Edit(first, first, text + (blanks if blanks.isspace() else ""))
+    return Edit(first, first, text + blanks_of(source[parent.inside : first]))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from polhode._files.xml_source import parse_xml
 from polhode.errors import FileFormatError
 from polhode.robots import urdf
 from polhode.robots.model import Link
+from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -20,6 +19,8 @@ if TYPE_CHECKING:
     Reader = Callable[[Element, Sources, Path, str], Iterator[Link]]
 
 __all__ = ["included"]
+
+_ROOTS: Final = frozenset({"sdf", "robot", "gazebo", "world", "model"})
 
 
 def included(
@@ -40,26 +41,44 @@ def included(
     """
     uri = _text(include, "uri")
     if uri.startswith(("http://", "https://")):
-        sources.notes[f"{uri} is not judged: nothing is fetched from a network"] = None
+        sources.notes[f"{shortened(uri)} is not judged: nothing is fetched from a network"] = None
         return
-    path = sources.addresses.find(uri, folder)
-    if path is not None and path.is_dir():
-        path = _model_file(path)
-    if path is None or not path.is_file():
-        problem = f"{include.where}: {uri} was not found; name the folder that holds it with --packages"
-        yield Link(f"{prefix}(include of {include.where})", include.line, None, problem, file=include.file)
+    try:
+        path = _located(include, uri, sources, folder)
+        root = sources.read(path, uri, include)
+        if root.tag == "mujoco":
+            sources.notes[f"{shortened(uri)} is not judged: it is MJCF, to be checked for itself"] = None
+            return
+        if root.tag not in _ROOTS:
+            found = f"the root of {shortened(uri)} is <{shortened(root.tag)}>"
+            raise FileFormatError(f"{include.where}: {found}, not <sdf> or <robot>; check the file")
+    except FileFormatError as error:
+        name = sources.name(prefix, f"(include of {include.where})", include)
+        yield Link(name, include.line, None, str(error), file=include.file)
         return
-    root = sources.read(path, uri, include)
     with sources.inside(path, uri, include):
         model = next(root.descendants("model"), root)
         name = _text(include, "name") or model.attributes.get("name", "")
         is_merged = include.attributes.get("merge", "false").lower() in ("true", "1")
-        inner = prefix if is_merged or not name else f"{prefix}{name}::"
-        if root.tag == "robot":
-            for link in urdf.links(root, sources):
-                yield replace(link, name=inner + link.name, folder=path.parent)
-        else:
-            yield from read_links(root, sources, path.parent, inner)
+        inner = sources.prefix(prefix if is_merged or not name else f"{prefix}{name}::")
+        read = urdf.links if root.tag == "robot" else read_links
+        yield from read(root, sources, path.parent, inner)
+
+
+def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path:
+    """Find the file that an address means: itself, or the newest that a model's folder offers."""
+    path, fault = sources.addresses.find(uri, folder)
+    if path is not None and path.is_dir():
+        home = path
+        path, fault = sources.addresses.find("model.config", home)
+        if path is not None:
+            path, fault = sources.addresses.find(_newest(sources.read(path, str(path), include), path), home)
+        elif not fault:
+            path, fault = sources.addresses.find("model.sdf", home)
+    if path is None or not path.is_file():
+        reason = fault or "was not found; name the folder that holds it with --packages"
+        raise FileFormatError(f"{include.where}: {shortened(uri)} {reason}")
+    return path
 
 
 def _text(parent: Element, tag: str) -> str:
@@ -67,19 +86,14 @@ def _text(parent: Element, tag: str) -> str:
     return element.text.strip() if element is not None else ""
 
 
-def _model_file(folder: Path) -> Path | None:
-    """Find the newest file that a model's folder offers."""
-    config = folder / "model.config"
-    if config.is_file():
-        root = parse_xml(config.read_bytes(), str(config))
-        offered = sorted(root.all("sdf"), key=_version)
-        if not offered:
-            raise FileFormatError(f"{config}: names no <sdf>; add the name of its file")
-        return folder / offered[-1].text.strip()
-    plain = folder / "model.sdf"
-    return plain if plain.is_file() else None
+def _newest(root: Element, config: Path) -> str:
+    """Give the name of the newest file that a ``model.config`` offers."""
+    offered = sorted(root.all("sdf"), key=_version)
+    if not offered:
+        raise FileFormatError(f"{config}: names no <sdf>; add the name of its file")
+    return offered[-1].text.strip()
 
 
 def _version(sdf: Element) -> tuple[int, ...]:
     numbers = sdf.attributes.get("version", "0").split(".")
-    return tuple(int(number) if number.isdecimal() else 0 for number in numbers)
+    return tuple(int(number) if number.isdecimal() and len(number) < 10 else 0 for number in numbers)

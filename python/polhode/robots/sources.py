@@ -1,67 +1,44 @@
-"""The other files that a robot's file names: where they are found, and that they are read safely.
+"""The files that a robot is made of besides its own, read safely.
 
 Nothing is fetched from a network. What is included is XML under the same rules as the file itself, a file can
-not include itself, and there is an end to how many are read.
+not include itself, and there is an end to how many are read and to what they add up to.
 """
 
 from __future__ import annotations
 
 import os
+import stat
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from polhode._files.xml_source import Element, parse_xml
+from polhode._files.reading import note_read
+from polhode._files.xml_source import Budget, Element, parse_xml
 from polhode.errors import FileFormatError
+from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
+    from pathlib import Path
+    from typing import BinaryIO
 
-__all__ = ["Addresses", "Sources"]
+    from polhode.robots.addresses import Addresses
 
-_SEARCH_PATHS: Final = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH")
+__all__ = ["LimitError", "Sources", "read_source", "read_stream"]
+
+_MOST_BYTES: Final = 1 << 28
 _MOST_FILES: Final = 1000
 _MOST_COPIES: Final = 10_000
+_MOST_COPIED: Final = 50_000
+_MOST_LINKS: Final = 100_000
+_LONGEST_NAME: Final = 1000
 
 
-class Addresses:
-    """Finds files by the addresses that robot files use.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Of the robot's file.
-    packages : sequence of pathlib.Path
-        Folders that hold the packages of ``package://`` and ``model://`` addresses; folders above the file,
-        ``ROS_PACKAGE_PATH`` and ``GZ_SIM_RESOURCE_PATH`` are searched too.
-    """
-
-    def __init__(self, folder: Path, packages: Sequence[Path] = ()) -> None:
-        from_environment = [
-            Path(entry)
-            for name in _SEARCH_PATHS
-            for entry in os.environ.get(name, "").split(os.pathsep)
-            if entry
-        ]
-        self._roots = [*packages, *from_environment, folder, *folder.parents]
-
-    def find(self, address: str, folder: Path) -> Path | None:
-        """Find a file or a folder that exists; `folder` is where a relative address starts."""
-        scheme, separator, rest = address.partition("://")
-        candidates: list[Path] = []
-        if not separator:
-            candidates = [folder / address] if address else []
-        elif scheme == "file":
-            candidates = [Path(rest)]
-        elif scheme in ("package", "model"):
-            name, _, inside = rest.partition("/")
-            candidates = [root / name / inside for root in self._roots]
-            candidates += [root / inside for root in self._roots if root.name == name]
-        return next((path for path in candidates if path.is_file() or path.is_dir()), None)
+class LimitError(FileFormatError):
+    """A robot that grows beyond a stated limit, which ends the reading and not only a link's."""
 
 
 class Sources:
-    """Reads the files that a robot is made of besides its own.
+    """Reads the XML of a robot.
 
     Parameters
     ----------
@@ -72,44 +49,95 @@ class Sources:
 
     def __init__(self, folder: Path, addresses: Addresses) -> None:
         self.folder, self.addresses = folder, addresses
+        self.budget = Budget()
         self.names: dict[str, None] = {}
         """Of the files that were read, as they were asked for."""
         self.notes: dict[str, None] = {}
         """What of them is not judged."""
-        self._count = self._copies = 0
+        self._files = self._bytes = self._copies = self._copied = self._links = 0
         self._open: set[Path] = set()
 
-    def read(self, path: Path, address: str, at: Element) -> Element:
-        """Read one of them.
+    def locate(self, address: str, folder: Path, at: Element) -> Path:
+        """Find a file that has to be there.
 
         Parameters
         ----------
-        path : pathlib.Path
         address : str
-            As the file has it; elements of what is read name it.
+            As the file has it.
+        folder : pathlib.Path
+            Where it starts.
         at : Element
             That asks for it.
 
         Raises
         ------
         FileFormatError
-            If it is not there, is not XML that may be read, or is one too many.
+            If it is not there, or not one that the model may name.
         """
-        if not path.is_file():
-            raise FileFormatError(f"{at.where}: there is no file {address}; put it at {path}")
-        self._count += 1
-        if self._count > _MOST_FILES:
-            raise FileFormatError(f"{at.where}: {address} is one of more than {_MOST_FILES} files to be read")
-        self.names[address] = None
-        return parse_xml(path.read_bytes(), str(path), file=address)
+        path, fault = self.addresses.find(address, folder)
+        if fault:
+            raise FileFormatError(f"{at.where}: {shortened(address)} {fault}")
+        if path is None or not path.is_file():
+            name = shortened(address)
+            raise FileFormatError(f"{at.where}: there is no file {name}; put it at {folder / name}")
+        return path
 
-    def count_copy(self, at: Element) -> None:
-        """Count a copy of elements, so that a small file does not become a boundless one."""
-        self._copies += 1
-        if self._copies > _MOST_COPIES:
-            raise FileFormatError(
-                f"{at.where}: more than {_MOST_COPIES} copies are to be made; lower the count"
+    def read(self, path: Path, address: str, at: Element) -> Element:
+        """Read one of the files; elements of what is read name its address.
+
+        Raises
+        ------
+        FileFormatError
+            If it is not XML that may be read, or is one too many.
+        """
+        self._files += 1
+        if self._files > _MOST_FILES:
+            raise LimitError(
+                f"{at.where}: {address} is one of more than {_MOST_FILES} files to be read; divide the model"
             )
+        try:
+            source = read_source(path, _MOST_BYTES - self._bytes)
+        except OSError as error:
+            raise FileFormatError(
+                f"{at.where}: {address} cannot be read: {error.strerror}; check {path}"
+            ) from None
+        self._bytes += len(source)
+        self.names[address] = None
+        try:
+            return parse_xml(source, str(path), file=address, above=at.depth, budget=self.budget)
+        except FileFormatError as error:
+            raise FileFormatError(f"{at.where}: {error}") from None
+
+    def count_copies(self, number: int, at: Element) -> None:
+        """Count copies of elements, so that a small file does not become a boundless one."""
+        self._copies += number
+        if self._copies > _MOST_COPIES:
+            raise LimitError(f"{at.where}: more than {_MOST_COPIES} copies are to be made; lower the count")
+
+    def count_copied(self, number: int, at: Element, *, keep: bool) -> None:
+        """Count the elements within copies, alike; those of copies within copies are not kept twice."""
+        if number + (self._copied if keep else 0) > _MOST_COPIED:
+            raise LimitError(
+                f"{at.where}: more than {_MOST_COPIED} elements are to stand in copies; lower the count"
+            )
+        self._copied += number if keep else 0
+
+    def name(self, prefix: str, own: str, at: Element) -> str:
+        """Give a link its name; a long one is cut, and links are counted.
+
+        Raises
+        ------
+        FileFormatError
+            If there are too many.
+        """
+        self._links += 1
+        if self._links > _MOST_LINKS:
+            raise LimitError(f"{at.where}: there are more than {_MOST_LINKS} links; divide the model")
+        return self.prefix(prefix + own)
+
+    def prefix(self, text: str) -> str:
+        """Give what names of links begin with, cut where it is long: they all hold it."""
+        return shortened(text, _LONGEST_NAME)
 
     @contextmanager
     def inside(self, path: Path, address: str, at: Element) -> Iterator[None]:
@@ -122,3 +150,44 @@ class Sources:
             yield
         finally:
             self._open.remove(resolved)
+
+
+def read_source(path: Path, most: int = _MOST_BYTES) -> bytes:
+    """Read a file, or a pipe into which something writes, of at most so many bytes.
+
+    Raises
+    ------
+    FileFormatError
+        If it is larger, or neither of them.
+    OSError
+        If it cannot be read.
+    """
+    mode = path.stat().st_mode
+    if stat.S_ISDIR(mode):
+        raise FileFormatError(f"{path}: is a directory; name a file in it")
+    if not (stat.S_ISREG(mode) or stat.S_ISFIFO(mode)):
+        raise FileFormatError(f"{path}: is a device or a socket, which may never end; name a file")
+    # Without O_NONBLOCK a pipe into which nobody writes would be waited for, for ever, when it is opened.
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    with os.fdopen(os.open(path, flags), "rb") as stream:
+        if stat.S_ISFIFO(mode):
+            os.set_blocking(stream.fileno(), True)
+        source = read_stream(stream, str(path), most)
+    if not source and stat.S_ISFIFO(mode):
+        raise FileFormatError(f"{path}: is a pipe into which nothing writes; start first what writes")
+    note_read(path)
+    return source
+
+
+def read_stream(stream: BinaryIO, name: str, most: int = _MOST_BYTES) -> bytes:
+    """Read what comes to its end, of at most so many bytes.
+
+    Raises
+    ------
+    FileFormatError
+        If it is more.
+    """
+    source = stream.read(most + 1)
+    if len(source) > most:
+        raise FileFormatError(f"{name}: has more than {most} bytes, the most that is read; divide the model")
+    return source

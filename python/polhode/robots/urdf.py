@@ -9,12 +9,13 @@ import numpy as np
 
 from polhode import euler_angles
 from polhode._core import rotate
-from polhode._files.xml_source import Edit, Element, set_attribute
+from polhode._files.xml_source import Edit, Element, blanks_of, set_attribute
 from polhode.errors import FileFormatError
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
     from typing import Literal
 
     from numpy.typing import NDArray
@@ -26,25 +27,27 @@ __all__ = ["links", "roll_pitch_yaw", "tensor_text"]
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
-def links(root: Element, sources: Sources) -> Iterator[Link]:
-    """Read the links of a robot."""
+def links(root: Element, sources: Sources, folder: Path | None = None, prefix: str = "") -> Iterator[Link]:
+    """Read the links of a robot, in the folder of its file if that is another one's."""
     for element in root.all("link"):
-        inertial, problem = None, ""
+        inertial: Inertial | None = None
+        shapes: tuple[Shape, ...] = ()
+        problem = ""
         declared = element.find("inertial")
-        if declared is not None:
-            try:
-                inertial = _inertial(declared)
-            except FileFormatError as error:
-                problem = str(error)
+        try:
+            inertial = None if declared is None else _inertial(declared)
+            shapes = tuple(_shapes(element))
+        except FileFormatError as error:
+            problem = str(error)
         yield Link(
-            name=element.attributes.get("name", "(without a name)"),
+            name=sources.name(prefix, element.attributes.get("name", "(without a name)"), element),
             line=element.line,
             inertial=inertial,
             problem=problem,
-            shapes=tuple(_shapes(element)),
+            shapes=shapes,
             rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
             file=element.file,
-            folder=sources.folder,
+            folder=folder or sources.folder,
         )
 
 
@@ -93,16 +96,18 @@ def _shapes(link: Element) -> Iterator[Shape]:
             form = geometry.children[0]
             read = partial(_size, form)
             if form.tag == "box":
-                yield Shape("box", read("size", 3), place, role)
+                yield Shape("box", read("size", 3), place, role, where=form.where)
             elif form.tag == "sphere":
-                yield Shape("sphere", read("radius"), place, role)
+                yield Shape("sphere", read("radius"), place, role, where=form.where)
             elif form.tag in ("cylinder", "capsule"):
-                yield Shape(form.tag, (*read("radius"), *read("length")), place, role)
+                size = (*read("radius"), *read("length"))
+                yield Shape(form.tag, size, place, role, where=form.where)
             elif form.tag == "mesh":
                 scale = tuple(numbers(form, form.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
-                yield Shape("mesh", scale, place, role, mesh=form.attributes.get("filename", ""))
+                address = form.attributes.get("filename", "")
+                yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
             else:
-                yield Shape(form.tag, (), place, role)
+                yield Shape(form.tag, (), place, role, where=form.where)
 
 
 def _size(form: Element, name: str, count: int = 1) -> tuple[float, ...]:
@@ -124,10 +129,8 @@ def _rewrite(declared: Element, source: bytes, new: Inertial) -> list[Edit]:
     elif np.any(new.center_of_mass):
         # Before the first child, behind the same indentation.
         first = declared.children[0].start if declared.children else declared.inside
-        blanks = source[declared.inside : first].decode()
-        edits.append(
-            Edit(first, first, f'<origin xyz="{position}" rpy="0 0 0"/>{blanks if blanks.isspace() else ""}')
-        )
+        blanks = blanks_of(source[declared.inside : first])
+        edits.append(Edit(first, first, f'<origin xyz="{position}" rpy="0 0 0"/>{blanks}'))
     for inertia in declared.all("inertia"):
         edits += [
             set_attribute(source, inertia, name, text) for name, text in tensor_text(new.inertia).items()

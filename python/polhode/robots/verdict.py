@@ -95,7 +95,9 @@ def judge(links: Sequence[Link], geometry: GeometryReader) -> list[Verdict]:
         In the order of the links.
     """
     copied = _placeholders(links)
-    return [_judge(link, geometry.read(link), copied)._replace(file=link.file) for link in links]
+    # Ratios of numbers that lie far apart leave their range: infinity and zero are right there.
+    with np.errstate(all="ignore"):
+        return [_judge(link, geometry.read(link), copied)._replace(file=link.file) for link in links]
 
 
 def _placeholders(links: Sequence[Link]) -> dict[float, int]:
@@ -119,10 +121,12 @@ def _judge(link: Link, geometry: Geometry, placeholders: dict[float, int]) -> Ve
     if declared is None:
         word: Word = "inferred" if link.inferred and link.shapes else "none"
         return Verdict(link.name, link.line, word, "", notes=geometry.notes if link.inferred else ())
-    own = None
+    own, factor, notes = None, None, geometry.notes
     if geometry.body is not None and declared.mass > 0.0:
-        own = geometry.body.scaled(mass=declared.mass / float(geometry.body.mass))
-    factor = None
+        try:
+            own = geometry.body.scaled(mass=declared.mass / float(geometry.body.mass))
+        except PolhodeError as error:
+            notes = (*notes, f"line {link.line}: its shape at the declared mass is no body: {error}")
     moments = np.asarray(principal_moments(declared.inertia))
     if own is not None:
         factor = _farthest(moments, own.principal_moments)
@@ -137,7 +141,7 @@ def _judge(link: Link, geometry: Geometry, placeholders: dict[float, int]) -> Ve
         None if own is None else own.principal_moments,
         factor,
         geometry.role if own is not None else "",
-        geometry.notes,
+        notes,
         None if word == "good" else _better(declared, own, word),
     )
 
@@ -198,16 +202,15 @@ def _beyond_size(body: RigidBody, geometry: Geometry) -> str:
 
 def _farthest(declared: Floats, own: Floats) -> float | None:
     """Give the ratio of moments that is farthest from 1, either way."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = np.where(own > 0.0, declared / own, np.nan)
-        distance = np.abs(np.log(np.where(ratios > 0.0, ratios, np.nan)))
+    ratios = np.where(own > 0.0, declared / own, np.nan)
+    distance = np.abs(np.log(np.where(ratios > 0.0, ratios, np.nan)))
     return None if np.isnan(distance).all() else float(ratios[np.nanargmax(distance)])
 
 
 def _compared(factor: float | None, geometry: Geometry) -> str:
     if factor is None or 0.99 <= factor <= 1.01:
         return "" if factor is None else f"as its {geometry.role} shape"
-    times = f"{factor:.0f}" if factor >= 100.0 else f"{factor:.3g}"
+    times = f"{factor:.0f}" if 100.0 <= factor < 1e15 else f"{factor:.3g}"
     return f"{times} times its {geometry.role} shape's"
 
 

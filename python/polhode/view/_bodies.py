@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode import _core
 from polhode.animation.shape import equivalent_box, given_shape
 from polhode.plot import AXIS_COLORS, OUTLINE_COLOR
 from polhode.plot._surfaces import inertia_semi_axes
@@ -106,7 +107,7 @@ def principal_axes(
     """
     _one(rigid_body)
     plotter = new_plotter() if plotter is None else plotter
-    origin = np.asarray(rigid_body.center_of_mass if center is None else center, dtype=np.float64)
+    origin = _core.real_numbers(rigid_body.center_of_mass if center is None else center, "center")
     for k, (color, axis) in enumerate(zip(AXIS_COLORS, rigid_body.principal.axes.T, strict=True)):
         mesh = line(origin - length * axis, origin + length * axis, 0.008 * length)
         plotter.add_mesh(mesh, color=color, name=f"{name}-{k}", **AXIS_STYLE)
@@ -149,7 +150,7 @@ def ellipsoid(
     """
     _one(body)
     plotter = new_plotter() if plotter is None else plotter
-    middle = np.asarray(body.center_of_mass if center is None else center, dtype=np.float64)
+    middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
     semi_axes = inertia_semi_axes(body.principal.moments)
     semi_axes *= size / semi_axes.max()
     placed = np.eye(4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Final
 
@@ -35,7 +36,7 @@ def motion(
     *,
     at: float | None = None,
     shape: tuple[ArrayLike, ArrayLike] | None = None,
-    duration: float = 10.0,
+    duration: float | None = None,
     title: str = "",
     time_unit: str = "s",
     name: str = "motion",
@@ -47,15 +48,17 @@ def motion(
     Parameters
     ----------
     trajectory : Trajectory
-        Of one body. What is shown are its samples: some hundred make it smooth.
+        Of one body. Where nothing acts on it, what is shown are as many states of its motion as it needs;
+        else its samples, between which the body should turn by no more than 30 degrees.
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default. On one that shows the motion already, another `at` moves it.
     at : float, optional
-        Time to begin with, as the nearest sample has it; the start by default.
+        Time to begin with, as the nearest state that is shown has it; the start by default.
     shape : (vertices, faces), optional
         A mesh of the body in its frame, (n, 3) and (m, 3). By default the uniform box that has its inertia.
-    duration : float
-        Seconds that the whole motion takes when it runs.
+    duration : float, optional
+        Seconds that the whole motion takes when it runs; by default 10, and more where the body would turn by
+        more than 20 degrees from one picture to the next.
     title, time_unit : str
         As the viewer reads them.
     name : str
@@ -64,6 +67,16 @@ def motion(
     Returns
     -------
     pyvista.Plotter
+
+    Raises
+    ------
+    ValueError
+        If the body turns by half a turn or more from one sample to the next: it would seem to turn backward.
+
+    Warns
+    -----
+    UserWarning
+        If it turns by more than 30 degrees, or the end of the motion is not shown.
 
     Examples
     --------
@@ -75,6 +88,8 @@ def motion(
     scene = Scene.of(
         trajectory, frames=None, duration=duration, shape=shape, title=title, time_unit=time_unit
     )
+    for note in scene.notes:
+        warnings.warn(note, stacklevel=2)
     first, last = float(scene.t.min()), float(scene.t.max())
     start = float(scene.t[0]) if at is None else float(at)
     if not first <= start <= last:
@@ -97,7 +112,7 @@ class _Player:
         self._plotter, self._scene, self._name = plotter, scene, name
         self._reach = float(np.linalg.norm(scene.shape.vertices, axis=1).max()) or 1.0
         self._thickness = 0.012 * self._reach
-        self._index, self._moved = 0, 0.0
+        self._index, self._begun = 0, 0.0
         self._is_running = False
         self._slider: Any = None
         self._tips = self._scaled(_core.rotate(scene.quaternion, scene.omega))
@@ -135,14 +150,15 @@ class _Player:
         self._is_running = not self._is_running
         if self._index == len(self._scene.t) - 1:
             self._index = 0
-        self._moved = perf_counter() - self._index / self._rate()
+        self._begun = perf_counter() - abs(self._scene.t[self._index] - self._scene.t[0]) / self._rate()
 
     def tick(self, _step: int = 0) -> None:
         """Show where the motion has got to by the clock."""
         if not self._is_running:
             return
+        gone = (perf_counter() - self._begun) * self._rate()
         last = len(self._scene.t) - 1
-        index = min(int((perf_counter() - self._moved) * self._rate()), last)
+        index = min(int(np.searchsorted(np.abs(self._scene.t - self._scene.t[0]), gone)), last)
         self._is_running = index < last
         if self._slider is not None:
             self._slider.GetRepresentation().SetValue(float(self._scene.t[index]))
@@ -150,8 +166,8 @@ class _Player:
         self._plotter.render()
 
     def _rate(self) -> float:
-        """Give the samples a second."""
-        return len(self._scene.t) / self._scene.duration
+        """Give the time of the motion that goes by in a second."""
+        return float(np.ptp(self._scene.t) or 1.0) / self._scene.duration
 
     def _scaled(self, vectors: Floats) -> Floats:
         longest = float(np.linalg.norm(vectors, axis=1).max()) or 1.0

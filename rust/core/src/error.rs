@@ -523,6 +523,17 @@ pub enum Error {
          about=\"center_of_mass\""
     )]
     PivotedInOrbit,
+    /// A time so far away that the phases of a motion in closed form are not known any more.
+    #[error(
+        "t = {t:?} is beyond the reach of this motion, |t| <= {reach:.3e}: phases are known to 2^-90 of the turns made, so \
+         after 2^88 turns nothing is left of them; ask for times within"
+    )]
+    BeyondReach {
+        /// The time.
+        t: f64,
+        /// The largest.
+        reach: f64,
+    },
     /// There is nothing where something is needed.
     #[error("{what} must not be empty")]
     Empty {
@@ -539,6 +550,21 @@ pub enum Error {
         time: f64,
         /// The step asked for.
         step: f64,
+    },
+    /// A run of more steps than a run may take.
+    #[error(
+        "the integration has come to t = {time:?} in {steps} steps, and would take {ahead:.1e} in all; a run takes {most:e} at \
+         most: ask for a shorter time (the rest from there with resume), or a looser rtol"
+    )]
+    TooManySteps {
+        /// Where it has come to.
+        time: f64,
+        /// Steps so far.
+        steps: u64,
+        /// Steps of the whole run at this rate.
+        ahead: f64,
+        /// The limit.
+        most: f64,
     },
     /// The equations of motion gave a number that is not finite.
     #[error(
@@ -617,7 +643,9 @@ impl Error {
             Self::File(_) => Kind::File,
             Self::Quadrature { .. } => Kind::Quadrature,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
-            Self::StepTooSmall { .. } | Self::NotFiniteMotion { .. } => Kind::Integration,
+            Self::StepTooSmall { .. }
+            | Self::TooManySteps { .. }
+            | Self::NotFiniteMotion { .. } => Kind::Integration,
             Self::NoMemory { .. } => Kind::Memory,
             _ => Kind::Argument,
         }

@@ -367,7 +367,7 @@ fn accumulator(mut draw: Draw<'_>) -> Result<()> {
 /// A body as an array, one of its numbers another.
 fn array(mut draw: Draw<'_>) -> Result<()> {
     let mut numbers = polhode::mass::solids::cuboid(&[1.0, 2.0, 3.0], Amount::Mass(1.0))
-        .map_or([0.0; 33], |body| body.to_array());
+        .map_or([0.0; 34], |body| body.to_array());
     for _ in 0..=draw.up_to(2)? {
         let place = draw.up_to(32)?;
         numbers[place] = draw.number()?;
@@ -375,7 +375,7 @@ fn array(mut draw: Draw<'_>) -> Result<()> {
     if let Ok(body) = RigidBody::from_array(&numbers) {
         is_body(&body, 1e-10);
     }
-    let provenance = Provenance::from_array(&draw.numbers::<8>()?);
+    let provenance = Provenance::from_array(&draw.numbers::<9>()?);
     let numbers = provenance.to_array();
     let again = Provenance::from_array(&numbers).to_array();
     assert_eq!(again.map(f64::to_bits), numbers.map(f64::to_bits));

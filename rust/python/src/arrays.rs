@@ -285,20 +285,20 @@ pub(crate) fn floats<'py>(
 ///
 /// Parameters
 /// ----------
-/// object : array_like
+/// values : array_like
 /// name : str
-///     What errors call it.
+///     What errors call them.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray
-///     C-ordered; the object itself where it is so already.
+///     C-ordered; the values themselves where they are so already.
 #[pyfunction]
 pub(crate) fn real_numbers<'py>(
-    object: &Bound<'py, PyAny>,
+    values: &Bound<'py, PyAny>,
     name: &str,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let array = floats(object, name)?;
+    let array = floats(values, name)?;
     let array: &Bound<'py, PyArrayDyn<f64>> = &array;
     Ok(array.clone())
 }

@@ -7,10 +7,29 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{floats, numpy, write, zeros};
+use crate::errors::{at_row, to_py};
 use crate::interrupt::Interrupt;
 use crate::memory;
 use crate::rigid_body::PyRigidBody;
 use crate::stack::Stack;
+
+/// That every motion knows its state at each of the times.
+fn within_reach<M: ClosedForm>(py: Python<'_>, motions: &Stack<M>, times: &[f64]) -> PyResult<()> {
+    let least = |least: f64, motion: &M| least.min(motion.reach());
+    let reach = motions.rows.iter().fold(f64::INFINITY, least);
+    // Without a branch, several times at once.
+    if !times.iter().fold(false, |any, t| any | (t.abs() > reach)) {
+        return Ok(());
+    }
+    for (row, motion) in motions.rows.iter().enumerate() {
+        for &t in times {
+            motion
+                .reaches(t)
+                .map_err(|error| at_row(&motions.shape, row, &to_py(py, &error), py))?;
+        }
+    }
+    Ok(())
+}
 
 /// The trajectory of `body` that moves as `motions` say, through the times `t`, whose axes follow those of the stack.
 ///
@@ -24,6 +43,7 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
     fields: Bound<'py, PyDict>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let times = floats(t, "t")?;
+    within_reach(py, motions, times.as_slice()?)?;
     let shape = [&motions.shape[..], times.shape()].concat();
     // Quaternions, angular velocities, and zeros that are positions and velocities.
     memory::room("t", &shape, (4 + 3 + 3) * size_of::<f64>())?;

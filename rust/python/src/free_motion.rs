@@ -154,7 +154,8 @@ impl PyFreeMotion {
     /// -------
     /// Trajectory
     ///     Its ``omega`` and ``quaternion`` have the shape of the stack, then that of `t`, then their
-    ///     components. The quaternion is continuous in time. A time that is not finite gives NaN.
+    ///     components. The quaternion is continuous in time. A time that is not finite gives NaN; one after more than 2⁸⁸ turns,
+    ///     of which nothing would be known, is refused.
     ///
     /// Notes
     /// -----

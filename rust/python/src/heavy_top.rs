@@ -321,7 +321,7 @@ impl PyHeavyTop {
     /// Trajectory
     ///     About the origin of the body frame, which rests. Its ``omega`` and ``quaternion`` have the shape of the stack,
     ///     then that of `t`, then their components. The quaternion is continuous in time. A time that is not finite
-    ///     gives NaN.
+    ///     gives NaN; one after more than 2⁸⁸ turns, of which nothing would be known, is refused.
     ///
     /// Notes
     /// -----

@@ -39,7 +39,7 @@ macro_rules! fixed_length {
         }
     )*};
 }
-fixed_length!(2 3 4 10 33);
+fixed_length!(2 3 4 10 33 34);
 
 /// The corners of a triangle in the plane.
 impl Item for [[f64; 2]; 3] {

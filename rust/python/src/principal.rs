@@ -1,11 +1,13 @@
 //! Principal axes and tops of bare tensors.
 
+use std::cell::Cell;
+
 use nalgebra::Matrix3;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use polhode::PrincipalAxes;
 use polhode::mass::validity::{ASYMMETRY, check_symmetry};
 use polhode::numerics::threads::Halt;
 use polhode::principal as core;
+use polhode::{PrincipalAxes, RigidBody};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -182,22 +184,39 @@ fn run(
 }
 
 /// As `polhode.results.PrincipalAxes`.
-pub(crate) fn to_python<'py>(
-    py: Python<'py>,
-    found: &Stack<PrincipalAxes>,
-) -> PyResult<Bound<'py, PyAny>> {
-    to_python_of(py, found, |principal| *principal)
+fn to_python<'py>(py: Python<'py>, found: &Stack<PrincipalAxes>) -> PyResult<Bound<'py, PyAny>> {
+    let moments = write_of(py, found, |principal| principal.moments)?;
+    let axes = write_of(py, found, |principal| principal.axes)?;
+    results(py)?.call1((moments, axes))
 }
 
-/// As [`to_python`], for one item of each row.
-pub(crate) fn to_python_of<'py, R>(
+/// As [`to_python`], of bodies about their centres of mass, with the tolerances at which the classes are decided.
+pub(crate) fn of_bodies<'py>(
     py: Python<'py>,
-    rows: &Stack<R>,
-    principal: impl Fn(&R) -> PrincipalAxes,
+    bodies: &Stack<RigidBody>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let moments = write_of(py, rows, |row| principal(row).moments)?;
-    let axes = write_of(py, rows, |row| principal(row).axes)?;
-    results(py)?.call1((moments, axes))
+    let is_rounded = Cell::new(false);
+    let moments = write_of(py, bodies, |body| {
+        is_rounded.set(is_rounded.get() || body.provenance().rounding != 0.0);
+        body.principal().moments
+    })?;
+    let axes = write_of(py, bodies, |body| body.principal().axes)?;
+    if !is_rounded.get() {
+        return results(py)?.call1((moments, axes));
+    }
+    let rtols = write_of(py, bodies, |body| body.top_rtols(&body.principal().moments))?;
+    results(py)?.call1((moments, axes, rtols))
+}
+
+/// As [`to_python`], each with the tolerances at which its class is decided.
+pub(crate) fn with_rtols<'py>(
+    py: Python<'py>,
+    rows: &Stack<(PrincipalAxes, [f64; 3])>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let moments = write_of(py, rows, |(principal, _)| principal.moments)?;
+    let axes = write_of(py, rows, |(principal, _)| principal.axes)?;
+    let rtols = write_of(py, rows, |(_, rtols)| *rtols)?;
+    results(py)?.call1((moments, axes, rtols))
 }
 
 /// Axes (..., 3, 3) turned as `principal_axes` does with `canonical`, moments closer than rtol counting as equal.
@@ -287,19 +306,25 @@ pub(crate) fn principal_gaps<'py>(
     Ok(write_of(py, &read::<[f64; 3]>(moments, "moments")?, core::gaps)?.into_any())
 }
 
-/// Class of the top with ascending moments, at a relative tolerance: a string, or an array of them.
+/// Class of the top with ascending moments: a string, or an array of them. The relative tolerance is one number, or three of
+/// shape (..., 3) for I1 = 0, I1 = I2 and I2 = I3.
 #[pyfunction]
 pub(crate) fn classify_tops<'py>(
     py: Python<'py>,
     moments: &Bound<'py, PyAny>,
-    rtol: f64,
+    rtol: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    check_rtol(rtol)?;
+    let rtols = match rtol.extract::<f64>() {
+        Ok(one) => Stack::one([one; 3]),
+        Err(_) => read::<[f64; 3]>(rtol, "rtol")?,
+    };
+    for &rtol in rtols.rows.as_flattened() {
+        check_rtol(rtol)?;
+    }
     let moments = read::<[f64; 3]>(moments, "moments")?;
-    write_words_of(
-        py,
-        &moments,
-        |moments| core::classify(moments, rtol).as_str(),
-        "str",
-    )
+    let grid = Broadcast::of(["moments", "rtol"], [&moments.shape, &rtols.shape])?;
+    let classes = grid.try_map(py, |[m, r]| {
+        Ok(core::classify_within(&moments[m], &rtols[r]).as_str())
+    })?;
+    write_words_of(py, &classes, |class| *class, "str")
 }

@@ -12,7 +12,7 @@ use super::validity::{
 };
 use crate::error::{Error, all_finite, finite};
 use crate::numerics::eigen3::{Eigen3, eigen3};
-use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
+use crate::principal::{PrincipalAxes, TOP_RTOL, principal_axes, rounding_rtols, with_sign_rule};
 
 /// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
 ///
@@ -129,7 +129,7 @@ impl RigidBody {
                 elements: 1,
                 checks: Checks::FINITE.and(Checks::TENSOR),
                 moments: MomentsFrom::Given,
-                rounded_to_zero: moments.iter().filter(|&&moment| moment < 0.0).count(),
+                rounded_to_zero: moments.iter().map(|&moment| u8::from(moment < 0.0)).sum(),
                 ..Provenance::default()
             },
         })
@@ -309,6 +309,14 @@ impl RigidBody {
         about
     }
 
+    /// How close moments of this body, about any point, must be to be equal as far as its numbers tell, relative to the
+    /// largest: for I₁ = 0, I₁ = I₂ and I₂ = I₃. [`TOP_RTOL`], and more where it is of particles whose coordinates were
+    /// rounded by as much as its provenance says.
+    #[must_use]
+    pub fn top_rtols(&self, moments: &[f64; 3]) -> [f64; 3] {
+        rounding_rtols(self.mass, moments, self.provenance.rounding).map(|rtol| rtol.max(TOP_RTOL))
+    }
+
     /// Moment of inertia about the axis through P with direction `axis`: `n·I_P·n`, n the unit vector along `axis`.
     ///
     /// # Errors
@@ -341,9 +349,9 @@ impl RigidBody {
     /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows, bounds,
     /// provenance.
     #[must_use]
-    pub fn to_array(&self) -> [f64; 33] {
+    pub fn to_array(&self) -> [f64; 34] {
         let (c, i) = (&self.center_of_mass, &self.inertia);
-        let mut numbers = [0.0; 33];
+        let mut numbers = [0.0; 34];
         numbers[0] = self.mass;
         numbers[1..4].copy_from_slice(c.as_slice());
         numbers[4..10].copy_from_slice(&[i.m11, i.m12, i.m13, i.m22, i.m23, i.m33]);
@@ -359,7 +367,7 @@ impl RigidBody {
     ///
     /// # Errors
     /// When the numbers are not those of a body: moments, axes and tensor must agree.
-    pub fn from_array(numbers: &[f64; 33]) -> Result<Self, Error> {
+    pub fn from_array(numbers: &[f64; 34]) -> Result<Self, Error> {
         let [mass, x, y, z, xx, xy, xz, yy, yz, zz, i1, i2, i3, ..] = *numbers;
         let moments = [i1, i2, i3];
         let axes = Matrix3::from_row_slice(&numbers[13..22]);
@@ -368,7 +376,7 @@ impl RigidBody {
             center_of_mass: numbers[23],
             inertia: numbers[24],
         };
-        let provenance: [f64; 8] = std::array::from_fn(|k| numbers[25 + k]);
+        let provenance: [f64; 9] = std::array::from_fn(|k| numbers[25 + k]);
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         let center_of_mass = Vector3::new(x, y, z);
         check_mass(mass)?;
@@ -459,11 +467,11 @@ fn sorted(moments: &[f64; 3], axes: &Matrix3<f64>) -> PrincipalAxes {
 
 /// Moments that a tensor with this trace cannot tell from zero, or that rounding has put below it, are zero; how many
 /// were not.
-fn clear_noise(principal: &mut PrincipalAxes, trace: f64) -> usize {
+fn clear_noise(principal: &mut PrincipalAxes, trace: f64) -> u8 {
     let mut cleared = 0;
     for moment in &mut principal.moments {
         if *moment <= ROUNDING * trace {
-            cleared += usize::from(*moment != 0.0);
+            cleared += u8::from(*moment != 0.0);
             *moment = 0.0;
         }
     }

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
+use super::provenance::Provenance;
 use super::validity::{check_mass, check_rotation, mean_of_halves, trace};
 use crate::error::{Error, all_finite, finite};
 use crate::principal::{PrincipalAxes, with_sign_rule};
@@ -81,7 +82,10 @@ impl RigidBody {
                 inertia: scale(self.error_bound.inertia),
             }
             .rounded(&(self.center_of_mass * length), scale(trace(&self.inertia))),
-            provenance: self.provenance,
+            provenance: Provenance {
+                rounding: self.provenance.rounding * length,
+                ..self.provenance
+            },
         };
         check_mass(scaled.mass)?;
         all_finite("inertia", &scaled.inertia)?;

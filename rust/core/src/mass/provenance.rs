@@ -35,10 +35,16 @@ pub enum Source {
     Rod,
     /// Other bodies, put together or taken away.
     Bodies,
+    /// Atoms, each of the most common isotope of its element where its label names none.
+    CommonIsotopes,
+    /// Atoms of their elements' average masses.
+    AverageAtoms,
+    /// Atoms whose masses came with them.
+    OwnAtoms,
 }
 
 impl Source {
-    const ALL: [Self; 14] = [
+    const ALL: [Self; 17] = [
         Self::Tensor,
         Self::PrincipalMoments,
         Self::SecondMoment,
@@ -53,6 +59,9 @@ impl Source {
         Self::Lamina,
         Self::Rod,
         Self::Bodies,
+        Self::CommonIsotopes,
+        Self::AverageAtoms,
+        Self::OwnAtoms,
     ];
 }
 
@@ -63,6 +72,9 @@ impl fmt::Display for Source {
             Self::PrincipalMoments => "principal moments",
             Self::SecondMoment => "second moment",
             Self::Particles => "particles",
+            Self::CommonIsotopes => "atoms, most common isotopes",
+            Self::AverageAtoms => "atoms, average masses",
+            Self::OwnAtoms => "atoms, masses of their own",
             Self::Mesh => "mesh",
             Self::Surface => "surface",
             Self::Curve => "curve",
@@ -210,7 +222,10 @@ pub struct Provenance {
     /// What the principal moments were found from.
     pub moments: MomentsFrom,
     /// Principal moments that rounding had left, or a table had admitted, and that are stored as zero.
-    pub rounded_to_zero: usize,
+    pub rounded_to_zero: u8,
+    /// By how much each coordinate of the particles was rounded at most, where that is known: half a unit of the last
+    /// digit that a file prints. In the unit of length; 0 where nothing is known of it.
+    pub rounding: f64,
 }
 
 impl Provenance {
@@ -257,12 +272,13 @@ impl Provenance {
             volume_change: self.volume_change + other.volume_change,
             moments: MomentsFrom::Tensor,
             rounded_to_zero: 0,
+            rounding: self.rounding.max(other.rounding),
         }
     }
 
     /// As numbers, for storage.
     #[must_use]
-    pub fn to_array(&self) -> [f64; 8] {
+    pub fn to_array(&self) -> [f64; 9] {
         let closure = match self.closure {
             None => 0.0,
             Some(Closure::Caps) => 1.0,
@@ -276,7 +292,8 @@ impl Provenance {
             closure,
             self.volume_change,
             f64::from(self.moments as u8),
-            self.rounded_to_zero as f64,
+            f64::from(self.rounded_to_zero),
+            self.rounding,
         ]
     }
 
@@ -287,7 +304,7 @@ impl Provenance {
         clippy::cast_sign_loss,
         reason = "counts below 2^52; the cast saturates"
     )]
-    pub fn from_array(numbers: &[f64; 8]) -> Self {
+    pub fn from_array(numbers: &[f64; 9]) -> Self {
         let [
             source,
             elements,
@@ -297,6 +314,7 @@ impl Provenance {
             volume_change,
             moments,
             rounded,
+            rounding,
         ] = *numbers;
         Self {
             source: Source::ALL
@@ -316,7 +334,8 @@ impl Provenance {
                 .get(moments as usize)
                 .copied()
                 .unwrap_or_default(),
-            rounded_to_zero: rounded as usize,
+            rounded_to_zero: rounded as u8,
+            rounding,
         }
     }
 }
@@ -339,6 +358,7 @@ mod tests {
                         volume_change: -0.5,
                         moments,
                         rounded_to_zero: 1,
+                        rounding: 5e-4,
                     };
                     assert_eq!(Provenance::from_array(&provenance.to_array()), provenance);
                 }

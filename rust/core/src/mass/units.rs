@@ -25,7 +25,7 @@ impl Units {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] when mass or moments are beyond the largest number, or so small that digits are lost.
-    pub(super) fn told(self, body: RigidBody) -> Result<RigidBody, Error> {
+    pub(super) fn told(self, body: &RigidBody) -> Result<RigidBody, Error> {
         let moment = self.mass + 2 * self.length;
         let i3 = body.principal.moments[2];
         let told = Self::number("mass", body.mass, self.mass)?;
@@ -99,7 +99,7 @@ mod tests {
             length,
             place,
         }
-        .told(body.expect("body"))
+        .told(&body.expect("body"))
     }
 
     #[test]

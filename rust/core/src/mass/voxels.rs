@@ -84,7 +84,7 @@ pub fn voxels<T: Voxel>(grid: &Grid<'_, T>, watch: &mut Watch<'_>) -> Result<Rig
     // Sums this small may have lost digits to underflow, larger ones overflowed: densities too are counted in units.
     let range = 2.0_f64.powi(-800)..2.0_f64.powi(900);
     if range.contains(&found.mass) {
-        return units.told(near.body(&found, watch)?);
+        return units.told(&near.body(&found, watch)?);
     }
     grid.check()?;
     let densities = || grid.density.iter().map(|&density| density.into());
@@ -99,7 +99,7 @@ pub fn voxels<T: Voxel>(grid: &Grid<'_, T>, watch: &mut Watch<'_>) -> Result<Rig
         spacing: near.spacing,
         origin: near.origin,
     };
-    units.told(scaled.body(&scaled.about_center(watch)?, watch)?)
+    units.told(&scaled.body(&scaled.about_center(watch)?, watch)?)
 }
 
 impl<T: Voxel> Grid<'_, T> {

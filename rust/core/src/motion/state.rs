@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
+use crate::error::Error;
 use crate::numerics::threads::{Halt, fill_blocks};
 
 /// Attitude `R_NB` and angular velocity of B relative to N, components in B.
@@ -85,6 +86,21 @@ impl Phase {
 
 /// A motion in closed form: its state at any time costs the same.
 pub trait ClosedForm: Sync {
+    /// The largest |t| at which the state is known: what multiplies the time is, to 2⁻⁹⁰ of itself. Beyond, states are NaN.
+    fn reach(&self) -> f64;
+
+    /// That |t| is within [`reach`](Self::reach), or not finite, which has no state.
+    ///
+    /// # Errors
+    /// [`Error::BeyondReach`].
+    fn reaches(&self, t: f64) -> Result<(), Error> {
+        let reach = self.reach();
+        if t.is_finite() && t.abs() > reach {
+            return Err(Error::BeyondReach { t, reach });
+        }
+        Ok(())
+    }
+
     /// Attitudes as (x, y, z, w) and ω at many times, on the calling thread; one of each for every time.
     fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]);
 }

@@ -5,8 +5,9 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::double_double::DoubleDouble;
+use super::quad_double::QuadDouble;
 
-/// What the chain of means needs of a number: doubles and [`DoubleDouble`].
+/// What the chain of means needs of a number: doubles, [`DoubleDouble`] and [`QuadDouble`].
 pub trait Real:
     Copy
     + From<f64>
@@ -23,8 +24,19 @@ pub trait Real:
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
+    /// The number times a power of two.
+    #[must_use]
+    fn scaled(self, power_of_two: f64) -> Self;
     /// The nearest double.
     fn rounded(self) -> f64;
+    /// The nearest number of twice the precision.
+    fn twofold(self) -> DoubleDouble;
+
+    /// Magnitude.
+    #[must_use]
+    fn abs(self) -> Self {
+        if self.rounded() < 0.0 { -self } else { self }
+    }
 }
 
 impl Real for f64 {
@@ -37,8 +49,18 @@ impl Real for f64 {
     }
 
     #[inline]
+    fn scaled(self, power_of_two: f64) -> Self {
+        self * power_of_two
+    }
+
+    #[inline]
     fn rounded(self) -> f64 {
         self
+    }
+
+    #[inline]
+    fn twofold(self) -> DoubleDouble {
+        self.into()
     }
 }
 
@@ -55,8 +77,39 @@ impl Real for DoubleDouble {
     }
 
     #[inline]
+    fn scaled(self, power_of_two: f64) -> Self {
+        self.scaled(power_of_two)
+    }
+
+    #[inline]
     fn rounded(self) -> f64 {
         self.high
+    }
+
+    #[inline]
+    fn twofold(self) -> DoubleDouble {
+        self
+    }
+}
+
+impl Real for QuadDouble {
+    const HALF_PI: Self = Self::HALF_PI;
+    const CLOSE: f64 = 1e-32;
+
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    fn scaled(self, power_of_two: f64) -> Self {
+        self.scaled(power_of_two)
+    }
+
+    fn rounded(self) -> f64 {
+        self.rounded()
+    }
+
+    fn twofold(self) -> DoubleDouble {
+        self.twofold()
     }
 }
 

@@ -7,6 +7,7 @@
 //! | [`dispatch`] | the widest lanes of the machine at hand, chosen at run time |
 //! | [`reduce`] | sums whose bits do not depend on how the work is cut |
 //! | [`double_double`] | error-free sums and products |
+//! | [`quad_double`] | four times the precision, where differences decide |
 //! | [`expansion`] | sums and determinants without any rounding |
 //! | [`twofold`] | numbers of twice the precision in kernels |
 //! | [`number`] | one algorithm for doubles and for numbers of twice the precision |
@@ -18,6 +19,7 @@
 //! | [`jacobi`] | Jacobi's functions of one number, Carlson's integral of the second kind |
 //! | [`jet`] | numbers with their derivatives |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
+//! | [`sign_changes`] | all places in an interval at which a polynomial changes its sign |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
 //! | [`eigen3`] | eigenvalues and eigenvectors of symmetric 3×3 matrices |
 //!
@@ -35,8 +37,10 @@ pub mod lane;
 pub mod number;
 pub mod planes;
 pub mod power_of_two;
+pub mod quad_double;
 pub mod quadrature;
 pub mod reduce;
+pub mod sign_changes;
 pub mod split_vector;
 pub mod theta;
 pub mod threads;

@@ -1,5 +1,7 @@
 //! Powers of two as units: what is scaled by them keeps its digits.
 
+use nalgebra::Vector3;
+
 /// The exponent e of `|x| = 2^e·(1…2)`; zero for zero.
 #[must_use]
 pub fn exponent(x: f64) -> i32 {
@@ -28,9 +30,46 @@ pub fn times_power_of_two(x: f64, e: i32) -> f64 {
     x
 }
 
+/// The length of a vector, whose squares may be beyond float64.
+#[must_use]
+pub fn length(vector: &Vector3<f64>) -> f64 {
+    let size = exponent(vector.amax());
+    let scaled = vector.map(|x| times_power_of_two(x, -size));
+    times_power_of_two(scaled.norm(), size)
+}
+
+/// The unit vector along another, whose squares may be beyond float64; `None` of zero.
+#[must_use]
+pub fn direction_of(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
+    let size = exponent(vector.amax());
+    vector
+        .map(|x| times_power_of_two(x, -size))
+        .try_normalize(0.0)
+}
+
+/// `2^e` as two factors that are numbers, for many products: `x·a·b`, rounded only where it is a denormal number.
+#[must_use]
+pub fn halves(e: i32) -> [f64; 2] {
+    let half = e / 2;
+    [2.0_f64.powi(half), 2.0_f64.powi(e - half)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn vectors_of_any_size_have_lengths_and_directions() {
+        for size in [1e-300, 1e-200, 1.0, 1e200, 1e307] {
+            let unit = 2.0_f64.powi(exponent(size));
+            let vector = Vector3::new(2.0, -3.0, 6.0) * unit;
+            assert_eq!(length(&vector), 7.0 * unit);
+            let direction = direction_of(&vector).expect("a direction");
+            assert!((direction.y + 3.0 / 7.0).abs() < 1e-15);
+        }
+        assert_eq!(length(&Vector3::zeros()), 0.0);
+        assert_eq!(direction_of(&Vector3::zeros()), None);
+    }
 
     #[test]
     fn exponents_and_scales_undo_each_other() {
@@ -43,5 +82,15 @@ mod tests {
         assert_eq!((exponent(0.0), times_power_of_two(0.0, 99)), (0, 0.0));
         assert_eq!(times_power_of_two(1.0, -5000), 0.0);
         assert!(times_power_of_two(1.0, 5000).is_infinite());
+        for (x, e) in [
+            (3e-310, 1074),
+            (1.5, -1023),
+            (1.0, 0),
+            (-1e300, -1999),
+            (5e-324, 2000),
+        ] {
+            let [a, b] = halves(e);
+            assert_eq!(x * a * b, times_power_of_two(x, e));
+        }
     }
 }

@@ -21,6 +21,20 @@ pub fn turns<L: Lane>(t: L, rate: DoubleDouble, start: DoubleDouble) -> L {
     whole_off(x)
 }
 
+/// A rate that is worth long times is known to this part of itself, 2⁻⁹⁰: so are the turns that it makes.
+pub const PHASE_ERROR: f64 = 8.1e-28;
+/// After more turns than this, 2⁸⁸, a phase is not known to a quarter of one.
+pub const MOST_TURNS: f64 = 3.1e26;
+
+/// The largest |t| at which phases of these rates, in turns for a unit of time, are known to a quarter of a turn.
+#[must_use]
+pub fn reach(rates: &[DoubleDouble]) -> f64 {
+    let fastest = rates
+        .iter()
+        .fold(0.0_f64, |most, rate| most.max(rate.high.abs()));
+    MOST_TURNS / fastest
+}
+
 /// x less the nearest integer.
 #[inline(always)]
 #[must_use]

@@ -12,4 +12,4 @@ pub use axes::{
 pub use canonical::{canonical, canonical_many};
 pub use derivative::{DEGENERATE_RTOL, PrincipalDerivative, derivative};
 pub use symmetric_top::SymmetricTop;
-pub use tops::{TOP_RTOL, Top, classify, gaps, ray_kappa};
+pub use tops::{TOP_RTOL, Top, classify, classify_within, gaps, ray_kappa, rounding_rtols};

@@ -10,7 +10,8 @@
 //! | point | 0 = I₁ = I₂ = I₃ |
 //!
 //! Equality is decided on the [gaps], relative to the largest moment, so the class of a body depends neither on
-//! its units nor on its size.
+//! its units nor on its size. Of particles whose coordinates were printed to few digits, [`rounding_rtols`] says how
+//! close two moments must be to be equal as far as the digits tell.
 
 use std::fmt;
 
@@ -74,13 +75,20 @@ pub fn gaps(moments: &[f64; 3]) -> [f64; 2] {
 /// than rounding (16 ε times the sum of the moments) and by more than `rtol` times the largest.
 #[must_use]
 pub fn classify(moments: &[f64; 3], rtol: f64) -> Top {
+    classify_within(moments, &[rtol; 3])
+}
+
+/// As [`classify`], with a tolerance each for I₁ = 0, I₁ = I₂ and I₂ = I₃, all relative to the largest moment.
+#[must_use]
+pub fn classify_within(moments: &[f64; 3], &[zero, lower, upper]: &[f64; 3]) -> Top {
     let &[i1, i2, i3] = moments;
     if i1 == 0.0 && i2 == 0.0 && i3 == 0.0 {
         return Top::Point;
     }
     // Relative to the largest, so that no sum overflows.
     let (x1, x2) = (i1 / i3, i2 / i3);
-    let slack = rtol.max(16.0 * f64::EPSILON * (x1 + x2 + 1.0));
+    let rounding = 16.0 * f64::EPSILON * (x1 + x2 + 1.0);
+    let slack = rounding.max(zero).max(lower).max(upper);
     let is_body = i3 > 0.0
         && i3.is_finite()
         && i1 <= i2
@@ -90,14 +98,57 @@ pub fn classify(moments: &[f64; 3], rtol: f64) -> Top {
     if !is_body {
         return Top::None;
     }
-    let [lower, upper] = gaps(moments);
-    match (lower <= rtol, upper <= rtol) {
+    let [low, high] = gaps(moments);
+    match (low <= lower, high <= upper) {
         (true, true) => Top::Spherical,
         (true, false) => Top::Oblate,
-        (false, true) if x1 <= rtol => Top::Linear,
+        (false, true) if x1 <= zero => Top::Linear,
         (false, true) => Top::Prolate,
         (false, false) => Top::Asymmetric,
     }
+}
+
+/// How far rounding can take moments that are equal from each other, relative to the largest: I₁ from 0, I₁ from I₂ and
+/// I₂ from I₃, of particles whose coordinates were rounded by at most `rounding` each. 0 of a point.
+///
+/// With rounded positions r from C, exact ones r + d, |d| ≤ δ = √3 `rounding`, and total mass M, the second moment changes
+/// by `ΔS = Σ m (r dᵀ + d rᵀ) + Σ m d dᵀ` (less the shift of C, which only lessens the last sum). By Cauchy and Schwarz
+/// `Σ m ρ |d| ≤ δ √(M I)`, ρ being the distances from an axis and I the moment about it, so that in the plane across axis k
+/// no element of ΔS, and no half difference of two on its diagonal, exceeds
+///
+/// `o_k = δ √(M I_k) + M δ²/2`.
+///
+/// A pair that is equal in truth is at most `2 o` apart to first order, o of the axis across the pair. What remains is that
+/// the axis itself is turned: by the minimax theorem of Courant and Fischer, in the other plane of the pair's nearer member
+/// with the third axis, it is at most `√(x² + o'²) − x`, half the distance to the third moment being `x + o'`. And the
+/// moment of a straight line is `Σ m d² ≤ M δ²` about the line through the rounded places. These bounds hold to all orders.
+#[must_use]
+pub fn rounding_rtols(mass: f64, moments: &[f64; 3], rounding: f64) -> [f64; 3] {
+    let &[i1, i2, i3] = moments;
+    if rounding == 0.0 || i3 == 0.0 {
+        return [0.0; 3];
+    }
+    // Moments and M δ² in units of I₃, which neither under- nor overflow.
+    let (x1, x2) = (i1 / i3, i2 / i3);
+    let length = (i3 / mass).sqrt();
+    let zero = 3.0 * (rounding / length) * (rounding / length);
+    let element = |x: f64| (zero * x).sqrt() + 0.5 * zero;
+    let (o1, o3) = (element(x1), element(1.0));
+    let turned = |distance: f64, o: f64| {
+        let x = 0.5 * distance - o;
+        let root = x.hypot(o);
+        // The same in two forms, in neither of which digits cancel.
+        if x > 0.0 {
+            o * o / (root + x)
+        } else {
+            root - x
+        }
+    };
+    [
+        zero,
+        2.0 * o3 + turned(1.0 - x2, o1),
+        2.0 * o1 + turned(x2 - x1, o3),
+    ]
 }
 
 /// Ray's asymmetry parameter κ = (2B − A − C)/(A − C) of the rotational constants A ≥ B ≥ C, which are inversely
@@ -112,7 +163,7 @@ pub fn ray_kappa(moments: &[f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{TOP_RTOL, Top, classify, gaps, ray_kappa};
+    use super::{TOP_RTOL, Top, classify, classify_within, gaps, ray_kappa, rounding_rtols};
 
     #[test]
     fn classes_do_not_depend_on_the_scale() {
@@ -140,6 +191,43 @@ mod tests {
         assert_eq!(class([f64::NAN; 3]), Top::None);
         assert_eq!(class([1.0, 1.0, f64::INFINITY]), Top::None);
         assert_eq!(classify(&[1.0, 1.0, 2.0 + 1e-7], 1e-6), Top::Oblate);
+    }
+
+    #[test]
+    fn each_pair_has_its_tolerance() {
+        let class = |moments: [f64; 3], rtols: [f64; 3]| classify_within(&moments, &rtols);
+        let top = [1.0, 1.1, 1.6];
+        assert_eq!(class(top, [0.0; 3]), Top::Asymmetric);
+        assert_eq!(class(top, [0.0, 0.1, 0.0]), Top::Oblate);
+        assert_eq!(class(top, [0.0, 0.0, 0.4]), Top::Prolate);
+        assert_eq!(class(top, [0.0, 0.1, 0.4]), Top::Spherical);
+        assert_eq!(class([0.01, 1.0, 1.005], [0.0, 0.0, 0.01]), Top::Prolate);
+        assert_eq!(class([0.01, 1.0, 1.005], [0.01, 0.0, 0.01]), Top::Linear);
+        assert_eq!(class([0.01, 1.0, 1.005], [0.01, 0.0, 0.0]), Top::Asymmetric);
+    }
+
+    #[test]
+    fn rounding_of_coordinates() {
+        // To first order 2 δ √(M I) of the axis across the pair; I = 1, 1, 2, M = 1, δ = √3/2 · 1e-6.
+        let delta = 0.75_f64.sqrt() * 1e-6;
+        let [zero, lower, upper] = rounding_rtols(1.0, &[1.0, 1.0, 2.0], 0.5e-6);
+        assert!((zero / (delta * delta / 2.0) - 1.0).abs() < 1e-12);
+        assert!((lower / (2.0 * delta * 2.0_f64.sqrt() / 2.0) - 1.0).abs() < 1e-5);
+        // The pair of axes 2 and 3 has a third moment beside it, so that its plane may turn as far as it likes.
+        assert!(upper > 2.0 * delta / 2.0 && upper < 10.0 * delta);
+        // It depends neither on the unit of length nor on that of mass, and is 0 where nothing is known.
+        for scale in [1e-120, 1e-20, 1e100] {
+            let moments = [1.0, 1.0, 2.0].map(|moment: f64| moment * scale * scale * 1e-27);
+            let rtols = rounding_rtols(1e-27, &moments, 0.5e-6 * scale);
+            for (rtol, known) in rtols.into_iter().zip([zero, lower, upper]) {
+                assert!(
+                    (rtol / known - 1.0).abs() < 1e-12,
+                    "{scale}: {rtol} {known}"
+                );
+            }
+        }
+        assert_eq!(rounding_rtols(1.0, &[1.0, 1.0, 2.0], 0.0), [0.0; 3]);
+        assert_eq!(rounding_rtols(1.0, &[0.0; 3], 0.1), [0.0; 3]);
     }
 
     #[test]

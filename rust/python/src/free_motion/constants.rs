@@ -213,10 +213,10 @@ impl PyFreeMotion {
     fn stability<'py>(&self, py: Python<'py>) -> Array<'py> {
         write_of(py, &self.motions, |motion| {
             let moments = motion.moments.map(DoubleDouble::rounded);
-            let momentum = Invariants::of_motion(motion).angular_momentum();
+            let rates = Invariants::of_motion(motion).steady_rates();
             std::array::from_fn::<_, 3, _>(|k| {
                 if moments[k] > 0.0 {
-                    stability(&moments, momentum / moments[k])[k]
+                    stability(&moments, rates[k])[k]
                 } else {
                     f64::NAN
                 }

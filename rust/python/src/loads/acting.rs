@@ -2,7 +2,7 @@
 
 use polhode::Error;
 use polhode::error::Kind;
-use polhode::motion::loads::{Analytic, Load, Subject, Term, Windows, Wrench};
+use polhode::motion::loads::{Analytic, Load, Subject, Switch, Term, Windows, Wrench};
 use polhode::motion::state::Phase;
 use pyo3::prelude::*;
 
@@ -133,6 +133,18 @@ impl Load for Acting<'_, '_> {
         self.compiled.clear();
         (self.compiled).extend(self.load.compiled().filter(|one| is_on(&one.windows)));
         Ok(self.analytic.enter(from, to)?)
+    }
+
+    fn settle(&mut self, phase: &Phase) {
+        self.analytic.settle(phase);
+    }
+
+    fn switches(&self) -> Vec<Switch> {
+        self.analytic.switches()
+    }
+
+    fn flip(&mut self, index: usize) {
+        self.analytic.flip(index);
     }
 
     #[inline]

@@ -153,6 +153,8 @@ impl PyRigidBody {
     ///     As of `from_mesh`, for a mesh that is open or wound inward.
     /// index_base : {1, 0}, optional
     ///     What the faces of an OBJ or plate file count vertices from.
+    /// masses : {"most_common", "average"}, optional
+    ///     Of a molecule, where a label names no isotope: of the element's most common isotope or the average over them.
     /// progress : callable, optional
     ///     Is told the fraction of a large mesh file done, now and then; an exception it raises ends the
     ///     reading. Binary STL and PLY go through memory block by block, whatever their size.
@@ -172,7 +174,7 @@ impl PyRigidBody {
     /// --------
     /// polhode.io : the reader, which also returns vertices and faces.
     #[staticmethod]
-    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, index_base=1, progress=None))]
+    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, index_base=1, masses="most_common", progress=None))]
     #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
     fn from_file<'py>(
         py: Python<'py>,
@@ -184,6 +186,7 @@ impl PyRigidBody {
         closure: Option<&str>,
         orient: bool,
         index_base: i64,
+        masses: &str,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let options = PyDict::new(py);
@@ -194,6 +197,7 @@ impl PyRigidBody {
         options.set_item("closure", closure)?;
         options.set_item("orient", orient)?;
         options.set_item("index_base", index_base)?;
+        options.set_item("masses", masses)?;
         options.set_item("progress", progress)?;
         py.import("polhode.io")?
             .call_method("body_from_file", (path,), Some(&options))

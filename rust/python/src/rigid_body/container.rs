@@ -99,10 +99,17 @@ impl PyRigidBody {
         ))
     }
 
-    /// The bodies that `__reduce__` took apart, shape (..., 33); for pickle.
+    /// The bodies that `__reduce__` took apart, shape (..., 34), or (..., 33) without the rounding of coordinates, as before
+    /// it was kept; for pickle.
     #[staticmethod]
     fn _from_numbers(py: Python<'_>, numbers: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Self::from_numbers(&read(numbers, "numbers")?, py)
+        let all = read::<[f64; 34]>(numbers, "numbers").or_else(|fault| {
+            let before = read::<[f64; 33]>(numbers, "numbers").map_err(|_| fault)?;
+            before.map(py, |row| {
+                std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0))
+            })
+        })?;
+        Self::from_numbers(&all, py)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

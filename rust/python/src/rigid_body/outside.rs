@@ -62,10 +62,14 @@ impl PyRigidBody {
     /// Parameters
     /// ----------
     /// atoms : object
-    ///     With ``get_masses()`` and ``get_positions()`` (ASE), or ``GetAtoms()`` and ``GetConformer()`` (RDKit):
-    ///     daltons and ångströms, in which the result stays.
+    ///     With ``get_chemical_symbols()`` and ``get_positions()`` (ASE), or ``GetAtoms()`` and ``GetConformer()``
+    ///     (RDKit): ångströms, in which the result stays.
     /// conformer : int, optional
     ///     Which of an RDKit molecule's; its first by default.
+    /// masses : {"most_common", "average"}
+    ///     Of each element: of its most common isotope, as spectroscopists and molecules in files have it, or the
+    ///     average over its isotopes, as in a bottle. Those that the object was given stand: masses set in ASE,
+    ///     isotopes in RDKit. `provenance` tells whose they are.
     ///
     /// Returns
     /// -------
@@ -78,16 +82,19 @@ impl PyRigidBody {
     ///     For an object that is neither.
     /// ValueError
     ///     For a molecule without a conformer.
+    /// PolhodeError
+    ///     For atoms of no element, or of one without natural isotopes.
     #[staticmethod]
-    #[pyo3(signature = (atoms, *, conformer=None))]
+    #[pyo3(signature = (atoms, *, conformer=None, masses="most_common"))]
     fn from_atoms<'py>(
         atoms: &Bound<'py, PyAny>,
         conformer: Option<i64>,
+        masses: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         atoms
             .py()
             .import("polhode._objects")?
-            .call_method1("body_from_atoms", (atoms, conformer))
+            .call_method1("body_from_atoms", (atoms, conformer, masses))
     }
 
     /// Write the body or the stack to a file, with every bit of it.

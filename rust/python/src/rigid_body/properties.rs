@@ -14,7 +14,7 @@ use crate::arrays::{
 };
 use crate::attitudes::read_rotation;
 use crate::interrupt::Beat;
-use crate::principal::{to_python, to_python_of};
+use crate::principal::{of_bodies, with_rtols};
 use crate::stack::{BLOCK, Broadcast, Stack};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
@@ -54,7 +54,7 @@ impl PyRigidBody {
     /// 'prolate'
     #[getter]
     fn principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        to_python_of(py, &self.bodies, RigidBody::principal)
+        of_bodies(py, &self.bodies)
     }
 
     /// Radii of gyration √(I/m) about the principal axes through C, ascending, shape (..., 3).
@@ -151,9 +151,12 @@ impl PyRigidBody {
     ) -> PyResult<Bound<'py, PyAny>> {
         let points = points(py, &self.bodies, Some(point), "point")?;
         let grid = self.with("point", &points)?;
-        to_python(
+        with_rtols(
             py,
-            &grid.try_map(py, |[b, p]| Ok(self.bodies[b].principal_about(&points[p])))?,
+            &grid.try_map(py, |[b, p]| {
+                let found = self.bodies[b].principal_about(&points[p]);
+                Ok((found, self.bodies[b].top_rtols(&found.moments)))
+            })?,
         )
     }
 
@@ -341,8 +344,8 @@ impl PyRigidBody {
     }
 
     /// Bodies from their numbers.
-    pub(super) fn from_numbers(numbers: &Stack<[f64; 33]>, py: Python<'_>) -> PyResult<Self> {
-        crate::arrays::try_rows(py, numbers, |row: &[f64; 33]| -> Result<RigidBody, Error> {
+    pub(super) fn from_numbers(numbers: &Stack<[f64; 34]>, py: Python<'_>) -> PyResult<Self> {
+        crate::arrays::try_rows(py, numbers, |row: &[f64; 34]| -> Result<RigidBody, Error> {
             RigidBody::from_array(row)
         })
         .map(Self::from)

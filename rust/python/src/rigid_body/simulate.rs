@@ -1,7 +1,7 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
-use polhode::motion::simulate::{Method, Tolerance, check_times, closed_top};
+use polhode::motion::simulate::{Method, Tolerance, check_scales, check_times, closed_top};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,7 +11,7 @@ use super::ensemble::{Ensemble, Start, footing};
 use crate::arrays::read;
 use crate::attitudes::read_attitude_exactly;
 use crate::depth::Deeper;
-use crate::errors::to_py;
+use crate::errors::{at_row, to_py};
 use crate::events::Functions;
 use crate::hints;
 use crate::interrupt::Interrupt;
@@ -177,6 +177,12 @@ impl PyRigidBody {
                 are_tops,
             )
             .map_err(|error| to_py(py, &error))?;
+        if method != Method::Exact {
+            for (row, body) in start.bodies.rows.iter().enumerate() {
+                check_scales(body, &times)
+                    .map_err(|error| at_row(&start.bodies.shape, row, &to_py(py, &error), py))?;
+            }
+        }
         let ensemble = Ensemble {
             start: &start,
             grid: start.grid()?,

@@ -1,8 +1,10 @@
 //! Where a body's numbers come from, and how well they are known.
 
 use polhode::RigidBody;
+use polhode::mass::provenance::Source;
 use polhode::mass::{ErrorBound, Provenance};
 use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::PyRigidBody;
@@ -40,7 +42,8 @@ impl PyRigidBody {
             write_words_of(py, &provenance, |p| closure(p).unwrap_or_default(), "str")?,
             write_numbers_of(py, &provenance, |p| p.volume_change)?,
             words(|p| p.moments.to_string())?,
-            counts(|p| p.rounded_to_zero)?,
+            counts(|p| p.rounded_to_zero.into())?,
+            write_numbers_of(py, &provenance, |p| p.rounding)?,
         );
         py.import("polhode.results")?
             .getattr("Provenance")?
@@ -74,6 +77,29 @@ impl PyRigidBody {
         py.import("polhode.results")?
             .getattr("ErrorBound")?
             .call1(fields)
+    }
+
+    /// The same bodies, of atoms whose masses are `masses` and whose coordinates were rounded by at most `rounding` each.
+    fn _of_atoms(&self, py: Python<'_>, masses: &str, rounding: f64) -> PyResult<Self> {
+        let source = match masses {
+            "most_common" => Source::CommonIsotopes,
+            "average" => Source::AverageAtoms,
+            "own" => Source::OwnAtoms,
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "masses: expected \"most_common\", \"average\" or \"own\", got \"{other}\""
+                )));
+            }
+        };
+        let of_atoms = |body: &RigidBody| {
+            let provenance = Provenance {
+                source,
+                rounding,
+                ..body.provenance()
+            };
+            body.with_provenance(provenance)
+        };
+        Ok(self.bodies.map(py, of_atoms)?.into())
     }
 
     /// The same bodies, of meshes of which so many corners were joined to others on request.

@@ -90,7 +90,7 @@ pub fn from_radial_density<E: From<Error>>(
         length,
         place: length,
     };
-    let body = units.told(body.with_provenance(provenance))?;
+    let body = units.told(&body.with_provenance(provenance))?;
     converged(&body, &found, effort)
 }
 

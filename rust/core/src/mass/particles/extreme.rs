@@ -54,7 +54,7 @@ pub(super) fn in_units(
     if is_thin(&body) {
         let matter = faint(in_own_axes(scaled, &body, watch)?);
         let again = RigidBody::from_second_moment(&matter)?;
-        return units.told(again.with_provenance(provenance.in_own_axes()));
+        return units.told(&again.with_provenance(provenance.in_own_axes()));
     }
-    units.told(body.with_provenance(provenance))
+    units.told(&body.with_provenance(provenance))
 }

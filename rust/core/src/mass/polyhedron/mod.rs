@@ -343,7 +343,7 @@ pub(super) fn matter(
         inertia: 10.0 * (relative + 16.0 * UNIT) * mass * extent.powi(2),
         ..bound
     };
-    units.told(RigidBody::from_second_moment(&SecondMoment {
+    units.told(&RigidBody::from_second_moment(&SecondMoment {
         mass,
         center_of_mass,
         central,

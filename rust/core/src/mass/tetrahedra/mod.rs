@@ -84,7 +84,7 @@ pub fn tetrahedra(
     let body = RigidBody::from_second_moment(&matter)?.with_provenance(provenance);
     let principal = body.principal();
     if principal.moments[0] >= THIN * principal.moments[2] {
-        return cells.units.told(body);
+        return cells.units.told(&body);
     }
     let mut thin = cells.matter(&cells.sums(&center, &principal.axes), &center);
     thin.axes = principal.axes;
@@ -92,11 +92,13 @@ pub fn tetrahedra(
     let body = RigidBody::from_second_moment(&thin)?;
     cells
         .units
-        .told(body.with_provenance(provenance.in_own_axes()))
+        .told(&body.with_provenance(provenance.in_own_axes()))
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::*;
 
     const CORNER: [[f64; 3]; 4] = [

@@ -9,7 +9,7 @@ use crate::mass::error_bound::{ErrorBound, UNIT};
 use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::Frame;
 use crate::mass::units::{QUANTUM, Units};
-use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
 use crate::numerics::reduce::{depth, sum_terms};
 use crate::numerics::split_vector::SplitVector;
 
@@ -27,7 +27,7 @@ pub(super) fn largest_coordinate(nodes: &[[f64; 3]], cells: &[[usize; 4]]) -> f6
 /// Cells with their volumes and densities in units.
 pub(super) struct Cells<'a> {
     nodes: &'a [[f64; 3]],
-    cells: &'a [[usize; 4]],
+    corners: &'a [[usize; 4]],
     density: CellDensity<'a>,
     weights: Vec<Weight>,
     /// What underflow may have taken from the mass.
@@ -40,8 +40,8 @@ pub(super) struct Cells<'a> {
 #[derive(Clone, Copy)]
 struct Weight {
     volume: f64,
-    /// The densities are multiplied by the power of two with this exponent.
-    density: i32,
+    /// The densities are multiplied by both of these powers of two.
+    density: [f64; 2],
 }
 
 impl<'a> Cells<'a> {
@@ -80,7 +80,7 @@ impl<'a> Cells<'a> {
                 lost += times_power_of_two(error, shift);
                 Weight {
                     volume: times_power_of_two(mantissa, shift) / 6.0,
-                    density: -exponent(densest(cell)),
+                    density: halves(-exponent(densest(cell))),
                 }
             })
             .collect();
@@ -88,7 +88,7 @@ impl<'a> Cells<'a> {
         let mass = heaviest + 3 * place;
         Ok(Self {
             nodes,
-            cells,
+            corners: cells,
             density,
             weights,
             lost,
@@ -102,7 +102,7 @@ impl<'a> Cells<'a> {
     }
 
     pub(super) fn count(&self) -> usize {
-        self.cells.len()
+        self.corners.len()
     }
 
     /// The centre of mass of sums about a reference.
@@ -116,10 +116,12 @@ impl<'a> Cells<'a> {
         let origin: [f64; 3] = (*reference).into();
         let inverse = 1.0 / self.frame.unit;
         let [m, x, y, z, xx, xy, xz, yy, yz, zz] = sum_terms(self.count(), |cell| {
-            let corners = self.cells[cell].map(|k| self.nodes[k]);
-            let Weight { volume: v, density } = self.weights[cell];
-            let rho = densities(self.cells, self.density, cell);
-            let rho = rho.map(|rho| times_power_of_two(rho, density));
+            let corners = self.corners[cell].map(|k| self.nodes[k]);
+            let Weight {
+                volume: v,
+                density: [a, b],
+            } = self.weights[cell];
+            let rho = densities(self.corners, self.density, cell).map(|rho| rho * a * b);
             let d = corners.map(|r| {
                 let from = SplitVector::difference(&r, &origin).scaled(inverse);
                 Vector3::from(columns.map(|axis| from.dot(&axis)))

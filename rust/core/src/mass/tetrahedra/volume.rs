@@ -1,7 +1,7 @@
 //! The volume of a cell, however flat, small or large it is.
 
 use crate::numerics::expansion;
-use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
 use crate::numerics::split_vector::{SplitVector, determinant};
 
 /// Six times a volume: `mantissa·2^exponent`, to a unit or two of rounding and to `error·2^exponent`.
@@ -28,9 +28,10 @@ pub(super) fn sixfold([a, b, c, d]: &[[f64; 3]; 4]) -> Volume {
         let largest = edges.iter().fold(0.0_f64, |m, e| m.max(e.high[k].abs()));
         let own = exponent(largest);
         power += own;
+        let [p, q] = halves(-own);
         for edge in &mut edges {
-            edge.high[k] = times_power_of_two(edge.high[k], -own);
-            edge.low[k] = times_power_of_two(edge.low[k], -own);
+            edge.high[k] = edge.high[k] * p * q;
+            edge.low[k] = edge.low[k] * p * q;
         }
     }
     let [u, v, w] = &edges;

@@ -48,6 +48,7 @@ pub(super) fn spin(omega: &Vector3<f64>, attitude: &UnitQuaternion<f64>) -> (Pro
             [q.i, q.j, q.k, q.w],
         ],
         omega: [[0.0; 3], [0.0; 3], [omega.x, omega.y, omega.z]],
+        reach: f64::INFINITY,
     };
     let secular = Secular {
         half_period: f64::INFINITY.into(),
@@ -122,6 +123,7 @@ pub(super) fn symmetric(
             (internal.column(0) * size).into(),
             (internal.column(2) * axial).into(),
         ],
+        reach: f64::INFINITY,
     }
     .starting_at(attitude, &internal);
     let secular = Secular {

@@ -1,10 +1,14 @@
 //! How well a state of a free motion is determined by numbers that are known to so many digits.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector3;
 
 use super::FreeMotion;
+use super::invariants::Invariants;
 use super::sensitivity::Sensitivity;
-use crate::numerics::double_double::DoubleDouble;
+use crate::motion::state::ClosedForm;
+use crate::numerics::turns::{MOST_TURNS, PHASE_ERROR};
 
 /// Bounds, to first order, on the change of a state at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,11 +20,36 @@ pub struct ErrorBar {
 }
 
 impl FreeMotion {
-    /// The bounds at the time t: see [`Sensitivity::error_bar`].
+    /// The bounds at the time t: see [`Sensitivity::error_bar`], and what the phases are known to. Infinite where nothing is
+    /// known, beyond float64 or beyond [`ClosedForm::reach`]; NaN for a t that is.
     #[must_use]
     pub fn error_bar(&self, t: f64, rtol: f64) -> ErrorBar {
-        let moments = self.moments.map(DoubleDouble::rounded);
-        (self.sensitivity(t)).error_bar(&self.initial.omega, &moments, rtol)
+        if t.abs() > self.reach() {
+            return ErrorBar {
+                attitude: f64::INFINITY,
+                omega: f64::INFINITY,
+            };
+        }
+        // In units of the motion, where nothing leaves the range of float64 that is within it.
+        let motion = Invariants::of_motion(self);
+        let unit = motion.rate_unit;
+        let omega = self.initial.omega / unit;
+        let bar = self
+            .scaled_sensitivity(&motion, t)
+            .error_bar(&omega, &motion.moments, rtol);
+        let turns = t.abs() / self.reach() * MOST_TURNS;
+        let phase = TAU * turns * PHASE_ERROR;
+        let known = |bound: f64| {
+            if bound.is_nan() && !t.is_nan() {
+                f64::INFINITY
+            } else {
+                bound
+            }
+        };
+        ErrorBar {
+            attitude: known(bar.attitude + phase),
+            omega: known(bar.omega + phase * omega.norm()) * unit,
+        }
     }
 }
 

@@ -15,6 +15,7 @@
 
 use nalgebra::Vector3;
 
+use super::separation::Separation;
 use super::{FreeMotion, Mode, power_of_two};
 use crate::numerics::double_double::DoubleDouble;
 
@@ -41,8 +42,10 @@ pub struct Invariants {
     pub(super) short_square: DoubleDouble,
     /// q.
     pub(super) long_square: DoubleDouble,
-    /// p − q.
+    /// p − q, in units of the square of a power of two.
     pub(super) discriminant: DoubleDouble,
+    /// That power.
+    pub(super) discriminant_unit: f64,
     /// L.
     pub(super) momentum: f64,
     /// 2T.
@@ -54,10 +57,11 @@ impl Invariants {
     #[must_use]
     pub fn of(moments: &[f64; 3], omega: &Vector3<f64>) -> Self {
         let [x, y, z] = (*omega).into();
-        Self::refined(
-            &moments.map(DoubleDouble::from),
-            &[x, y, z].map(DoubleDouble::from),
-        )
+        let moments = moments.map(DoubleDouble::from);
+        let omega = [x, y, z].map(DoubleDouble::from);
+        let inertia_unit = power_of_two(moments[2].high);
+        let scaled = moments.map(|moment| moment.scaled(1.0 / inertia_unit));
+        Self::refined(&moments, &omega, &Separation::of(&scaled, &omega))
     }
 
     /// Of an exact motion.
@@ -65,13 +69,16 @@ impl Invariants {
     pub fn of_motion(motion: &FreeMotion) -> Self {
         Self {
             mode: motion.mode,
-            ..Self::refined(&motion.moments, &motion.principal_omega)
+            ..Self::refined(&motion.moments, &motion.principal_omega, &motion.separation)
         }
     }
 
-    /// As [`Invariants::of`], of moments and ω that are known to twice the precision.
-    #[must_use]
-    pub fn refined(moments: &[DoubleDouble; 3], omega: &[DoubleDouble; 3]) -> Self {
+    /// As [`Invariants::of`], of moments and ω that are known to twice the precision, and how far they are from the separatrix.
+    fn refined(
+        moments: &[DoubleDouble; 3],
+        omega: &[DoubleDouble; 3],
+        separation: &Separation,
+    ) -> Self {
         let inertia_unit = power_of_two(moments[2].high);
         let fastest = omega
             .iter()
@@ -79,17 +86,18 @@ impl Invariants {
         let rate_unit = power_of_two(fastest);
         let moments = moments.map(|moment| moment.scaled(1.0 / inertia_unit));
         let omega = omega.map(|rate| rate.scaled(1.0 / rate_unit));
-        let [i1, i2, i3] = moments;
+        let [i1, _, i3] = moments;
         let contrasts = contrasts(&moments);
         let [a1, a2, a3] = contrasts;
         let [x, y, z] = omega.map(|rate| rate * rate);
         let (around_first, around_third) = (a3 * y + a2 * z, a2 * x + a1 * y);
-        let discriminant = if i1.high == 0.0 {
-            -(a3 * a2 * x)
+        let (discriminant, discriminant_unit) = if i1.high == 0.0 {
+            (-(a3 * a2 * x), 1.0)
         } else {
-            // L² − 2T I₂, in products that are exact where they can be.
-            let difference = i3 * (i3 - i2) * z - i1 * (i2 - i1) * x;
-            a2 * difference / (i1 * i3)
+            (
+                a2 * separation.size / (i1 * i3),
+                separation.unit * (separation.rate_unit / rate_unit),
+            )
         };
         let (I, w) = (
             moments.map(DoubleDouble::rounded),
@@ -107,6 +115,7 @@ impl Invariants {
             short_square: a1 * around_first,
             long_square: a3 * around_third,
             discriminant,
+            discriminant_unit,
             momentum: Vector3::from(I).component_mul(&w).norm(),
             twice_energy: Vector3::from(I).dot(&w.component_mul(&w)),
         }
@@ -116,6 +125,14 @@ impl Invariants {
     #[must_use]
     pub fn angular_momentum(&self) -> f64 {
         self.momentum * self.inertia_unit * self.rate_unit
+    }
+
+    /// `L/I_k`: the rates of the steady spins about the principal axes with this angular momentum. Infinite, or NaN, about an
+    /// axis without moment.
+    #[must_use]
+    pub fn steady_rates(&self) -> [f64; 3] {
+        self.moments
+            .map(|moment| self.momentum / moment * self.rate_unit)
     }
 
     /// T = ½ ω·I ω.
@@ -151,7 +168,11 @@ impl Invariants {
     /// k′ = √(1 − k²), which keeps its digits near the separatrix.
     #[must_use]
     pub fn complementary_modulus(&self) -> f64 {
-        self.complement().sqrt()
+        let square = self.rate_square().high;
+        if square == 0.0 {
+            return 1.0;
+        }
+        ((self.discriminant.high.abs() / square).sqrt() * self.discriminant_unit).min(1.0)
     }
 
     /// m₁ = 1 − k² = |p − q|/λ².
@@ -160,7 +181,8 @@ impl Invariants {
         if square == 0.0 {
             return 1.0;
         }
-        (self.discriminant.high.abs() / square).min(1.0)
+        let unit = self.discriminant_unit;
+        (self.discriminant.high.abs() / square * unit * unit).min(1.0)
     }
 
     /// λ², the square of the rate at which the argument of the elliptic functions runs.

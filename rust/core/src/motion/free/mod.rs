@@ -10,7 +10,8 @@
 //! | file | idea |
 //! |---|---|
 //! | `mode.rs` | the six ways to move |
-//! | `refined.rs` | principal moments and ω to twice the precision |
+//! | `refined.rs`, `finest.rs` | principal moments and ω to twice the precision, and to four times |
+//! | `separation.rs` | the difference `L² − 2T I₂`, on which all depends near the separatrix |
 //! | `tumbling.rs` | long- and short-axis mode and the separatrix: from a start to the constants of the theta functions |
 //! | `circling.rs` | steady spin and the symmetric body: the limits in which they are sines |
 //! | `propagator.rs` | from the constants to the states, in lanes |
@@ -22,6 +23,7 @@
 mod circling;
 mod clock;
 mod conditioning;
+pub mod finest;
 mod from_periods;
 mod invariants;
 pub mod mode;
@@ -32,6 +34,7 @@ mod polhode;
 mod propagator;
 pub mod refined;
 mod sensitivity;
+mod separation;
 mod tumbling;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
@@ -49,8 +52,9 @@ pub use nutation::Cones;
 pub use periods::Periods;
 pub use poinsot::Poinsot;
 use propagator::{At, Propagator, Sample};
-pub use refined::RefinedPrincipal;
+pub use refined::{RefinedPrincipal, Vector};
 pub use sensitivity::Sensitivity;
+use separation::Separation;
 use tumbling::Tumbling;
 
 /// The motion of a body on which no torque acts about its centre of mass, from its state at t = 0.
@@ -69,6 +73,7 @@ pub struct FreeMotion {
     pub principal_omega: [DoubleDouble; 3],
     /// The constants of the theta functions.
     pub secular: Secular,
+    separation: Separation,
     propagator: Propagator,
 }
 
@@ -119,20 +124,24 @@ impl FreeMotion {
         let rate_unit = power_of_two(omega.amax());
         let moments = (principal.moments).map(|moment| moment.scaled(1.0 / inertia_unit));
         let scaled_omega = omega / rate_unit;
-        let w = principal.components(&scaled_omega);
+        let mut w = principal.components(&scaled_omega);
+        let mut separation = Separation::of(&moments, &w);
 
         let [i1, i2, i3] = moments;
-        let still = w.iter().filter(|rate| rate.high == 0.0).count();
+        let is_steady = |w: &Vector| w.iter().filter(|rate| rate.high == 0.0).count() >= 2;
         let (mode, (propagator, secular)) = if i1 == i3 {
             (Mode::Spherical, circling::spin(&scaled_omega, attitude))
         } else if i1 == i2 || i2 == i3 || i1.high == 0.0 {
             let motion = circling::symmetric(&moments, &w, &axes, attitude);
             (Mode::Symmetric, motion)
-        } else if still >= 2 {
-            (Mode::Steady, circling::spin(&scaled_omega, attitude))
         } else {
-            let tumbling = Tumbling::of(&moments, &w);
-            (tumbling.mode, tumbling.motion(&axes, attitude))
+            (separation, w) = separation.kept(principal, &scaled_omega, &moments, &w);
+            if is_steady(&w) {
+                (Mode::Steady, circling::spin(&scaled_omega, attitude))
+            } else {
+                let tumbling = Tumbling::of(&moments, &w, &separation);
+                (tumbling.mode, tumbling.motion(&axes, attitude))
+            }
         };
         Ok(Self {
             mode,
@@ -141,11 +150,12 @@ impl FreeMotion {
             axes,
             principal_omega: w.map(|rate| rate.scaled(rate_unit)),
             secular: secular.in_units_of(rate_unit),
+            separation: separation.in_units_of(rate_unit),
             propagator: propagator.in_units_of(rate_unit),
         })
     }
 
-    /// Attitude and ω at the time t; NaN for a t that is not finite.
+    /// Attitude and ω at the time t; NaN for a t that is not finite, or beyond [`Self::reach`].
     ///
     /// The attitude is continuous in t as a quaternion, not only as a rotation.
     #[must_use]
@@ -190,6 +200,10 @@ impl FreeMotion {
 }
 
 impl ClosedForm for FreeMotion {
+    fn reach(&self) -> f64 {
+        self.propagator.reach
+    }
+
     fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
         Self::sample(self, times, attitudes, omegas);
     }

@@ -50,7 +50,9 @@ impl Invariants {
         if square.high == 0.0 || self.discriminant.high == 0.0 {
             return f64::INFINITY.into();
         }
-        let k_prime = (self.discriminant.abs() / square).sqrt();
+        let k_prime = (self.discriminant.abs() / square)
+            .sqrt()
+            .scaled(self.discriminant_unit);
         complete_first(k_prime) * 2.0.into() / Real::sqrt(square)
     }
 

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::FreeMotion;
 use super::invariants::Invariants;
+use super::{FreeMotion, power_of_two};
 use crate::numerics::double_double::DoubleDouble;
 
 /// The ellipsoid `ω·I ω = 2T`, fixed in the body with its centre in C, and the plane on which it rolls.
@@ -25,9 +25,25 @@ impl FreeMotion {
     /// L about the centre of mass, components in N: constant.
     #[must_use]
     pub fn angular_momentum(&self) -> Vector3<f64> {
+        let (momentum, [inertia_unit, rate_unit]) = self.scaled_momentum();
+        momentum * inertia_unit * rate_unit
+    }
+
+    /// The normal of the invariable plane: the unit vector along L, components in N. NaN without angular momentum.
+    #[must_use]
+    pub fn normal(&self) -> Vector3<f64> {
+        let (momentum, _) = self.scaled_momentum();
+        (momentum / momentum.amax()).normalize()
+    }
+
+    /// L in units of two powers of two, of inertia and of rate, so that it is within the range of float64.
+    fn scaled_momentum(&self) -> (Vector3<f64>, [f64; 2]) {
         let moments = Vector3::from(self.moments.map(DoubleDouble::rounded));
         let omega = Vector3::from(self.principal_omega.map(DoubleDouble::rounded));
-        self.initial.attitude * (self.axes * moments.component_mul(&omega))
+        let units = [moments.z, omega.amax()].map(power_of_two);
+        let [moments, omega] = [moments / units[0], omega / units[1]];
+        let momentum = self.initial.attitude * (self.axes * moments.component_mul(&omega));
+        (momentum, units)
     }
 
     /// ω at the time t, components in N: the herpolhode, where the ellipsoid of energy touches the invariable plane.

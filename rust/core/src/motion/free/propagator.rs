@@ -7,7 +7,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
 use crate::numerics::planes::{Planes, ROWS};
 use crate::numerics::theta::{circular, hyperbolic};
-use crate::numerics::turns::{sin_cos_turns, turns, whole_off};
+use crate::numerics::turns::{reach, sin_cos_turns, turns, whole_off};
 
 /// The Cayley–Klein parameters but for phase and norm, and Jacobi's functions, of x = u/2K, |x| ≤ ½.
 pub(super) trait Series {
@@ -111,6 +111,8 @@ pub(super) struct Propagator {
     pub(super) attitude: [[f64; 4]; 4],
     /// From (sn, cn, dn) to ω in B.
     pub(super) omega: [[f64; 3]; 3],
+    /// Beyond this |t| nothing is known of the phases.
+    pub(super) reach: f64,
 }
 
 impl Propagator {
@@ -165,6 +167,10 @@ impl Propagator {
             },
         };
         self.omega = self.omega.map(|column| column.map(|x| x * rate_unit));
+        self.reach = match self.clock {
+            Clock::Periodic { rate, .. } => reach(&[self.rate, rate]),
+            Clock::Endless { .. } => reach(&[self.rate]),
+        };
         self
     }
 
@@ -172,6 +178,8 @@ impl Propagator {
     #[inline(always)]
     fn state<L: Lane, const ENDLESS: bool>(&self, series: &impl Series, t: L) -> [L; 7] {
         let (one, two) = (L::new(1.0), L::new(2.0));
+        let is_known = t.abs() <= L::new(self.reach);
+        let t = if is_known { t } else { L::new(f64::NAN) };
         let (x, sign) = match self.clock {
             Clock::Periodic { rate, start } if !ENDLESS => {
                 let halves = two * turns(t, rate, start);

@@ -5,9 +5,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::finest::{Finest, Source};
+use super::power_of_two;
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elliptic::Real;
 
 /// Three components to twice the precision.
 pub type Vector = [DoubleDouble; 3];
@@ -19,6 +22,7 @@ pub struct RefinedPrincipal {
     pub moments: Vector,
     /// The axes, one after the other, right-handed; components in B.
     axes: [Vector; 3],
+    source: Source,
 }
 
 impl RefinedPrincipal {
@@ -95,7 +99,23 @@ impl RefinedPrincipal {
             } else {
                 orthonormal(&columns)
             },
+            source: if is_exact {
+                Source::Exact
+            } else {
+                Source::Axes(axes.data.0)
+            },
         }
+    }
+
+    /// Whether moments and axes are what they are to the last bit.
+    pub(super) fn is_exact(&self) -> bool {
+        self.source == Source::Exact
+    }
+
+    /// Moments and axes to four times the precision.
+    #[must_use]
+    pub fn finest(&self) -> Finest {
+        self.source.refined(&self.moments, &self.axes)
     }
 
     /// The axes as columns.
@@ -127,10 +147,12 @@ impl RefinedPrincipal {
     ///
     /// The elements off the diagonal start at rounding; each sweep squares them, so two reach twice the precision.
     fn refine(&mut self, rows: &[Vector; 3]) {
-        let mut b = self.axes.map(|axis| {
-            let image = [0, 1, 2].map(|i| dot(&rows[i], &axis));
-            self.axes.map(|other| dot(&other, &image))
-        });
+        // Products of tensors near the ends of float64 stay within it.
+        let largest = rows.as_flattened().iter();
+        let unit = power_of_two(largest.fold(0.0, |most, x| most.max(x.high.abs())));
+        let rows = rows.map(|row| row.map(|x| x.scaled(1.0 / unit)));
+        self.source = Source::Tensor(rows, unit);
+        let mut b = within(&rows, &self.axes);
         let size = b[2][2].rounded().abs();
         for _ in 0..SWEEPS {
             let off = [(0, 1), (0, 2), (1, 2)]
@@ -144,7 +166,7 @@ impl RefinedPrincipal {
                 rotate(&mut b, &mut self.axes, i, j);
             }
         }
-        self.moments = [b[0][0], b[1][1], b[2][2]];
+        self.moments = [b[0][0], b[1][1], b[2][2]].map(|moment| moment.scaled(unit));
         for (i, j) in [(0, 1), (1, 2), (0, 1)] {
             if (self.moments[j] - self.moments[i]).rounded() < 0.0 {
                 self.moments.swap(i, j);
@@ -207,9 +229,17 @@ fn rotate(b: &mut [Vector; 3], axes: &mut [Vector; 3], i: usize, j: usize) {
     (b[i][j], b[j][i]) = (DoubleDouble::default(), DoubleDouble::default());
 }
 
+/// The tensor with these rows, in these axes.
+pub(super) fn within<T: Real>(rows: &[[T; 3]; 3], axes: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    axes.map(|axis| {
+        let image = [0, 1, 2].map(|i| dot(&rows[i], &axis));
+        axes.map(|other| dot(&other, &image))
+    })
+}
+
 /// `½ V (3 − VᵀV)`: one step of Newton's method toward the nearest rotation, which squares the error.
-fn orthonormal(v: &[Vector; 3]) -> [Vector; 3] {
-    let (half, three) = (DoubleDouble::from(0.5), DoubleDouble::from(3.0));
+pub(super) fn orthonormal<T: Real>(v: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    let (half, three) = (T::from(0.5), T::from(3.0));
     let gram = v.map(|a| v.map(|b| dot(&a, &b)));
     std::array::from_fn(|j| {
         std::array::from_fn(|i| {
@@ -225,7 +255,7 @@ fn orthonormal(v: &[Vector; 3]) -> [Vector; 3] {
     })
 }
 
-fn dot(a: &Vector, b: &Vector) -> DoubleDouble {
+pub(super) fn dot<T: Real>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

@@ -14,6 +14,7 @@
 use nalgebra::{Matrix3, UnitQuaternion};
 
 use super::propagator::{AnySeries, Circular, Clock, Hyperbolic, Propagator};
+use super::separation::{Separation, Unit};
 use super::{Mode, Secular};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{complete_first, complete_third, incomplete_first};
@@ -56,12 +57,9 @@ pub(super) struct Tumbling {
 
 impl Tumbling {
     /// Of distinct moments and an ω that is along none of their axes.
-    pub(super) fn of(moments: &Vector, w: &Vector) -> Self {
-        let [i1, i2, i3] = *moments;
+    pub(super) fn of(moments: &Vector, w: &Vector, separation: &Separation) -> Self {
         // L² − 2T I₂ in units of the larger of ω₁ and ω₃, and its like below: tiny rates keep their digits.
-        let middle = Unit::of(w[0], w[2]);
-        let difference =
-            i3 * (i3 - i2) * middle.square(w[2]) - i1 * (i2 - i1) * middle.square(w[0]);
+        let (difference, middle) = (separation.size, separation.unit);
         let (mode, axes, sense) = if difference.high < 0.0 {
             (Mode::LongAxis, [2, 1, 0], -1.0)
         } else if difference.high == 0.0 {
@@ -79,7 +77,7 @@ impl Tumbling {
         let rate = (zy * dx / volume).sqrt().scaled(along.size);
         let complementary = (zx * difference.abs() / (zy * dx))
             .sqrt()
-            .scaled(middle.size / along.size);
+            .scaled(middle / along.size);
         let modulus = (yx.high * dz / (zy.high * dx.high)).sqrt() * (across.size / along.size);
         let momentum = hypotenuse(&[jx * w[x], jy * w[y], jz * w[z]]);
         let amplitudes = [
@@ -164,6 +162,7 @@ impl Tumbling {
                 (columns[0] * ax).into(),
                 (columns[2] * az).into(),
             ],
+            reach: f64::INFINITY,
         }
         .starting_at(attitude, &Matrix3::from_columns(&columns));
         let secular = Secular {
@@ -257,29 +256,6 @@ impl Tumbling {
             },
         };
         (AnySeries::Hyperbolic(series), ratio)
-    }
-}
-
-/// A unit of two rates, a power of two near the larger.
-#[derive(Clone, Copy)]
-struct Unit {
-    size: f64,
-    inverse: f64,
-}
-
-impl Unit {
-    fn of(a: DoubleDouble, b: DoubleDouble) -> Self {
-        let larger = Double::<false>::new(a.high.abs().max(b.high.abs()));
-        let (inverse, size) = larger.power_of_two_scale();
-        Self {
-            size: size.get(),
-            inverse: inverse.get(),
-        }
-    }
-
-    fn square(self, rate: DoubleDouble) -> DoubleDouble {
-        let rate = rate.scaled(self.inverse);
-        rate * rate
     }
 }
 

@@ -15,7 +15,7 @@ use crate::numerics::lane::{Double, Lane};
 use crate::numerics::power_of_two::times_power_of_two;
 use crate::numerics::theta::quotients::{Circular, Hyperbolic, Values};
 use crate::numerics::theta::{circular, hyperbolic};
-use crate::numerics::turns::{sin_cos_turns, whole_off};
+use crate::numerics::turns::{reach, sin_cos_turns, whole_off};
 
 /// A complex number.
 type Complex = [f64; 2];
@@ -28,12 +28,19 @@ impl Course {
         attitude: &UnitQuaternion<f64>,
         gravity: &Vector3<f64>,
     ) -> (Self, Nutation) {
-        let motion = Reduced::of(top, omega, attitude, gravity);
+        let motion = Reduced::of(top.source(), omega, attitude, gravity);
         let half_spin = (motion.axial * TURN).scaled(0.5);
         if !motion.is_steady() {
             let points = TurningPoints::of(&motion);
+            if points.height.high > 0.0 && points.are_good(&motion) {
+                let phases = Phases::of(&motion, &points);
+                return Self::moving(&motion, &points, &phases, half_spin);
+            }
             if points.height.high > 0.0 {
-                return Self::moving(&motion, &points, half_spin);
+                let motion = Reduced::of(&top.finest(), omega, attitude, gravity);
+                let points = TurningPoints::of(&motion).settled(&motion);
+                let phases = Phases::of(&motion, &points);
+                return Self::moving(&motion.twofold(), &points.twofold(), &phases, half_spin);
             }
         }
         let [alpha, beta, _] = motion.start;
@@ -49,9 +56,9 @@ impl Course {
     fn moving(
         motion: &Reduced,
         points: &TurningPoints,
+        phases: &Phases,
         half_spin: DoubleDouble,
     ) -> (Self, Nutation) {
-        let phases = Phases::of(motion, points);
         let half = phases.half;
         let is_endless = half.real.is_infinite();
         let sizes = [
@@ -93,14 +100,14 @@ impl Course {
         };
         course.start = phases.start;
         course.steady = phases.steady;
-        let constants = course.constants(motion, points, &phases);
+        let constants = course.constants(motion, points, phases);
         // The body turns against the frame of the equal spherical top.
         let drift = half_spin - (motion.spin * TURN).scaled(0.5);
         let [alpha, beta, w] = phases.steady;
         course.steady = [alpha + drift, beta - drift, w - drift.scaled(2.0)];
         course.unit(motion.exponent);
         course.frame(motion, constants);
-        (course, Nutation::of(motion, points, &phases, drift))
+        (course, Nutation::of(motion, points, phases, drift))
     }
 
     fn with(motion: &Reduced, series: &Series) -> Self {
@@ -111,6 +118,7 @@ impl Course {
             clock: DoubleDouble::default(),
             start: DoubleDouble::default(),
             steady: [DoubleDouble::default(); 3],
+            reach: f64::INFINITY,
             attitude: [[0.0; 4]; 4],
             across: [[0.0; 2]; 3],
             along: [x * spin, y * spin, z * spin],
@@ -121,6 +129,11 @@ impl Course {
     fn unit(&mut self, exponent: i32) {
         self.clock = times(self.clock, exponent);
         self.steady = self.steady.map(|rate| times(rate, exponent));
+        let [alpha, beta, w] = self.steady;
+        self.reach = reach(&match self.series {
+            Series::Endless(_) => [alpha, beta, w, DoubleDouble::default()],
+            _ => [alpha, beta, w, self.clock],
+        });
     }
 
     /// The constant phases of α, β and W, of which two are independent: those of the two functions that are larger at the start,

@@ -62,7 +62,7 @@ impl HeavyTop {
         Ok(Self { course, nutation })
     }
 
-    /// The state at time `t`; NaN at a time that is not finite.
+    /// The state at time `t`; NaN at a time that is not finite, or beyond [`ClosedForm::reach`].
     #[must_use]
     pub fn at(&self, t: f64) -> State {
         let (mut attitude, mut omega) = ([[0.0; 4]], [[0.0; 3]]);
@@ -89,6 +89,10 @@ impl HeavyTop {
 }
 
 impl ClosedForm for HeavyTop {
+    fn reach(&self) -> f64 {
+        self.course.reach
+    }
+
     fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
         Self::sample(self, times, attitudes, omegas);
     }

@@ -13,7 +13,7 @@
 use super::reduced::Reduced;
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::{complete_first, complete_third, incomplete_first};
+use crate::numerics::elliptic::{Real, complete_first, complete_third, incomplete_first};
 use crate::numerics::theta::HalfPeriods;
 
 /// 1/2π.
@@ -44,12 +44,12 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    pub(super) fn of(motion: &Reduced, points: &TurningPoints) -> Self {
-        let (zero, one) = (DoubleDouble::default(), DoubleDouble::from(1.0));
+    pub(super) fn of<T: Real>(motion: &Reduced<T>, points: &TurningPoints<T>) -> Self {
+        let (zero, one) = (T::from(0.0), T::from(1.0));
         let two_kappa = motion.kappa.scaled(2.0);
         let (sum, difference, rest) = (motion.sum(), motion.difference(), motion.rest());
         let signs = [-sign(sum), -sign(difference), sign(rest)];
-        let carry = if motion.excess().high <= 0.0 {
+        let carry = if motion.excess().rounded() <= 0.0 {
             -signs[1]
         } else {
             signs[2]
@@ -66,14 +66,14 @@ impl Phases {
         // Ω_α = ½ (a + b)/(u₃ − u₁) ⟨sn²/(1 + (1 + u₁)/(u₃ − u₁) sn²)⟩, on the separatrix with sn² = 1.
         let p = one + two_kappa * points.above_bottom / points.height;
         let scale = (two_kappa * sum / points.height).scaled(0.5);
-        if k_prime.high == 0.0 {
-            let alpha = scale / p * TURN;
+        if k_prime.rounded() == 0.0 {
+            let (alpha, zero) = ((scale / p).twofold() * TURN, DoubleDouble::default());
             return Self {
                 half: HalfPeriods {
                     real: f64::INFINITY,
                     imaginary,
                 },
-                lambda,
+                lambda: lambda.twofold(),
                 clock: zero,
                 start: start(motion, points, 0.0, f64::INFINITY),
                 steady: [alpha, zero, -alpha],
@@ -83,8 +83,8 @@ impl Phases {
             };
         }
         let (first, third) = complete_third(k_prime, p, zero, one);
-        let clock = lambda.scaled(0.25) / first;
-        let alpha = scale * third / first * TURN;
+        let clock = (lambda.scaled(0.25) / first).twofold();
+        let alpha = (scale * third / first).twofold() * TURN;
         let beta = beta_rate(
             two_kappa,
             difference,
@@ -97,7 +97,7 @@ impl Phases {
                 real: first.rounded(),
                 imaginary,
             },
-            lambda,
+            lambda: lambda.twofold(),
             clock,
             start: start(motion, points, k_prime.rounded(), first.rounded()),
             steady: [alpha, beta, beta - alpha + clock.scaled(carry)],
@@ -115,14 +115,14 @@ impl Phases {
 
 /// Ω of β in turns, of the two forms the one whose integral is the tamer:
 /// `−½ (a − b)/(u₃ − u₁) ⟨sn²/(1 − (1 − u₁)/(u₃ − u₁) sn²)⟩`, or `½ (a − b)/(1 − u₁) ⟨1/(1 − (u₂ − u₁)/(1 − u₁) sn²)⟩ + s_β π/T`.
-fn beta_rate(
-    two_kappa: DoubleDouble,
-    difference: DoubleDouble,
-    points: &TurningPoints,
-    k_prime: DoubleDouble,
+fn beta_rate<T: Real>(
+    two_kappa: T,
+    difference: T,
+    points: &TurningPoints<T>,
+    k_prime: T,
     turn: DoubleDouble,
 ) -> DoubleDouble {
-    let (zero, one) = (DoubleDouble::default(), DoubleDouble::from(1.0));
+    let (zero, one) = (T::from(0.0), T::from(1.0));
     let mean = |p, a| {
         let (first, third) = complete_third(k_prime, p, a, one);
         third / first
@@ -131,19 +131,26 @@ fn beta_rate(
         points.beyond_top / points.height,
         points.below_top / points.depth,
     );
-    if difference.high == 0.0 && beyond.high > 0.0 {
-        zero
-    } else if beyond.high >= below.high {
-        -(two_kappa * difference / points.height * mean(beyond, zero) * TURN).scaled(0.5)
+    if difference.rounded() == 0.0 && beyond.rounded() > 0.0 {
+        DoubleDouble::default()
+    } else if beyond.rounded() >= below.rounded() {
+        let rate = two_kappa * difference / points.height * mean(beyond, zero);
+        -(rate.twofold() * TURN).scaled(0.5)
     } else {
-        (difference / points.depth * mean(below, one) * TURN).scaled(0.5) + turn
+        let rate = difference / points.depth * mean(below, one);
+        (rate.twofold() * TURN).scaled(0.5) + turn
     }
 }
 
 /// z at time zero: in turns, or on the separatrix the argument itself. From the nearer of the two turning points.
-fn start(motion: &Reduced, points: &TurningPoints, k_prime: f64, k: f64) -> DoubleDouble {
+fn start<T: Real>(
+    motion: &Reduced<T>,
+    points: &TurningPoints<T>,
+    k_prime: f64,
+    k: f64,
+) -> DoubleDouble {
     let way = sign(motion.rate);
-    let [fall, rise, range] = [points.fall, points.rise, points.range].map(DoubleDouble::rounded);
+    let [fall, rise, range] = [points.fall, points.rise, points.range].map(T::rounded);
     if range <= 0.0 {
         return DoubleDouble::default();
     }
@@ -163,8 +170,13 @@ fn start(motion: &Reduced, points: &TurningPoints, k_prime: f64, k: f64) -> Doub
 
 /// The shifts, with their signs: `tan²` of each amplitude is `|c − u₁|/(u₂ − u₁)` for α, `(c − u₂)(u₃ − u₁)/((u₂ − u₁)(u₃ − c))`
 /// for β and W, with c = −1, 1 and `u_e`.
-fn shifts(two_kappa: f64, points: &TurningPoints, k: f64, signs: &[f64; 3]) -> [f64; 3] {
-    let [height, range] = [points.height, points.range].map(DoubleDouble::rounded);
+fn shifts<T: Real>(
+    two_kappa: f64,
+    points: &TurningPoints<T>,
+    k: f64,
+    signs: &[f64; 3],
+) -> [f64; 3] {
+    let [height, range] = [points.height, points.range].map(T::rounded);
     let top = amplitude(
         points.below_top.rounded() * height,
         range * points.beyond_top.rounded(),
@@ -182,7 +194,7 @@ fn shifts(two_kappa: f64, points: &TurningPoints, k: f64, signs: &[f64; 3]) -> [
     ]
 }
 
-fn bottom_shift(points: &TurningPoints, k: f64) -> f64 {
+fn bottom_shift<T: Real>(points: &TurningPoints<T>, k: f64) -> f64 {
     amplitude(points.above_bottom.rounded(), points.range.rounded(), k)
 }
 
@@ -198,6 +210,6 @@ fn amplitude(a: f64, b: f64, k: f64) -> f64 {
     incomplete_first(sine, cosine, k)
 }
 
-fn sign(x: DoubleDouble) -> f64 {
-    if x.high < 0.0 { -1.0 } else { 1.0 }
+fn sign<T: Real>(x: T) -> f64 {
+    if x.rounded() < 0.0 { -1.0 } else { 1.0 }
 }

@@ -8,7 +8,9 @@ use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
 use crate::motion::free::RefinedPrincipal;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::numerics::elliptic::Real;
+use crate::numerics::power_of_two::{direction_of, exponent, length, times_power_of_two};
+use crate::numerics::quad_double::QuadDouble;
 use crate::principal::SymmetricTop;
 
 /// A symmetric top whose symmetry axis passes through the pivot O, the origin of the body frame.
@@ -24,29 +26,31 @@ pub struct PivotedTop {
     pub mass_moment: f64,
     /// What the numbers above are rounded from.
     source: Source,
+    /// What that is rounded from, where the body is its tensor: which axis is that of symmetry, and in which sense.
+    refined: Option<(RefinedPrincipal, usize, bool)>,
 }
 
 /// The data of a top as the body has them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Source {
+pub(super) struct Source<T = DoubleDouble> {
     mass: f64,
-    /// A vector along the axis, of any length.
-    direction: [DoubleDouble; 3],
+    /// A vector along the axis toward C, of any length.
+    pub(super) direction: [T; 3],
     center_of_mass: Vector3<f64>,
-    axial: DoubleDouble,
+    axial: T,
     /// The two moments across the axis, about C.
-    lateral: [DoubleDouble; 2],
+    lateral: [T; 2],
 }
 
 /// A top in units of its own mass and of a length `2^(exponent/2)`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sizes {
-    /// `I_t`, in double-double.
-    pub(super) transverse: DoubleDouble,
+pub(super) struct Sizes<T> {
+    /// `I_t`.
+    pub(super) transverse: T,
     /// `I_s`.
-    pub(super) axial: DoubleDouble,
+    pub(super) axial: T,
     /// l over a power of two, and that power; not negative.
-    pub(super) arm: (DoubleDouble, i32),
+    pub(super) arm: (T, i32),
     /// The moments are to be multiplied by the mass and by 2 to this power.
     pub(super) exponent: i32,
 }
@@ -65,7 +69,7 @@ impl PivotedTop {
         let top = SymmetricTop::of(&principal, rtol)?;
         let [i1, _, i3] = principal.moments;
         let is_spherical = i3 - i1 <= rtol * i3;
-        let axis = match c.try_normalize(0.0) {
+        let axis = match direction_of(&c) {
             Some(to_center) if is_spherical => to_center,
             _ if c.dot(&top.axis) < 0.0 => -top.axis,
             _ => top.axis,
@@ -79,7 +83,7 @@ impl PivotedTop {
                 value: transverse,
             });
         }
-        let distance = c.cross(&axis).norm();
+        let distance = length(&c.cross(&axis));
         let relative = distance / (transverse / m).sqrt();
         if relative > rtol {
             return Err(Error::PivotOffAxis {
@@ -94,17 +98,20 @@ impl PivotedTop {
             (0, [1, 2])
         };
         let is_tensor = body.provenance().moments == MomentsFrom::Tensor;
-        let (moments, direction) = if is_tensor && !is_spherical {
+        let (moments, direction, refined) = if is_tensor && !is_spherical {
             let refined = RefinedPrincipal::of(body);
             let direction = refined.axis(axial);
             let cosine = (direction.iter().zip(axis.iter())).map(|(a, b)| a.high * b);
             let is_opposite = cosine.sum::<f64>() < 0.0;
-            let turned = |x: DoubleDouble| if is_opposite { -x } else { x };
-            (refined.moments, direction.map(turned))
+            (
+                refined.moments,
+                toward(direction, is_opposite),
+                Some((refined, axial, is_opposite)),
+            )
         } else {
             let direction = if is_spherical && arm > 0.0 { c } else { axis };
             let exact = |numbers: [f64; 3]| numbers.map(DoubleDouble::from);
-            (exact(principal.moments), exact(direction.into()))
+            (exact(principal.moments), exact(direction.into()), None)
         };
         Ok(Self {
             axis,
@@ -118,6 +125,7 @@ impl PivotedTop {
                 axial: moments[axial],
                 lateral: lateral.map(|k| moments[k]),
             },
+            refined,
         })
     }
 
@@ -135,7 +143,7 @@ impl PivotedTop {
         inclination: f64,
     ) -> f64 {
         let up = UnitQuaternion::new_normalize(attitude.into_inner())
-            .inverse_transform_vector(&(-gravity).try_normalize(0.0).unwrap_or_else(Vector3::z));
+            .inverse_transform_vector(&direction_of(&-gravity).unwrap_or_else(Vector3::z));
         let spin = omega.dot(&self.axis);
         let across = omega - self.axis * spin;
         let start = up.dot(&self.axis);
@@ -144,44 +152,47 @@ impl PivotedTop {
         let (sine, cosine) = (2.0 * half_sin * half_cos, inclination.cos());
         let rest = self.transverse * across.dot(&up) + self.axial * spin * (start - cosine);
         let turning = if rest == 0.0 { 0.0 } else { rest / sine };
-        0.5 * turning * turning / self.transverse + self.mass_moment * gravity.norm() * cosine
+        // The square in units in which it is of the order of one.
+        let (size, moment) = (exponent(turning), exponent(self.transverse));
+        let scaled = times_power_of_two(turning, -size);
+        let centrifugal = 0.5 * scaled * scaled / times_power_of_two(self.transverse, -moment);
+        times_power_of_two(centrifugal, 2 * size - moment)
+            + self.mass_moment * length(gravity) * cosine
     }
 
-    /// A vector along the axis toward C, of any length.
-    pub(super) fn direction(&self) -> [DoubleDouble; 3] {
-        self.source.direction
+    /// The top to twice the precision.
+    pub(super) fn source(&self) -> &Source {
+        &self.source
     }
 
-    /// The moments and the arm to twice the precision, in units of the top itself.
-    pub(super) fn sizes(&self) -> Sizes {
+    /// The top to four times the precision.
+    pub(super) fn finest(&self) -> Source<QuadDouble> {
         let Source {
             mass,
             direction,
-            center_of_mass: c,
+            center_of_mass,
             axial,
             lateral,
         } = self.source;
-        let mass_exponent = exponent(mass);
-        let mass = DoubleDouble::from(times_power_of_two(mass, -mass_exponent));
-        let n = near_one(&direction);
-        let length = sum_of_squares(&n).sqrt();
-        let size = exponent(c.amax());
-        let c = c.map(|x| times_power_of_two(x, -size));
-        let along = (n.iter().zip(c.iter())).fold(DoubleDouble::default(), |sum, (&a, &b)| {
-            sum + a * DoubleDouble::from(b)
-        });
-        let arm = not_negative(along / length);
-        // The larger of arm and radii of gyration is of the order of one.
-        let [i1, i2] = lateral;
-        let largest = exponent(axial.high.max(i1.high).max(i2.high)) - mass_exponent;
-        let exponent = largest.max(if arm.high == 0.0 { largest } else { 2 * size });
-        let moment = |i: DoubleDouble| times(i, -mass_exponent - exponent) / mass;
-        let squared = times(arm * arm, 2 * size - exponent);
-        Sizes {
-            transverse: (moment(i1) + moment(i2)).scaled(0.5) + squared,
-            axial: moment(axial),
-            arm: (arm, size),
-            exponent,
+        let (direction, axial, lateral) = match &self.refined {
+            None => (
+                direction.map(QuadDouble::from),
+                axial.into(),
+                lateral.map(QuadDouble::from),
+            ),
+            Some((refined, axial, is_opposite)) => {
+                let finest = refined.finest();
+                let lateral = [(axial + 1) % 3, (axial + 2) % 3].map(|k| finest.moments[k]);
+                let direction = toward(finest.axes[*axial], *is_opposite);
+                (direction, finest.moments[*axial], lateral)
+            }
+        };
+        Source {
+            mass,
+            direction,
+            center_of_mass,
+            axial,
+            lateral,
         }
     }
 
@@ -193,11 +204,14 @@ impl PivotedTop {
     #[doc(alias = "sleeping top")]
     #[must_use]
     pub fn least_spin(&self, inclination: f64, gravity: &Vector3<f64>) -> f64 {
-        let raised = self.mass_moment * gravity.norm() * inclination.cos();
+        let raised = self.mass_moment * length(gravity) * inclination.cos();
         if raised <= 0.0 {
             return 0.0;
         }
-        2.0 * (self.transverse * raised).sqrt() / self.axial
+        let (product, size) = product_of_mantissas(self.transverse, raised);
+        let half = size.div_euclid(2);
+        let mean = times_power_of_two(times_power_of_two(product, size - 2 * half).sqrt(), half);
+        2.0 * mean / self.axial
     }
 
     /// Rates of the two steady precessions, slow and fast: the roots of `I_t φ̇² cos θ − I_s ω_s φ̇ + m g l = 0`.
@@ -216,9 +230,14 @@ impl PivotedTop {
         inclination: f64,
         gravity: &Vector3<f64>,
     ) -> Result<[f64; 2], Error> {
-        let (momentum, weight) = (self.axial * spin, self.mass_moment * gravity.norm());
+        let (momentum, weight) = (self.axial * spin, self.mass_moment * length(gravity));
         let upright = self.transverse * inclination.cos();
-        let discriminant = momentum * momentum - 4.0 * upright * weight;
+        // In a unit of angular momentum in which the squares are of the order of one.
+        let (product, product_size) = product_of_mantissas(upright, weight);
+        let unit = exponent(momentum).max((product_size + 1).div_euclid(2));
+        let scaled = times_power_of_two(momentum, -unit);
+        let discriminant =
+            scaled * scaled - 4.0 * times_power_of_two(product, product_size - 2 * unit);
         if discriminant < 0.0 {
             return Err(Error::SpinTooSlow {
                 spin,
@@ -227,7 +246,8 @@ impl PivotedTop {
             });
         }
         // The root that adds, and the other one by their product, so that nothing cancels.
-        let sum = 0.5 * (momentum + discriminant.sqrt().copysign(momentum));
+        let sum = 0.5 * (scaled + discriminant.sqrt().copysign(scaled));
+        let sum = times_power_of_two(sum, unit);
         if sum == 0.0 {
             return Ok([0.0, 0.0]); // neither spin nor weight
         }
@@ -235,12 +255,58 @@ impl PivotedTop {
     }
 }
 
-fn not_negative(x: DoubleDouble) -> DoubleDouble {
-    if x.high > 0.0 {
-        x
-    } else {
-        DoubleDouble::default()
+impl<T: Real> Source<T> {
+    /// The moments and the arm to twice the precision, in units of the top itself.
+    pub(super) fn sizes(&self) -> Sizes<T> {
+        let Source {
+            mass,
+            direction,
+            center_of_mass: c,
+            axial,
+            lateral,
+        } = *self;
+        let mass_exponent = exponent(mass);
+        let mass = T::from(times_power_of_two(mass, -mass_exponent));
+        let n = near_one(&direction);
+        let length = sum_of_squares(&n).sqrt();
+        let size = exponent(c.amax());
+        let c = c.map(|x| times_power_of_two(x, -size));
+        let along =
+            (n.iter().zip(c.iter())).fold(T::from(0.0), |sum, (&a, &b)| sum + a * T::from(b));
+        let arm = not_negative(along / length);
+        // The larger of arm and radii of gyration is of the order of one.
+        let [i1, i2] = lateral;
+        let largest = exponent(axial.rounded().max(i1.rounded()).max(i2.rounded())) - mass_exponent;
+        let exponent = largest.max(if arm.rounded() == 0.0 {
+            largest
+        } else {
+            2 * size
+        });
+        let moment = |i: T| times(i, -mass_exponent - exponent) / mass;
+        let squared = times(arm * arm, 2 * size - exponent);
+        Sizes {
+            transverse: (moment(i1) + moment(i2)).scaled(0.5) + squared,
+            axial: moment(axial),
+            arm: (arm, size),
+            exponent,
+        }
     }
+}
+
+/// `a b`, for |a| and |b| without their powers of two, and the exponent of these.
+fn product_of_mantissas(a: f64, b: f64) -> (f64, i32) {
+    let (of_a, of_b) = (exponent(a), exponent(b));
+    let product = times_power_of_two(a, -of_a) * times_power_of_two(b, -of_b);
+    (product, of_a + of_b)
+}
+
+/// The vector, or the opposite one.
+fn toward<T: Real>(vector: [T; 3], is_opposite: bool) -> [T; 3] {
+    vector.map(|x| if is_opposite { -x } else { x })
+}
+
+fn not_negative<T: Real>(x: T) -> T {
+    if x.rounded() > 0.0 { x } else { T::from(0.0) }
 }
 
 #[cfg(test)]

@@ -14,58 +14,64 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-use super::pivoted_top::PivotedTop;
+use super::pivoted_top::Source;
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elliptic::Real;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// A quaternion (x, y, z, w).
-type Quaternion2 = [DoubleDouble; 4];
+type Components<T> = [T; 4];
 
 /// The state of a top at the start, in units of the rate `2^exponent`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reduced {
+pub(super) struct Reduced<T = DoubleDouble> {
     /// The unit of all rates is 2 to this power.
     pub(super) exponent: i32,
     /// `κ = m g l/I_t`.
-    pub(super) kappa: DoubleDouble,
+    pub(super) kappa: T,
     /// `b = I_s ω_s/I_t`.
-    pub(super) spin: DoubleDouble,
+    pub(super) spin: T,
     /// `ω_s`, the component of ω along the axis.
-    pub(super) axial: DoubleDouble,
+    pub(super) axial: T,
     /// `h = |W|²`.
-    pub(super) square: DoubleDouble,
+    pub(super) square: T,
     /// `d = a − b u₀ = Re(G* W)`; the angular momentum about the vertical is `I_t a`.
-    pub(super) lift: DoubleDouble,
+    pub(super) lift: T,
     /// `u̇ = Im(G* W)`.
-    pub(super) rate: DoubleDouble,
+    pub(super) rate: T,
     /// `1 + u₀ = 2 |α|²`.
-    pub(super) bottom: DoubleDouble,
+    pub(super) bottom: T,
     /// `1 − u₀ = 2 |β|²`.
-    pub(super) top: DoubleDouble,
+    pub(super) top: T,
     /// α, β and W.
     pub(super) start: [[f64; 2]; 3],
     /// Takes the third axis of space to the upward vertical.
     pub(super) upward: Quaternion<f64>,
     /// Takes the symmetry axis to the third axis of the body.
     pub(super) aligning: Quaternion<f64>,
+    /// Whether neither of the two rounds anything.
+    is_aligned: bool,
 }
 
-impl Reduced {
+/// A few units in the last place of what has twice the precision.
+const ROUNDING: f64 = 4.9e-32; // 2⁻¹⁰⁴
+
+impl<T: Real> Reduced<T> {
     /// Of a top with the angular velocity `omega` in B, the attitude `R_NB` and `gravity` in N, all finite.
     pub(super) fn of(
-        top: &PivotedTop,
+        top: &Source<T>,
         omega: &Vector3<f64>,
         attitude: &UnitQuaternion<f64>,
         gravity: &Vector3<f64>,
     ) -> Self {
         let size = top.sizes();
-        let (weight, weight_exponent) = norm(gravity);
+        let (weight, weight_exponent) = norm::<T>(gravity);
         let (arm, arm_exponent) = size.arm;
         let kappa = weight * arm / size.transverse;
         let kappa_exponent = weight_exponent + arm_exponent - size.exponent;
         let fastest = exponent(omega.amax());
-        let exponent = if kappa.high == 0.0 {
+        let exponent = if kappa.rounded() == 0.0 {
             fastest
         } else {
             fastest.max((kappa_exponent + 1).div_euclid(2))
@@ -73,12 +79,12 @@ impl Reduced {
         let kappa = times(kappa, kappa_exponent - 2 * exponent);
         let scaled = omega.map(|x| times_power_of_two(x, -exponent));
 
-        let aligning = to_third_axis(&top.direction());
+        let aligning = to_third_axis(&top.direction);
         let upward = conjugate(&to_third_axis(
-            &[-gravity.x, -gravity.y, -gravity.z].map(DoubleDouble::from),
+            &[-gravity.x, -gravity.y, -gravity.z].map(T::from),
         ));
         let [w1, w2, w3, _] = turned(&aligning, &scaled);
-        let given = components(attitude).map(DoubleDouble::from);
+        let given = components(attitude).map(T::from);
         let relative = product(&product(&conjugate(&upward), &given), &conjugate(&aligning));
         let norm2 = sum_of_squares(&relative);
         let [x, y, z, w] = relative;
@@ -88,7 +94,7 @@ impl Reduced {
         let g1 = (y * w - z * x).scaled(-2.0) / norm2;
         let g2 = (w * x + z * y).scaled(2.0) / norm2;
         let norm = norm2.sqrt();
-        let unit = |x: DoubleDouble| (x / norm).rounded();
+        let unit = |x: T| (x / norm).rounded();
         Self {
             exponent,
             kappa,
@@ -106,68 +112,112 @@ impl Reduced {
             ],
             upward: rounded(&upward),
             aligning: rounded(&aligning),
+            is_aligned: [aligning, upward].as_flattened().iter().all(|x| {
+                let x = x.rounded().abs();
+                x == 0.0 || x == 1.0
+            }),
         }
     }
 
+    /// The same to twice the precision.
+    pub(super) fn twofold(&self) -> Reduced {
+        Reduced {
+            exponent: self.exponent,
+            kappa: self.kappa.twofold(),
+            spin: self.spin.twofold(),
+            axial: self.axial.twofold(),
+            square: self.square.twofold(),
+            lift: self.lift.twofold(),
+            rate: self.rate.twofold(),
+            bottom: self.bottom.twofold(),
+            top: self.top.twofold(),
+            start: self.start,
+            upward: self.upward,
+            aligning: self.aligning,
+            is_aligned: self.is_aligned,
+        }
+    }
+
+    /// What rounding to twice the precision may have taken from the value of f at the top and from its slope there, the two
+    /// numbers that tell how near the motion is to its separatrix: a part of their terms, and of what a small component of a
+    /// turned vector is a difference of.
+    pub(super) fn lost(&self) -> f64 {
+        let [kappa, b, h, lift, top] =
+            [self.kappa, self.spin, self.square, self.lift, self.top].map(|x| x.rounded().abs());
+        let terms = h + 2.0 * kappa * top + b * (lift + b * top);
+        if self.is_aligned {
+            return ROUNDING * terms;
+        }
+        let (across, lean) = (h.sqrt(), top.sqrt());
+        let fastest = across.hypot(self.axial.rounded());
+        let turned = across * fastest + lean * kappa + b * (across + lean * (fastest + b));
+        ROUNDING * (terms + turned)
+    }
+
     /// `a + b`.
-    pub(super) fn sum(&self) -> DoubleDouble {
+    pub(super) fn sum(&self) -> T {
         self.lift + self.spin * self.bottom
     }
 
     /// `a − b`.
-    pub(super) fn difference(&self) -> DoubleDouble {
+    pub(super) fn difference(&self) -> T {
         self.lift - self.spin * self.top
     }
 
     /// `h − 2κ (1 − u₀)`: the square that |W| would have at the top; negative where the energy does not reach it.
-    pub(super) fn excess(&self) -> DoubleDouble {
+    pub(super) fn excess(&self) -> T {
         self.square - (self.kappa * self.top).scaled(2.0)
     }
 
     /// `2κ (a − b u_e)`, where `2κ (u_e − 1)` is the excess.
-    pub(super) fn rest(&self) -> DoubleDouble {
+    pub(super) fn rest(&self) -> T {
         (self.kappa * self.difference()).scaled(2.0) - self.spin * self.excess()
     }
 
     /// Whether the axis rests: nothing turns it, and no torque sets it going.
     pub(super) fn is_steady(&self) -> bool {
-        self.square.high == 0.0
-            && (self.kappa.high == 0.0 || self.bottom.high == 0.0 || self.top.high == 0.0)
+        self.square.rounded() == 0.0
+            && (self.kappa.rounded() == 0.0
+                || self.bottom.rounded() == 0.0
+                || self.top.rounded() == 0.0)
     }
 }
 
 /// `x 2^e`.
-pub(super) fn times(x: DoubleDouble, e: i32) -> DoubleDouble {
-    DoubleDouble {
-        high: times_power_of_two(x.high, e),
-        low: times_power_of_two(x.low, e),
+pub(super) fn times<T: Real>(x: T, e: i32) -> T {
+    let (mut x, mut rest) = (x, e);
+    while rest != 0 && x.rounded() != 0.0 {
+        let stride = rest.clamp(-1000, 1000);
+        x = x.scaled(2.0_f64.powi(stride));
+        rest -= stride;
     }
+    x
 }
 
 /// Length of a vector, as a number of the order of one and a power of two.
-fn norm(vector: &Vector3<f64>) -> (DoubleDouble, i32) {
-    let scaled = near_one(&[vector.x, vector.y, vector.z].map(DoubleDouble::from));
+fn norm<T: Real>(vector: &Vector3<f64>) -> (T, i32) {
+    let scaled = near_one(&[vector.x, vector.y, vector.z].map(T::from));
     (sum_of_squares(&scaled).sqrt(), exponent(vector.amax()))
 }
 
 /// The vector times a power of two that makes its largest component one or somewhat more.
-pub(super) fn near_one(vector: &[DoubleDouble; 3]) -> [DoubleDouble; 3] {
-    let largest = (vector.iter()).fold(0.0_f64, |most, x| most.max(x.high.abs()));
+pub(super) fn near_one<T: Real>(vector: &[T; 3]) -> [T; 3] {
+    let largest = (vector.iter()).fold(0.0_f64, |most, x| most.max(x.rounded().abs()));
     vector.map(|x| times(x, -exponent(largest)))
 }
 
 /// The shortest rotation from `direction` to the third axis; from below the horizontal after half a turn about the first axis.
-fn to_third_axis(direction: &[DoubleDouble; 3]) -> Quaternion2 {
-    let (zero, one) = (DoubleDouble::default(), DoubleDouble::from(1.0));
+fn to_third_axis<T: Real>(direction: &[T; 3]) -> Components<T> {
+    let (zero, one) = (T::from(0.0), T::from(1.0));
     let identity = [zero, zero, zero, one];
     let flipped = [one, zero, zero, zero];
     let [x, mut y, mut z] = near_one(direction);
-    let is_below = z.high < 0.0;
+    let is_below = z.rounded() < 0.0;
     if is_below {
         (y, z) = (-y, -z);
     }
     let first = if is_below { flipped } else { identity };
-    if x.high == 0.0 && y.high == 0.0 {
+    if x.rounded() == 0.0 && y.rounded() == 0.0 {
         return first;
     }
     let length = sum_of_squares(&[x, y, z]).sqrt();
@@ -177,13 +227,13 @@ fn to_third_axis(direction: &[DoubleDouble; 3]) -> Quaternion2 {
 }
 
 /// The vector turned by the unit quaternion.
-fn turned(q: &Quaternion2, vector: &Vector3<f64>) -> Quaternion2 {
-    let v = [vector.x, vector.y, vector.z, 0.0].map(DoubleDouble::from);
+fn turned<T: Real>(q: &Components<T>, vector: &Vector3<f64>) -> Components<T> {
+    let v = [vector.x, vector.y, vector.z, 0.0].map(T::from);
     product(&product(q, &v), &conjugate(q))
 }
 
 /// `p∘q`.
-fn product(p: &Quaternion2, q: &Quaternion2) -> Quaternion2 {
+fn product<T: Real>(p: &Components<T>, q: &Components<T>) -> Components<T> {
     let ([a, b, c, d], [x, y, z, w]) = (*p, *q);
     [
         d * x + a * w + (b * z - c * y),
@@ -193,14 +243,14 @@ fn product(p: &Quaternion2, q: &Quaternion2) -> Quaternion2 {
     ]
 }
 
-fn rounded(q: &Quaternion2) -> Quaternion<f64> {
-    Quaternion::from(Vector4::from(q.map(DoubleDouble::rounded)))
+fn rounded<T: Real>(q: &Components<T>) -> Quaternion<f64> {
+    Quaternion::from(Vector4::from(q.map(T::rounded)))
 }
 
-fn conjugate(q: &Quaternion2) -> Quaternion2 {
+fn conjugate<T: Real>(q: &Components<T>) -> Components<T> {
     [-q[0], -q[1], -q[2], q[3]]
 }
 
-pub(super) fn sum_of_squares(numbers: &[DoubleDouble]) -> DoubleDouble {
-    (numbers.iter()).fold(DoubleDouble::default(), |sum, &x| sum + x * x)
+pub(super) fn sum_of_squares<T: Real>(numbers: &[T]) -> T {
+    (numbers.iter()).fold(T::from(0.0), |sum, &x| sum + x * x)
 }

@@ -19,6 +19,8 @@ pub(super) struct Course {
     pub(super) clock: DoubleDouble,
     pub(super) start: DoubleDouble,
     pub(super) steady: [DoubleDouble; 3],
+    /// Beyond this |t| nothing is known of the phases.
+    pub(super) reach: f64,
     /// (x, y, z, w) of the attitude from the real and imaginary parts of α and β.
     pub(super) attitude: [[f64; 4]; 4],
     /// ω in B from the parts of W.
@@ -153,6 +155,8 @@ impl Course {
     /// (x, y, z, w) of the attitude and ω in B at the time `t`.
     #[inline(always)]
     fn state<L: Lane, F: Functions>(&self, functions: &F, t: L) -> [L; 7] {
+        let is_known = t.abs() <= L::new(self.reach);
+        let t = if is_known { t } else { L::new(f64::NAN) };
         let (values, extra) = functions.at(self, t);
         let alpha = self.turned(0, t, &values, &extra);
         let beta = self.turned(1, t, &values, &extra);

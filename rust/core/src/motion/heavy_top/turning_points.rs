@@ -6,42 +6,88 @@
 
 use super::reduced::Reduced;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elliptic::Real;
+use crate::numerics::quad_double::QuadDouble;
 
 /// Newton's steps at most: a dozen reach a root from the bound where the search starts.
 const STEPS: usize = 60;
+/// More of them, with the slope as a double: each adds a dozen digits.
+const REFINEMENTS: usize = 16;
 
 /// The roots `u₁ ≤ u₂ ≤ u₃` of f, by their distances. The motion stays between the first two; `−1 ≤ u₁ ≤ u₂ ≤ 1 ≤ u₃`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TurningPoints {
+pub(super) struct TurningPoints<T = DoubleDouble> {
     /// `u₀ − u₁`.
-    pub(super) fall: DoubleDouble,
+    pub(super) fall: T,
     /// `u₂ − u₀`.
-    pub(super) rise: DoubleDouble,
+    pub(super) rise: T,
     /// `u₂ − u₁`.
-    pub(super) range: DoubleDouble,
+    pub(super) range: T,
     /// `2κ (u₃ − u₂)`; finite also without weight, where u₃ is not.
-    pub(super) gap: DoubleDouble,
+    pub(super) gap: T,
     /// `2κ (u₃ − u₁)`.
-    pub(super) height: DoubleDouble,
+    pub(super) height: T,
     /// `1 + u₁`.
-    pub(super) above_bottom: DoubleDouble,
+    pub(super) above_bottom: T,
     /// `1 − u₁`.
-    pub(super) depth: DoubleDouble,
+    pub(super) depth: T,
     /// `1 − u₂`.
-    pub(super) below_top: DoubleDouble,
+    pub(super) below_top: T,
     /// `2κ (u₃ − 1)`.
-    pub(super) beyond_top: DoubleDouble,
+    pub(super) beyond_top: T,
     /// `h + 2κ (u₀ − u₁) = 2κ (u_e − u₁)`: ω² across the axis at its lowest, with `u_e = u₀ + h/2κ` the height at which it would vanish.
-    pub(super) fastest: DoubleDouble,
+    pub(super) fastest: T,
     /// `2κ (u_e − u₂)`: ω² across the axis at its highest.
-    pub(super) slowest: DoubleDouble,
+    pub(super) slowest: T,
     /// `2κ (u₃ − u_e)`.
-    pub(super) beyond_rest: DoubleDouble,
+    pub(super) beyond_rest: T,
 }
 
+/// A part of k′² that is worth no more than [`PHASE_ERROR`](crate::numerics::turns::PHASE_ERROR).
+const HARMLESS: f64 = 2.0e-28; // 2⁻⁹²
+/// A unit in the last place of what has four times the precision, over one of what has twice.
+const FINER_ROUNDING: f64 = 8.1e-28; // 2⁻⁹⁰
+
 impl TurningPoints {
+    /// Whether k′² has the digits that long times need.
+    pub(super) fn are_good(&self, motion: &Reduced) -> bool {
+        self.gap.high * self.depth.high * HARMLESS >= motion.lost()
+    }
+}
+
+impl TurningPoints<QuadDouble> {
+    /// On the separatrix where nothing is left of the distance from it.
+    pub(super) fn settled(self, motion: &Reduced<QuadDouble>) -> Self {
+        let left = self.gap.rounded() * self.depth.rounded();
+        if left <= FINER_ROUNDING * motion.lost() {
+            let gap = QuadDouble::default();
+            return Self { gap, ..self };
+        }
+        self
+    }
+}
+
+impl<T: Real> TurningPoints<T> {
+    /// The same to twice the precision.
+    pub(super) fn twofold(&self) -> TurningPoints {
+        TurningPoints {
+            fall: self.fall.twofold(),
+            rise: self.rise.twofold(),
+            range: self.range.twofold(),
+            gap: self.gap.twofold(),
+            height: self.height.twofold(),
+            above_bottom: self.above_bottom.twofold(),
+            depth: self.depth.twofold(),
+            below_top: self.below_top.twofold(),
+            beyond_top: self.beyond_top.twofold(),
+            fastest: self.fastest.twofold(),
+            slowest: self.slowest.twofold(),
+            beyond_rest: self.beyond_rest.twofold(),
+        }
+    }
+
     /// Of a motion that is not steady.
-    pub(super) fn of(motion: &Reduced) -> Self {
+    pub(super) fn of(motion: &Reduced<T>) -> Self {
         let &Reduced {
             kappa,
             spin: b,
@@ -54,7 +100,7 @@ impl TurningPoints {
         } = motion;
         let two_kappa = kappa + kappa;
         let (sum, difference, excess) = (motion.sum(), motion.difference(), motion.excess());
-        let pull = (bottom - ONE) * h + kappa * (bottom * top) - b * d;
+        let pull = (bottom - T::from(1.0)) * h + kappa * (bottom * top) - b * d;
         let cubic = Cubic {
             constant: rate * rate,
             linear: -(pull + pull),
@@ -76,9 +122,9 @@ impl TurningPoints {
         let fastest = h + two_kappa * fall;
         let rest = motion.rest();
         let product = quotient(rest * rest, fastest);
-        let (slowest, beyond_rest) = if excess.high >= 0.0 {
+        let (slowest, beyond_rest) = if excess.rounded() >= 0.0 {
             let slowest = excess + two_kappa * roots.below_top;
-            if slowest.high > 0.0 {
+            if slowest.rounded() > 0.0 {
                 (slowest, quotient(product, slowest))
             } else {
                 (slowest, roots.beyond_top)
@@ -104,63 +150,54 @@ impl TurningPoints {
     }
 }
 
-const ONE: DoubleDouble = DoubleDouble {
-    high: 1.0,
-    low: 0.0,
-};
-
 /// The quotient of two numbers that are not negative, where nothing over nothing is nothing.
-fn quotient(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
-    if a.high <= 0.0 || b.high <= 0.0 {
-        DoubleDouble::default()
+fn quotient<T: Real>(a: T, b: T) -> T {
+    if a.rounded() <= 0.0 || b.rounded() <= 0.0 {
+        T::from(0.0)
     } else {
         a / b
     }
 }
 
-fn not_negative(x: DoubleDouble) -> DoubleDouble {
-    if x.high > 0.0 {
-        x
-    } else {
-        DoubleDouble::default()
-    }
+fn not_negative<T: Real>(x: T) -> T {
+    if x.rounded() > 0.0 { x } else { T::from(0.0) }
 }
 
 /// What f is at u = 1: `f(1 − δ) = −(a − b)² + 2 slope δ + …`
-struct Pole {
+struct Pole<T> {
     /// `1 − u₀`.
-    top: DoubleDouble,
+    top: T,
     /// `a − b`.
-    difference: DoubleDouble,
-    slope: DoubleDouble,
+    difference: T,
+    slope: T,
 }
 
 /// `f(u₀ + x) = constant + linear x + quadratic x² + 2κ x³`, with f(u₀) ≥ 0 and three real roots.
 #[derive(Clone, Copy)]
-struct Cubic {
-    constant: DoubleDouble,
-    linear: DoubleDouble,
-    quadratic: DoubleDouble,
-    two_kappa: DoubleDouble,
+struct Cubic<T> {
+    constant: T,
+    linear: T,
+    quadratic: T,
+    two_kappa: T,
 }
 
 /// Distances as [`TurningPoints`] has them; `third` is `2κ (u₃ − u₀)`.
-struct Roots {
-    fall: DoubleDouble,
-    rise: DoubleDouble,
-    range: DoubleDouble,
-    third: DoubleDouble,
-    gap: DoubleDouble,
-    below_top: DoubleDouble,
-    beyond_top: DoubleDouble,
+struct Roots<T> {
+    fall: T,
+    rise: T,
+    range: T,
+    third: T,
+    gap: T,
+    below_top: T,
+    beyond_top: T,
 }
 
-impl Cubic {
+impl<T: Real> Cubic<T> {
     /// The root that stands apart by Newton's method, the other two by the quadratic that is left.
-    fn roots(&self, pole: &Pole) -> Roots {
-        if self.constant.high == 0.0 {
-            return if self.linear.high > 0.0 {
-                self.with_lowest(DoubleDouble::default(), pole)
+    fn roots(&self, pole: &Pole<T>) -> Roots<T> {
+        if self.constant.rounded() == 0.0 {
+            return if self.linear.rounded() > 0.0 {
+                self.with_lowest(T::from(0.0), pole)
             } else {
                 self.with_middle(pole)
             };
@@ -171,7 +208,7 @@ impl Cubic {
             self.two_kappa * self.linear,
             self.two_kappa * self.two_kappa * self.constant,
         ];
-        let [a, b, c] = monic.map(DoubleDouble::rounded);
+        let [a, b, c] = monic.map(T::rounded);
         let mean = -a / 3.0;
         let spread = (a * a - 3.0 * b).max(0.0).sqrt() / 3.0;
         // f is negative at the mean of the roots where the third stands apart. All lie within two spreads of the mean.
@@ -184,13 +221,13 @@ impl Cubic {
     }
 
     /// `f = (2κ x − third) (x² + s x − p)`: the low coefficients give s and p without loss, since the third root is the largest.
-    fn with_highest(&self, third: DoubleDouble, pole: &Pole) -> Roots {
+    fn with_highest(&self, third: T, pole: &Pole<T>) -> Roots<T> {
         let p = self.constant / third;
         let s = -(self.two_kappa * p + self.linear) / third;
         let range = (s * s + p.scaled(4.0)).sqrt();
         let larger = (range + s.abs()).scaled(0.5);
         let smaller = quotient(p, larger);
-        let (fall, rise) = if s.high > 0.0 {
+        let (fall, rise) = if s.rounded() > 0.0 {
             (larger, smaller)
         } else {
             (smaller, larger)
@@ -200,12 +237,12 @@ impl Cubic {
     }
 
     /// The start is the upper turning point: `f = x (2κ x² + quadratic x + linear)`, linear ≤ 0.
-    fn with_middle(&self, pole: &Pole) -> Roots {
+    fn with_middle(&self, pole: &Pole<T>) -> Roots<T> {
         let minus_c = -self.linear;
         let root =
             (self.quadratic * self.quadratic + (self.two_kappa * minus_c).scaled(4.0)).sqrt();
         let larger = (root + self.quadratic.abs()).scaled(0.5);
-        let (third, fall) = if self.quadratic.high <= 0.0 {
+        let (third, fall) = if self.quadratic.rounded() <= 0.0 {
             (larger, quotient(minus_c, larger))
         } else {
             (
@@ -213,24 +250,16 @@ impl Cubic {
                 larger / self.two_kappa,
             )
         };
-        self.with_pole(fall, DoubleDouble::default(), fall, third, third, pole)
+        self.with_pole(fall, T::from(0.0), fall, third, third, pole)
     }
 
     /// `1 − u₂` and `2κ (u₃ − 1)` from their product: the one that loses less is a difference, the other a quotient.
-    fn with_pole(
-        &self,
-        fall: DoubleDouble,
-        rise: DoubleDouble,
-        range: DoubleDouble,
-        third: DoubleDouble,
-        gap: DoubleDouble,
-        pole: &Pole,
-    ) -> Roots {
+    fn with_pole(&self, fall: T, rise: T, range: T, third: T, gap: T, pole: &Pole<T>) -> Roots<T> {
         let square = quotient(pole.difference * pole.difference, pole.top + fall);
         let below_top = not_negative(pole.top - rise);
         let beyond_top = not_negative(third - self.two_kappa * pole.top);
         let (below_top, beyond_top) =
-            if below_top.high * third.high > beyond_top.high * pole.top.high {
+            if below_top.rounded() * third.rounded() > beyond_top.rounded() * pole.top.rounded() {
                 (below_top, quotient(square, below_top))
             } else {
                 (quotient(square, beyond_top), beyond_top)
@@ -248,20 +277,20 @@ impl Cubic {
 
     /// The other two roots enclose the pole: with `X = 2κ (1 − u₂)` and `Y = 2κ (u₃ − 1)`, f(1) gives X Y and f′(1) gives X − Y,
     /// so that their sum, the gap, does not suffer when they are close.
-    fn with_lowest(&self, fall: DoubleDouble, pole: &Pole) -> Roots {
+    fn with_lowest(&self, fall: T, pole: &Pole<T>) -> Roots<T> {
         let depth = pole.top + fall;
         let square = pole.difference * pole.difference / depth;
         let unbalance = (square - pole.slope.scaled(2.0)) / depth;
         let product = self.two_kappa * square;
         let gap = (unbalance * unbalance + product.scaled(4.0)).sqrt();
         let larger = (gap + unbalance.abs()).scaled(0.5);
-        let (below_top, beyond_top) = if unbalance.high > 0.0 {
+        let (below_top, beyond_top) = if unbalance.rounded() > 0.0 {
             (larger / self.two_kappa, quotient(product, larger))
         } else {
             (quotient(square, larger), larger)
         };
         let third = self.two_kappa * pole.top + beyond_top;
-        let rest = if fall.high > 0.0 {
+        let rest = if fall.rounded() > 0.0 {
             self.constant / fall
         } else {
             self.linear
@@ -281,8 +310,8 @@ impl Cubic {
 
 /// The root of `ρ³ + A ρ² + B ρ + C` that Newton's method comes to from `start`, outside of all roots: steadily, and fast since
 /// that root stands apart.
-fn newton(monic: &[DoubleDouble; 3], start: f64) -> DoubleDouble {
-    let [a, b, c] = monic.map(DoubleDouble::rounded);
+fn newton<T: Real>(monic: &[T; 3], start: f64) -> T {
+    let [a, b, c] = monic.map(T::rounded);
     let slope = |x: f64| (3.0 * x + 2.0 * a) * x + b;
     let mut x = start;
     for _ in 0..STEPS {
@@ -295,16 +324,16 @@ fn newton(monic: &[DoubleDouble; 3], start: f64) -> DoubleDouble {
             break;
         }
     }
-    let mut root = DoubleDouble::from(x);
-    for _ in 0..4 {
+    let mut root = T::from(x);
+    for _ in 0..REFINEMENTS {
         let [a, b, c] = *monic;
         let value = ((root + a) * root + b) * root + c;
-        let step = value / slope(root.high).into();
-        if !step.high.is_finite() {
+        let step = value / T::from(slope(root.rounded()));
+        if !step.rounded().is_finite() {
             break;
         }
-        root -= step;
-        if step.high.abs() <= 1e-26 * root.high.abs() {
+        root = root - step;
+        if step.rounded().abs() <= T::CLOSE * T::CLOSE * 1e6 * root.rounded().abs() {
             break;
         }
     }

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::error::{Error, all_finite};
+use crate::motion::state::Phase;
 
 /// `N = −K sign(w) vec(e) − D ω` with the error `e = q_target⁻¹ ∘ q` and w its scalar part.
 ///
@@ -43,8 +44,20 @@ impl Feedback {
     #[must_use]
     pub fn torque(&self, attitude: &UnitQuaternion<f64>, omega: &Vector3<f64>) -> Vector3<f64> {
         let error = self.target.conjugate() * attitude;
-        let vector = error.imag() * if error.w < 0.0 { -1.0 } else { 1.0 };
-        -(self.stiffness * vector + self.damping * omega)
+        self.torque_on(if error.w < 0.0 { -1.0 } else { 1.0 }, attitude, omega)
+    }
+
+    /// As [`Self::torque`], with `side`, 1 or −1, for the sign of w.
+    #[inline]
+    #[must_use]
+    pub fn torque_on(
+        &self,
+        side: f64,
+        attitude: &UnitQuaternion<f64>,
+        omega: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        let error = self.target.conjugate() * attitude;
+        -(self.stiffness * (error.imag() * side) + self.damping * omega)
     }
 
     /// `2k (1 − |w|)` where `K = k 1` and D = 0: the work that turning away from the target takes.
@@ -67,6 +80,35 @@ impl Feedback {
             &(self.damping * factor),
             &self.target,
         )
+    }
+}
+
+/// What changes the law of a feedback: the sign of the scalar part w of its error. Both w and its rate `ẇ = −½ vec(e)·ω` are continuous
+/// where it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Switch {
+    target: UnitQuaternion<f64>,
+    /// The sign that the law has been taken for.
+    pub side: f64,
+}
+
+impl Switch {
+    /// That of `feedback` at the attitude of `phase`.
+    #[must_use]
+    pub fn of(feedback: &Feedback, phase: &Phase) -> Self {
+        let error = feedback.target.conjugate() * phase.attitude;
+        Self {
+            target: feedback.target,
+            side: if error.w < 0.0 { -1.0 } else { 1.0 },
+        }
+    }
+
+    /// w and ẇ, each times the side: the law changes where the first becomes negative.
+    #[must_use]
+    pub fn value_and_rate(&self, phase: &Phase) -> [f64; 2] {
+        let error = self.target.conjugate() * phase.attitude;
+        let rate = -0.5 * error.imag().dot(&phase.omega);
+        [error.w * self.side, rate * self.side]
     }
 }
 

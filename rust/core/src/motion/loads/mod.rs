@@ -22,7 +22,7 @@ use std::iter::Sum;
 use std::ops::{Add, AddAssign};
 
 pub use self::damping::Damping;
-pub use self::feedback::Feedback;
+pub use self::feedback::{Feedback, Switch};
 pub use self::gravity_gradient::GravityGradient;
 pub use self::sampled::Sampled;
 pub use self::schedule::Windows;
@@ -171,6 +171,22 @@ pub trait Load {
     /// When it cannot act there.
     fn enter(&mut self, from: f64, to: f64) -> Result<(), Self::Error>;
 
+    /// From now on its law is the one that it has at `phase`, on both sides of where a sign in it changes, until it is told again: so that
+    /// it is smooth over a step. Before it is told for the first time in a span, the law changes with the state.
+    fn settle(&mut self, phase: &Phase) {
+        let _ = phase;
+    }
+
+    /// The signs that it was settled for; none of a law without such signs.
+    fn switches(&self) -> Vec<Switch> {
+        Vec::new()
+    }
+
+    /// Changes its law to that beyond the zero of switch number `index`.
+    fn flip(&mut self, index: usize) {
+        let _ = index;
+    }
+
     /// Force in N and torque in B about the reference point.
     ///
     /// # Errors
@@ -184,6 +200,8 @@ pub struct Analytic<'a> {
     subject: Subject,
     terms: &'a [Term],
     active: Vec<&'a Term>,
+    /// One for each feedback among those that act, once they are settled.
+    switches: Vec<Switch>,
 }
 
 impl<'a> Analytic<'a> {
@@ -194,6 +212,7 @@ impl<'a> Analytic<'a> {
             subject,
             terms,
             active: terms.iter().collect(),
+            switches: Vec::new(),
         }
     }
 
@@ -238,6 +257,7 @@ impl Load for Analytic<'_> {
     fn enter(&mut self, from: f64, to: f64) -> Result<(), Error> {
         let middle = from + 0.5 * (to - from);
         self.active.clear();
+        self.switches.clear();
         for term in self.terms.iter().filter_map(|term| term.active(middle)) {
             term.check(&self.subject, from, to)?;
             self.active.push(term);
@@ -245,12 +265,33 @@ impl Load for Analytic<'_> {
         Ok(())
     }
 
+    fn settle(&mut self, phase: &Phase) {
+        self.switches.clear();
+        for term in &self.active {
+            if let Term::Feedback(feedback) = term {
+                self.switches.push(Switch::of(feedback, phase));
+            }
+        }
+    }
+
+    fn switches(&self) -> Vec<Switch> {
+        self.switches.clone()
+    }
+
+    fn flip(&mut self, index: usize) {
+        self.switches[index].side *= -1.0;
+    }
+
     #[inline]
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Error> {
-        let wrenches = self
-            .active
-            .iter()
-            .map(|term| term.wrench(&self.subject, t, phase));
+        let mut switches = self.switches.iter();
+        let wrenches = (self.active.iter()).map(|term| match term {
+            Term::Feedback(feedback) => Wrench::couple(match switches.next() {
+                Some(switch) => feedback.torque_on(switch.side, &phase.attitude, &phase.omega),
+                None => feedback.torque(&phase.attitude, &phase.omega),
+            }),
+            term => term.wrench(&self.subject, t, phase),
+        });
         Ok(wrenches.sum())
     }
 }

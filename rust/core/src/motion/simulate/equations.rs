@@ -7,7 +7,7 @@ use super::Tolerance;
 use crate::motion::attitude::{from_axes, rate};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::integrate::{Compensated, System};
-use crate::motion::loads::Load;
+use crate::motion::loads::{Load, Switch};
 use crate::motion::state::Phase;
 
 /// The numbers that turning takes: (x, y, z, w) of `q_NP` and ω in P, P the principal axes.
@@ -101,6 +101,13 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             position,
             velocity,
         }
+    }
+}
+
+impl<L: Load, const N: usize> Equations<'_, L, N> {
+    /// What may change the law of the load within a step.
+    pub(super) fn switches(&self) -> Vec<Switch> {
+        self.load.switches()
     }
 }
 

@@ -10,13 +10,14 @@ use super::{Effort, End, Run, Task};
 use crate::error::Error;
 use crate::motion::free::FreeMotion;
 use crate::motion::heavy_top::HeavyTop;
-use crate::motion::loads::Term;
-use crate::motion::state::{Phase, State};
+use crate::motion::loads::{Switch, Term};
+use crate::motion::state::{ClosedForm, Phase, State};
+use crate::numerics::power_of_two::{exponent, length, times_power_of_two};
 
 /// States between two looks at the watch.
 const PATIENCE: usize = 4096;
 /// Parts of a turn at whose ends events are looked for.
-const PARTS_OF_A_TURN: f64 = 16.0;
+const PARTS_OF_A_TURN: f64 = 6.0;
 
 /// The run under `terms`, without events.
 pub(super) fn solve<E: From<Error>>(
@@ -26,6 +27,7 @@ pub(super) fn solve<E: From<Error>>(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<End<E>, E> {
     let closed = Closed::new(task, terms, &task.initial)?;
+    closed.reaches(task.times[task.times.len() - 1] - task.times[0])?;
     // A top's attitude counts to its last bit, and may be a unit quaternion to rounding alone.
     run.samples[0].attitude = UnitQuaternion::new_normalize(task.initial.attitude.into_inner());
     let start = task.times[0];
@@ -82,13 +84,16 @@ impl Closed {
             let top = closed_top(task.body)?;
             let gravity = gravity_alone(terms).unwrap_or_default();
             // ½ I_t ω_t² grows by 2 m g l at most: from the highest point to the lowest.
-            let fall = top.mass_moment * gravity.norm() / top.transverse;
-            let fastest = (omega.norm_squared() + 4.0 * fall).sqrt();
+            let fall = top.mass_moment * length(&gravity) / top.transverse;
+            let unit = exponent(omega.amax().max(fall.sqrt()));
+            let scaled = omega.map(|rate| times_power_of_two(rate, -unit));
+            let squares = scaled.norm_squared() + 4.0 * times_power_of_two(fall, -2 * unit);
+            let fastest = times_power_of_two(squares.sqrt(), unit);
             let motion = HeavyTop::of(&top, omega, attitude, &gravity)?;
             (Motion::Top(motion), fastest)
         } else {
             let motion = FreeMotion::of(task.body, omega, attitude)?;
-            (Motion::Free(motion), omega.norm())
+            (Motion::Free(motion), length(omega))
         };
         Ok(Self {
             motion,
@@ -102,6 +107,14 @@ impl Closed {
         match &self.motion {
             Motion::Free(motion) => motion.sample(times, attitudes, omegas),
             Motion::Top(motion) => motion.sample(times, attitudes, omegas),
+        }
+    }
+
+    /// That the states this long after the start are known.
+    fn reaches(&self, elapsed: f64) -> Result<(), Error> {
+        match &self.motion {
+            Motion::Free(motion) => motion.reaches(elapsed),
+            Motion::Top(motion) => motion.reaches(elapsed),
         }
     }
 
@@ -137,6 +150,7 @@ impl<E: From<Error>> Exact<E> {
     pub(super) fn new(task: &Task<'_>, span: &Span, terms: Option<&[Term]>) -> Result<Self, E> {
         let closed = Closed::new(task, terms.unwrap_or_default(), &span.phase)?;
         let length = span.to - span.from;
+        closed.reaches(length)?;
         let turn = std::f64::consts::TAU / closed.fastest;
         let step = (turn / PARTS_OF_A_TURN).min(length.abs()).copysign(length);
         Ok(Self {
@@ -194,5 +208,9 @@ impl<E: From<Error>> Stepper for Exact<E> {
 
     fn carry(&self) -> Carry {
         Carry::default()
+    }
+
+    fn switches(&self) -> Vec<Switch> {
+        Vec::new()
     }
 }

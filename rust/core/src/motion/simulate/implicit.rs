@@ -4,7 +4,7 @@ use super::equations::Equations;
 use super::stepper::{Carry, Dense, Span, Stepper};
 use super::{Effort, Task};
 use crate::motion::integrate::Radau;
-use crate::motion::loads::Load;
+use crate::motion::loads::{Load, Switch};
 use crate::motion::state::Phase;
 
 /// A run of [`Radau`].
@@ -71,5 +71,9 @@ impl<L: Load, const N: usize> Stepper for Implicit<'_, L, N> {
             step: Some(self.stepper.step()),
             scheme: None,
         }
+    }
+
+    fn switches(&self) -> Vec<Switch> {
+        self.equations.switches()
     }
 }

@@ -4,7 +4,7 @@ use super::stepper::{Carry, Dense, Span, Stepper};
 use super::{Effort, Task};
 use crate::error::Error;
 use crate::motion::integrate::Splitting;
-use crate::motion::loads::Load;
+use crate::motion::loads::{Load, Switch};
 use crate::motion::state::Phase;
 
 /// A run of [`Splitting`].
@@ -76,5 +76,9 @@ impl<L: Load> Stepper for Kicked<'_, L> {
             step: Some(step),
             ..self.carry
         }
+    }
+
+    fn switches(&self) -> Vec<Switch> {
+        self.load.switches()
     }
 }

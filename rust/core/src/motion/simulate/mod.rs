@@ -2,13 +2,17 @@
 //!
 //! [`task`] is what is to be done, `run` what comes of it, and `method` tells which method serves. Those of steps cut a run
 //! into spans in which the load is smooth: `stepper` is what a run needs of them, `equations` what they see of the mechanics,
-//! [`events`] what is looked for on the way.
+//! [`events`] what is looked for on the way, `lookout` how, along each step by `along`, and
+//! `flips` finds where a load changes its law with the state.
 
+mod along;
 mod equations;
 pub mod events;
 mod exact;
+mod flips;
 mod implicit;
 mod kicked;
+mod lookout;
 pub mod method;
 mod run;
 mod stepper;
@@ -19,9 +23,12 @@ use std::ops::ControlFlow;
 
 pub use self::events::{Crossing, Direction, Events, NoEvents, Rule};
 pub use self::method::{Method, closed_top};
-pub(in crate::motion) use self::run::spans;
 pub use self::run::{Effort, End, Run};
-pub use self::task::{Footing, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_times};
+pub(in crate::motion) use self::run::{HELD, spans};
+pub(in crate::motion) use self::task::check_steps;
+pub use self::task::{
+    Footing, MOST_STEPS, TIGHTEST, TIGHTEST_TWOFOLD, Task, Tolerance, check_scales, check_times,
+};
 use super::integrate::taylor;
 use super::loads::Load;
 pub use super::state::{Phase, State};
@@ -43,6 +50,12 @@ pub fn simulate<L: Load>(
     let (terms, has_events) = (load.analytic(), !events.rules().is_empty());
     let is_top = || closed_top(task.body).is_ok();
     let method = (task.method).serving(task.subject.pivoted, terms, &task.tolerance, is_top);
+    let method = method.and_then(|method| {
+        if method != Method::Exact {
+            check_scales(task.body, task.times)?;
+        }
+        Ok(method)
+    });
     run.end = match (method, terms) {
         (Err(error), _) => End::Failed(error.into()),
         (Ok(Method::Exact), Some(terms)) if !has_events => {

@@ -2,10 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use super::events::{Crossing, Events, Lookout};
+use super::events::{Crossing, Events};
+use super::flips;
+use super::lookout::Lookout;
 use super::method::Method;
 use super::stepper::{self, Carry, Span, Stepper};
-use super::task::Task;
+use super::task::{Task, check_steps};
+use crate::error::Error;
 use crate::motion::loads::Load;
 use crate::motion::state::Phase;
 
@@ -48,6 +51,9 @@ pub struct Run<E> {
     pub end: End<E>,
 }
 
+/// The changes of a law on one spot after which a run gives up.
+pub(crate) const HELD: u32 = 3;
+
 impl<E> Run<E> {
     /// One that has come no further than the first time.
     pub(crate) fn at_start(task: &Task<'_>, end: End<E>) -> Self {
@@ -89,7 +95,10 @@ impl<E> Run<E> {
         load: &mut L,
         events: &mut dyn Events<Error = E>,
         watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<End<E>, E> {
+    ) -> Result<End<E>, E>
+    where
+        E: From<Error>,
+    {
         let bounds = spans(task.times, load.breaks());
         for pair in bounds.windows(2) {
             load.enter(pair[0], pair[1])?; // refused before anything is computed
@@ -99,57 +108,113 @@ impl<E> Run<E> {
         let mut next = 1;
         let mut carry = Carry::default();
         for pair in bounds.windows(2) {
-            let [from, to] = [pair[0], pair[1]];
+            let [mut from, to] = [pair[0], pair[1]];
             load.enter(from, to)?;
-            let span = Span {
-                from,
-                to,
-                phase: self.phase,
-                carry,
-            };
-            let mut stepper = stepper::start(method, task, &span, load)?;
-            let before = self.effort;
-            let mut watch = |elapsed: f64| watch((from - start + elapsed) / (end - start));
-            let ended = self.span(
-                task,
-                &span,
-                &mut *stepper,
-                &mut next,
-                &mut lookout,
-                &mut watch,
-            );
-            let Effort { steps, evaluations } = stepper.effort();
-            self.effort = Effort {
-                steps: before.steps + steps,
-                evaluations: before.evaluations + evaluations,
-            };
-            if let Some(end) = ended.transpose() {
-                self.crossings = lookout.crossings;
-                return end;
+            load.settle(&self.phase);
+            // Where the law of the load changes with the state, which of its signs changes.
+            let mut flip: Option<(usize, f64)> = None;
+            let mut flips_at_once = 0;
+            loop {
+                let span = Span {
+                    from,
+                    to: flip.map_or(to, |(_, time)| time),
+                    phase: self.phase,
+                    carry,
+                };
+                let mut stepper = stepper::start(method, task, &span, load)?;
+                let before = self.effort;
+                let mut watch = |elapsed: f64| watch((from - start + elapsed) / (end - start));
+                let ended = self.span(
+                    task,
+                    &span,
+                    &mut *stepper,
+                    flip.is_none(),
+                    &mut next,
+                    &mut lookout,
+                    &mut watch,
+                );
+                let Effort { steps, evaluations } = stepper.effort();
+                self.effort = Effort {
+                    steps: before.steps + steps,
+                    evaluations: before.evaluations + evaluations,
+                };
+                carry = stepper.carry();
+                drop(stepper);
+                match ended {
+                    Ok(Reached::End) => {
+                        // To the bit, where a start and a length of time would round.
+                        self.time = span.to;
+                        match flip.take() {
+                            Some((index, time)) => {
+                                load.flip(index);
+                                from = time;
+                            }
+                            None => break,
+                        }
+                    }
+                    Ok(Reached::Flip { index, time }) => {
+                        (from, flip) = (self.time, Some((index, time)));
+                        if from == time {
+                            // Here and now. A law that changes back each time holds the body where it changes.
+                            load.flip(index);
+                            flip = None;
+                            flips_at_once += 1;
+                            if flips_at_once > HELD {
+                                let step = 0.0;
+                                return Err(Error::StepTooSmall { time, step }.into());
+                            }
+                        } else {
+                            flips_at_once = 0;
+                        }
+                    }
+                    Ok(Reached::Over(end)) => {
+                        self.crossings = lookout.crossings;
+                        return Ok(end);
+                    }
+                    Err(error) => {
+                        self.crossings = lookout.crossings;
+                        return Err(error);
+                    }
+                }
             }
-            carry = stepper.carry();
         }
         self.crossings = lookout.crossings;
         Ok(End::Complete)
     }
 
-    /// Steps to the end of a span; how the run ended if it did.
+    /// Steps to the end of a span, or to where the law of the load changes if that `may_flip`, or where the run ends.
+    #[expect(clippy::too_many_arguments, reason = "what a run is on its way with")]
     fn span(
         &mut self,
         task: &Task<'_>,
         span: &Span,
         stepper: &mut dyn Stepper<Error = E>,
+        may_flip: bool,
         next: &mut usize,
         lookout: &mut Lookout<'_, E>,
         watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<Option<End<E>>, E> {
+    ) -> Result<Reached<E>, E>
+    where
+        E: From<Error>,
+    {
         let (from, length) = (span.from, span.to - span.from);
+        let switches = if may_flip {
+            stepper.switches()
+        } else {
+            Vec::new()
+        };
         loop {
             let before = stepper.elapsed();
             if before == length {
-                return Ok(None);
+                return Ok(Reached::End);
             }
             stepper.advance()?;
+            let flip = flips::first(&switches, stepper, from, before, &self.phase)?;
+            if let Some((index, place)) = flip {
+                // The step is made again, to end there.
+                let time = from + place;
+                return Ok(Reached::Flip { index, time });
+            }
             let reached = stepper.elapsed();
             let ended = lookout.look(stepper, from, before)?;
             let (last, phase) = ended.unwrap_or((reached, stepper.phase()));
@@ -165,13 +230,29 @@ impl<E> Run<E> {
             }
             (self.time, self.phase) = (from + last, phase);
             if ended.is_some() {
-                return Ok(Some(End::Event));
+                return Ok(Reached::Over(End::Event));
             }
             if watch(reached).is_break() {
-                return Ok(Some(End::Stopped));
+                return Ok(Reached::Over(End::Stopped));
             }
+            let (start, all) = (
+                task.times[0],
+                task.times[task.times.len() - 1] - task.times[0],
+            );
+            let steps = self.effort.steps + stepper.effort().steps;
+            check_steps(steps, start, self.time - start, all)?;
         }
     }
+}
+
+/// What a span came to.
+enum Reached<E> {
+    /// Its end.
+    End,
+    /// A step within which the law of the load changes: by which switch, and when.
+    Flip { index: usize, time: f64 },
+    /// The end of the run.
+    Over(End<E>),
 }
 
 /// The ends of the spans into which `breaks` cut the time from the first to the last of `times`.

@@ -8,7 +8,7 @@ use super::{Effort, Method, Task};
 use crate::motion::integrate::Dop853;
 use crate::motion::integrate::dop853::Dense as Polynomial;
 use crate::motion::integrate::splitting::Scheme;
-use crate::motion::loads::Load;
+use crate::motion::loads::{Load, Switch};
 use crate::motion::state::Phase;
 
 /// The motion within the last step that was made.
@@ -25,9 +25,9 @@ pub(super) trait Dense {
     /// The state at a time since the start of the span that is within the step.
     fn within(&mut self, elapsed: f64) -> Result<Phase, Self::Error>;
 
-    /// The parts of the step at whose ends events are looked at.
-    fn parts(&self) -> u32 {
-        4
+    /// How far the body turns in the step, which was as long as `length`: about, in radians.
+    fn turn(&self, length: f64) -> f64 {
+        self.phase().omega.norm() * length.abs()
     }
 }
 
@@ -41,6 +41,9 @@ pub(super) trait Stepper: Dense {
 
     /// What the next span may go on with.
     fn carry(&self) -> Carry;
+
+    /// What may change the law of its load within a step.
+    fn switches(&self) -> Vec<Switch>;
 }
 
 /// What one span leaves to the next.
@@ -156,5 +159,9 @@ impl<L: Load, const N: usize> Stepper for Explicit<'_, L, N> {
             step: Some(self.stepper.step()),
             scheme: None,
         }
+    }
+
+    fn switches(&self) -> Vec<Switch> {
+        self.equations.switches()
     }
 }

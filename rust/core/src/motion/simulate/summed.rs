@@ -3,16 +3,14 @@
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
-use super::events::{Events, Lookout};
+use super::events::Events;
+use super::lookout::Lookout;
 use super::stepper::Dense;
 use super::{End, Run, Task};
 use crate::error::Error;
 use crate::motion::integrate::taylor::{Step, solve_seen};
 use crate::motion::loads::Term;
 use crate::motion::state::Phase;
-
-/// Looks at events in each radian.
-const LOOKS: f64 = 10.0;
 
 /// The motion of `task` under `terms`.
 pub(super) fn solve<E: From<Error>>(
@@ -77,12 +75,7 @@ impl<E> Dense for Summed<'_, E> {
         Ok(self.step.at(elapsed))
     }
 
-    /// Steps of high order are long.
-    fn parts(&self) -> u32 {
-        let mut parts = 4;
-        while f64::from(parts) < LOOKS * self.step.turn() && parts < u32::MAX / 2 {
-            parts *= 2;
-        }
-        parts
+    fn turn(&self, _: f64) -> f64 {
+        self.step.turn()
     }
 }

@@ -12,6 +12,31 @@ pub const TIGHTEST: f64 = 10.0 * f64::EPSILON;
 /// The tightest relative tolerance that numbers of twice the precision can serve.
 pub const TIGHTEST_TWOFOLD: f64 = 1e-28;
 
+/// The most steps that a run takes.
+pub const MOST_STEPS: u64 = 1_000_000_000;
+/// The steps after which a run is judged by how far it has come.
+const JUDGED: u64 = 1 << 17;
+/// How many times [`MOST_STEPS`] a run that is judged may seem to need: its steps may yet become longer.
+const HOPELESS: f64 = 1e3;
+
+/// Refuses to go on with a run that has taken all its steps, or is hopelessly far from the end of its `span` of time.
+///
+/// # Errors
+/// [`Error::TooManySteps`].
+pub(crate) fn check_steps(steps: u64, start: f64, elapsed: f64, span: f64) -> Result<(), Error> {
+    let (most, ahead) = (MOST_STEPS as f64, steps as f64 * (span / elapsed).abs());
+    let is_hopeless = steps >= JUDGED && ahead > HOPELESS * most;
+    if steps < MOST_STEPS && !is_hopeless {
+        return Ok(());
+    }
+    Err(Error::TooManySteps {
+        time: start + elapsed,
+        steps,
+        ahead,
+        most,
+    })
+}
+
 /// How accurate each step is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
@@ -181,9 +206,58 @@ pub fn check_times(times: &[f64]) -> Result<(), Error> {
     Ok(())
 }
 
+/// Squares and cubes of the rates of a run, and its torques, stay within float64 while its span is within these bounds.
+const SPANS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+/// Likewise of the largest moment over the square of the span.
+const TORQUES: std::ops::RangeInclusive<f64> = 1e-250..=1e250;
+
+/// Checks that the equations of motion of a body through these times can be integrated in float64: rates are of the order of
+/// one over the span or more, and torques are moments times their squares.
+///
+/// # Errors
+/// [`Error::OutOfDomain`].
+pub fn check_scales(body: &RigidBody, times: &[f64]) -> Result<(), Error> {
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
+        return Ok(());
+    };
+    let span = (last - first).abs();
+    if span == 0.0 {
+        return Ok(());
+    }
+    if !SPANS.contains(&span) {
+        return Err(Error::OutOfDomain {
+            what: "the span of t",
+            law: "from 1e-100 to 1e100 for an integration in steps, whose rates and their squares are to stay within the \
+                  range of float64; choose another unit of time",
+            value: span,
+        });
+    }
+    let moment = body.inertia().diagonal().max();
+    if moment > 0.0 && !TORQUES.contains(&(moment / span / span)) {
+        return Err(Error::OutOfDomain {
+            what: "the largest moment over the square of the span of t",
+            law: "from 1e-250 to 1e250 for an integration in steps, whose torques are to stay within the range of float64; \
+                  choose another unit of mass, length or time",
+            value: moment / span / span,
+        });
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_that_cannot_end_are_refused() {
+        let is_refused = |steps, elapsed| check_steps(steps, 0.0, elapsed, 1.0).is_err();
+        assert!(is_refused(MOST_STEPS, 1.0) && !is_refused(MOST_STEPS - 1, 1.0));
+        // 2¹⁷ steps for 1.3e-7 of the time are 1e12 for all of it.
+        let part = JUDGED as f64 / (HOPELESS * MOST_STEPS as f64);
+        assert!(is_refused(JUDGED, 0.99 * part) && !is_refused(JUDGED, 1.01 * part));
+        assert!(!is_refused(JUDGED - 1, 0.5 * part));
+        assert!(is_refused(JUDGED, -0.5 * part) && is_refused(JUDGED, 0.0));
+    }
 
     #[test]
     fn times_must_run_one_way() {

@@ -45,9 +45,26 @@ impl FreeMotion {
     /// The derivatives of the state at the time t.
     #[must_use]
     pub fn sensitivity(&self, t: f64) -> Sensitivity {
+        let motion = Invariants::of_motion(self);
+        self.scaled_sensitivity(&motion, t)
+            .in_units_of(motion.inertia_unit, motion.rate_unit)
+    }
+
+    /// In the units of the motion: however large or small those of the arguments are, this is of the order of the turns made.
+    pub(super) fn scaled_sensitivity(&self, motion: &Invariants, t: f64) -> Sensitivity {
         let attitudes = [&self.initial.attitude, &self.at(t).attitude];
-        let omega_at = |t: f64| self.at(t).omega;
-        Invariants::of_motion(self).sensitivity(t, &self.axes, attitudes, omega_at)
+        motion.sensitivity(t, &self.axes, attitudes, |t| self.at(t).omega)
+    }
+}
+
+impl Sensitivity {
+    /// From the units of a motion to those of its arguments: δ has no unit.
+    fn in_units_of(mut self, inertia_unit: f64, rate_unit: f64) -> Self {
+        self.moments /= inertia_unit;
+        (self.state.fixed_view_mut::<3, 3>(0, 3)).apply(|x| *x /= rate_unit);
+        (self.state.fixed_view_mut::<3, 3>(3, 0)).apply(|x| *x *= rate_unit);
+        (self.moments.fixed_view_mut::<3, 3>(3, 0)).apply(|x| *x *= rate_unit);
+        self
     }
 }
 
@@ -58,8 +75,7 @@ impl Invariants {
     /// In units of the rate of the motion the error is a few ε of the largest derivative: not more near the separatrix,
     /// where derivatives grow as exp(λt), nor for symmetric bodies or steady spins. For a needle that turns about its own
     /// axis, it is that times `I₃ω/L`. NaN where derivatives are beyond float64, far out on the separatrix.
-    #[must_use]
-    pub fn sensitivity(
+    fn sensitivity(
         &self,
         t: f64,
         axes: &Matrix3<f64>,
@@ -82,13 +98,10 @@ impl Invariants {
         let mut both = SMatrix::<f64, 6, 6>::zeros();
         both.fixed_view_mut::<3, 3>(0, 0).copy_from(axes);
         both.fixed_view_mut::<3, 3>(3, 3).copy_from(axes);
-        let mut state = both * by_start * both.transpose();
-        let mut moments = both * by_moments / self.inertia_unit;
-        // δ has no unit, ω that of the motion.
-        (state.fixed_view_mut::<3, 3>(0, 3)).apply(|x| *x /= unit);
-        (state.fixed_view_mut::<3, 3>(3, 0)).apply(|x| *x *= unit);
-        (moments.fixed_view_mut::<3, 3>(3, 0)).apply(|x| *x *= unit);
-        Sensitivity { state, moments }
+        Sensitivity {
+            state: both * by_start * both.transpose(),
+            moments: both * by_moments,
+        }
     }
 
     fn in_principal_axes(
@@ -145,12 +158,7 @@ impl Invariants {
             by_moments: Matrix3::zeros(),
             middle_square: 0.0,
         };
-        let periods = (t / half_period.high).round();
-        let rest = if periods == 0.0 {
-            t
-        } else {
-            (DoubleDouble::from(t) - half_period * periods.into()).high
-        };
+        let (periods, rest) = whole_off(t, half_period);
         let phase = (rest * self.rate_square().high.sqrt()).abs();
         if phase.is_nan() || phase > BEYOND {
             rates.by_omega.fill(f64::NAN);
@@ -168,8 +176,8 @@ impl Invariants {
             done += 1.0;
         }
         rates.omega = omega_at(rest);
-        if periods != 0.0 {
-            rates.skip(self, periods);
+        if periods.count != 0.0 {
+            rates.skip(self, &periods);
         }
         rates
     }
@@ -218,6 +226,36 @@ impl Invariants {
     }
 }
 
+/// Half periods that a time holds: how many, and whether that is an odd number, which beyond 2⁵³ the first does not tell.
+struct Periods {
+    count: f64,
+    are_odd: bool,
+}
+
+/// From this many half periods on their number is not known to one at the first attempt.
+const MANY: f64 = 4.5e15; // 2⁵²
+
+/// The time but for whole half periods, and these.
+fn whole_off(t: f64, half_period: DoubleDouble) -> (Periods, f64) {
+    let mut rest = DoubleDouble::from(t);
+    let mut periods = Periods {
+        count: 0.0,
+        are_odd: false,
+    };
+    loop {
+        let count = (rest.high / half_period.high).round();
+        if count == 0.0 || !count.is_finite() {
+            return (periods, rest.high);
+        }
+        rest -= half_period * count.into();
+        periods.count += count;
+        periods.are_odd ^= count % 2.0 != 0.0;
+        if count.abs() < MANY {
+            return (periods, rest.high);
+        }
+    }
+}
+
 /// ω at a time and its derivatives by ω at time zero and by the moments.
 struct Rates {
     omega: Vector3<f64>,
@@ -229,7 +267,7 @@ struct Rates {
 
 impl Rates {
     /// By whole half periods `T`, back: `dω = −ω̇ n dT`, and the signs that an odd number gives.
-    fn skip(&mut self, motion: &Invariants, periods: f64) {
+    fn skip(&mut self, motion: &Invariants, periods: &Periods) {
         let whole = HalfPeriod::of(motion);
         let start = std::array::from_fn(|k| Jet::variable(motion.omega[k], k));
         let [p, q] = motion.squares(&start);
@@ -243,12 +281,12 @@ impl Rates {
         let later = Jet::chain(0.0, [(whole.by_larger, &larger), (whole.by_gap, &gap)]).slopes;
         let [a1, a2, a3] = motion.contrasts;
         let [x, y, z] = self.omega.into();
-        let rate = Vector3::new(-a1 * y * z, a2 * z * x, -a3 * x * y) * -periods;
+        let rate = Vector3::new(-a1 * y * z, a2 * z * x, -a3 * x * y) * -periods.count;
         self.by_omega += rate * Vector3::new(later[0], later[1], later[2]).transpose();
         self.by_moments += rate * Vector3::new(later[3], later[4], later[5]).transpose();
         self.middle_square +=
-            motion.around_first * motion.around_third * whole.square_integral * periods;
-        if periods % 2.0 != 0.0 {
+            motion.around_first * motion.around_third * whole.square_integral * periods.count;
+        if periods.are_odd {
             let [k, _] = motion.planar_axes();
             for row in [k, 1] {
                 self.omega[row] *= -1.0;

@@ -149,6 +149,11 @@ impl Body {
         })
     }
 
+    /// |ω|.
+    pub(super) fn speed(&self, point: &Point) -> f64 {
+        self.omega(point).norm()
+    }
+
     pub(super) fn phase(&self, point: &Point) -> Phase {
         Phase {
             attitude: point.attitude * self.q_bp.conjugate(),

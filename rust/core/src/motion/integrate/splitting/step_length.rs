@@ -9,7 +9,7 @@ const TRIALS: usize = 6;
 /// Rounds of that search.
 const ROUNDS: usize = 5;
 /// Of the length of step at which a trial just meets the tolerance.
-const SAFETY: f64 = 0.9;
+pub(super) const SAFETY: f64 = 0.9;
 
 /// The scheme that takes fewest kicks at the length of step at which it meets the tolerance.
 pub(super) fn cheapest<L: Load>(

@@ -8,7 +8,7 @@ use super::moment::{Moment, Orbit};
 use crate::error::Error;
 use crate::mass::validity::ROUNDING;
 use crate::motion::loads::{Feedback, Frame, GravityGradient, Sampled, Term};
-use crate::motion::simulate::Task;
+use crate::motion::simulate::{Task, check_steps};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::number::Real;
@@ -46,6 +46,30 @@ impl<X: Real> Default for Linear<'_, X> {
     }
 }
 
+/// The scalar part w of a feedback's error, which is linear in the attitude (x, y, z, w), and the sign of it that the torques
+/// are made for.
+#[derive(Clone, Copy, Debug)]
+struct Switch<X> {
+    scalar: Vector4<X>,
+    side: f64,
+}
+
+impl<X: Real> Switch<X> {
+    fn value(&self, attitude: &[X; 4]) -> f64 {
+        self.scalar.dot(&Vector4::from(*attitude)).rounded()
+    }
+
+    /// The sign of w in `state`; positive where it is zero.
+    fn sign(&self, state: &[X; 7]) -> f64 {
+        let [_, _, _, x, y, z, w] = *state;
+        if self.value(&[x, y, z, w]) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+}
+
 /// A motion on its way.
 #[derive(Clone, Debug)]
 pub(super) struct Course<'a, X> {
@@ -59,8 +83,8 @@ pub(super) struct Course<'a, X> {
     breaks: Vec<f64>,
     segment: usize,
     linear: Linear<'a, X>,
-    /// The sign of the scalar part of each feedback's error.
-    signs: Vec<f64>,
+    /// Of each feedback that acts, what changes its law.
+    switches: Vec<Switch<X>>,
     /// The unit of rates: a power of two near the fastest of the motion.
     unit: f64,
 }
@@ -93,7 +117,7 @@ impl<'a, X: Precision> Course<'a, X> {
             breaks,
             segment: 0,
             linear: Linear::default(),
-            signs: Vec::new(),
+            switches: Vec::new(),
             unit: 1.0,
         };
         let state = course.start();
@@ -117,14 +141,18 @@ impl<'a, X: Precision> Course<'a, X> {
     /// What acts in the segment under way.
     fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
         let mut linear = Linear::default();
-        let mut signs = Vec::new();
+        let mut switches: Vec<Switch<X>> = Vec::new();
         for term in self.acting(self.segment_start(), self.breaks[self.segment]) {
             if let Term::Feedback(feedback) = term {
-                signs.push(sign(&self.error_scalar(feedback), state));
+                let scalar = self.error_scalar(feedback);
+                let mut switch = Switch { scalar, side: 1.0 };
+                switch.side = switch.sign(state);
+                switches.push(switch);
             }
-            self.add(&mut linear, term, signs.last().copied().unwrap_or(1.0));
+            let side = switches.last().map_or(1.0, |switch| switch.side);
+            self.add(&mut linear, term, side);
         }
-        self.signs = signs;
+        self.switches = switches;
         self.check_massless(&linear, state)?;
         self.linear = linear;
         Ok(())
@@ -267,8 +295,21 @@ impl<'a, X: Precision> Course<'a, X> {
 
     /// Whether the scalar part of a feedback's error has another sign in `state` than the torques are made for.
     pub(super) fn has_flipped(&self, state: &[X; 7]) -> bool {
-        let mut feedbacks = self.feedbacks().zip(&self.signs);
-        feedbacks.any(|(feedback, &side)| sign(&self.error_scalar(feedback), state) != side)
+        (self.switches.iter()).any(|switch| switch.sign(state) != switch.side)
+    }
+
+    /// How many functions of the attitude change the law by their signs, and of number `index` the value in the attitude (x, y, z, w),
+    /// or in a coefficient of its series, and the sign before the step.
+    pub(super) fn switches(&self) -> usize {
+        self.switches.len()
+    }
+
+    pub(super) fn switch_value(&self, index: usize, attitude: &[X; 4]) -> f64 {
+        self.switches[index].value(attitude)
+    }
+
+    pub(super) fn side(&self, index: usize) -> f64 {
+        self.switches[index].side
     }
 
     /// Takes the torques of the feedbacks for the signs in `state`.
@@ -277,17 +318,6 @@ impl<'a, X: Precision> Course<'a, X> {
     /// As [`Self::new`].
     pub(super) fn flip(&mut self, state: &[X; 7]) -> Result<(), Error> {
         self.linearize(state)
-    }
-
-    fn feedbacks(&self) -> impl Iterator<Item = &'a Feedback> {
-        let acting = self.acting(self.segment_start(), self.breaks[self.segment]);
-        acting.filter_map(|term| {
-            if let Term::Feedback(feedback) = term {
-                Some(feedback)
-            } else {
-                None
-            }
-        })
     }
 
     pub(super) fn unit(&self) -> f64 {
@@ -515,6 +545,16 @@ impl<'a, X: Precision> Course<'a, X> {
         self.task.times[self.task.times.len() - 1]
     }
 
+    /// Whether so many steps up to `now`, in units of the unit of rates, let the motion come to its end.
+    pub(super) fn check_steps(&self, steps: u64, now: f64) -> Result<(), Error> {
+        check_steps(
+            steps,
+            self.task.times[0],
+            now / self.unit,
+            self.last_elapsed(),
+        )
+    }
+
     /// How much of the motion is done.
     pub(super) fn fraction(&self, now: f64) -> f64 {
         let times = self.task.times;
@@ -585,16 +625,6 @@ fn turns(term: &Term, pivoted: bool) -> bool {
         }
         Term::UniformGravity { .. } => pivoted,
         _ => false,
-    }
-}
-
-/// The sign that a feedback takes, of its error's scalar part in `state`.
-fn sign<X: Real>(scalar: &Vector4<X>, state: &[X; 7]) -> f64 {
-    let [_, _, _, x, y, z, w] = *state;
-    if scalar.dot(&Vector4::new(x, y, z, w)).rounded() < 0.0 {
-        -1.0
-    } else {
-        1.0
     }
 }
 

@@ -154,6 +154,16 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         is_damped(field, row) && quadratic.is_some_and(|it| it.is_reversed(row, start, omega))
     }
 
+    /// Whether the law of one row changes where ω passes through zero.
+    pub(super) fn may_reverse<const B: usize>(
+        &self,
+        row: usize,
+        field: &Field<Pack<L, R>, B>,
+    ) -> bool {
+        let quadratic = self.quadratic.as_ref();
+        is_damped(field, row) && quadratic.is_some_and(|it| it.is_under_way(row))
+    }
+
     /// Keeps the steps of motions under quadratic damping so short that those almost at rest stay so and that others do not
     /// come to rest at their present rate: see [`Quadratic`].
     #[inline(always)]

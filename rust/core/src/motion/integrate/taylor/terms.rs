@@ -58,11 +58,16 @@ impl<L: Number, const R: usize> Quadratic<Pack<L, R>> {
         }
     }
 
+    /// Whether one row's ω is not as good as zero, so that there is a series of |ω|.
+    pub(super) fn is_under_way(&self, row: usize) -> bool {
+        self.speeds[0].get(row) > 0.0
+    }
+
     /// Whether one row's ω, `start` at the start of the step, has turned against it: where ω passes through zero along a line,
     /// the series goes on as −|ω|, which is not the law beyond.
     pub(super) fn is_reversed(&self, row: usize, start: &[f64; 3], omega: &[f64; 3]) -> bool {
         let along: f64 = (0..3).map(|i| start[i] * omega[i]).sum();
-        self.speeds[0].get(row) > 0.0 && along < 0.0
+        self.is_under_way(row) && along < 0.0
     }
 }
 

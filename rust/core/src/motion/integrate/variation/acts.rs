@@ -6,15 +6,16 @@ use nalgebra::{Matrix3, Quaternion, Vector3};
 use super::inertia::Inertia;
 use super::numbers::{
     Block, Matrix, Number, Quadruple, Row, Rows, Vector, WIDTH, ZERO, apply, at, begin, between,
-    cross, cross_product, dot, extend, product, quaternion_product, seen, times, value,
+    cross, cross_product, dot, extend, product, quaternion_product, seen, times,
 };
 use super::spline::Spline;
 use crate::error::Error;
 use crate::motion::attitude::from_axes;
 use crate::motion::loads::{Feedback, Frame, Subject, Term};
 
-/// The part of the fastest ω below which quadratic damping is left out: its error is the cube of that.
-const STILL: f64 = 2e-6;
+/// The part of the fastest ω below which quadratic damping is left out: the error of the derivatives is its square, that of ω its
+/// cube.
+const STILL: f64 = 1e-8;
 
 /// ω and the attitude (x, y, z, w) of the principal axes as series.
 #[derive(Clone, Debug, Default)]
@@ -247,17 +248,24 @@ impl Act {
         }
     }
 
-    /// Whether the law is another one in the attitude or at the time `h` of a step: by the sign of a feedback's error, or since ω
-    /// has passed through zero, beyond which the series of |ω| goes on as −|ω|.
-    pub(super) fn has_flipped(&self, h: f64, motion: &Motion) -> bool {
+    /// The series of what changes the law by its sign, and the sign before the step: the scalar part of a feedback's error, or under quadratic
+    /// damping `ω(0)·ω(t)`, since the series of |ω| goes on as −|ω| beyond a zero of ω.
+    pub(super) fn switch(&self, motion: &Motion) -> Option<(Vec<f64>, f64)> {
+        let orders = motion.omega[0].len();
         match self {
             Self::Feedback { target, sign, .. } => {
-                let q = [0, 1, 2, 3].map(|i| Number::constant(value(&motion.attitude[i], h)));
-                let scalar = quaternion_product(target, &q)[3].value;
-                scalar * *sign < 0.0
+                let scalar = |k| {
+                    let q = at(&motion.attitude, k).map(|x| Number::constant(x.value));
+                    quaternion_product(target, &q)[3].value
+                };
+                Some(((0..orders).map(scalar).collect(), *sign))
             }
-            Self::Quadratic { speeds, .. } => value(speeds, h) < 0.0,
-            _ => false,
+            Self::Quadratic { speeds, .. } if speeds[0].value > 0.0 => {
+                let w = &motion.omega;
+                let along = |k: usize| w.iter().map(|x| x[0].value * x[k].value).sum();
+                Some(((0..orders).map(along).collect(), 1.0))
+            }
+            _ => None,
         }
     }
 
@@ -281,9 +289,6 @@ impl Act {
             return None;
         };
         let [x, y, z, scalar] = quaternion_product(target, q);
-        if scalar.value * *sign > 0.0 {
-            return None;
-        }
         // ẇ = −½ vec(e)·ω.
         let rate = -0.5 * dot(&[x, y, z], omega).value;
         let more = times(&apply(stiffness, &[x, y, z]), -2.0 * *sign);
@@ -291,7 +296,8 @@ impl Act {
         Some((more, scalar.slopes.map(|slope| -slope / rate)))
     }
 
-    /// The longest step through a rest in which quadratic damping is left out.
+    /// The longest step through a rest in which quadratic damping is left out, or toward one: rounding in the series of |ω| grows as
+    /// 1/|ω| does, so that a step does not go as far as ω would take to zero at its present rate.
     pub(super) fn limit(&self, motion: &Motion, fastest: f64) -> f64 {
         let size = |k: usize| {
             (motion.omega.iter())
@@ -301,6 +307,7 @@ impl Act {
         };
         match self {
             Self::Quadratic { .. } if size(0) <= STILL * fastest => 2.0 * STILL * fastest / size(1),
+            Self::Quadratic { .. } => 0.8 * size(0) / size(1),
             _ => f64::INFINITY,
         }
     }

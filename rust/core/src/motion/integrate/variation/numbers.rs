@@ -103,11 +103,6 @@ pub(super) fn increment(row: &[Number], h: f64) -> Number {
     (row[1..].iter().rev()).fold(ZERO, |sum, coefficient| (sum + *coefficient) * h)
 }
 
-/// The value of a series at the time `h`.
-pub(super) fn value(row: &[Number], h: f64) -> f64 {
-    (row.iter().rev()).fold(0.0, |sum, coefficient| sum * h + coefficient.value)
-}
-
 pub(super) fn plus(a: &Vector, b: &Vector) -> Vector {
     [0, 1, 2].map(|i| a[i] + b[i])
 }

@@ -16,16 +16,15 @@ use super::parameters::{ATTITUDE, LOAD, RATES, count};
 use crate::error::Error;
 use crate::motion::attitude::from_axes;
 use crate::motion::loads::{GravityGradient, Term};
-use crate::motion::simulate::{Task, spans};
+use crate::motion::simulate::{HELD, Task, check_steps, spans};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
+use crate::numerics::sign_changes::sign_changes;
 
 /// Steps between two looks at the watch.
 const PATIENCE: u32 = 16;
 /// How far ω may outgrow the unit of rates before another is taken.
 const OUTGROWN: f64 = 65_536.0;
-/// The halvings that find where within a step the law changes.
-const HALVINGS: u32 = 55;
 
 /// The derivatives of (δ, ω) by the variables of a block.
 pub(super) type Columns = [Vector6<f64>; WIDTH];
@@ -102,12 +101,13 @@ impl<'a> Walk<'a> {
             }
         }
         let (mut next, mut patience) = (1, PATIENCE);
+        let (mut steps, mut held) = (0, 0);
         for pair in bounds.windows(2) {
             self.enter(pair)?;
             loop {
                 self.expand();
                 let left = self.since_now(pair[1]);
-                let (h, flips) = self.length(left.abs())?;
+                let (h, flip) = self.length(left.abs())?;
                 let h = h.copysign(left);
                 while let Some(&t) = times.get(next)
                     && self.since_now(t).abs() <= h.abs()
@@ -115,9 +115,16 @@ impl<'a> Walk<'a> {
                     give(next, &self.columns(self.since_now(t)));
                     next += 1;
                 }
+                let least = 4.0 * f64::EPSILON * self.now.0.abs() * self.units.rate;
                 self.step(h);
-                if flips {
-                    self.flip();
+                steps += 1;
+                if let Some(index) = flip {
+                    self.flip(index);
+                    held = if h.abs() > least { 0 } else { held + 1 };
+                    if held > HELD {
+                        let (time, step) = (self.time(), h / self.units.rate);
+                        return Err(Error::StepTooSmall { time, step });
+                    }
                 } else if h == left {
                     self.now = two_sum(pair[1], -start);
                     break;
@@ -128,6 +135,7 @@ impl<'a> Walk<'a> {
                 patience -= 1;
                 if patience == 0 {
                     patience = PATIENCE;
+                    check_steps(steps, start, self.now.0, end - start)?;
                     if watch(self.now.0 / (end - start)).is_break() {
                         return Err(Error::Stopped);
                     }
@@ -281,8 +289,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// How long the step is, at most `left`, and whether the law changes at its end.
-    fn length(&mut self, left: f64) -> Result<(f64, bool), Error> {
+    /// How long the step is, at most `left`, and which act changes its law at its end.
+    fn length(&mut self, left: f64) -> Result<(f64, Option<usize>), Error> {
         let [pace, turning] = &mut self.paces;
         let mut h = pace.longest(&[&self.motion.omega]);
         // Not a number wherever one of them is not.
@@ -310,21 +318,23 @@ impl<'a> Walk<'a> {
         }
         h = h.min(left);
         let sense = if self.direction() { 1.0 } else { -1.0 };
-        let has_flipped =
-            |h: f64| (self.acts.iter()).any(|act| act.has_flipped(h * sense, &self.motion));
-        if !has_flipped(h) {
-            return Ok((h, false));
-        }
-        let mut before = 0.0;
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (before + h);
-            if has_flipped(middle) {
-                h = middle;
-            } else {
-                before = middle;
+        let mut flip = (h, None);
+        for (index, act) in self.acts.iter().enumerate() {
+            let Some((mut series, side)) = act.switch(&self.motion) else {
+                continue;
+            };
+            let mut power = 1.0;
+            for coefficient in &mut series {
+                *coefficient *= power;
+                power *= h * sense;
+            }
+            if let Some(place) = sign_changes(&series, Some(side)).first()
+                && place * h < flip.0
+            {
+                flip = (place * h, Some(index));
             }
         }
-        Ok((h, true))
+        Ok(flip)
     }
 
     /// Whether the motion goes forward in time.
@@ -354,16 +364,14 @@ impl<'a> Walk<'a> {
         self.now = two_sum(now, rest + h / self.units.rate);
     }
 
-    /// Past the change of a law: beyond it a neighbour that comes to it later by δτ has been `δτ (ω̇₋ − ω̇₊)` longer under the
-    /// old one.
-    fn flip(&mut self) {
-        for act in &mut self.acts {
-            if let Some((torque, delay)) = act.flip(&self.omega[0], &self.attitude[0]) {
-                let jump = apply(&self.inertia.inverse, &torque);
-                for (omega, jump) in self.omega[0].iter_mut().zip(jump) {
-                    for (slope, delay) in omega.slopes.iter_mut().zip(delay) {
-                        *slope += jump.value * delay;
-                    }
+    /// Past the change of the law of one act: beyond it a neighbour that comes to it later by δτ has been `δτ (ω̇₋ − ω̇₊)` longer under
+    /// the old one.
+    fn flip(&mut self, index: usize) {
+        if let Some((torque, delay)) = self.acts[index].flip(&self.omega[0], &self.attitude[0]) {
+            let jump = apply(&self.inertia.inverse, &torque);
+            for (omega, jump) in self.omega[0].iter_mut().zip(jump) {
+                for (slope, delay) in omega.slopes.iter_mut().zip(delay) {
+                    *slope += jump.value * delay;
                 }
             }
         }

@@ -15,11 +15,11 @@ use super::push::Push;
 use super::series::{Coefficient, Series};
 use super::step::{Compensated, increment, longest};
 use crate::error::Error;
-use crate::motion::simulate::{Effort, End, Run};
+use crate::motion::simulate::{Effort, End, HELD, Run};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
 use crate::numerics::number::{Number, Real};
-use search::{Landing, Search};
+use search::Landing;
 pub(crate) use seen::Step;
 pub(super) use seen::drive_seen;
 pub(super) use settings::Settings;
@@ -61,6 +61,8 @@ struct Lead<'a, X: Precision> {
     next: usize,
     stop: Stop,
     steps: u64,
+    /// Changes of the law without a step between them.
+    flips_at_once: u32,
 }
 
 /// `R` motions under way. Times are since the start, in the unit of each motion.
@@ -114,6 +116,7 @@ pub(super) fn drive<
         patience -= 1;
         if patience == 0 {
             patience = PATIENCE;
+            idle |= lanes.refuse_endless();
             if watch(lanes.fraction()).is_break() {
                 for row in 0..R {
                     lanes.end(row, End::Stopped);
@@ -276,27 +279,36 @@ where
 
     /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.
     #[inline(always)]
-    fn pass(&mut self, row: usize, mut h: f64) -> (f64, Landing) {
-        let mut search = Search::new(self.settings.parts.may_flip(), h);
+    fn pass(&mut self, row: usize, h: f64) -> (f64, Landing) {
+        let (mut h, landing) = if self.settings.parts.may_flip() {
+            self.until_flip(row, h)
+        } else {
+            (h, Landing::None)
+        };
+        if landing == Landing::Flip && self.is_held(row, h) {
+            h = 0.0; // which advances nothing: an error
+        }
         loop {
-            let looked_at = search.time();
-            let time = match looked_at {
-                Some(time) => L::Real::from(time * self.direction[row]),
-                None => match self.meet(row, h) {
-                    Meeting::Output(time) => time,
-                    Meeting::Break(gap) => return (gap, Landing::Break),
-                    Meeting::Nothing => return (h, search.landing()),
-                    Meeting::End => return (0.0, Landing::None),
-                },
+            let time = match self.meet(row, h) {
+                Meeting::Output(time) => time,
+                Meeting::Break(gap) => return (gap, Landing::Break),
+                Meeting::Nothing => return (h, landing),
+                Meeting::End => return (0.0, Landing::None),
             };
             let (state, place) = self.within(row, time);
-            if looked_at.is_some() {
-                search.narrow(self.has_flipped(row, &state));
-                h = search.end();
-            } else {
-                self.give(row, &state, place.as_ref());
-            }
+            self.give(row, &state, place.as_ref());
         }
+    }
+
+    /// Whether the law of a motion, which changes after the step `h`, has changed on one spot again and again: then it holds the
+    /// body there.
+    fn is_held(&mut self, row: usize, h: f64) -> bool {
+        let least = (4.0 * f64::EPSILON * self.now[row].0.abs()).max(f64::MIN_POSITIVE);
+        let Some(lead) = &mut self.leads[row] else {
+            return false;
+        };
+        lead.flips_at_once = if h > least { 0 } else { lead.flips_at_once + 1 };
+        lead.flips_at_once > HELD
     }
 
     /// The state of a motion, and its position and velocity when it is pushed, at a time since the start of the step.
@@ -446,6 +458,7 @@ where
             next: 1,
             stop: Stop::Output,
             steps: 0,
+            flips_at_once: 0,
         });
         self.enter(row);
     }
@@ -509,6 +522,22 @@ where
             run.end = end;
         }
         self.leads[row] = None;
+    }
+
+    /// Ends the motions that would take too many steps; whether there was one.
+    pub(super) fn refuse_endless(&mut self) -> bool {
+        let mut ended = false;
+        for row in 0..R {
+            let Some(lead) = &self.leads[row] else {
+                continue;
+            };
+            let (course, elapsed) = (&lead.job.course, self.now[row].0);
+            if let Err(error) = course.check_steps(lead.steps, elapsed) {
+                self.end(row, End::Failed(error));
+                ended = true;
+            }
+        }
+        ended
     }
 
     /// A lane without motion: at rest for ever.

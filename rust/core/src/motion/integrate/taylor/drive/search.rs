@@ -1,7 +1,18 @@
-//! Where within a step the law of a motion changes.
+//! Where within a step the law of a motion changes: at the zeros of its switching functions.
+//!
+//! These are the scalar part of each feedback's error and, under quadratic damping, `ω(0)·ω(t)`, which passes through zero with
+//! ω. Both are linear in the state, so that their series are known with it, and all their zeros within a step are
+//! found, however many and however close.
 
-/// The halvings that find where within a step the law changes.
-const HALVINGS: u32 = 55;
+use super::{Lanes, Pack};
+use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::series::Series;
+use crate::motion::integrate::taylor::twin::COUNT;
+use crate::numerics::number::Number;
+use crate::numerics::sign_changes::sign_changes;
+
+/// How far behind the zero of its series, relative to the step, a function is asked for its sign.
+const HIDDEN: f64 = 1e-9;
 
 /// Why the equations of a motion change after a step.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -11,57 +22,75 @@ pub(super) enum Landing {
     Flip,
 }
 
-/// The search for the first time in a step at which a feedback has changed its sign or ω passed through zero: a look at its end, then halvings.
-pub(super) struct Search {
-    before: f64,
-    after: f64,
-    looks: u32,
-    has_found: bool,
-}
-
-impl Search {
-    /// In a step as long as `h`; over at once unless `is_needed`.
-    pub(super) fn new(is_needed: bool, h: f64) -> Self {
-        Self {
-            before: if h.is_finite() { h } else { 0.0 },
-            after: h,
-            looks: u32::from(is_needed && h.is_finite()),
-            has_found: false,
-        }
-    }
-
-    /// Where to look next, until it is over.
-    pub(super) fn time(&self) -> Option<f64> {
-        (self.looks > 0).then_some(0.5 * (self.before + self.after))
-    }
-
-    /// Goes on with what was seen there.
-    pub(super) fn narrow(&mut self, has_flipped: bool) {
-        let middle = 0.5 * (self.before + self.after);
-        if self.has_found {
-            if has_flipped {
-                self.after = middle;
-            } else {
-                self.before = middle;
+impl<L, S, const B: usize, const R: usize> Lanes<'_, L, S, B, R>
+where
+    L: Number<Real: Precision>,
+    S: Series<Pack<L, R>, B>,
+{
+    /// The step `h` of one row, or what is left of it until the law changes.
+    #[inline(always)]
+    pub(super) fn until_flip(&self, row: usize, h: f64) -> (f64, Landing) {
+        for place in self.places(row, h) {
+            // The state itself has to show the change, here or some last digits later; where rounding hides it, there is none.
+            let (mut time, mut later) = (place, f64::EPSILON * place.max(f64::EPSILON * h));
+            while time <= h && later <= HIDDEN * h {
+                let (state, _) = self.within(row, L::Real::from(time * self.direction[row]));
+                if self.has_flipped(row, &state) {
+                    return (time, Landing::Flip);
+                }
+                time = place + later;
+                later *= 2.0;
             }
-            self.looks -= 1;
-        } else if has_flipped {
-            (self.before, self.has_found, self.looks) = (0.0, true, HALVINGS);
-        } else {
-            self.looks = 0;
         }
+        (h, Landing::None)
     }
 
-    /// The end of the step.
-    pub(super) fn end(&self) -> f64 {
-        self.after
-    }
-
-    pub(super) fn landing(&self) -> Landing {
-        if self.has_found {
-            Landing::Flip
-        } else {
-            Landing::None
+    /// The times within the step `h` of one row at which the series of its switching functions pass through zero, ascending.
+    #[inline(never)]
+    fn places(&self, row: usize, h: f64) -> Vec<f64> {
+        let mut places = Vec::new();
+        let Some(lead) = &self.leads[row] else {
+            return places;
+        };
+        let course = &lead.job.course;
+        let now = self.now[row];
+        let end = course.end_of_segment();
+        let left = ((end.0 - now.0) + (end.1 - now.1)) * self.direction[row];
+        let length = h.min(left);
+        // The shortest step that advances the time.
+        let least = 2.0 * f64::EPSILON * now.0.abs();
+        // A step that is not a number, or advances nothing, is an error elsewhere.
+        if !(h.is_finite() && length > least) {
+            return places;
         }
+        let mut seek = |value: &dyn Fn(usize) -> f64, side: f64| {
+            let mut coefficients = [0.0; COUNT];
+            let coefficients = &mut coefficients[..=self.settings.order];
+            let mut power = 1.0;
+            for (k, coefficient) in coefficients.iter_mut().enumerate() {
+                *coefficient = value(k) * power;
+                power *= length * self.direction[row];
+            }
+            places.extend(sign_changes(coefficients, Some(side)));
+        };
+        for index in 0..course.switches() {
+            let value = |k: usize| {
+                let q = self.series.get(k).q;
+                course.switch_value(index, &[0, 1, 2, 3].map(|i| q[i].real(row)))
+            };
+            seek(&value, course.side(index));
+        }
+        if self.extras.may_reverse(row, &self.field) {
+            let start = [0, 1, 2].map(|i| self.state.value[i].get(row));
+            let along = |k: usize| {
+                let w = self.series.get(k).w;
+                (0..3).map(|i| start[i] * w[i].get(row)).sum()
+            };
+            seek(&along, 1.0);
+        }
+        places.sort_by(f64::total_cmp);
+        (places.into_iter())
+            .map(|place| (place * length).max(least).max(f64::MIN_POSITIVE))
+            .collect()
     }
 }

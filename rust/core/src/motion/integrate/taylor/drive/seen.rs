@@ -99,6 +99,9 @@ pub(in crate::motion::integrate::taylor) fn drive_seen<
         if lanes.leads[0].is_none() {
             return Some(step);
         }
+        if lanes.refuse_endless() {
+            return Some(step);
+        }
         if see(&step).is_break() {
             lanes.end(0, End::Stopped);
             return None;

@@ -1,0 +1,187 @@
+"""Named fields as JSON and npz files hold them, read strictly: what is there is whole and is what it says."""
+
+from __future__ import annotations
+
+import errno
+import io
+import json
+import math
+import zipfile
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode._files.reading import MOST_TEXT, check_ordinary, naming, read_text
+from polhode._files.writing import write_bytes
+from polhode.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["MOST_COMPRESSED", "counts", "numbers", "read_json", "read_npz", "write_json"]
+
+MOST_COMPRESSED: Final = 1 << 30
+"""Bytes of the largest array that is read out of a compressed file."""
+
+_EXACT: Final = 2**53
+"""Whole numbers up to here are the same as float64."""
+
+
+def read_json(file: Path) -> dict[str, Any]:
+    """Read an object of fields from JSON.
+
+    Raises
+    ------
+    FileFormatError
+        If it is damaged, not an object, names a field twice or holds numbers that JSON does not have.
+    """
+    text = read_text(file, "JSON")
+    try:
+        fields = json.loads(text, parse_constant=_refused, object_pairs_hook=_once)
+    except RecursionError:
+        raise FileFormatError(f"{file}: not JSON: its parts are nested beyond reason") from None
+    except ValueError as error:
+        raise FileFormatError(f"{file}: not JSON: {error}") from None
+    if not isinstance(fields, dict):
+        raise FileFormatError(f"{file}: not an object of fields")
+    return fields
+
+
+def write_json(file: Path, fields: dict[str, Any]) -> None:
+    """Write an object of fields as JSON."""
+    # Python writes the shortest decimal that gives the same float64 back.
+    text = json.dumps(fields, indent=1, allow_nan=False) + "\n"
+    if len(text) > MOST_TEXT:
+        raise ValueError(
+            f"path: {file}: {len(text)} bytes of JSON are more than the {MOST_TEXT} that are read; use .npz"
+        )
+    write_bytes(file, text.encode())
+
+
+def read_npz(file: Path) -> dict[str, NDArray[Any]]:
+    """Read the arrays of an npz file, each held against its checksum before anything is made of it.
+
+    Parameters
+    ----------
+    file : pathlib.Path
+
+    Raises
+    ------
+    FileFormatError
+        If it is damaged, or not an npz file.
+    OSError
+        If it cannot be read.
+    """
+    check_ordinary(file)
+    arrays: dict[str, NDArray[Any]] = {}
+    try:
+        with naming(file), zipfile.ZipFile(file) as archive:
+            for member in archive.infolist():
+                name = member.filename.removesuffix(".npy")
+                if name in arrays:
+                    raise ValueError(f"{name[:40]!r} stands there twice")
+                if member.compress_type != zipfile.ZIP_STORED and member.file_size > MOST_COMPRESSED:
+                    raise ValueError(
+                        f"{name} is compressed from {member.file_size} bytes, and at most {MOST_COMPRESSED} "
+                        "are read of a compressed array; write it with numpy.savez"
+                    )
+                arrays[name] = _array(archive.read(member))
+    except MemoryError:
+        raise
+    except OSError as error:
+        if error.errno != errno.EINVAL:  # which is a place in the file that there is not
+            raise
+        raise FileFormatError(f"{file}: not a whole npz file: it points outside itself") from None
+    except Exception as error:  # zipfile, zlib and numpy raise nearly anything over a damaged file
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise FileFormatError(f"{file}: not a whole npz file: {reason[:200]}") from None
+    return arrays
+
+
+def numbers(value: Any, name: str, file: Path, *, with_holes: bool = False) -> NDArray[np.float64]:
+    """Give a field as float64.
+
+    Parameters
+    ----------
+    value : list, number or numpy.ndarray
+        Of real numbers.
+    name : str
+    file : pathlib.Path
+    with_holes : bool
+        Whether null, or what is not a number, may stand in it.
+    """
+    array = value if isinstance(value, np.ndarray) else _listed_numbers(value, name, file, with_holes)
+    if array.dtype.kind not in "fiu" or array.dtype.itemsize > 8:
+        raise FileFormatError(f"{file}: {name} holds {array.dtype}, expected real numbers (float64)")
+    if array.dtype.kind in "iu" and array.size and max(abs(int(array.min())), int(array.max())) > _EXACT:
+        raise FileFormatError(f"{file}: {name} holds whole numbers beyond 2^53, which float64 does not keep")
+    result = array.astype(np.float64)
+    if not with_holes and not np.isfinite(result).all():
+        raise FileFormatError(
+            f"{file}: {name} holds {result[~np.isfinite(result)][0]}, expected finite numbers"
+        )
+    return result
+
+
+def counts(value: Any, name: str, file: Path, shape: tuple[int, ...]) -> NDArray[np.int64]:
+    """Give a field as counts of a shape."""
+    exact = numbers(value, name, file)
+    if exact.shape != shape:
+        raise FileFormatError(f"{file}: {name} has shape {exact.shape}, expected {shape}")
+    if (exact < 0).any() or (exact != np.floor(exact)).any() or (exact > _EXACT).any():
+        raise FileFormatError(f"{file}: {name} holds numbers that are no counts")
+    return exact.astype(np.int64)
+
+
+def _listed_numbers(value: Any, name: str, file: Path, with_holes: bool) -> NDArray[np.float64]:
+    held = np.array(value, dtype=object)
+    others = set(map(type, held.reshape(-1).tolist())) - {int, float}
+    if with_holes:
+        others.discard(type(None))
+    if others:
+        found = (
+            "lists of different lengths" if list in others else " and ".join(sorted(map(_in_json, others)))
+        )
+        raise FileFormatError(f"{file}: {name} is not an array of numbers: it holds {found}")
+    try:
+        return held.astype(np.float64)  # None becomes NaN
+    except OverflowError:
+        raise FileFormatError(f"{file}: {name} is not an array of numbers: one is beyond float64") from None
+
+
+def _in_json(kind: type) -> str:
+    return {bool: "true or false", str: "text", dict: "an object", type(None): "null"}.get(
+        kind, kind.__name__
+    )
+
+
+def _array(data: bytes) -> NDArray[Any]:
+    """Make the array of an npy file."""
+    stream = io.BytesIO(data)
+    version = np.lib.format.read_magic(stream)
+    if version == (1, 0):
+        shape, is_fortran, dtype = np.lib.format.read_array_header_1_0(stream)
+    else:
+        shape, is_fortran, dtype = np.lib.format.read_array_header_2_0(stream)
+    if dtype.hasobject or dtype.names is not None or dtype.subdtype is not None:
+        raise ValueError(f"an array holds {dtype}, expected plain numbers")
+    start = stream.tell()
+    if min(shape, default=0) < 0 or math.prod(shape) * dtype.itemsize != len(data) - start:
+        raise ValueError(f"an array says {dtype} of shape {shape}, but {len(data) - start} bytes are there")
+    flat = np.frombuffer(data, dtype=dtype, offset=start) if len(data) > start else np.empty(0, dtype=dtype)
+    return flat.reshape(shape, order="F" if is_fortran else "C")
+
+
+def _refused(word: str) -> Any:
+    raise ValueError(f"{word} is no number of JSON; null stands for what is not a number")
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    fields = dict(pairs)
+    if len(fields) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"{twice[:40]!r} stands there twice")
+    return fields

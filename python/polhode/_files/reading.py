@@ -1,0 +1,125 @@
+"""Files opened to be read: ordinary ones only, and whole texts up to a stated size."""
+
+from __future__ import annotations
+
+import os
+import stat
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from polhode.errors import FileFormatError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+__all__ = ["MOST_TEXT", "check_ordinary", "files_read", "naming", "note_read", "read_bytes", "read_text"]
+
+MOST_TEXT: Final = 1 << 30
+"""Bytes of the largest text that is read whole."""
+
+_READ: Final[ContextVar[tuple[list[Path], ...]]] = ContextVar("files read", default=())
+_OTHERS: Final[tuple[tuple[Callable[[int], bool], str], ...]] = (
+    (stat.S_ISDIR, "is a directory; name a file in it"),
+    (stat.S_ISFIFO, "is a pipe, which may never end; save what comes out of it in a file"),
+    (stat.S_ISSOCK, "is a socket; name a file"),
+    (stat.S_ISCHR, "is a device, which may never end; name a file"),
+    (stat.S_ISBLK, "is a device; name a file"),
+)
+
+
+@contextmanager
+def files_read() -> Iterator[list[Path]]:
+    """Give a list to which every file is added that is opened meanwhile, by whatever name leads to it."""
+    read: list[Path] = []
+    outer = _READ.get()
+    token = _READ.set((*outer, read))
+    try:
+        yield read
+    finally:
+        _READ.reset(token)
+
+
+def note_read(path: str | os.PathLike[str]) -> None:
+    """Add a file to the lists that :func:`files_read` gave."""
+    for read in _READ.get():
+        read.append(Path(path))
+
+
+def check_ordinary(path: str | os.PathLike[str]) -> None:
+    """Refuse what is no ordinary file before it is opened: a pipe would be waited for, a device never ends.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Links are followed.
+
+    Raises
+    ------
+    FileFormatError
+        If it is a directory, a pipe, a socket or a device.
+    OSError
+        If there is no such file.
+    """
+    mode = Path(path).stat().st_mode
+    for is_that, words in _OTHERS:
+        if is_that(mode):
+            raise FileFormatError(f"{os.fspath(path)}: {words}")
+    note_read(path)
+
+
+@contextmanager
+def naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Let errors of the system name the file that is read."""
+    try:
+        yield
+    except OSError as error:
+        error.filename = error.filename or str(path)
+        raise
+
+
+def read_bytes(path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:
+    """Read a whole file of at most so many bytes.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    most : int
+        In bytes.
+
+    Raises
+    ------
+    FileFormatError
+        If it is larger, or no ordinary file.
+    OSError
+        With the name of the file.
+    """
+    check_ordinary(path)
+    with naming(path), Path(path).open("rb") as stream:
+        if os.fstat(stream.fileno()).st_size <= most:
+            data = stream.read(most + 1)
+            if len(data) <= most:
+                return data
+    raise FileFormatError(
+        f"{os.fspath(path)}: is larger than {most} bytes, the most that is read of such files"
+    )
+
+
+def read_text(path: str | os.PathLike[str], kind: str, most: int = MOST_TEXT) -> str:
+    """Read a whole text in UTF-8.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    kind : str
+        What it should be, for the error where it is no text.
+    most : int
+        In bytes.
+    """
+    try:
+        return read_bytes(path, most).decode()
+    except UnicodeDecodeError as error:
+        raise FileFormatError(
+            f"{os.fspath(path)}: not a text file, so not {kind}: byte {error.start} is not UTF-8"
+        ) from None

@@ -1,0 +1,177 @@
+"""Which moments of a motion an animation shows, and how long it takes on the screen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from polhode._sampling import COARSE, MOST, TURN, fastest, motion_times, turns
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode import FreeMotion, HeavyTop, Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Moments", "of_motion", "of_samples"]
+
+_SECONDS: Final = 10.0
+"""That a motion takes on the screen at least."""
+_RATE: Final = 30.0
+"""Pictures a second, of a film and of a browser on a slow machine."""
+_FASTEST_RATE: Final = 50.0
+"""Pictures a second that every viewer of GIFs keeps to."""
+_FILM: Final = 1800
+"""Pictures of a film: a minute of it, and a few minutes of drawing."""
+_BETWEEN: Final = 20
+"""Points of the path of ω for each picture of a film, at most."""
+
+
+@dataclass(frozen=True)
+class Moments:
+    """The moments that are shown.
+
+    Attributes
+    ----------
+    trajectory : Trajectory
+        The states along the path of ω.
+    chosen : numpy.ndarray, shape (F,)
+        Which of them are frames.
+    duration : float
+        Seconds that the whole takes on the screen.
+    notes : tuple of str
+        What the viewer does not see of the motion.
+    """
+
+    trajectory: Trajectory
+    chosen: NDArray[np.int64]
+    duration: float
+    notes: tuple[str, ...] = ()
+
+
+def of_samples(
+    trajectory: Trajectory, *, frames: int | None, duration: float | None, is_film: bool, time_unit: str
+) -> Moments:
+    """Choose frames evenly among the samples of a motion of which no other states are known.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Of one body.
+    frames : int or None
+        How many; all samples by default.
+    duration : float or None
+        Seconds on the screen; by default as the rate of turning needs.
+    is_film : bool
+        Whether each frame is one picture; between those of a page the browser interpolates.
+    time_unit : str
+        For messages.
+    """
+    count = len(trajectory)
+    if frames is not None and not 1 <= frames <= count:
+        raise ValueError(f"frames: {frames} is not between 1 and the {count} samples of the motion")
+    chosen = np.unique(np.linspace(0, count - 1, frames or count).round().astype(int))
+    angles = turns(trajectory.t, trajectory.omega)
+    whole = float(abs(trajectory.t[-1] - trajectory.t[0]))
+    rate = float(np.linalg.norm(trajectory.omega, axis=-1).max())
+    notes: list[str] = []
+    if len(chosen) > 1:
+        between = np.add.reduceat(angles, chosen[:-1])
+        widest = float(between.max())
+        needed = np.ceil(whole * rate / TURN) + 1.0
+        where = f"{trajectory.t[chosen[int(between.argmax())]]:.6g} {time_unit}"
+        way_out = (
+            f"give frames={needed:.7g} or more" if count >= needed else f"ask for {needed:.7g} times or more"
+        )
+        notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
+    if is_film:
+        seconds = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
+        return Moments(trajectory, chosen, seconds, tuple(notes))
+    seconds, told = _on_screen(whole, rate, duration)
+    return Moments(trajectory, chosen, seconds, (*notes, *told))
+
+
+def of_motion(
+    motion: FreeMotion | HeavyTop,
+    samples: Trajectory,
+    *,
+    duration: float | None,
+    is_film: bool,
+    time_unit: str,
+) -> Moments:
+    """Choose frames for a motion whose state is known at every time.
+
+    Parameters
+    ----------
+    motion : FreeMotion or HeavyTop
+        Of one body; its time 0 is that of the first sample.
+    samples : Trajectory
+        Of the same motion. A page shows these and what is between them, a film the span from the first to the
+        last.
+    duration, is_film, time_unit
+        As of `of_samples`.
+    """
+    t = samples.t
+    rate, since = fastest(motion), t - t[0]
+    if is_film and len(t) > 1:
+        pictures, seconds, notes = _pictures(float(since[-1]), rate, duration)
+        span = motion_times(motion, pictures, most=_BETWEEN * len(pictures))
+        chosen = np.flatnonzero(np.isin(span.t, pictures))
+    else:
+        span = motion_times(motion, since, most=max(MOST, 2 * len(t)))
+        chosen = np.arange(len(span.t))
+        seconds, notes = _on_screen(float(span.t[-1]), rate, duration)
+    if span.t[chosen[-1]] != since[-1]:
+        notes.append(
+            f"shown is the beginning, to {span.t[chosen[-1]] + t[0]:.6g} of {t[-1]:.6g} {time_unit}: "
+            f"{len(chosen)} frames follow the motion no farther; a shorter span shows all of it"
+        )
+    is_enough = np.array_equal(span.t, since)
+    shown = samples if is_enough else replace(motion.at(span.t), t=span.t + t[0])
+    return Moments(shown, chosen, seconds, tuple(notes))
+
+
+def _pictures(length: float, rate: float, duration: float | None) -> tuple[Floats, float, list[str]]:
+    """Choose the even times of a film's pictures; give also its seconds, and what is to be said of them."""
+    needed = float(np.ceil(abs(length) * rate / TURN)) + 1.0
+    if duration is None:
+        count = int(min(max(needed, _RATE * _SECONDS), _FILM))
+        if needed > count:
+            length = float(np.copysign((count - 1) * TURN / rate, length))
+        return np.linspace(0.0, length, count), count / _RATE, []
+    count = int(min(max(needed, _RATE * duration, 2.0), max(_FASTEST_RATE * duration, 2.0), _FILM))
+    where = f"duration: of {count} pictures, {_FASTEST_RATE:g} a second at most, from one to the next"
+    way_out = "give a longer one, or leave it out" if needed > _FASTEST_RATE * duration else "leave it out"
+    return (
+        np.linspace(0.0, length, count),
+        duration,
+        _judged(abs(length) * rate / (count - 1), where, way_out),
+    )
+
+
+def _judged(angle: float, where: str, way_out: str) -> list[str]:
+    """Say that a turn from one picture to the next is too large, or refuse what cannot be shown."""
+    if angle >= np.pi:
+        raise ValueError(
+            f"{where} the body turns by up to {np.rad2deg(angle):.4g} deg, past the half turn beyond which a "
+            f"picture seems to turn backward; {way_out}"
+        )
+    if angle <= COARSE:
+        return []
+    return [
+        f"{where} the body turns by up to {np.rad2deg(angle):.3g} deg, more than the "
+        f"{np.rad2deg(COARSE):.0f} that an eye follows; {way_out}"
+    ]
+
+
+def _on_screen(length: float, rate: float, duration: float | None) -> tuple[float, list[str]]:
+    """Give the seconds that a page takes, no picture turning by more than `TURN`; and what is to be said."""
+    turned = abs(length) * rate / _RATE
+    needed = max(_SECONDS, turned / TURN)
+    if duration is None:
+        return needed, []
+    where = f"duration: at {_RATE:g} pictures a second from one to the next"
+    return duration, _judged(turned / duration, where, f"give duration={np.ceil(needed):.6g} or more")

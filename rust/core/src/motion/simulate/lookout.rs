@@ -1,0 +1,120 @@
+//! The search for events, step by step.
+
+use super::along::{Look, View, sign};
+use super::events::{Crossing, Direction, Events, Rule};
+use super::stepper::Dense;
+use crate::motion::state::Phase;
+
+/// The functions as a run goes on.
+pub(super) struct Lookout<'a, E> {
+    events: &'a mut dyn Events<Error = E>,
+    rules: Vec<Rule>,
+    /// The sign each function had when it was last not zero, and zero after it was found at zero.
+    signs: Vec<f64>,
+    /// Its value where the last step ended.
+    values: Vec<f64>,
+    counts: Vec<u64>,
+    /// Whether the run goes forward in time.
+    forward: bool,
+    pub(super) crossings: Vec<Crossing>,
+}
+
+impl<'a, E> Lookout<'a, E> {
+    pub(super) fn new(
+        events: &'a mut dyn Events<Error = E>,
+        t: f64,
+        phase: &Phase,
+        forward: bool,
+    ) -> Result<Self, E> {
+        let rules = events.rules().to_vec();
+        let values = (0..rules.len())
+            .map(|event| events.value(event, t, phase))
+            .collect::<Result<Vec<_>, E>>()?;
+        Ok(Self {
+            events,
+            signs: values.iter().map(|value| sign(*value)).collect(),
+            values,
+            counts: vec![0; rules.len()],
+            rules,
+            forward,
+            crossings: Vec::new(),
+        })
+    }
+
+    /// Looks through the last step, which began at `from`; where the run is to end, if it is, as time since the span's
+    /// start and the state there.
+    pub(super) fn look(
+        &mut self,
+        stepper: &mut dyn Dense<Error = E>,
+        start: f64,
+        from: f64,
+    ) -> Result<Option<(f64, Phase)>, E> {
+        if self.rules.is_empty() {
+            return Ok(None);
+        }
+        let to = stepper.elapsed();
+        let turn = stepper.turn(to - from);
+        let mut found = Vec::new();
+        for event in 0..self.rules.len() {
+            let events = &mut *self.events;
+            let mut view = View {
+                function: &mut |at, phase| events.value(event, start + at, phase),
+                stepper: &mut *stepper,
+                start,
+                end: to,
+            };
+            let begin = Look {
+                at: from,
+                value: self.values[event],
+            };
+            let looks = view.looks(begin, turn)?;
+            let mut before = begin;
+            for after in looks {
+                let (was, is) = (self.signs[event], sign(after.value));
+                let bracket = [before, after];
+                before = after;
+                if was * is > 0.0 || was == 0.0 {
+                    self.signs[event] = if was == 0.0 { is } else { was };
+                    continue;
+                }
+                self.signs[event] = is;
+                if is.is_nan() || was.is_nan() {
+                    continue;
+                }
+                let rising = (was < 0.0) == self.forward;
+                let counts = match self.rules[event].direction {
+                    Direction::Any => true,
+                    Direction::Rising => rising,
+                    Direction::Falling => !rising,
+                };
+                if counts {
+                    let place = if is == 0.0 {
+                        after.at
+                    } else {
+                        view.locate(bracket, was)?
+                    };
+                    found.push((place, event));
+                }
+            }
+            self.values[event] = before.value;
+        }
+        found.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
+        for (place, event) in found {
+            let phase = if place == to {
+                stepper.phase()
+            } else {
+                stepper.within(place)?
+            };
+            self.crossings.push(Crossing {
+                event,
+                time: start + place,
+                phase,
+            });
+            self.counts[event] += 1;
+            if self.counts[event] == self.rules[event].last {
+                return Ok(Some((place, phase)));
+            }
+        }
+        Ok(None)
+    }
+}

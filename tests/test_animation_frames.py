@@ -1,0 +1,412 @@
+"""What a moving picture shows is what happens: turns from frame to frame, chords of paths, its seconds."""
+
+from __future__ import annotations
+
+import json
+import re
+import warnings
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from command_line import run
+from oracles.bodies import matrix
+from polhode import RigidBody, Trajectory, euler_angles, loads, solids
+from polhode._sampling import COARSE, TURN, axis_times, drawn_times, fastest, follow, motion_times
+from test_animation import BROWSER, browse, data
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+    from polhode import FreeMotion, HeavyTop
+
+    Floats = NDArray[np.float64]
+
+BRICK = RigidBody.from_principal(1.0, (1.0, 3.0, 3.2))
+CONE = solids.cone(radius=0.03, height=0.06, mass=0.1).rotated((1.0, 0.0, 0.0, 0.0)).translated((0, 0, 0.045))
+PULL = loads.constant_torque((0.0, 0.0, 0.1))
+
+
+def top(spin: float, tilt: float = 0.5, nod: float = 0.0) -> HeavyTop:
+    return CONE.heavy_top((nod, 0.0, spin), euler_angles.to_quaternion((0.0, tilt, 0.0)), (0.0, 0.0, -9.81))
+
+
+def angles(quaternion: Floats) -> Floats:
+    """The turn from each attitude to the next, by the shorter way."""
+    products = np.abs((quaternion[1:] * quaternion[:-1]).sum(axis=-1))
+    return np.asarray(2.0 * np.arccos(np.minimum(1.0, products)))
+
+
+def random_bodies(rng: np.random.Generator, count: int) -> list[FreeMotion]:
+    """Bodies of every shape, thin and symmetric ones too, some near the separatrix, some steady."""
+    found = []
+    for number in range(count):
+        second = rng.uniform(0.0, 1.0, 3) ** 3
+        if number % 5 == 0:
+            second[1] = second[0]
+        if number % 7 == 0:
+            second[2] = 0.0
+        moments = np.sort(second.sum() - second)
+        omega = rng.normal(size=3)
+        if number % 3 == 0:
+            omega = np.array([1e-9, 1.0, 1e-9 * (number % 2)])
+        if number % 11 == 0:
+            omega = np.array([0.0, 0.0, 1.0])
+        body = RigidBody.from_principal(1.0, moments, matrix(np.array([0.5, -0.5, 0.1, 0.7]) / 1.0))
+        found.append(body.free_motion(body.principal.axes @ (omega * 10.0 ** rng.uniform(-3.0, 3.0))))
+    return found
+
+
+class TestTimes:
+    """`polhode._sampling`: one place that chooses times, for pages, films, windows and pictures."""
+
+    def test_free_bodies_of_every_shape(self, rng: np.random.Generator) -> None:
+        for motion in random_bodies(rng, 66):
+            rate = fastest(motion)
+            end = rng.uniform(0.1, 300.0) / rate * rng.choice([-1.0, 1.0])
+            span = motion_times(motion, np.array([0.0, end]))
+            assert span.is_whole
+            assert (span.t[0], span.t[-1]) == (0.0, end)
+            check_frames(motion, span.t, rate)
+
+    def test_tops(self) -> None:
+        for motion in (top(260.0), top(30.0), top(0.0, 2.0), top(60.0, 0.02, 0.3), top(5.0, 3.0, 2.0)):
+            rate = fastest(motion)
+            dense = np.linalg.norm(motion.at(np.linspace(0.0, 5.0, 20_001)).omega, axis=-1).max()
+            assert 0.999 * dense <= rate
+            if np.isfinite(motion.nutation_period) and motion.nutation_period < 5.0:
+                assert rate <= 1.001 * dense
+            span = motion_times(motion, np.array([0.0, 1.0]))
+            assert span.is_whole
+            check_frames(motion, span.t, rate)
+            path = axis_times(motion, np.array([0.0, 1.0])).t
+            check_chords(partial(axis, motion), path)
+
+    def test_all_given_times_are_kept(self, rng: np.random.Generator) -> None:
+        motion = BRICK.free_motion((0.01, 6.0, 0.0))
+        for sign in (1.0, -1.0):
+            given = sign * np.cumsum(rng.uniform(0.0, 3.0, 30))
+            chosen = motion_times(motion, given)
+            assert chosen.is_whole
+            assert np.isin(given, chosen.t).all()
+            assert (sign * np.diff(chosen.t) > 0.0).all()
+
+    @pytest.mark.parametrize("end", [0.0, 5e-324, 1e-300, -1e-300])
+    def test_spans_of_nearly_nothing(self, end: float) -> None:
+        chosen = motion_times(BRICK.free_motion((0.01, 6.0, 0.0)), np.array([0.0, end]))
+        assert chosen.t.tolist() == [0.0, end]
+
+    @pytest.mark.parametrize("end", [1e6, -1e6, 1e18, 1e300])
+    def test_more_than_can_be_shown(self, end: float) -> None:
+        motion = BRICK.free_motion((0.01, 6.0, 0.0))
+        chosen = motion_times(motion, np.array([0.0, end]), most=500)
+        assert not chosen.is_whole
+        assert len(chosen.t) == 500
+        check_frames(motion, chosen.t, fastest(motion))
+
+    def test_a_body_at_rest(self) -> None:
+        assert motion_times(BRICK.free_motion((0.0, 0.0, 0.0)), np.array([0.0, 1e9])).t.tolist() == [0.0, 1e9]
+
+    def test_a_curve_with_a_corner_ends(self) -> None:
+        """Between neighbouring floats there is nothing more to ask."""
+        chosen = follow(
+            lambda t: np.sign(t - 0.3)[:, np.newaxis, np.newaxis] * np.ones(3), np.array([0.0, 1.0]), step=0.1
+        )
+        assert len(chosen.t) < 150
+        assert np.diff(chosen.t).min() < 1e-15
+
+
+def check_frames(motion: FreeMotion | HeavyTop, t: Floats, rate: float) -> None:
+    """No turn above 20 degrees, no chord deeper than 0.2 %: of the ellipsoid; in space of the longest ω."""
+    shown = motion.at(t)
+    assert angles(shown.quaternion).max() <= TURN * (1.0 + 1e-9)
+    assert (np.abs(np.diff(t)) * rate).max() <= TURN * (1.0 + 1e-9)
+    body = motion.body
+    tensor = body.inertia_about(shown.about)
+    middles = 0.5 * (shown.omega[1:] + shown.omega[:-1])
+    doubled = np.einsum("ti,ij,tj->t", shown.omega, tensor, shown.omega)
+    level = np.einsum("ti,ij,tj->t", middles, tensor, middles)
+    if np.ptp(doubled) <= 1e-9 * doubled.max():  # one ellipsoid
+        assert (level >= (1.0 - 0.002) ** 2 * doubled[0] * (1.0 - 1e-9)).all()
+    check_chords(lambda times: in_space(motion.at(times)) / rate, t)
+
+
+def check_chords(curve: Any, t: Floats) -> None:
+    """Halfway in time the curve is no farther from its chord than that."""
+    ends, middle = curve(t), curve(0.5 * (t[1:] + t[:-1]))
+    chord = ends[1:] - ends[:-1]
+    length = np.maximum(np.linalg.norm(chord, axis=-1, keepdims=True), 1e-300)
+    off = middle - ends[:-1]
+    across = off - (off * chord / length).sum(axis=-1, keepdims=True) * chord / length
+    assert np.linalg.norm(across, axis=-1).max() <= 0.002 * (1.0 + 1e-9)
+
+
+def axis(motion: HeavyTop, t: Floats) -> Floats:
+    return motion.at(t).point("center_of_mass") / np.linalg.norm(CONE.center_of_mass)
+
+
+def in_space(shown: Trajectory) -> Floats:
+    return np.stack([matrix(q) @ w for q, w in zip(shown.quaternion, shown.omega, strict=True)])
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """200 s at one turn a second, from the command: 300 frames of it would turn backward."""
+    path = tmp_path_factory.mktemp("page") / "racket.html"
+    words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", 200, "--save", path)
+    code, out, err = run("spin", *words)
+    assert (code, err) == (0, "")
+    assert "beginning" not in out
+    return path
+
+
+class TestPages:
+    def test_it_follows_a_long_run(self, page: Path) -> None:
+        shown = data(page)
+        t = np.array(shown["t"])
+        assert (t[0], t[-1]) == (0.0, 200.0)
+        motion = BRICK.free_motion((0.01, 6.0, 0.0))
+        check_frames(motion, t, fastest(motion))
+        exact = motion.at(t)
+        np.testing.assert_allclose(shown["quaternion"], exact.quaternion, atol=1e-7)
+        # At thirty pictures a second no picture turns the body by more than 20 degrees.
+        pictures = motion.at(np.arange(0.0, 200.0, 200.0 / shown["duration"] / 30.0))
+        assert 0.9 * TURN < angles(pictures.quaternion).max() <= TURN * (1.0 + 1e-9)
+
+    @pytest.mark.skipif(BROWSER is None, reason="no Chromium: apt install chromium")
+    @pytest.mark.timeout(300)
+    def test_the_browser_turns_it_that_way(
+        self, page: Path, tmp_path: Path, rng: np.random.Generator
+    ) -> None:
+        """Between the frames too: the states it draws are those of the motion, to less than a degree."""
+        times = np.sort(rng.uniform(0.0, 200.0, 400))
+        script = (
+            f'<script>document.body.innerHTML = "<pre>" + JSON.stringify({times.tolist()}.map((t) => '
+            '{ const s = stateAt(t); return [s.quaternion, s.omega]; })) + "</pre>";</script></body>'
+        )
+        asked = tmp_path / "asked.html"
+        asked.write_text(page.read_text("utf-8").replace("</body>", script), encoding="utf-8")
+        found = re.search(r"<pre>(.*?)</pre>", browse(asked, tmp_path, "--dump-dom", at=0.0))
+        assert found
+        quaternion, omega = zip(*json.loads(found[1]), strict=True)
+        exact = BRICK.free_motion((0.01, 6.0, 0.0)).at(times)
+        products = np.abs((np.array(quaternion) * exact.quaternion).sum(axis=-1))
+        assert np.rad2deg(2.0 * np.arccos(np.minimum(1.0, products))).max() < 0.5
+        np.testing.assert_allclose(np.linalg.norm(quaternion, axis=-1), 1.0, atol=1e-6)
+        largest = np.linalg.norm(exact.omega, axis=-1).max()
+        assert np.linalg.norm(np.array(omega) - exact.omega / largest, axis=-1).max() < 0.004
+
+    def test_backward_in_time(self, tmp_path: Path) -> None:
+        words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", " -30")
+        code, _, err = run("spin", *words, "--save", tmp_path / "back.html")
+        assert (code, err) == (0, "")
+        t = np.array(data(tmp_path / "back.html")["t"])
+        assert (t[0], t[-1]) == (0.0, -30.0)
+        motion = BRICK.free_motion((0.01, 6.0, 0.0))
+        check_frames(motion, t, fastest(motion))
+
+    def test_a_top(self, tmp_path: Path) -> None:
+        words = (
+            "--moments",
+            "2 2 1",
+            "--mass",
+            1,
+            "--center",
+            "0 0 1",
+            "--gravity",
+            9.81,
+            "--omega",
+            0,
+            0,
+            40,
+        )
+        code, _, err = run(
+            "spin", *words, "--attitude", "0 30 0 deg", "--until", 10, "--save", tmp_path / "top.html"
+        )
+        assert (code, err) == (0, "")
+        shown = data(tmp_path / "top.html")
+        body = RigidBody.from_principal(1.0, (2.0, 2.0, 1.0), center_of_mass=(0.0, 0.0, 1.0))
+        attitude = euler_angles.to_quaternion((0.0, np.pi / 6, 0.0))
+        motion = body.heavy_top((0.0, 0.0, 40.0), attitude, (0.0, 0.0, -9.81))
+        check_frames(motion, np.array(shown["t"]), fastest(motion))
+
+    def test_frames_beyond_the_most_are_told(self, tmp_path: Path) -> None:
+        words = ("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", 1e6)
+        saves = [word for name in ("a.html", "a.png") for word in ("--save", tmp_path / name)]
+        code, out, err = run(*words, *saves)
+        assert (code, err) == (0, "")
+        told = re.search(r"note: a.html: shown is the beginning, to (\S+) of 1e\+06 s: (\d+) frames", out)
+        assert told
+        shown = data(tmp_path / "a.html")
+        assert len(shown["t"]) == int(told[2]) == 12_000
+        assert shown["t"][-1] == pytest.approx(float(told[1]), rel=1e-5)
+        assert "note: a.png: shown is the beginning, to" in out
+        with pytest.warns(UserWarning, match=r"shown is the beginning, to \S+ of 1e\+06 s"):
+            BRICK.free_motion((0.01, 6.0, 0.0)).at([0.0, 1e6]).animate(tmp_path / "b.html")
+
+
+class TestTrajectories:
+    """Where nothing acts on the body its own samples need not be enough; else they have to be."""
+
+    def test_two_samples_of_a_free_body(self, tmp_path: Path) -> None:
+        motion = BRICK.free_motion((0.01, 6.0, 0.0))
+        shown = data(motion.at([1.0, 21.0]).animate(tmp_path / "page.html"))
+        t = np.array(shown["t"])
+        assert (t[0], t[-1]) == (1.0, 21.0)
+        check_frames(motion, t, fastest(motion))
+        np.testing.assert_allclose(shown["quaternion"], motion.at(t).quaternion, atol=1e-6)
+
+    @pytest.mark.parametrize("suffix", [".html", ".gif"])
+    def test_too_few_samples_under_a_load_are_refused(self, suffix: str, tmp_path: Path) -> None:
+        few = BRICK.simulate(np.linspace(0.0, 40.0, 51), (0.01, 6.0, 0.0), load=PULL)
+        message = (
+            r"from one frame to the next, at t = \S+ s, the body turns by up to \S+ deg, past the half turn"
+        )
+        with pytest.raises(ValueError, match=message + r".*ask for (\d+) times or more") as caught:
+            few.animate(tmp_path / f"a{suffix}")
+        assert not (tmp_path / f"a{suffix}").exists()
+        needed = int(str(caught.value).split("ask for ")[1].split()[0])
+        enough = BRICK.simulate(np.linspace(0.0, 40.0, needed), (0.01, 6.0, 0.0), load=PULL)
+        enough.animate(tmp_path / "enough.html")
+        coarse = BRICK.simulate(np.linspace(0.0, 40.0, needed // 2), (0.01, 6.0, 0.0), load=PULL)
+        with pytest.warns(
+            UserWarning, match=r"turns by up to \S+ deg, more than the 30 .* ask for \d+ times"
+        ):
+            coarse.animate(tmp_path / "coarse.html")
+
+    @pytest.mark.parametrize(("factor", "outcome"), [(0.99, "shown"), (1.01, "warned")])
+    def test_both_sides_of_the_limit(self, factor: float, outcome: str, tmp_path: Path) -> None:
+        even = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
+        many = even.simulate(np.arange(20) * COARSE * factor, (0.0, 0.0, 1.0), load=PULL * 1e-9)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            many.animate(tmp_path / "a.html")
+        assert [str(one.message)[:8] for one in told] == ([] if outcome == "shown" else ["animate:"])
+
+    @pytest.mark.parametrize(("factor", "outcome"), [(0.99, "warned"), (1.01, "refused")])
+    def test_both_sides_of_half_a_turn(self, factor: float, outcome: str, tmp_path: Path) -> None:
+        even = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
+        many = even.simulate(np.arange(20) * np.pi * factor, (0.0, 0.0, 1.0), load=PULL * 1e-9)
+        if outcome == "refused":
+            with pytest.raises(ValueError, match="past the half turn"):
+                many.animate(tmp_path / "a.html")
+        else:
+            with pytest.warns(UserWarning, match="more than the 30"):
+                many.animate(tmp_path / "a.html")
+
+    def test_frames_that_are_asked_for(self, tmp_path: Path) -> None:
+        motion = BRICK.free_motion((0.01, 6.0, 0.0)).at(np.linspace(0.0, 10.0, 1001))
+        with pytest.raises(ValueError, match=r"past the half turn.*give frames=(\d+) or more") as caught:
+            motion.animate(tmp_path / "a.html", frames=20)
+        needed = int(str(caught.value).split("frames=")[1].split()[0])
+        assert len(data(motion.animate(tmp_path / "a.html", frames=needed))["t"]) == needed
+
+    def test_seconds_that_are_asked_for(self, tmp_path: Path) -> None:
+        motion = BRICK.free_motion((0.01, 6.0, 0.0)).at(np.linspace(0.0, 200.0, 20_001))
+        with pytest.raises(ValueError, match=r"duration: .*past the half turn.*duration=(\d+)") as caught:
+            motion.animate(tmp_path / "a.html", duration=5.0)
+        needed = float(str(caught.value).split("duration=")[1].split()[0])
+        assert data(motion.animate(tmp_path / "a.html", duration=needed))["duration"] == needed
+        with pytest.warns(UserWarning, match="duration: .*more than the 30"):
+            motion.animate(tmp_path / "a.html", duration=needed / 2)
+
+    def test_no_times(self, tmp_path: Path) -> None:
+        with pytest.raises(ValueError, match="the motion has no times"):
+            BRICK.free_motion((0.0, 0.0, 1.0)).at([]).animate(tmp_path / "a.html")
+        one = BRICK.free_motion((0.0, 0.0, 1.0)).at([2.0]).animate(tmp_path / "one.html")
+        assert data(one)["t"] == [2.0]
+
+
+class TestFilms:
+    def test_its_pictures_are_even_and_follow(self) -> None:
+        from polhode.animation.frames import of_motion
+
+        motion = BRICK.free_motion((0.01, 6.0, 0.0))
+        ends = motion.at([0.0, 30.0])
+        for duration, count in ((None, None), (20.0, 600), (13.0, None)):
+            film = of_motion(motion, ends, duration=duration, is_film=True, time_unit="s")
+            t = film.trajectory.t[film.chosen]
+            np.testing.assert_allclose(np.diff(t), t[1], rtol=1e-9)
+            assert (t[0], t[-1], film.notes) == (0.0, 30.0, ())
+            assert angles(motion.at(t).quaternion).max() <= TURN * (1.0 + 1e-9)
+            assert len(t) / film.duration <= 50.0
+            assert film.duration == (len(t) / 30.0 if duration is None else duration)
+            assert count is None or len(t) == count
+            check_chords(lambda times: in_space(motion.at(times)) / fastest(motion), film.trajectory.t)
+        uneven = motion.at(10.0 * np.linspace(0.0, 1.0, 344) ** 2)  # as many samples as the film has pictures
+        film = of_motion(motion, uneven, duration=None, is_film=True, time_unit="s")
+        t = film.trajectory.t[film.chosen]
+        np.testing.assert_allclose(t, np.linspace(0.0, 10.0, len(t)), atol=1e-12)
+        np.testing.assert_allclose(film.trajectory.omega, motion.at(film.trajectory.t).omega, atol=1e-9)
+        slow = of_motion(motion, motion.at([0.0, 0.1]), duration=None, is_film=True, time_unit="s")
+        assert (len(slow.chosen), slow.duration) == (300, 10.0)
+
+    def test_what_it_cannot_show(self) -> None:
+        from polhode.animation.frames import of_motion
+
+        motion = BRICK.free_motion((0.01, 6.0, 0.0))
+        film = of_motion(motion, motion.at([0.0, 1e4]), duration=None, is_film=True, time_unit="s")
+        (note,) = film.notes
+        assert re.match(r"shown is the beginning, to \S+ of 10000 s: 1800 frames", note)
+        t = film.trajectory.t[film.chosen]
+        assert len(t) == 1800
+        assert angles(motion.at(t).quaternion).max() <= TURN * (1.0 + 1e-9)
+        with pytest.raises(ValueError, match=r"duration: .*half turn.*give a longer one"):
+            of_motion(motion, motion.at([0.0, 1e4]), duration=10.0, is_film=True, time_unit="s")
+        fast = of_motion(motion, motion.at([0.0, 60.0]), duration=10.0, is_film=True, time_unit="s")
+        assert "more than the 30" in fast.notes[0]
+
+
+class TestPictures:
+    def test_their_curves_follow_the_motion(self) -> None:
+        motion = BRICK.free_motion((0.01, 6.0, 0.0))
+        t = drawn_times(motion, [0.0, 100.0])
+        assert (t[0], t[-1]) == (0.0, 100.0)
+        check_frames(motion, t, fastest(motion))
+        pytest.importorskip("matplotlib")
+        from matplotlib.figure import Figure
+        from polhode import plot
+
+        for draw in (plot.poinsot, plot.cones):
+            ax: Any = Figure().add_subplot(projection="3d", computed_zorder=False)
+            draw(motion, [0.0, 100.0], ax)
+            assert len(t) in [len(line.get_data_3d()[0]) for line in ax.lines]
+            with pytest.raises(ValueError, match=r"t: a curve through 50000 points .* give a shorter span"):
+                draw(motion, [0.0, 1e7])
+            with pytest.raises(ValueError, match="t: expected one or more finite times"):
+                draw(motion, [0.0, np.nan])
+            with pytest.raises(ValueError, match="t: expected one or more finite times"):
+                draw(motion, [])
+        ax = Figure().add_subplot(projection="3d", computed_zorder=False)
+        plot.nutation(top(260.0), [0.0, 20.0], ax)
+        assert max(len(line.get_data_3d()[0]) for line in ax.lines) > 1000
+
+    def test_numbers_whose_times_are_too_few_are_told(self, tmp_path: Path) -> None:
+        words = ("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", 2000, "--save")
+        out = run(*words, tmp_path / "a.csv")[1]
+        told = re.search(r"a.csv: .* the body turns by up to \S+ deg, .*; --samples (\d+) follows it", out)
+        assert told
+        assert "turns by" not in run(*words, tmp_path / "a.csv", "--samples", told[1])[1]
+
+
+class TestTheEnd:
+    @pytest.mark.parametrize("until", ["1e300", "1e16", " -1e300"])
+    def test_beyond_what_digits_tell(self, until: str) -> None:
+        code, _, err = run("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", until)
+        assert code == 2
+        assert re.match(r"polhode: --until: after \S+ s at \S+ rad/s the last digit .* end before \S+ s", err)
+
+    def test_both_sides_of_it(self) -> None:
+        rate = fastest(BRICK.free_motion((0.01, 6.0, 0.0)))
+        last = 1.0 / (rate * np.finfo(float).eps)
+        for factor, expected in ((0.99, 0), (1.01, 2)):
+            words = ("--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", repr(float(factor * last)))
+            assert run("spin", *words)[0] == expected
+
+    @pytest.mark.parametrize("until", ["nan", "inf", "1e999", "0", "soon"])
+    def test_what_is_no_time(self, until: str) -> None:
+        code, _, err = run("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", until)
+        assert code == 2
+        assert err.startswith("polhode: --until: ")
