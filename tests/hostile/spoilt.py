@@ -80,11 +80,10 @@ def forms(values: Any) -> dict[str, Callable[[], Any]]:
         "list": plain.tolist,
         "array": plain.copy,
         "read-only": lambda: _read_only(plain.copy()),
-        "subclass": lambda: plain.copy().view(Sub),
         "big-endian": lambda: plain.astype(plain.dtype.newbyteorder(">")),
     }
     if plain.dtype.kind == "f":
-        result["float32"] = lambda: plain.astype(np.float32)
+        result["float32"] = lambda: plain.astype(np.float32) if _exact(plain, np.float32) else plain
         result["float16"] = lambda: plain.astype(np.float16) if _exact(plain, np.float16) else plain
         if _exact(plain, np.int64):
             result["int64"] = lambda: plain.astype(np.int64)
@@ -93,6 +92,7 @@ def forms(values: Any) -> dict[str, Callable[[], Any]]:
         result["int32"] = lambda: plain.astype(np.int32)
         result["int16"] = lambda: plain.astype(np.int16)
     if plain.ndim:
+        result["subclass"] = lambda: plain.copy().view(Sub)
         result["has-array"] = lambda: HasArray(plain.copy())
         result["tuple"] = lambda: tuple(plain.tolist())
         result["strided"] = lambda: np.repeat(plain, 2, axis=-1)[..., ::2]

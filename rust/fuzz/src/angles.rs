@@ -179,7 +179,7 @@ fn tensors(mut draw: Draw<'_>) -> Result<()> {
         if size(tensor) > 5e307 {
             continue;
         }
-        diagonalizes(&principal, tensor);
+        diagonalizes(&principal, tensor, 0.0);
         let [low, high] = gaps(&principal.moments);
         assert!(
             low >= 0.0 && high >= 0.0 || principal.moments[0] < 0.0,

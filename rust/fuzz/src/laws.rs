@@ -20,11 +20,11 @@ pub fn is_plain(numbers: &[f64]) -> bool {
     (numbers.iter()).all(|x| *x == 0.0 || (1e-30..1e30).contains(&x.abs()))
 }
 
-/// Ascending finite moments, and axes that are a rotation and diagonalize the tensor.
+/// Ascending finite moments, and axes that are a rotation and diagonalize the tensor to rounding and `bound`.
 ///
 /// # Panics
 /// When they are not.
-pub fn diagonalizes(principal: &PrincipalAxes, tensor: &Matrix3<f64>) {
+pub fn diagonalizes(principal: &PrincipalAxes, tensor: &Matrix3<f64>, bound: f64) {
     let PrincipalAxes { moments, axes } = principal;
     assert!(
         moments.iter().all(|moment| moment.is_finite()),
@@ -41,7 +41,7 @@ pub fn diagonalizes(principal: &PrincipalAxes, tensor: &Matrix3<f64>) {
     let again = axes * Matrix3::from_diagonal(&scaled) * axes.transpose();
     let off = size(&(again - tensor / unit));
     assert!(
-        off <= ROUNDING + LEAST / unit,
+        off <= ROUNDING + (LEAST + bound) / unit,
         "V diag(I) Vᵀ is off by {off} of {tensor:?}: {principal:?}"
     );
 }
@@ -77,9 +77,9 @@ pub fn is_body(body: &RigidBody, admitted: f64) {
     assert!(inertia.iter().all(|x| x.is_finite()), "tensor {inertia:?}");
     assert_eq!(inertia, inertia.transpose(), "not symmetric");
     let principal = body.principal();
-    diagonalizes(&principal, &inertia);
-    let [i1, i2, i3] = principal.moments;
     let bound = body.error_bound();
+    diagonalizes(&principal, &inertia, 2.0 * bound.inertia);
+    let [i1, i2, i3] = principal.moments;
     assert!(i1 >= 0.0, "negative moment {i1:?}: {body:?}");
     let deficit = i3 - i2 - i1;
     assert!(

@@ -85,7 +85,7 @@ fn free(body: &RigidBody, mut draw: Draw<'_>) -> Result<()> {
         let allowed = 1e-12 * moments[2] * size;
         assert!(
             (now - momentum).amax() <= allowed,
-            "L {momentum:?} {now:?} at {t:?}"
+            "L {momentum:?} {now:?} at {t:?}: {omega:?} {body:?}"
         );
         if t == 0.0 {
             assert!((state.omega - omega).amax() <= 1e-14 * size);

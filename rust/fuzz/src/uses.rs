@@ -31,7 +31,7 @@ pub fn used(body: &RigidBody, draw: &mut Draw<'_>, admitted: f64) -> Result<()> 
         );
     }
     let is_plain = |x: f64| (1e-60..1e60).contains(&x);
-    let is_near = point.amax() < 1e60 && body.center_of_mass().amax() < 1e60;
+    let is_near = is_a_point && point.amax() < 1e60 && body.center_of_mass().amax() < 1e60;
     let about = body.principal_about(&point);
     if is_plain(body.mass()) && is_plain(size(&body.inertia())) && is_near {
         assert!(about.moments.iter().all(|x| *x >= 0.0), "{about:?}");
@@ -83,14 +83,15 @@ fn forms(body: &RigidBody, admitted: f64) {
     let is_plain = (1e-60..1e60).contains(&size_of_body)
         && (1e-60..1e60).contains(&body.mass())
         && body.center_of_mass().norm_squared() < 1e4 * size_of_body
-        && admitted == 0.0;
+        && admitted == 0.0
+        && body.error_bound().inertia <= 1e-12 * size(&body.inertia());
     if !is_plain {
         return;
     }
     let reach = size_of_body + body.center_of_mass().norm_squared();
     let agrees = |again: core::result::Result<RigidBody, Fault>, what: &str| match again {
         Ok(again) => {
-            is_body(&again, 0.0);
+            is_body(&again, 1e-12);
             let off = size(&(again.inertia() - body.inertia()));
             assert!(off <= 1e-13 * reach * body.mass(), "{what}: off by {off:e}");
         }

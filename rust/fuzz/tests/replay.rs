@@ -1,12 +1,18 @@
 //! The committed seeds and some thousand inputs of a generator, through the same harnesses that libFuzzer feeds.
 
 // What is missing here is a broken test.
-#![allow(clippy::expect_used)]
+#![allow(clippy::expect_used, clippy::panic)]
 
 use std::fs;
 use std::path::Path;
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
 
 use polhode_fuzz::HARNESSES;
+
+/// An input that takes longer hangs.
+const LONGEST: Duration = Duration::from_secs(30);
 
 /// Marsaglia's xorshift: the same bytes on every machine.
 struct Bytes(u64);
@@ -45,11 +51,24 @@ fn seeds() {
 fn generated(name: &str, count: u64) {
     let found = HARNESSES.iter().find(|(harness, _)| *harness == name);
     let (_, harness) = found.expect("a harness");
-    let mut bytes = Bytes(0x9e37_79b9_7f4a_7c15);
+    let (told, hear) = mpsc::channel();
+    let harness = *harness;
+    thread::spawn(move || {
+        let mut bytes = Bytes(0x9e37_79b9_7f4a_7c15);
+        for k in 0..count {
+            let input = bytes.some();
+            let kept = input.clone();
+            let outcome = std::panic::catch_unwind(|| harness(&input)).is_ok();
+            if told.send((k, outcome, kept)).is_err() {
+                return;
+            }
+        }
+    });
     for k in 0..count {
-        let input = bytes.some();
-        let outcome = std::panic::catch_unwind(|| harness(&input));
-        assert!(outcome.is_ok(), "{name}: input {k}: {input:?}");
+        let (number, is_good, input) = hear
+            .recv_timeout(LONGEST)
+            .unwrap_or_else(|_| panic!("{name}: input {k} takes longer than {LONGEST:?}"));
+        assert!(is_good, "{name}: input {number}: {input:?}");
     }
 }
 

@@ -109,7 +109,7 @@ fn read_faces<'py>(object: &Bound<'py, PyAny>) -> PyResult<Faces<'py>> {
 /// The array when it has this type of elements, in C order.
 fn as_it_is<'py, T: Element>(array: &Bound<'py, PyAny>) -> Option<PyReadonlyArrayDyn<'py, T>> {
     let array = array.cast::<PyArrayDyn<T>>().ok()?;
-    array.is_c_contiguous().then(|| array.readonly())
+    (array.is_c_contiguous() && array.is_aligned()).then(|| array.readonly())
 }
 
 /// The result of work that Python may stop.

@@ -106,7 +106,7 @@ pub(super) fn centered(
     per_mass: &Matrix3<f64>,
 ) -> Result<RigidBody, Error> {
     let mass = measure.mass(amount)?;
-    let error_bound = closed_form(amount, mass, 2.0 * mass * per_mass.trace());
+    let error_bound = closed_form(amount, mass, 2.0 * (mass * per_mass.trace()));
     let body = RigidBody::from_second_moment(&SecondMoment {
         mass,
         center_of_mass: Vector3::zeros(),

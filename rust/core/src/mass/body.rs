@@ -150,6 +150,17 @@ impl RigidBody {
         all_finite("center_of_mass", &matter.center_of_mass)?;
         let inertia = matter.inertia();
         all_finite("inertia", &inertia)?;
+        // Matter has no negative square; surfaces that cross one another, or bytes that were damaged, may.
+        let [least, _, most] = spectrum.values;
+        if least < -(1e-9 * most + 4.0 * matter.error_bound.inertia) {
+            let [s1, s2, s3] = spectrum.values;
+            let moments = [s1 + s2, s1 + s3, s2 + s3];
+            return Err(Error::TriangleInequality {
+                moments,
+                deficit: -2.0 * s1,
+                relative: -s1 / (s1 + s2 + s3),
+            });
+        }
         let spread = matter.central.trace();
         if spread > 0.0 && spread < f64::MIN_POSITIVE {
             return Err(Error::OutOfRange {
@@ -205,7 +216,10 @@ impl RigidBody {
         scale: f64,
     ) -> Self {
         // A table may be admitted with a moment below zero by more than rounding: then the tensor too is of the zero.
-        let is_repaired = principal.moments[0] < -ROUNDING * scale;
+        // So it is where noise about the origin is all that is left about the centre.
+        let own = trace(&inertia);
+        let is_repaired = (principal.moments.iter())
+            .any(|&moment| moment <= ROUNDING * scale && moment.abs() > ROUNDING * own);
         let rounded_to_zero = clear_noise(&mut principal, scale);
         Self {
             mass,
@@ -373,7 +387,9 @@ impl RigidBody {
         let principal = PrincipalAxes { moments, axes };
         let difference = (inertia - tensor(&principal)).abs().max();
         // The least numbers of float64 have few digits.
-        let rounding = 1e-12 * trace(&inertia) + f64::MIN_POSITIVE * 64.0 * f64::EPSILON;
+        let rounding = 1e-12 * trace(&inertia)
+            + f64::MIN_POSITIVE * 64.0 * f64::EPSILON
+            + 2.0 * error_bound.inertia.max(0.0);
         if difference > rounding || !(0.0 <= i1 && i1 <= i2 && i2 <= i3) {
             let law = "that of the ascending principal moments and the axes stored beside it";
             return Err(Error::OutOfDomain {
@@ -425,7 +441,7 @@ fn length(vector: &Vector3<f64>) -> f64 {
 }
 
 /// `√(a/b)`, where a/b may be beyond all numbers too.
-fn root_of_ratio(a: f64, b: f64) -> f64 {
+pub(super) fn root_of_ratio(a: f64, b: f64) -> f64 {
     let ratio = a / b;
     if ratio.is_normal() || a == 0.0 {
         ratio.sqrt()

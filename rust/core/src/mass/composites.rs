@@ -33,6 +33,7 @@ pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
             let mut principal = principal_axes(&sum.inertia);
             if is_thin(&principal) {
                 principal = sum.refined(&principal);
+                principal.moments = principal.moments.map(|moment| moment.max(0.0));
                 let provenance = sum.provenance().in_own_axes();
                 return Ok(sum.body(principal).with_provenance(provenance));
             }

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use super::body::RigidBody;
+use super::body::{RigidBody, root_of_ratio};
 use super::validity::{ROUNDING, check_mass};
 use crate::error::{Error, finite};
 
@@ -44,7 +44,7 @@ const SQRT_3_2: f64 = 1.224_744_871_391_589;
 pub fn equimomental_particles(body: &RigidBody) -> Result<Particles, Error> {
     let (spread, corners) = spreads(&body.principal().moments)?;
     let (m, c, axes) = (body.mass(), body.center_of_mass(), body.principal().axes);
-    let lengths = spread.map(|s| (s / m).sqrt());
+    let lengths = spread.map(|s| root_of_ratio(s, m));
     let place = |corner: &[f64; 3]| {
         let along = Vector3::from_fn(|k, _| lengths[k] * corner[k]);
         (c + axes * along).into()
@@ -59,6 +59,7 @@ pub fn equimomental_particles(body: &RigidBody) -> Result<Particles, Error> {
 fn spreads(moments: &[f64; 3]) -> Result<([f64; 3], &'static [[f64; 3]]), Error> {
     let [i1, i2, i3] = *moments;
     let (sum, deficit) = (i1 + i2 + i3, i3 - i2 - i1);
+    finite("the sum of the principal moments", sum)?;
     let noise = ROUNDING * sum;
     if deficit > noise {
         return Err(Error::TriangleInequality {

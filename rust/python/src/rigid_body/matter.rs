@@ -191,6 +191,7 @@ impl PyRigidBody {
         }
         if let Ok(array) = density.cast_exact::<PyArrayDyn<f32>>()
             && array.is_c_contiguous()
+            && array.is_aligned()
         {
             let array = array.readonly();
             return of_voxels(py, array.as_slice()?, array.shape(), spacing, origin[0]);
