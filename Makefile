@@ -22,7 +22,7 @@ test: build ## every test, Rust and Python, with lints and type checks
 	done
 
 test-rust: ## the tests of the core
-	cargo test --locked --workspace
+	cargo test --locked
 
 test-python: build ## the tests of the package
 	$(BIN)/python -m pytest

@@ -150,7 +150,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Trajectory.point": {"r": [1.0, 0.0, 0.5]},
     "Trajectory.resume": {"t": [0.5, 0.75, 1.0]},
     "Trajectory.invariants": {},
-    "molecules.isotopes": {"labels": ["C", "D", "O"]},
+    "molecules.isotopes": {"labels": ["C", "D", "O"], "masses": "most_common"},
     "molecules.ray_kappa": {"constants": [3.0, 2.0, 1.0]},
 }
 """What some of them take instead, and on what: `self` lists the receivers."""

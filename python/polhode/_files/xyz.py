@@ -80,7 +80,8 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
     rows = lines[2 : 2 + count]
     if len(rows) < count:
         raise FileFormatError(
-            f"{file}: line 1 promises {count_text[:40]} atoms, but the file holds {len(rows)}; is it cut short?"
+            f"{file}: line 1 promises {count_text[:40]} atoms, but the file holds {len(rows)}; "
+            "is it cut short?"
         )
     if any(line.strip() for line in lines[2 + count :]):
         raise FileFormatError(

@@ -150,17 +150,6 @@ impl RigidBody {
         all_finite("center_of_mass", &matter.center_of_mass)?;
         let inertia = matter.inertia();
         all_finite("inertia", &inertia)?;
-        // Matter has no negative square; surfaces that cross one another, or bytes that were damaged, may.
-        let [least, _, most] = spectrum.values;
-        if least < -(1e-9 * most + 4.0 * matter.error_bound.inertia) {
-            let [s1, s2, s3] = spectrum.values;
-            let moments = [s1 + s2, s1 + s3, s2 + s3];
-            return Err(Error::TriangleInequality {
-                moments,
-                deficit: -2.0 * s1,
-                relative: -s1 / (s1 + s2 + s3),
-            });
-        }
         let spread = matter.central.trace();
         if spread > 0.0 && spread < f64::MIN_POSITIVE {
             return Err(Error::OutOfRange {
@@ -177,6 +166,22 @@ impl RigidBody {
             error_bound: matter.error_bound,
             provenance: Provenance::of_matter(Source::SecondMoment, 1, Checks::FINITE),
         })
+    }
+
+    /// Whether the tensor is one of matter, which has no negative squares: surfaces that cross one another, or bytes that
+    /// were damaged, may. What the bounds allow is rounding.
+    pub(super) fn check_possible(&self) -> Result<(), Error> {
+        let moments = principal_axes(&self.inertia).moments;
+        let [i1, i2, i3] = moments;
+        let deficit = i3 - i2 - i1;
+        if deficit > 1e-9 * i3 + 4.0 * self.error_bound.inertia {
+            return Err(Error::TriangleInequality {
+                moments,
+                deficit,
+                relative: deficit / (i1 + i2 + i3),
+            });
+        }
+        Ok(())
     }
 
     /// The tail of every constructor that starts from a tensor; `scale` is the trace its rounding is relative to.

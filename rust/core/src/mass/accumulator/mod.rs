@@ -193,6 +193,7 @@ impl MassAccumulator {
             });
         }
         let body = RigidBody::from_second_moment(&matter)?;
+        body.check_possible()?;
         let count = usize::try_from(self.count()).unwrap_or(usize::MAX);
         Ok(body.with_provenance(Provenance::of_particles(count)))
     }
