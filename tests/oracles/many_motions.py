@@ -186,7 +186,7 @@ class Motions:
             crosses = at * g < 0
             a, f = np.where(crosses, b, a), np.where(crosses, g, 0.5 * f)
             b, g = x, at
-        return b
+        return np.asarray(b)
 
 
 def _conjugate(q: Floats) -> Floats:
