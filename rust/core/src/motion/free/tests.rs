@@ -120,13 +120,17 @@ fn many_times_have_the_bits_of_one() {
         motion.sample(&times, &mut attitudes, &mut omegas);
         for ((t, attitude), omega) in times.iter().zip(&attitudes).zip(&omegas) {
             let state = motion.at(*t);
-            if t.is_finite() {
+            // Beyond 2⁸⁸ turns there is no phase.
+            let is_known = !state.omega.x.is_nan();
+            if is_known {
                 assert_eq!(components(&state.attitude), *attitude, "{t}");
                 assert_eq!(state.omega, Vector3::from(*omega));
                 assert!((Quaternion::from(*attitude).norm() - 1.0).abs() < 1e-15);
             } else {
                 assert!(attitude.iter().all(|x| x.is_nan()), "{t} {attitude:?}");
             }
+            assert!(is_known || !t.is_finite() || *t > 1e25, "{t}");
+            assert!(!is_known || t.is_finite(), "{t}");
         }
     }
 }
