@@ -114,7 +114,7 @@ def apart(a: Floats, b: Floats, scale: Any) -> Any:
     return np.maximum(tilt, np.linalg.norm(a[..., 4:] - b[..., 4:], axis=-1) / scale)
 
 
-def serving(motions: Motions, row: int) -> list[str]:
+def serving(motions: Motions, row: int) -> list[Any]:
     rates = (motions.linear, motions.quadratic, motions.damping)
     return ["taylor", "dop853", "radau"] + (["splitting"] if not any(x[row].any() for x in rates) else [])
 
@@ -148,7 +148,7 @@ def compare(n: int, seed: int) -> dict[str, float]:
                 states[row, 4:],
                 states[row, :4],
                 load=load_of(motions, row),
-                method=method,  # type: ignore[arg-type]
+                method=method,
                 rtol=tolerance,
             )
             got = np.concatenate([run.quaternion[-1], run.omega[-1]])
