@@ -19,7 +19,7 @@ use crate::numerics::reduce::{depth, sum_terms};
 /// `m = 4π ∫ ρ r² dr`, `I = (8π/3) ∫ ρ r⁴ dr`. The density may jump at each of them.
 ///
 /// # Errors
-/// As of [`from_density`]; when the boundaries do not ascend from zero or more.
+/// As of [`super::from_density`]; when the boundaries do not ascend from zero or more.
 pub fn from_radial_density<E: From<Error>>(
     boundaries: &[f64],
     density: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,

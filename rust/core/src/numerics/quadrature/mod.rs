@@ -7,7 +7,7 @@
 //!
 //! The nodes beside a face are some thousandths of the box away from it: a jump of the integrand between them and the
 //! face is seen by neither rule. So before the integral is called converged, every box is asked closer to its faces
-//! ([`probes`]).
+//! (`probes`).
 
 mod probes;
 mod rule;
