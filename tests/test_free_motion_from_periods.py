@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -158,6 +159,27 @@ def test_what_no_motion_has_is_refused_with_the_reach() -> None:
     sphere = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
     with pytest.raises(PolhodeError, match="long-axis mode"):
         sphere.free_motion_from_periods(1.0, 1.0)
+
+
+NEEDLE = (3.7336506454180177e-19, 6.846093914796246e-7, 6.84609391479998e-7)
+
+
+@pytest.mark.parametrize("moments", [APOPHIS, (1.0, 2.0, 2.5), (0.01, 1.0, 1.0001), NEEDLE])
+@pytest.mark.parametrize("mode", ["long-axis", "short-axis"])
+def test_what_is_near_the_separatrix_has_its_periods_or_is_refused(
+    moments: tuple[float, ...], mode: Mode
+) -> None:
+    """The periods grow without bound towards the separatrix, where the last bits of ω decide on them."""
+    body = RigidBody.from_principal(1.0, moments)
+    with pytest.raises(PolhodeError, match="the separatrix") as caught:
+        body.free_motion_from_periods(1e25, 1.0, mode=mode)
+    least, most = map(float, re.findall(r"from (\S+) \(steady spin\) to (\S+) ", str(caught.value))[0])
+    for share in (*np.linspace(0.01, 0.9, 9), 0.99, 0.999, 0.99999):
+        periods = body.free_motion_from_periods(least + share * (most - least), 1.0, mode=mode).periods
+        assert periods.rotation == pytest.approx(least + share * (most - least), rel=1e-9)
+        assert periods.precession == pytest.approx(1.0, rel=1e-9)
+    with pytest.raises(PolhodeError, match="separatrix"):
+        body.free_motion_from_periods(least + 1.0001 * (most - least), 1.0, mode=mode)
 
 
 def test_arguments() -> None:

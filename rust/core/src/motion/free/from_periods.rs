@@ -44,8 +44,12 @@ pub struct FromPeriods {
     pub phase: f64,
 }
 
-/// Closer to the separatrix than this complement of the modulus squared, doubles cannot tell the motions apart.
-const NEAREST: f64 = f64::EPSILON;
+/// Closer to the separatrix than this complement of the modulus squared (2⁻²³), the last bit of ω changes the periods by more
+/// than a part in 10⁹: `δP/P = δ(k′²)/(2 k′² ln(4/k′))`, with `δ(k′²)` of some roundings.
+const NEAREST: f64 = 1.0 / 8_388_608.0;
+
+/// The cosine of the steepest tilt of a symmetric body: ω across its axis is known as well as ω along it.
+const STEEPEST: f64 = f64::EPSILON;
 
 impl FromPeriods {
     /// ω at time zero, components in principal axes, for a body with these ascending moments.
@@ -192,7 +196,7 @@ impl Family {
         let farthest = if self.flatness > 0.0 {
             1.0 / (self.flatness * NEAREST)
         } else {
-            1.0 / (NEAREST * NEAREST)
+            1.0 / (STEEPEST * STEEPEST)
         };
         let (least, most) = (self.ratio(0.0), self.ratio(farthest));
         if !(ratio >= least && ratio <= most) {
