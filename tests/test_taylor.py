@@ -108,6 +108,14 @@ def test_growth_on_the_way_is_that_of_the_variations(case: MotionCase) -> None:
     assert load_cases.growth(exact, 32) == pytest.approx(GROWTH[case.name], rel=0.05)
 
 
+@named(case for case in CASES if case.name in GROWTH and "1e-05, long" in case.name)
+def test_growth_on_the_way_is_far_above_that_from_the_start(case: MotionCase) -> None:
+    """What is rounded after about a third of the way grows most."""
+    exact = case._replace(times=tuple(case.times[1] * part for part in (0.35, 1.0)))
+    assert load_cases.growth(exact, 32) == pytest.approx(GROWTH[case.name], rel=0.1)
+    assert exact_condition(case, 1) == pytest.approx(9e4, rel=0.05)
+
+
 @named(CASES)
 def test_ten_rotations_to_the_last_digit(case: MotionCase) -> None:
     """Beyond doubles nothing is lost on the way: what is left is the rounding of the result."""
