@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import time
 from typing import TYPE_CHECKING
 
@@ -79,17 +80,18 @@ TEXTS: dict[str, Callable[[int], str]] = {
 def test_time_is_in_proportion_to_length(name: str) -> None:
     """Eight times the text takes eight times the time; a quadratic path would take 64 times."""
 
-    def seconds(length: int) -> float:
-        work = read_and_fixed(TEXTS[name](length))
-        times = []
-        for _ in range(3):
+    short = 32_000
+    works = [read_and_fixed(TEXTS[name](length)) for length in (short, 8 * short)]
+    best = [math.inf, math.inf]
+    # A busy machine may slow one of them: the best of up to ten turns counts.
+    for turn in range(10):
+        for k, work in enumerate(works):
             start = time.process_time()
             work()
-            times.append(time.process_time() - start)
-        return min(times)
-
-    short = 32_000
-    assert seconds(8 * short) < 30.0 * max(seconds(short), 2e-3)
+            best[k] = min(best[k], time.process_time() - start)
+        if turn >= 2 and best[1] < 30.0 * max(best[0], 2e-3):
+            return
+    pytest.fail(f"{best[1]} s for eight times the text of {best[0]} s")
 
 
 class TestEdits:

@@ -60,19 +60,6 @@ impl Deeper {
     }
 }
 
-/// How many runs are under way in this thread.
-pub(crate) fn current() -> usize {
-    RUNS.get()
-}
-
-/// Calls a function of Python for a run that is so deep, from whichever of its threads.
-pub(crate) fn within<R>(depth: usize, call: impl FnOnce() -> R) -> R {
-    let own = RUNS.replace(depth);
-    let answer = call();
-    RUNS.set(own);
-    answer
-}
-
 impl Drop for Deeper {
     fn drop(&mut self) {
         self.0.set(self.0.get() - 1);

@@ -46,9 +46,8 @@ pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<
         .call_method1(intern!(py, "asarray"), (object,))
         .map_err(|error| {
             // What else the object raised comes back as it was.
-            let kind = error.get_type(py);
-            if kind.is(py.get_type::<PyValueError>()) || kind.is(py.get_type::<PyTypeError>()) {
-                PyErr::from_type(kind, format!("{name}: {}", error.value(py)))
+            if is_of_numpy(&error, py) {
+                PyErr::from_type(error.get_type(py), format!("{name}: {}", error.value(py)))
             } else {
                 error
             }
@@ -60,6 +59,12 @@ pub(crate) fn as_array<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<
         )));
     }
     Ok(array)
+}
+
+/// Whether this is how NumPy refuses what is no array of numbers.
+fn is_of_numpy(error: &PyErr, py: Python<'_>) -> bool {
+    let kind = error.get_type(py);
+    kind.is(py.get_type::<PyValueError>()) || kind.is(py.get_type::<PyTypeError>())
 }
 
 /// Refuses what has masked elements or units, in lists too.
@@ -180,10 +185,13 @@ fn in_pieces<'py>(
         for from in (0..length).step_by(step) {
             beat.mark()?;
             let rows = object.get_item(slice(py, from, length.min(from + step))?)?;
-            let Ok(piece) = np.call_method1(intern!(py, "asarray"), (rows,)) else {
-                return Ok(None); // NumPy is to say itself what is wrong with the whole.
-            };
-            pieces.push(piece);
+            match np.call_method1(intern!(py, "asarray"), (rows,)) {
+                Ok(piece) => pieces.push(piece),
+                // NumPy is to say itself what is wrong with the whole.
+                Err(error) if is_of_numpy(&error, py) => return Ok(None),
+                // NumPy does hear Ctrl-C now and then.
+                Err(error) => return Err(error),
+            }
         }
     }
     let (mut tail, mut kinds) = (None, Vec::new());

@@ -4,11 +4,10 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
-
-use crate::depth;
 
 /// How often Python is asked for signals, in milliseconds: fast enough to feel immediate, rare enough to cost nothing.
 const INTERVAL: u64 = 20;
@@ -60,14 +59,14 @@ pub(crate) struct Interrupt {
     stopped: AtomicBool,
     error: Mutex<Option<PyErr>>,
     progress: Option<Py<PyAny>>,
-    /// How deep the run is within other runs; its threads are as deep.
-    depth: usize,
+    /// The thread that called: signals of Python are seen by its main thread alone, so no other one may ask in its place.
+    caller: ThreadId,
 }
 
 impl Interrupt {
     pub(crate) fn new(progress: Option<Py<PyAny>>) -> Self {
         Self {
-            depth: depth::current(),
+            caller: thread::current().id(),
             start: Instant::now(),
             due: AtomicU64::new(if progress.is_some() { 0 } else { INTERVAL }),
             interval: if progress.is_some() {
@@ -83,21 +82,11 @@ impl Interrupt {
 
     /// Asks Python, when it is time to, whether to go on; tells the progress callback the fraction done, when given one.
     ///
-    /// Called from any thread, attached or not. Signals are only seen by Python's main thread.
+    /// Called from any thread, attached or not; the thread that called the package asks, the others hear the answer.
     pub(crate) fn poll(&self, fraction: Option<f64>) -> ControlFlow<()> {
         let now = u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX - TELLING);
-        let due = self.due.load(Ordering::Relaxed);
-        if now >= due
-            && self
-                .due
-                .compare_exchange(
-                    due,
-                    now + self.interval,
-                    Ordering::Relaxed,
-                    Ordering::Relaxed,
-                )
-                .is_ok()
-        {
+        if now >= self.due.load(Ordering::Relaxed) && thread::current().id() == self.caller {
+            self.due.store(now + self.interval, Ordering::Relaxed);
             self.ask(fraction);
         }
         if self.stopped.load(Ordering::Relaxed) {
@@ -111,7 +100,7 @@ impl Interrupt {
         let answer = Python::attach(|py| {
             py.check_signals()?;
             if let (Some(progress), Some(fraction)) = (&self.progress, fraction) {
-                depth::within(self.depth, || progress.call1(py, (fraction,)))?;
+                progress.call1(py, (fraction,))?;
             }
             Ok(())
         });
