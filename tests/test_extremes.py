@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from polhode import MassAccumulator, RigidBody, regions, solids
+from polhode import MassAccumulator, RigidBody, laminae, parallel_axis, regions, rods, solids
 from polhode.errors import InvalidInertiaError, PolhodeError
 
 NODES = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
@@ -108,3 +108,79 @@ def test_radii_of_what_is_very_light_or_heavy() -> None:
     for mass, moment in ((1e-200, 1e200), (1e200, 1e-200)):
         body = RigidBody.from_principal(mass, (moment,) * 3)
         assert body.radii_of_gyration == pytest.approx([moment / 1.0] * 3, rel=1e-14)
+
+
+def _cart(s: float, m: float) -> RigidBody:
+    """A body of mass m and lengths of order s, away from the origin."""
+    moments = [x * m * s * s if abs(np.log2(m * s)) < 500 else x * (m * s) * s for x in (1.1, 2.2, 2.7)]
+    return RigidBody.from_principal(m, moments, None, (0.3 * s, 0.2 * s, -0.1 * s))
+
+
+CORNERS = np.array([(0.0, 0.0), (1.0, 0.1), (1.2, 1.0), (0.1, 2.0)])
+IN_UNITS: dict[str, Any] = {
+    "box": lambda s, m: solids.box((s, 2 * s, 3 * s), mass=m).inertia,
+    "wedge": lambda s, m: solids.wedge((s, 2 * s, 3 * s), mass=m).inertia,
+    "sphere": lambda s, m: solids.sphere(s, mass=m).inertia,
+    "hollow sphere": lambda s, m: solids.hollow_sphere(0.3 * s, s, mass=m).inertia,
+    "hemisphere": lambda s, m: solids.hemisphere(s, mass=m).inertia,
+    "ellipsoid": lambda s, m: solids.ellipsoid((s, 2 * s, 3 * s), mass=m).inertia,
+    "cylinder": lambda s, m: solids.cylinder(s, 2 * s, mass=m).inertia,
+    "tube": lambda s, m: solids.tube(0.3 * s, s, 2 * s, mass=m).inertia,
+    "cone": lambda s, m: solids.cone(s, 2 * s, mass=m).inertia,
+    "frustum": lambda s, m: solids.frustum(s, 0.3 * s, 2 * s, mass=m).inertia,
+    "capsule": lambda s, m: solids.capsule(s, 3 * s, mass=m).inertia,
+    "torus": lambda s, m: solids.torus(2 * s, 0.3 * s, mass=m).inertia,
+    "prism": lambda s, m: solids.prism(6, s, 2 * s, mass=m).inertia,
+    "pyramid": lambda s, m: solids.pyramid((s, 2 * s, 3 * s), mass=m).inertia,
+    "tetrahedron": lambda s, m: solids.tetrahedron(s, mass=m).inertia,
+    "disk": lambda s, m: laminae.disk(s, mass=m).inertia,
+    "annulus": lambda s, m: laminae.annulus(0.3 * s, s, mass=m).inertia,
+    "rectangle": lambda s, m: laminae.rectangle((s, 2 * s), mass=m).inertia,
+    "triangle": lambda s, m: laminae.triangle(s * CORNERS[:3], mass=m).inertia,
+    "polygon": lambda s, m: laminae.polygon(s * CORNERS, mass=m).inertia,
+    "rod": lambda s, m: rods.rod(s, mass=m).inertia,
+    "ring": lambda s, m: rods.ring(s, mass=m).inertia,
+    "arc": lambda s, m: rods.arc(s, 1.0, mass=m).inertia,
+    "wire": lambda s, m: RigidBody.from_curve(s * np.eye(3), mass=m).inertia,
+    "shell": lambda s, m: RigidBody.from_surface(s * np.eye(3), [(0, 1, 2)], mass=m).inertia,
+    "particles": lambda s, m: RigidBody.from_particles(m * np.array([1.0, 2.0, 4.0]), s * np.eye(3)).inertia,
+    "inertia_about": lambda s, m: _cart(s, m).inertia_about("origin"),
+    "moment_about": lambda s, m: _cart(s, m).moment_about((1.0, 2.0, 2.0), (s, 0.0, 0.0)),
+    "principal_about": lambda s, m: _cart(s, m).principal_about((s, s, 0.0)).moments,
+    "sum": lambda s, m: (_cart(s, m) + _cart(s, m).translated((s, 0, 0))).inertia,
+    "parallel_axis": lambda s, m: parallel_axis.from_center_of_mass(_cart(s, m).inertia, m, (s, 2 * s, 0.0)),
+    "kinetic energy": lambda s, m: _cart(s, m).kinetic_energy((1, 2, 3), (s, 0.3 * s, 0)).total,
+    "energy about O": lambda s, m: _cart(s, m).kinetic_energy((1, 2, 3), (s, 0.3 * s, 0), "origin").total,
+    "angular momentum": lambda s, m: (
+        _cart(s, m).angular_momentum((1, 2, 3), (0.7 * s, s, 0), (s, 0, 0.3 * s), "origin").total
+    ),
+}
+
+
+@pytest.mark.parametrize(("length", "mass"), [(-531, 66), (531, -66), (-400, 700), (300, -600), (-531, 1000)])
+@pytest.mark.parametrize("name", IN_UNITS)
+def test_powers_of_two_as_units_change_no_digit(name: str, length: int, mass: int) -> None:
+    """Whatever m s² is a number, squares and volumes that leave float64 on the way do no harm."""
+    quantity = IN_UNITS[name]
+    expected = np.ldexp(quantity(1.0, 1.0), mass + 2 * length)
+    assert np.array_equal(quantity(2.0**length, 2.0**mass), expected)
+
+
+@pytest.mark.parametrize(("length", "density"), [(-300, 900), (300, -900), (-500, 1000), (400, -1000)])
+def test_densities_of_any_size_in_shapes_of_any_size(length: int, density: int) -> None:
+    shapes: list[tuple[int, Any]] = [
+        (3, lambda s, d: solids.torus(3.0 * s, s, density=d)),
+        (2, lambda s, d: laminae.triangle(s * CORNERS[:3], density=d)),
+        (2, lambda s, d: laminae.polygon(s * CORNERS, density=d)),
+        (1, lambda s, d: rods.arc(s, 2.0, density=d)),
+    ]
+    for dimensions, shape in shapes:
+        mass = density + dimensions * length
+        if abs(mass + 2 * length) > 1010:
+            with pytest.raises(InvalidInertiaError, match="float64 holds"):
+                shape(2.0**length, 2.0**density)
+            continue
+        one, other = shape(1.0, 1.0), shape(2.0**length, 2.0**density)
+        assert other.mass == np.ldexp(one.mass, mass)
+        assert np.array_equal(other.inertia, np.ldexp(one.inertia, mass + 2 * length))
+        assert np.array_equal(other.center_of_mass, np.ldexp(one.center_of_mass, length))

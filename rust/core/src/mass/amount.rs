@@ -6,8 +6,10 @@ use super::body::RigidBody;
 use super::error_bound::ErrorBound;
 use super::provenance::{Checks, Provenance, Source};
 use super::second_moment::SecondMoment;
+use super::units::Units;
 use crate::error::{Error, finite};
-use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
+use crate::numerics::split_vector::SplitVector;
 
 /// How much matter: exactly one of the two.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,18 +21,6 @@ pub enum Amount {
 }
 
 impl Amount {
-    /// The mass in a volume, an area or a length.
-    ///
-    /// # Errors
-    /// When mass or density is not positive and finite.
-    pub fn mass(self, measure: f64) -> Result<f64, Error> {
-        let value = self.checked()?;
-        Ok(match self {
-            Self::Mass(_) => value,
-            Self::Density(_) => value * measure,
-        })
-    }
-
     /// The same as `mantissa·2^power` of a measure in some unit, so that neither a small volume times a large density nor the reverse leaves the range
     /// of float64.
     pub(super) fn mass_in_units(self, measure: f64) -> Result<(f64, i32), Error> {
@@ -70,56 +60,133 @@ pub(super) enum Measure {
 }
 
 impl Measure {
-    /// The mass of the shape.
-    pub(super) fn mass(self, amount: Amount) -> Result<f64, Error> {
-        let (what, value) = match self {
-            Self::Volume(value) => ("volume", value),
-            Self::Area(value) => ("area", value),
-            Self::Length(value) => ("length", value),
-        };
-        let mass = amount.mass(value)?;
-        if mass == 0.0 {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Volume(_) => "volume",
+            Self::Area(_) => "area",
+            Self::Length(_) => "length",
+        }
+    }
+
+    /// How many lengths it is a product of, and the number.
+    fn parts(self) -> (i32, f64) {
+        match self {
+            Self::Volume(value) => (3, value),
+            Self::Area(value) => (2, value),
+            Self::Length(value) => (1, value),
+        }
+    }
+
+    /// The mass of the shape, whose lengths are counted in `unit`, as `mantissa·2^power`.
+    fn mass(self, unit: Unit, amount: Amount) -> Result<(f64, i32), Error> {
+        let (lengths, value) = self.parts();
+        let (own, power) = amount.mass_in_units(value)?;
+        if own == 0.0 {
             let law = "positive when density= is given (a degenerate shape takes mass=)";
+            let what = self.name();
             return Err(Error::OutOfDomain { what, law, value });
         }
-        Ok(mass)
+        let power = match amount {
+            Amount::Mass(_) => power,
+            Amount::Density(_) => power + lengths * unit.0,
+        };
+        let rest = exponent(own);
+        Ok((times_power_of_two(own, -rest), power + rest))
+    }
+}
+
+/// The unit `2^u` of a shape's lengths: their squares and their volume are numbers in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Unit(pub(super) i32);
+
+/// Shapes with a length of more than `2^MODERATE`, or less than its inverse, have a unit of their own.
+const MODERATE: i32 = 128;
+/// In their unit the largest of the lengths is at most this power of two.
+const LARGEST: i32 = 300;
+
+impl Unit {
+    /// That of a shape with these lengths, and the lengths in it: between the largest and the least.
+    pub(super) fn of<const N: usize>(lengths: [f64; N]) -> (Self, [f64; N]) {
+        let powers = (lengths.iter().filter(|&&length| length != 0.0)).map(|&x| exponent(x));
+        let (least, most) = powers.fold((i32::MAX, i32::MIN), |(least, most), power| {
+            (least.min(power), most.max(power))
+        });
+        if least > most || least >= -MODERATE && most <= MODERATE {
+            return (Self(0), lengths);
+        }
+        let unit = i32::midpoint(least, most).max(most - LARGEST);
+        (
+            Self(unit),
+            lengths.map(|length| times_power_of_two(length, -unit)),
+        )
+    }
+
+    /// A vector of such lengths in it.
+    pub(super) fn counts<const N: usize>(self, vector: &SplitVector<N>) -> SplitVector<N> {
+        let [a, b] = halves(-self.0);
+        vector.scaled(a).scaled(b)
     }
 }
 
 /// The body with C at the origin whose second moment per unit mass is diagonal in the body axes.
 pub(super) fn diagonal(
+    unit: Unit,
     measure: Measure,
     amount: Amount,
     per_mass: [f64; 3],
 ) -> Result<RigidBody, Error> {
     centered(
+        unit,
         measure,
         amount,
         &Matrix3::from_diagonal(&Vector3::from(per_mass)),
     )
 }
 
-/// The body with C at the origin whose second moment per unit mass is this.
+/// The body with C at the origin whose second moment per unit mass is this, in the unit of its lengths squared.
 pub(super) fn centered(
+    unit: Unit,
     measure: Measure,
     amount: Amount,
     per_mass: &Matrix3<f64>,
 ) -> Result<RigidBody, Error> {
-    let mass = measure.mass(amount)?;
-    let error_bound = closed_form(amount, mass, 2.0 * (mass * per_mass.trace()));
-    let body = RigidBody::from_second_moment(&SecondMoment {
-        mass,
-        center_of_mass: Vector3::zeros(),
-        central: per_mass * mass,
-        axes: Matrix3::identity(),
-        error_bound,
-    })?;
     let source = match measure {
         Measure::Volume(_) => Source::Solid,
         Measure::Area(_) => Source::Lamina,
         Measure::Length(_) => Source::Rod,
     };
-    Ok(body.with_provenance(Provenance::of_matter(source, 1, Checks::FINITE)))
+    let of_mass = |mass: f64| SecondMoment {
+        mass,
+        center_of_mass: Vector3::zeros(),
+        central: per_mass * mass,
+        axes: Matrix3::identity(),
+        error_bound: closed_form(amount, mass, 2.0 * (mass * per_mass.trace())),
+    };
+    of_matter(unit, measure, amount, source, of_mass)
+}
+
+/// The body with the second moment that `of_mass` gives for the mass of a shape, its lengths counted in `unit` but for the
+/// centre of mass.
+pub(super) fn of_matter(
+    unit: Unit,
+    measure: Measure,
+    amount: Amount,
+    source: Source,
+    of_mass: impl Fn(f64) -> SecondMoment,
+) -> Result<RigidBody, Error> {
+    let (own, power) = measure.mass(unit, amount)?;
+    let provenance = Provenance::of_matter(source, 1, Checks::FINITE);
+    if unit == Unit(0) && power.abs() <= 2 * LARGEST {
+        let body = RigidBody::from_second_moment(&of_mass(times_power_of_two(own, power)))?;
+        return Ok(body.with_provenance(provenance));
+    }
+    let units = Units {
+        mass: power,
+        length: unit.0,
+        place: 0,
+    };
+    let body = RigidBody::from_second_moment(&of_mass(own))?;
+    Ok(units.told(&body)?.with_provenance(provenance))
 }
 
 /// What a few operations can have done to mass and tensor; a mass that was given is exact.
@@ -165,4 +232,24 @@ pub(super) fn ordered(
 /// `a/b` for lengths `a ≤ b`, and 1 where both are zero: a point has whatever shape is asked of it.
 pub(super) fn ratio(a: f64, b: f64) -> f64 {
     if b == 0.0 { 1.0 } else { a / b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_beyond_the_moderate_have_a_unit_between_them() {
+        let two = |power: i32| 2.0_f64.powi(power);
+        assert_eq!(Unit::of([0.0, 0.0]), (Unit(0), [0.0, 0.0]));
+        let moderate = [two(MODERATE) * 1.5, two(-MODERATE)];
+        assert_eq!(Unit::of(moderate), (Unit(0), moderate));
+        let small = Unit::of([two(-MODERATE - 1), 0.0]);
+        assert_eq!(small, (Unit(-MODERATE - 1), [1.0, 0.0]));
+        assert_eq!(Unit::of([two(400), two(-100)]).0, Unit(150));
+        // The largest stays below 2^LARGEST, however small the least is.
+        assert_eq!(Unit::of([two(400), two(-1000)]).0, Unit(100));
+        assert_eq!(Unit::of([two(200), two(-400)]).0, Unit(-100));
+        assert_eq!(Unit::of([two(200), two(-401)]).0, Unit(-100));
+    }
 }

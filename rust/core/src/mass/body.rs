@@ -12,6 +12,7 @@ use super::validity::{
 };
 use crate::error::{Error, all_finite, finite};
 use crate::numerics::eigen3::{Eigen3, eigen3};
+use crate::numerics::power_of_two::times_dot;
 use crate::principal::{PrincipalAxes, TOP_RTOL, principal_axes, rounding_rtols, with_sign_rule};
 
 /// A rigid body: mass m > 0, centre of mass C, inertia tensor `I_C` about C, all in the axes of the body frame B.
@@ -340,7 +341,7 @@ impl RigidBody {
         );
         let [i1, i2, i3] = self.principal.moments;
         let central = i1 * w.x * w.x + i2 * w.y * w.y + i3 * w.z * w.z;
-        Ok((central + self.mass * lever.dot(&lever)) / n.dot(&n))
+        Ok((central + times_dot(self.mass, &lever, &lever)) / n.dot(&n))
     }
 
     /// Radii of gyration `√(I_k / m)` about the principal axes through C, ascending.

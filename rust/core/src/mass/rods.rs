@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::amount::{Amount, Measure, diagonal, length};
+use super::amount::{Amount, Measure, Unit, diagonal, length};
 use super::body::RigidBody;
 use crate::error::{Error, finite};
 
@@ -12,7 +12,9 @@ use crate::error::{Error, finite};
 /// When the length is negative or not finite, or the amount is not positive.
 pub fn rod(length: f64, amount: Amount) -> Result<RigidBody, Error> {
     self::length("length", length)?;
+    let (unit, [length]) = Unit::of([length]);
     diagonal(
+        unit,
         Measure::Length(length),
         amount,
         [0.0, 0.0, length * length / 12.0],
@@ -25,8 +27,14 @@ pub fn rod(length: f64, amount: Amount) -> Result<RigidBody, Error> {
 /// When the radius is negative or not finite, or the amount is not positive.
 pub fn ring(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
     length("radius", radius)?;
+    let (unit, [radius]) = Unit::of([radius]);
     let across = radius * radius / 2.0;
-    diagonal(Measure::Length(TAU * radius), amount, [across, across, 0.0])
+    diagonal(
+        unit,
+        Measure::Length(TAU * radius),
+        amount,
+        [across, across, 0.0],
+    )
 }
 
 /// Thin arc of a circle of radius R in the x-y plane that spans the angle α, its middle toward +x and the centre of the
@@ -45,8 +53,10 @@ pub fn arc(radius: f64, angle: f64, amount: Amount) -> Result<RigidBody, Error> 
             value: angle,
         });
     }
+    let (unit, [radius]) = Unit::of([radius]);
     let square = radius * radius;
     diagonal(
+        unit,
         Measure::Length(radius * angle),
         amount,
         [square * sagitta(angle), square * chord(angle), 0.0],

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::mass::RigidBody;
+use crate::numerics::power_of_two::times_cross;
 
 /// `L = m R×v + m [R×(ω×c_P) + c_P×v] + I_P ω` about the inertial origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,9 +40,9 @@ pub fn angular_momentum(
     let m = body.mass();
     let swing = omega.cross(&c);
     AngularMomentum {
-        orbital: position.cross(velocity) * m,
-        mixed: (position.cross(&swing) + c.cross(velocity)) * m,
-        spin: spin(body, omega) + c.cross(&swing) * m,
+        orbital: times_cross(m, position, velocity),
+        mixed: times_cross(m, position, &swing) + times_cross(m, &c, velocity),
+        spin: spin(body, omega) + times_cross(m, &c, &swing),
     }
 }
 

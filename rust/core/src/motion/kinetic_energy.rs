@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::mass::RigidBody;
+use crate::numerics::power_of_two::times_dot;
 
 /// `T = ½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,10 +43,10 @@ pub fn kinetic_energy(
     let [i1, i2, i3] = principal.moments;
     let swing = omega.cross(&c);
     KineticEnergy {
-        translational: 0.5 * m * velocity.dot(velocity),
-        mixed: m * velocity.dot(&swing),
+        translational: times_dot(0.5 * m, velocity, velocity),
+        mixed: times_dot(m, velocity, &swing),
         rotational: 0.5
-            * (i1 * w.x * w.x + i2 * w.y * w.y + i3 * w.z * w.z + m * swing.dot(&swing)),
+            * (i1 * w.x * w.x + i2 * w.y * w.y + i3 * w.z * w.z + times_dot(m, &swing, &swing)),
     }
 }
 

@@ -47,6 +47,43 @@ pub fn direction_of(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
         .try_normalize(0.0)
 }
 
+/// Products of this size and more have lost nothing to underflow that they would have kept.
+const SAFE: std::ops::Range<f64> = 1e-250..1e250;
+
+/// `k a·b`, whose parts may be beyond float64 where the whole is not.
+#[must_use]
+pub fn times_dot(k: f64, a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    let product = a.dot(b);
+    if SAFE.contains(&product.abs()) {
+        return k * product;
+    }
+    let (a, b, (k, power)) = (near_one(a), near_one(b), split(k));
+    times_power_of_two(k * a.0.dot(&b.0), a.1 + b.1 + power)
+}
+
+/// `k a×b`, whose parts may be beyond float64 where the whole is not.
+#[must_use]
+pub fn times_cross(k: f64, a: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
+    let product = a.cross(b);
+    if SAFE.contains(&product.amax()) {
+        return product * k;
+    }
+    let (a, b, (k, power)) = (near_one(a), near_one(b), split(k));
+    (a.0.cross(&b.0) * k).map(|x| times_power_of_two(x, a.1 + b.1 + power))
+}
+
+/// A vector as one near one times a power of two.
+fn near_one(vector: &Vector3<f64>) -> (Vector3<f64>, i32) {
+    let power = exponent(vector.amax());
+    (vector.map(|x| times_power_of_two(x, -power)), power)
+}
+
+/// A number as one near one times a power of two.
+fn split(x: f64) -> (f64, i32) {
+    let power = exponent(x);
+    (times_power_of_two(x, -power), power)
+}
+
 /// `2^e` as two factors that are numbers, for many products: `x·a·b`, rounded only where it is a denormal number.
 #[must_use]
 pub fn halves(e: i32) -> [f64; 2] {
@@ -69,6 +106,32 @@ mod tests {
         }
         assert_eq!(length(&Vector3::zeros()), 0.0);
         assert_eq!(direction_of(&Vector3::zeros()), None);
+    }
+
+    #[test]
+    fn products_of_any_size() {
+        let (a, b) = (Vector3::new(2.0, -3.0, 6.0), Vector3::new(1.0, 4.0, 0.5));
+        let (dot, cross) = (3.0 * a.dot(&b), a.cross(&b) * 3.0);
+        for (k, e, f) in [
+            (0, 0, 0),
+            (70, -531, -531),
+            (-70, 531, 531),
+            (900, -900, -900),
+            (-700, 900, -900),
+        ] {
+            let told = k + e + f;
+            let k = times_power_of_two(3.0, k);
+            let a = a.map(|x| times_power_of_two(x, e));
+            let b = b.map(|x| times_power_of_two(x, f));
+            assert_eq!(times_dot(k, &a, &b), times_power_of_two(dot, told));
+            let expected = cross.map(|x| times_power_of_two(x, told));
+            assert_eq!(times_cross(k, &a, &b), expected);
+        }
+        let nothing = Vector3::zeros();
+        assert_eq!(times_dot(3.0, &a, &nothing), 0.0);
+        assert_eq!(times_cross(3.0, &nothing, &b), nothing);
+        assert!(times_dot(1.0, &a, &Vector3::repeat(f64::NAN)).is_nan());
+        assert!(times_dot(1.0, &a, &Vector3::x_axis().scale(f64::INFINITY)).is_infinite());
     }
 
     #[test]

@@ -6,7 +6,7 @@ mod polygon;
 
 use std::f64::consts::PI;
 
-use super::amount::{Amount, Measure, diagonal, length, ordered};
+use super::amount::{Amount, Measure, Unit, diagonal, length, ordered};
 use super::body::RigidBody;
 use crate::error::Error;
 
@@ -30,9 +30,10 @@ pub fn annulus(inner_radius: f64, outer_radius: f64, amount: Amount) -> Result<R
         ("inner_radius", inner_radius),
         ("outer_radius", outer_radius),
     )?;
-    let (r, R) = (inner_radius, outer_radius);
+    let (unit, [r, R]) = Unit::of([inner_radius, outer_radius]);
     let across = (R * R + r * r) / 4.0;
     diagonal(
+        unit,
         Measure::Area(PI * (R - r) * (R + r)),
         amount,
         [across, across, 0.0],
@@ -47,8 +48,9 @@ pub fn ellipse(semi_axes: &[f64; 2], amount: Amount) -> Result<RigidBody, Error>
     for &semi_axis in semi_axes {
         length("semi_axes", semi_axis)?;
     }
-    let [a, b] = *semi_axes;
+    let (unit, [a, b]) = Unit::of(*semi_axes);
     diagonal(
+        unit,
         Measure::Area(PI * a * b),
         amount,
         [a * a / 4.0, b * b / 4.0, 0.0],
@@ -63,8 +65,9 @@ pub fn rectangle(size: &[f64; 2], amount: Amount) -> Result<RigidBody, Error> {
     for &edge in size {
         length("size", edge)?;
     }
-    let [x, y] = *size;
+    let (unit, [x, y]) = Unit::of(*size);
     diagonal(
+        unit,
         Measure::Area(x * y),
         amount,
         [x * x / 12.0, y * y / 12.0, 0.0],

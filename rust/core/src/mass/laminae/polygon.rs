@@ -7,12 +7,13 @@
 use nalgebra::{Matrix2, Matrix3, Rotation2, Vector2, Vector3};
 use thiserror::Error as ThisError;
 
-use super::super::amount::{Amount, Measure, closed_form};
+use super::super::amount::{Amount, Measure, Unit, closed_form, of_matter};
 use super::super::body::RigidBody;
 use super::super::error_bound::{ErrorBound, UNIT};
-use super::super::provenance::{Checks, Provenance, Source};
+use super::super::provenance::Source;
 use super::super::second_moment::SecondMoment;
 use crate::error::{Error, finite};
+use crate::numerics::power_of_two::times_power_of_two;
 use crate::numerics::reduce::{depth, sum_terms};
 use crate::numerics::split_vector::{SplitVector, cross2};
 use crate::numerics::threads::Watch;
@@ -61,26 +62,29 @@ pub fn triangle(vertices: &[[f64; 2]; 3], amount: Amount) -> Result<RigidBody, E
         SplitVector::difference(&b, &a),
         SplitVector::difference(&c, &a),
     );
+    let center = Vector2::from(a) + (Vector2::from(u.high) + Vector2::from(v.high)) / 3.0;
+    let extents = [u, v].map(|edge| Vector2::from(edge.high).amax());
+    let (unit, _) = Unit::of(extents);
+    let [u, v, w] = [u, v, SplitVector::difference(&c, &b)].map(|edge| unit.counts(&edge));
     let area = 0.5 * cross2(&u, &v).abs();
-    let mass = Measure::Area(area).mass(amount)?;
-    let edges = [u, v, SplitVector::difference(&c, &b)];
     let sum = |edges: [Vector2<f64>; 3]| {
         edges
             .map(|e| e * e.transpose())
             .iter()
             .sum::<Matrix2<f64>>()
-            * (mass / 36.0)
     };
-    let axes = long_axes(&sum(edges.map(|edge| Vector2::from(edge.high))));
-    let central = sum(edges.map(|edge| turned(&edge, &axes)));
-    let (to_b, to_c) = (Vector2::from(u.high), Vector2::from(v.high));
-    let center = Vector2::from(a) + (to_b + to_c) / 3.0;
-    let mut error_bound = closed_form(amount, mass, 2.0 * central.trace());
-    error_bound.center_of_mass = 4.0 * UNIT * (center.amax() + to_b.amax() + to_c.amax());
-    if matches!(amount, Amount::Density(_)) {
-        error_bound.inertia += error_bound.mass / mass * 2.0 * central.trace();
-    }
-    body(mass, &center, &central, &axes, error_bound)
+    let of_mass = |mass: f64| {
+        let axes =
+            long_axes(&(sum([u, v, w].map(|edge| Vector2::from(edge.high))) * (mass / 36.0)));
+        let central = sum([u, v, w].map(|edge| turned(&edge, &axes))) * (mass / 36.0);
+        let mut error_bound = closed_form(amount, mass, 2.0 * central.trace());
+        error_bound.center_of_mass = 4.0 * UNIT * (center.amax() + extents[0] + extents[1]);
+        if matches!(amount, Amount::Density(_)) {
+            error_bound.inertia += error_bound.mass / mass * 2.0 * central.trace();
+        }
+        embedded(mass, &center, &central, &axes, error_bound)
+    };
+    of_matter(unit, Measure::Area(area), amount, Source::Lamina, of_mass)
 }
 
 /// Simple polygon with these corners along its boundary, either way round; the last corner joins the first.
@@ -113,50 +117,52 @@ pub fn polygon(
     );
     let middle = low * 0.5 + high * 0.5;
     let size = (high - low).max();
-    let (first, magnitude) = sums(vertices, &middle, &Matrix2::identity());
+    let (unit, [own_size]) = Unit::of([size]);
+    let told = |lengths: Vector2<f64>| lengths.map(|x| times_power_of_two(x, unit.0));
+    let (first, magnitude) = sums(vertices, unit, &middle, &Matrix2::identity());
     if first.area.abs() <= 8.0 * UNIT * depth(count) * magnitude {
-        let area = first.area;
+        let area = times_power_of_two(first.area, 2 * unit.0);
         return Err(PolygonFault::NoArea { area, size }.into());
     }
-    let rough = middle + first.moment / first.area;
+    let rough = middle + told(first.moment / first.area);
     let axes = long_axes(&first.about_centroid());
-    let (sums, magnitude) = sums(vertices, &rough, &axes);
+    let (sums, magnitude) = sums(vertices, unit, &rough, &axes);
     let area = sums.area.abs();
-    let mass = Measure::Area(area).mass(amount)?;
-    let central = sums.about_centroid() * (mass / sums.area);
-    let center = rough + axes * (sums.moment / sums.area);
+    let center = rough + told(axes * (sums.moment / sums.area));
     let relative = 2.0 * UNIT * (depth(count) + 24.0) * (magnitude / area);
-    let error_bound = ErrorBound {
-        mass: match amount {
-            Amount::Mass(_) => 0.0,
-            Amount::Density(_) => relative * mass,
-        },
-        center_of_mass: 2.0 * relative * size + 4.0 * UNIT * center.amax(),
-        inertia: 4.0 * relative * mass * size * size,
+    let of_mass = |mass: f64| {
+        let central = sums.about_centroid() * (mass / sums.area);
+        let error_bound = ErrorBound {
+            mass: match amount {
+                Amount::Mass(_) => 0.0,
+                Amount::Density(_) => relative * mass,
+            },
+            center_of_mass: 2.0 * relative * size + 4.0 * UNIT * center.amax(),
+            inertia: 4.0 * relative * mass * own_size * own_size,
+        };
+        embedded(mass, &center, &central, &axes, error_bound)
     };
-    body(mass, &center, &central, &axes, error_bound)
+    of_matter(unit, Measure::Area(area), amount, Source::Lamina, of_mass)
 }
 
-/// The lamina with this second moment, in these axes of its plane.
-fn body(
+/// What a lamina with this second moment, in these axes of its plane, is in space.
+fn embedded(
     mass: f64,
     center: &Vector2<f64>,
     central: &Matrix2<f64>,
     axes: &Matrix2<f64>,
     error_bound: ErrorBound,
-) -> Result<RigidBody, Error> {
+) -> SecondMoment {
     let mut embedded = (Matrix3::zeros(), Matrix3::identity());
     embedded.0.fixed_view_mut::<2, 2>(0, 0).copy_from(central);
     embedded.1.fixed_view_mut::<2, 2>(0, 0).copy_from(axes);
-    let body = RigidBody::from_second_moment(&SecondMoment {
+    SecondMoment {
         mass,
         center_of_mass: Vector3::new(center.x, center.y, 0.0),
         central: embedded.0,
         axes: embedded.1,
         error_bound,
-    })?;
-    let provenance = Provenance::of_matter(Source::Lamina, 1, Checks::FINITE);
-    Ok(body.with_provenance(provenance))
+    }
 }
 
 /// The principal axes of a symmetric 2×2 matrix, as a rotation; the coordinate axes where it is diagonal.
@@ -186,11 +192,16 @@ impl Sums {
     }
 }
 
-/// The sums, and the area with every product counted as positive.
-fn sums(vertices: &[[f64; 2]], reference: &Vector2<f64>, axes: &Matrix2<f64>) -> (Sums, f64) {
+/// The sums with lengths in `unit`, and the area with every product counted as positive.
+fn sums(
+    vertices: &[[f64; 2]],
+    unit: Unit,
+    reference: &Vector2<f64>,
+    axes: &Matrix2<f64>,
+) -> (Sums, f64) {
     let at = |k: usize| {
         let v = SplitVector::difference(&vertices[k % vertices.len()], &(*reference).into());
-        turned(&v, axes)
+        turned(&unit.counts(&v), axes)
     };
     let [area, magnitude, x, y, xx, xy, yy] = sum_terms(vertices.len(), |k| {
         let (a, b) = (at(k), at(k + 1));

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 
-use super::super::amount::{Amount, Measure, centered, diagonal, length};
+use super::super::amount::{Amount, Measure, Unit, centered, diagonal, length};
 use super::super::body::RigidBody;
 use crate::error::Error;
 
@@ -12,8 +12,10 @@ use crate::error::Error;
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
 pub fn cuboid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
-    let [x, y, z] = lengths(size)?;
+    let (unit, size) = lengths(size)?;
+    let [x, y, z] = size;
     diagonal(
+        unit,
         Measure::Volume(x * y * z),
         amount,
         size.map(|edge| edge * edge / 12.0),
@@ -37,10 +39,11 @@ pub fn cube(side: f64, amount: Amount) -> Result<RigidBody, Error> {
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
 pub fn wedge(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
-    let [x, y, z] = lengths(size)?;
+    let (unit, [x, y, z]) = lengths(size)?;
     let xz = -(x * z / 36.0);
     let (xx, yy, zz) = (x * x / 18.0, y * y / 12.0, z * z / 18.0);
     centered(
+        unit,
         Measure::Volume(x * y * z / 2.0),
         amount,
         &Matrix3::new(xx, 0.0, xz, 0.0, yy, 0.0, xz, 0.0, zz),
@@ -62,10 +65,12 @@ pub fn prism(sides: u32, radius: f64, height: f64, amount: Amount) -> Result<Rig
     }
     length("radius", radius)?;
     length("height", height)?;
+    let (unit, [radius, height]) = Unit::of([radius, height]);
     let n = f64::from(sides);
     let (sin, cos) = (TAU / n).sin_cos();
     let across = radius * radius * (2.0 + cos) / 12.0;
     diagonal(
+        unit,
         Measure::Volume(0.5 * n * sin * radius * radius * height),
         amount,
         [across, across, height * height / 12.0],
@@ -77,8 +82,9 @@ pub fn prism(sides: u32, radius: f64, height: f64, amount: Amount) -> Result<Rig
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
 pub fn pyramid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
-    let [x, y, z] = lengths(size)?;
+    let (unit, [x, y, z]) = lengths(size)?;
     diagonal(
+        unit,
         Measure::Volume(x * y * z / 3.0),
         amount,
         [x * x / 20.0, y * y / 20.0, 3.0 * z * z / 80.0],
@@ -93,16 +99,18 @@ pub fn pyramid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
 /// When the length is negative or not finite, or the amount is not positive.
 pub fn tetrahedron(side: f64, amount: Amount) -> Result<RigidBody, Error> {
     length("side", side)?;
+    let (unit, [side]) = Unit::of([side]);
     diagonal(
+        unit,
         Measure::Volume(side * side * side / 72.0_f64.sqrt()),
         amount,
         [side * side / 40.0; 3],
     )
 }
 
-fn lengths(size: &[f64; 3]) -> Result<[f64; 3], Error> {
+fn lengths(size: &[f64; 3]) -> Result<(Unit, [f64; 3]), Error> {
     for &edge in size {
         length("size", edge)?;
     }
-    Ok(*size)
+    Ok(Unit::of(*size))
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::super::amount::{Amount, Measure, diagonal, length, ordered, ratio};
+use super::super::amount::{Amount, Measure, Unit, diagonal, length, ordered, ratio};
 use super::super::body::RigidBody;
 use crate::error::Error;
 
@@ -14,8 +14,10 @@ pub fn ellipsoid(semi_axes: &[f64; 3], amount: Amount) -> Result<RigidBody, Erro
     for &semi_axis in semi_axes {
         length("semi_axes", semi_axis)?;
     }
-    let [a, b, c] = *semi_axes;
+    let (unit, semi_axes) = Unit::of(*semi_axes);
+    let [a, b, c] = semi_axes;
     diagonal(
+        unit,
         Measure::Volume(4.0 / 3.0 * PI * a * b * c),
         amount,
         semi_axes.map(|semi_axis| semi_axis * semi_axis / 5.0),
@@ -48,11 +50,12 @@ pub fn hollow_sphere(
         ("inner_radius", inner_radius),
         ("outer_radius", outer_radius),
     )?;
-    let (r, R) = (inner_radius, outer_radius);
+    let (unit, [r, R]) = Unit::of([inner_radius, outer_radius]);
     let t = ratio(r, R);
     let quadratic = 1.0 + t * (1.0 + t);
     let quartic = 1.0 + t * (1.0 + t * quadratic);
     diagonal(
+        unit,
         Measure::Volume(4.0 / 3.0 * PI * (R - r) * (R * R * quadratic)),
         amount,
         [R * R / 5.0 * (quartic / quadratic); 3],
@@ -66,8 +69,10 @@ pub fn hollow_sphere(
 /// When the radius is negative or not finite, or the amount is not positive.
 pub fn hemisphere(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
     length("radius", radius)?;
+    let (unit, [radius]) = Unit::of([radius]);
     let square = radius * radius;
     diagonal(
+        unit,
         Measure::Volume(2.0 / 3.0 * PI * square * radius),
         amount,
         [square / 5.0, square / 5.0, 19.0 * square / 320.0],

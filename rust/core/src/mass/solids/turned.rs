@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::super::amount::{Amount, Measure, diagonal, length, ordered};
+use super::super::amount::{Amount, Measure, Unit, diagonal, length, ordered};
 use super::super::body::RigidBody;
 use crate::error::Error;
 
@@ -13,8 +13,10 @@ use crate::error::Error;
 pub fn cylinder(radius: f64, height: f64, amount: Amount) -> Result<RigidBody, Error> {
     length("radius", radius)?;
     length("height", height)?;
+    let (unit, [radius, height]) = Unit::of([radius, height]);
     let across = radius * radius / 4.0;
     diagonal(
+        unit,
         Measure::Volume(PI * radius * radius * height),
         amount,
         [across, across, height * height / 12.0],
@@ -36,9 +38,10 @@ pub fn tube(
         ("outer_radius", outer_radius),
     )?;
     length("height", height)?;
-    let (r, R) = (inner_radius, outer_radius);
+    let (unit, [r, R, height]) = Unit::of([inner_radius, outer_radius, height]);
     let across = (R * R + r * r) / 4.0;
     diagonal(
+        unit,
         Measure::Volume(PI * (R - r) * (R + r) * height),
         amount,
         [across, across, height * height / 12.0],
@@ -53,8 +56,10 @@ pub fn tube(
 pub fn cone(radius: f64, height: f64, amount: Amount) -> Result<RigidBody, Error> {
     length("radius", radius)?;
     length("height", height)?;
+    let (unit, [radius, height]) = Unit::of([radius, height]);
     let across = 3.0 * radius * radius / 20.0;
     diagonal(
+        unit,
         Measure::Volume(PI * radius * radius * height / 3.0),
         amount,
         [across, across, 3.0 * height * height / 80.0],
@@ -87,12 +92,14 @@ pub fn frustum(
         });
     }
     // The formulas are symmetric in the two radii.
-    let t = bottom_radius.min(top_radius) / wide;
+    let (unit, [narrow, wide, height]) = Unit::of([bottom_radius.min(top_radius), wide, height]);
+    let t = narrow / wide;
     let quadratic = 1.0 + t * (1.0 + t);
     let quartic = 1.0 + t * (1.0 + t * quadratic);
     let along = 1.0 + t * (4.0 + t * (10.0 + t * (4.0 + t)));
     let across = 3.0 / 20.0 * wide * wide * (quartic / quadratic);
     diagonal(
+        unit,
         Measure::Volume(PI / 3.0 * height * (wide * wide * quadratic)),
         amount,
         [
@@ -114,7 +121,7 @@ pub fn frustum(
 pub fn capsule(radius: f64, length: f64, amount: Amount) -> Result<RigidBody, Error> {
     self::length("radius", radius)?;
     self::length("length", length)?;
-    let (R, L) = (radius, length);
+    let (unit, [R, L]) = Unit::of([radius, length]);
     let caps = 4.0 / 3.0 * R;
     let whole = L + caps;
     let (w, v) = if whole == 0.0 {
@@ -125,6 +132,7 @@ pub fn capsule(radius: f64, length: f64, amount: Amount) -> Result<RigidBody, Er
     let across = R * R * (w / 4.0 + v / 5.0);
     let along = w * (L * L / 12.0) + v * (R * R / 5.0 + 0.375 * R * L + L * L / 4.0);
     diagonal(
+        unit,
         Measure::Volume(PI * R * R * whole),
         amount,
         [across, across, along],
@@ -141,9 +149,10 @@ pub fn torus(major_radius: f64, minor_radius: f64, amount: Amount) -> Result<Rig
         ("minor_radius", minor_radius),
         ("major_radius", major_radius),
     )?;
-    let (R, r) = (major_radius, minor_radius);
+    let (unit, [R, r]) = Unit::of([major_radius, minor_radius]);
     let across = R * R / 2.0 + 0.375 * r * r;
     diagonal(
+        unit,
         Measure::Volume(2.0 * PI * PI * R * r * r),
         amount,
         [across, across, r * r / 4.0],
