@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -167,6 +168,28 @@ class TestEvents:
         assert partial.status == "stopped"
         assert np.isfinite(partial.omega[1]).all()
         assert np.isnan(partial.omega[-1]).all()
+
+    @pytest.mark.parametrize("method", ["exact", "taylor", "dop853", "radau", "splitting"])
+    def test_a_narrow_peak_is_found(self, method: Any) -> None:
+        """A function that is flat but for a peak with corners, a quarter of a radian of rotation wide."""
+        half = 0.125
+
+        def peak(t: float, *_: Any, middle: float) -> float:
+            return max(-1e-3, half - abs(t - middle))
+
+        rng = np.random.default_rng(7)
+        for _ in range(40):
+            middle, omega = rng.uniform(1.0, 9.0), rng.normal(size=3)
+            omega /= np.linalg.norm(omega)
+            rtol = 10.0 ** rng.uniform(-9, -6)
+            run = BODY.simulate(
+                [0, 10],
+                omega,
+                events=partial(peak, middle=middle),
+                method=method,
+                rtol=rtol,
+            )
+            assert run.events.t == pytest.approx([middle - half, middle + half], abs=1e-9)
 
     def test_mistakes(self) -> None:
         def run(events: Any) -> Trajectory:

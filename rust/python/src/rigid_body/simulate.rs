@@ -53,19 +53,22 @@ impl PyRigidBody {
     ///     of order 8 by Dormand and Prince with a dense output of order 7: any load. "auto" takes the first
     ///     of these that can serve the run. "radau" is the implicit Runge-Kutta method Radau IIA of order 5:
     ///     any load, for those that are stiff, such as strong damping. "splitting" kicks the body between
-    ///     exact free motions at equal steps, as long as `rtol` allows at the start: loads that depend on
-    ///     time, attitude and position alone, for long times, since the energy does not drift.
+    ///     exact free motions: loads that depend on time, attitude and position alone, for long times, since
+    ///     the energy does not drift. Its steps are equal until a check against two half steps asks for shorter
+    ///     ones; they are chosen anew where a load begins or ends.
     /// rtol : float, optional
     ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
     ///     distance and speed so far; from 2.3e-15 to 0.1, and for "taylor" from 1e-28. Below 2.3e-15 (ten units
-    ///     of rounding) it sums its series in numbers of twice the precision and rounds the result once: forty to
-    ///     ninety times as costly, for motions whose rounding errors grow on the way, such as those close by a
+    ///     of rounding) it sums its series in numbers of twice the precision and rounds the result once: many
+    ///     times as costly, for motions whose rounding errors grow on the way, such as those close by a
     ///     separatrix, and for reference solutions. "auto" then takes "taylor" where "exact" would serve.
     /// atol : float, optional
     ///     Error of the angular velocity allowed besides; none by default.
     /// events : callable or sequence of callables, optional
     ///     Functions ``event(t, omega, quaternion, position, velocity)`` whose passages through zero are
-    ///     looked for. Attributes as in SciPy: ``direction`` positive or negative counts those that rise
+    ///     looked for. All those of a smooth function are found, also two within one step. Of a function with jumps,
+    ///     corners or narrow peaks, two passages may be missed when the body turns by less than a quarter of a radian
+    ///     between them. Attributes as in SciPy: ``direction`` positive or negative counts those that rise
     ///     or fall in time alone; ``terminal`` True ends the run at the first, a number n at the n-th.
     ///     :class:`polhode.Event` sets them.
     /// on_failure : {"raise", "keep"}, optional
@@ -81,7 +84,8 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// IntegrationError
-    ///     With the time and state that were reached and what had been computed.
+    ///     With the time and state that were reached and what had been computed; also where a run would take more than
+    ///     a thousand million steps.
     ///
     /// Notes
     /// -----
