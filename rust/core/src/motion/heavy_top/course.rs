@@ -28,7 +28,7 @@ impl Course {
         attitude: &UnitQuaternion<f64>,
         gravity: &Vector3<f64>,
     ) -> (Self, Nutation) {
-        let motion = Reduced::of(top.source(), omega, attitude, gravity);
+        let mut motion = Reduced::of(top.source(), omega, attitude, gravity);
         let half_spin = (motion.axial * TURN).scaled(0.5);
         if !motion.is_steady() {
             let points = TurningPoints::of(&motion);
@@ -37,10 +37,13 @@ impl Course {
                 return Self::moving(&motion, &points, &phases, half_spin);
             }
             if points.height.high > 0.0 {
-                let motion = Reduced::of(&top.finest(), omega, attitude, gravity);
-                let points = TurningPoints::of(&motion).settled(&motion);
-                let phases = Phases::of(&motion, &points);
-                return Self::moving(&motion.twofold(), &points.twofold(), &phases, half_spin);
+                let finest = Reduced::of(&top.finest(), omega, attitude, gravity).settled();
+                motion = finest.twofold();
+                if !finest.is_steady() {
+                    let points = TurningPoints::of(&finest).settled(&finest);
+                    let phases = Phases::of(&finest, &points);
+                    return Self::moving(&motion, &points.twofold(), &phases, half_spin);
+                }
             }
         }
         let [alpha, beta, _] = motion.start;

@@ -19,6 +19,7 @@ use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::Real;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::numerics::quad_double::QuadDouble;
 
 /// A quaternion (x, y, z, w).
 type Components<T> = [T; 4];
@@ -56,6 +57,23 @@ pub(super) struct Reduced<T = DoubleDouble> {
 
 /// A few units in the last place of what has twice the precision.
 const ROUNDING: f64 = 4.9e-32; // 2⁻¹⁰⁴
+
+/// The same of what has four times the precision, with room for the turns of the frames.
+const FINER_ROUNDING: f64 = 6.2e-61; // 2⁻²⁰⁰
+
+/// Squares of leans and rates below this part of what they are squares of are none: their products would be lost.
+const LEAST: f64 = 1e-280;
+
+impl Reduced<QuadDouble> {
+    /// Upright, hanging or without a rate across the axis where no more of it is left than what turning the frames rounds: so a
+    /// top that stands upright along any axis stays there.
+    pub(super) fn settled(self) -> Self {
+        if self.is_aligned {
+            return self;
+        }
+        self.without(FINER_ROUNDING * FINER_ROUNDING)
+    }
+}
 
 impl<T: Real> Reduced<T> {
     /// Of a top with the angular velocity `omega` in B, the attitude `R_NB` and `gravity` in N, all finite.
@@ -117,6 +135,25 @@ impl<T: Real> Reduced<T> {
                 x == 0.0 || x == 1.0
             }),
         }
+        .without(LEAST)
+    }
+
+    /// Exactly upright, hanging or without a rate across the axis, where the squares of lean or rate are below `least`.
+    fn without(mut self, least: f64) -> Self {
+        let nothing = T::from(0.0);
+        let fastest = self.square.rounded() + self.axial.rounded() * self.axial.rounded();
+        let mut parts = [
+            (&mut self.bottom, 1.0),
+            (&mut self.top, 1.0),
+            (&mut self.square, fastest),
+        ];
+        for ((part, whole), start) in parts.iter_mut().zip(&mut self.start) {
+            if part.rounded() <= least * *whole {
+                (**part, *start) = (nothing, [0.0; 2]);
+                (self.lift, self.rate) = (nothing, nothing);
+            }
+        }
+        self
     }
 
     /// The same to twice the precision.

@@ -99,3 +99,79 @@ fn what_is_not_finite_is_refused() {
     assert!(HeavyTop::of(&top, &nan, &q, &Vector3::z()).is_err());
     assert!(HeavyTop::of(&top, &Vector3::z(), &q, &nan).is_err());
 }
+
+#[test]
+fn a_top_upright_along_any_axis_of_body_and_space_stays_so() {
+    let axes = [
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, -4.0, 8.0],
+    ]
+    .map(Vector3::from);
+    let turns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vector3::from);
+    for axis in axes.into_iter().flat_map(|axis| [axis, -axis]) {
+        // A ball is a top about any axis, here with its own to all digits.
+        let body =
+            RigidBody::from_principal(4.0, &[8.0; 3], &Matrix3::identity(), &(axis * 2.5e-5), 0.0);
+        let top = PivotedTop::of(&body.expect("body"), 1e-6).expect("top");
+        for turn in turns {
+            let attitude = UnitQuaternion::new_unchecked(nalgebra::Quaternion::from_imag(turn));
+            // Half a turn takes the axis to an exact multiple of this.
+            let up = turn * (2.0 * turn.dot(&axis)) - axis * turn.dot(&turn);
+            for (spin, weight) in [
+                (0.0, 7.0),
+                (3.0, 7.0),
+                (0.001, -7.0),
+                (0.0, 0.0),
+                (0.1, 1e-30),
+            ] {
+                let motion =
+                    HeavyTop::of(&top, &(axis * spin), &attitude, &(up * -weight)).expect("motion");
+                let state = motion.at(3.0);
+                assert!(
+                    (state.omega - axis * spin).amax() <= 4e-15 * spin,
+                    "{axis:?} {turn:?} {spin} {weight}: {state:?}"
+                );
+                let turned = UnitQuaternion::from_scaled_axis(up * (spin * 3.0)) * attitude;
+                assert!(
+                    state.attitude.angle_to(&turned) < 1e-14,
+                    "{axis:?} {turn:?} {spin} {weight}: {state:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn however_little_a_top_leans_it_moves() {
+    let top = top(8.0, 8.0, 2.5e-5);
+    for power in [-8, -50, -100, -200, -300, -400, -510, -600, -1000] {
+        let lean = 2.0_f64.powi(power);
+        let attitude =
+            UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.0, lean, 0.0, 0.0));
+        for spin in [0.0, 0.001, 3.0] {
+            for rate in [0.0, lean] {
+                for weight in [7.0, -7.0] {
+                    let omega = Vector3::new(rate, 0.0, spin);
+                    let motion =
+                        HeavyTop::of(&top, &omega, &attitude, &Vector3::new(0.0, 0.0, -weight))
+                            .expect("motion");
+                    for t in [-4.0, 0.0, 5.0] {
+                        let state = motion.at(t);
+                        let finite = state
+                            .omega
+                            .iter()
+                            .chain(state.attitude.coords.iter())
+                            .all(|x| x.is_finite());
+                        assert!(
+                            finite,
+                            "2^{power} {spin} {rate} {weight} {t}: {:?} {state:?}",
+                            motion.nutation()
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

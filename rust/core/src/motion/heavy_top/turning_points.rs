@@ -159,6 +159,11 @@ fn quotient<T: Real>(a: T, b: T) -> T {
     }
 }
 
+/// `a/b` as a double, where nothing over nothing is nothing: products of two small numbers would be lost.
+fn share<T: Real>(a: T, b: T) -> f64 {
+    quotient(T::from(a.rounded()), T::from(b.rounded())).rounded()
+}
+
 fn not_negative<T: Real>(x: T) -> T {
     if x.rounded() > 0.0 { x } else { T::from(0.0) }
 }
@@ -258,12 +263,11 @@ impl<T: Real> Cubic<T> {
         let square = quotient(pole.difference * pole.difference, pole.top + fall);
         let below_top = not_negative(pole.top - rise);
         let beyond_top = not_negative(third - self.two_kappa * pole.top);
-        let (below_top, beyond_top) =
-            if below_top.rounded() * third.rounded() > beyond_top.rounded() * pole.top.rounded() {
-                (below_top, quotient(square, below_top))
-            } else {
-                (quotient(square, beyond_top), beyond_top)
-            };
+        let (below_top, beyond_top) = if share(below_top, pole.top) > share(beyond_top, third) {
+            (below_top, quotient(square, below_top))
+        } else {
+            (quotient(square, beyond_top), beyond_top)
+        };
         Roots {
             fall,
             rise,
