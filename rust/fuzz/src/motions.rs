@@ -163,7 +163,11 @@ fn top(body: &RigidBody, mut draw: Draw<'_>) -> Result<()> {
         if !plain || t.abs() > 1e9 {
             continue;
         }
-        is_unit(&state.attitude);
+        assert!(
+            state.omega.iter().all(|x| x.is_finite())
+                && (state.attitude.norm() - 1.0).abs() < 1e-13,
+            "{state:?} at {t:?}: {top:?} {omega:?} {attitude:?} {gravity:?}"
+        );
         let ([before, size], [after, _]) = (energy(&start), energy(&state));
         assert!(
             (after - before).abs() <= 1e-10 * size,
