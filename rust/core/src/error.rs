@@ -574,6 +574,15 @@ pub enum Error {
         /// Where.
         time: f64,
     },
+    /// Derivatives that leave the range of float64 where the motion itself does not.
+    #[error(
+        "the derivatives of the motion have left the range of float64 by t = {time:?}: motions that start side by side part \
+         that fast; ask for times nearer the start"
+    )]
+    NotFiniteDerivative {
+        /// The first of the times asked for at which they are beyond it.
+        time: f64,
+    },
     /// More results than there is memory for; nothing has been computed.
     #[error(
         "{count} {what} would take {bytes:.3e} bytes, for which there is no memory: ask for fewer at a time"
@@ -645,7 +654,8 @@ impl Error {
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. }
             | Self::TooManySteps { .. }
-            | Self::NotFiniteMotion { .. } => Kind::Integration,
+            | Self::NotFiniteMotion { .. }
+            | Self::NotFiniteDerivative { .. } => Kind::Integration,
             Self::NoMemory { .. } => Kind::Memory,
             _ => Kind::Argument,
         }

@@ -78,14 +78,6 @@ pub fn is_body(body: &RigidBody, admitted: f64) {
     assert_eq!(inertia, inertia.transpose(), "not symmetric");
     let principal = body.principal();
     let bound = body.error_bound();
-    diagonalizes(&principal, &inertia, 2.0 * bound.inertia);
-    let [i1, i2, i3] = principal.moments;
-    assert!(i1 >= 0.0, "negative moment {i1:?}: {body:?}");
-    let deficit = i3 - i2 - i1;
-    assert!(
-        deficit <= (1e-14 + 3.0 * admitted) * i3 + 3.0 * bound.inertia + LEAST,
-        "{i1:?} + {i2:?} < {i3:?}: {body:?}"
-    );
     for (what, bound) in [
         ("mass", bound.mass),
         ("centre", bound.center_of_mass),
@@ -93,6 +85,16 @@ pub fn is_body(body: &RigidBody, admitted: f64) {
     ] {
         assert!(bound >= 0.0, "error bound {bound:?} of {what}: {body:?}");
     }
+    // A body from storage is held to a part in 10¹² of its trace.
+    let stored = admitted.min(1e-11) * principal.moments[2];
+    diagonalizes(&principal, &inertia, 2.0 * bound.inertia + stored);
+    let [i1, i2, i3] = principal.moments;
+    assert!(i1 >= 0.0, "negative moment {i1:?}: {body:?}");
+    let deficit = i3 - i2 - i1;
+    assert!(
+        deficit <= (1e-14 + 3.0 * admitted) * i3 + 3.0 * bound.inertia + LEAST,
+        "{i1:?} + {i2:?} < {i3:?}: {body:?}"
+    );
     for radius in body.radii_of_gyration() {
         assert!(
             radius >= 0.0 && radius.is_finite(),

@@ -231,7 +231,10 @@ fn derivatives(task: &Task<'_>, terms: &[Term]) {
             assert_eq!(variation.load.len(), numbers);
             assert!(
                 variation.state.iter().all(|x| x.is_finite()),
-                "{variation:?}"
+                "{:?} from {:?} at {:?} under {terms:?}",
+                variation.state,
+                task.initial,
+                task.times
             );
         }
     }

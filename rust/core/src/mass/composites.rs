@@ -2,13 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::body::RigidBody;
+use super::body::{RigidBody, root_of_ratio};
 use super::error_bound::{ErrorBound, UNIT};
 use super::parallel_axis::point_inertia;
 use super::provenance::Provenance;
 use super::validity::{ROUNDING, check_mass, trace};
 use crate::error::{Error, all_finite};
 use crate::numerics::eigen3::eigen3;
+use crate::numerics::power_of_two::length;
 use crate::numerics::reduce::{depth, sum_terms};
 use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
 
@@ -214,7 +215,7 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
         let [mass, masses, lever, centers, inertia] = sum_terms(self.count, |i| {
             let body = (self.part)(i).1;
             let own = body.error_bound;
-            let length = (body.center_of_mass - self.center).norm();
+            let length = length(&(body.center_of_mass - self.center));
             [
                 own.mass,
                 body.mass,
@@ -224,7 +225,7 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
             ]
         });
         let relative = 2.0 * UNIT * (depth(self.count) + 8.0);
-        let width = (self.spread / self.mass).sqrt();
+        let width = root_of_ratio(self.spread, self.mass);
         ErrorBound {
             mass: mass + relative * masses,
             center_of_mass: (lever + centers) / self.mass + relative * (masses / self.mass) * width,

@@ -6,6 +6,7 @@ use super::body::RigidBody;
 use super::forms::second_moment;
 use super::validity::{ASYMMETRY, ROUNDING, check_moments, check_symmetry, mean_of_halves};
 use crate::error::{Error, all_finite};
+use crate::numerics::power_of_two::length;
 use crate::principal::principal_axes;
 
 /// The tensor of a body that is nearest to this one, and how far it is, both in the Frobenius norm.
@@ -31,7 +32,7 @@ pub fn nearest_valid(inertia: &Matrix3<f64>) -> Result<(Matrix3<f64>, f64), Erro
     let axes = principal.axes;
     let tensor = axes * Matrix3::from_diagonal(&Vector3::from(nearest)) * axes.transpose();
     let distance = Vector3::from(nearest) - Vector3::from(principal.moments);
-    Ok((mean_of_halves(&tensor), distance.norm()))
+    Ok((mean_of_halves(&tensor), length(&distance)))
 }
 
 /// The nearest point of the cone of possible moments, whose edges are (0, 1, 1), (1, 0, 1) and (1, 1, 0), to ascending

@@ -191,9 +191,7 @@ fn solid<T: Triangles>(
         ..Provenance::of_matter(Source::Mesh, sums.count, checks)
     };
     let (body, volume) = body(&sums, amount, options.orient)?;
-    if options.check {
-        body.check_possible()?;
-    }
+    body.check_possible()?;
     Ok((body.with_provenance(provenance), volume))
 }
 

@@ -64,7 +64,7 @@ pub struct Variation {
 /// `watch` gets the fraction done and may stop it.
 ///
 /// # Errors
-/// When a term cannot act, the motion cannot go on, or [`Error::Stopped`].
+/// When a term cannot act, the motion cannot go on, [`Error::NotFiniteDerivative`], or [`Error::Stopped`].
 ///
 /// # Panics
 /// When there are no times; see [`check_times`](crate::motion::simulate::check_times).
@@ -96,8 +96,12 @@ pub fn variations(
         };
         Walk::new(task, terms, block).run(&mut give, &mut watch)?;
     }
-    if task.euler.moments().contains(&0.0) {
-        for variation in &mut found {
+    let has_neighbours = !task.euler.moments().contains(&0.0);
+    for (variation, &time) in found.iter_mut().zip(task.times) {
+        if !variation.is_finite(has_neighbours) {
+            return Err(Error::NotFiniteDerivative { time });
+        }
+        if !has_neighbours {
             variation.moments.fill(f64::NAN);
             variation.products.fill(f64::NAN);
         }
@@ -106,6 +110,20 @@ pub fn variations(
 }
 
 impl Variation {
+    /// Whether all are numbers, those by the tensor among them where it has neighbours.
+    fn is_finite(&self, has_neighbours: bool) -> bool {
+        let of_tensor = self.moments.iter().chain(&self.products);
+        let of_load = self.load.iter().flat_map(|slopes| slopes.iter());
+        (self
+            .state
+            .iter()
+            .chain(&self.center_of_mass)
+            .chain(&self.mass))
+        .chain(of_tensor.filter(|_| has_neighbours))
+        .chain(of_load)
+        .all(|x| x.is_finite())
+    }
+
     fn set(&mut self, column: usize, slopes: &Vector6<f64>) {
         match column {
             ATTITUDE..MOMENTS => self.state.set_column(column, slopes),

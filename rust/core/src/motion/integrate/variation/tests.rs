@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use nalgebra::{Matrix3, Matrix6, Quaternion, UnitQuaternion, Vector3};
 
 use super::{Variation, variations};
+use crate::error::Error;
 use crate::mass::RigidBody;
 use crate::motion::free::FreeMotion;
 use crate::motion::loads::{Feedback, Frame, GravityGradient, Term};
@@ -142,4 +143,32 @@ fn an_orbit_known_many_revolutions_ago() {
     let by_phase = near[2] * 1.0 - near[4] * 1.0;
     let expected = by_phase * (2.0 * turn);
     assert!((once[0] - near[0] - expected).norm() < 1e-11 * (1.0 + expected.norm()));
+}
+
+#[test]
+fn derivatives_beyond_all_numbers_are_refused() {
+    // Backward in time damping drives: ∂ω(t)/∂ω(0) = exp(−2 t/I).
+    let body = body([1.0, 1.0, 1.0]);
+    let damping = crate::motion::loads::Damping {
+        linear: Matrix3::identity() * 2.0,
+        quadratic: Matrix3::zeros(),
+    };
+    let start = State {
+        attitude: attitude(),
+        omega: Vector3::zeros(),
+    };
+    let terms = [Term::Damping(damping)];
+    let there = &varied(&body, &start, &[0.0, -350.0], &terms)[1];
+    assert!((there.state[(3, 3)] / 700.0_f64.exp() - 1.0).abs() < 1e-11);
+    let tolerance = Tolerance::new(1e-10, 0.0).expect("tolerance");
+    let times = [0.0, -350.0, -360.0];
+    let task = Task::free(
+        &body,
+        Phase::in_place(&start),
+        &times,
+        Method::Taylor,
+        tolerance,
+    );
+    let beyond = variations(&task, &terms, &mut |_| ControlFlow::Continue(()));
+    assert_eq!(beyond, Err(Error::NotFiniteDerivative { time: -360.0 }));
 }
