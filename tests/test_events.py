@@ -191,6 +191,15 @@ class TestEvents:
             )
             assert run.events.t == pytest.approx([middle - half, middle + half], abs=1e-9)
 
+    @pytest.mark.parametrize("method", ["exact", "taylor", "dop853", "splitting"])
+    def test_steps_of_many_turns_are_looked_through(self, method: Any) -> None:
+        """Without a load steps of `splitting` have many turns: every zero of ω₁ is found all the same."""
+        omega = (0.4, 0.1, 1.0)
+        period = BODY.free_motion(omega).periods.rotation
+        run = BODY.simulate([0, 300 * period], omega, events=lambda _, w, *__: w[0], method=method)
+        assert len(run.events.t) == 600
+        assert np.diff(run.events.t) == pytest.approx(0.5 * period, rel=1e-6)
+
     def test_mistakes(self) -> None:
         def run(events: Any) -> Trajectory:
             return BALL.simulate([0, 10], (0, 0, 1), events=events)

@@ -180,6 +180,10 @@ fn of_mesh(draw: &mut Draw<'_>) -> Result<Option<RigidBody>> {
         3 => thick_shell(vertices, faces, draw.positive()?, amount, watch).ok(),
         _ => polyhedron_watched(vertices, faces, amount, options, watch).ok(),
     };
+    // What nobody checked may be no body.
+    if !check {
+        return Ok(None);
+    }
     if let (Some(body), Amount::Mass(mass)) = (&body, amount) {
         assert_eq!(body.mass(), mass, "a mass that was given");
     }

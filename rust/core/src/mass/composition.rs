@@ -5,8 +5,10 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::provenance::Provenance;
+use super::units::Units;
 use super::validity::{check_mass, check_rotation, mean_of_halves, trace};
 use crate::error::{Error, all_finite, finite};
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::principal::{PrincipalAxes, with_sign_rule};
 
 impl RigidBody {
@@ -55,7 +57,7 @@ impl RigidBody {
     /// The same shape `length` times as large and `mass` times as heavy: `m → k m`, `C → s C`, `I → k s² I`.
     ///
     /// # Errors
-    /// When a factor is not positive and finite, or the result overflows.
+    /// When a factor is not positive and finite, or the result is beyond the range of float64 with all its digits.
     pub fn scaled(&self, length: f64, mass: f64) -> Result<Self, Error> {
         for (what, value) in [("length", length), ("mass", mass)] {
             finite(what, value)?;
@@ -67,8 +69,17 @@ impl RigidBody {
                 });
             }
         }
+        let units = Units {
+            mass: exponent(mass),
+            length: exponent(length),
+            place: exponent(length),
+        };
+        let (length, mass) = (
+            times_power_of_two(length, -units.length),
+            times_power_of_two(mass, -units.mass),
+        );
         let scale = |x: f64| x * mass * length * length;
-        let scaled = Self {
+        let scaled = units.told(&Self {
             mass: self.mass * mass,
             center_of_mass: self.center_of_mass * length,
             inertia: self.inertia.map(scale),
@@ -83,10 +94,10 @@ impl RigidBody {
             }
             .rounded(&(self.center_of_mass * length), scale(trace(&self.inertia))),
             provenance: Provenance {
-                rounding: self.provenance.rounding * length,
+                rounding: times_power_of_two(self.provenance.rounding * length, units.length),
                 ..self.provenance
             },
-        };
+        })?;
         check_mass(scaled.mass)?;
         all_finite("inertia", &scaled.inertia)?;
         all_finite("center_of_mass", &scaled.center_of_mass)?;

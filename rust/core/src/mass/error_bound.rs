@@ -58,12 +58,14 @@ impl ErrorBound {
         }
     }
 
-    /// The same, and a few more roundings of a tensor with this trace and of this centre of mass.
+    /// The same, and a few more roundings of a tensor with this trace and of this centre of mass. Where products of the bounds
+    /// leave float64 there is none.
     pub(crate) fn rounded(self, center_of_mass: &Vector3<f64>, trace: f64) -> Self {
+        let bound = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
         Self {
-            center_of_mass: self.center_of_mass + 8.0 * UNIT * center_of_mass.amax(),
-            inertia: self.inertia + 32.0 * UNIT * trace,
-            ..self
+            mass: bound(self.mass),
+            center_of_mass: bound(self.center_of_mass + 8.0 * UNIT * center_of_mass.amax()),
+            inertia: bound(self.inertia + 32.0 * UNIT * trace),
         }
     }
 }

@@ -70,8 +70,16 @@ impl SecondMoment {
     /// The largest principal value of S belongs to the axis of the smallest moment.
     #[must_use]
     pub fn principal_axes(&self, s: &Eigen3) -> PrincipalAxes {
-        // S is a sum of squares: a negative value is rounding, and zero is what it stands for.
-        let [s1, s2, s3] = s.values.map(|value| value.max(0.0));
+        // S is a sum of squares: a negative value is rounding, and zero is what it stands for. More than that is none, as of a
+        // mesh that nobody checked, and stays for all to see.
+        let rounding = 1e-9 * s.values[2].abs() + 4.0 * self.error_bound.inertia;
+        let [s1, s2, s3] = (s.values).map(|value| {
+            if value < -rounding {
+                value
+            } else {
+                value.max(0.0)
+            }
+        });
         let column = |k: usize| self.axes * s.vectors.column(k);
         let (u, v) = (column(2), column(1));
         PrincipalAxes {

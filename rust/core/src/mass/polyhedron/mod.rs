@@ -191,7 +191,9 @@ fn solid<T: Triangles>(
         ..Provenance::of_matter(Source::Mesh, sums.count, checks)
     };
     let (body, volume) = body(&sums, amount, options.orient)?;
-    body.check_possible()?;
+    if options.check {
+        body.check_possible()?;
+    }
     Ok((body.with_provenance(provenance), volume))
 }
 

@@ -31,18 +31,18 @@ pub(super) struct Look {
 /// A function of time and state, the time since the start of the span.
 pub(super) type Function<'a, E> = dyn FnMut(f64, &Phase) -> Result<f64, E> + 'a;
 
-/// A function along one step.
+/// A function along one step, or a part of it.
 pub(super) struct View<'b, E> {
     pub(super) function: &'b mut Function<'b, E>,
     pub(super) stepper: &'b mut dyn Dense<Error = E>,
-    /// When the span starts, and the end of the step since then.
+    /// When the span starts, and the end of the part since then.
     pub(super) start: f64,
     pub(super) end: f64,
 }
 
 impl<E> View<'_, E> {
     fn look(&mut self, at: f64) -> Result<Look, E> {
-        let phase = if at == self.end {
+        let phase = if at == self.stepper.elapsed() {
             self.stepper.phase()
         } else {
             self.stepper.within(at)?

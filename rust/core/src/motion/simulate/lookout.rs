@@ -5,6 +5,9 @@ use super::events::{Crossing, Direction, Events, Rule};
 use super::stepper::Dense;
 use crate::motion::state::Phase;
 
+/// How far the body turns in a part of a step, in radians.
+const STAGE: f64 = 100.0;
+
 /// The functions as a run goes on.
 pub(super) struct Lookout<'a, E> {
     events: &'a mut dyn Events<Error = E>,
@@ -41,18 +44,26 @@ impl<'a, E> Lookout<'a, E> {
         })
     }
 
-    /// Looks through the last step, which began at `from`; where the run is to end, if it is, as time since the span's
-    /// start and the state there.
+    /// Into how many parts a step is cut in which the body turns by so many radians, so that the run can be stopped between them.
+    pub(super) fn stages(&self, turn: f64) -> f64 {
+        if self.rules.is_empty() || turn.is_nan() {
+            return 1.0;
+        }
+        (turn / STAGE).ceil().max(1.0)
+    }
+
+    /// Looks through the last step, or a part of it; where the run is to end, if it is, as time since the span's start and the
+    /// state there.
     pub(super) fn look(
         &mut self,
         stepper: &mut dyn Dense<Error = E>,
         start: f64,
         from: f64,
+        to: f64,
     ) -> Result<Option<(f64, Phase)>, E> {
         if self.rules.is_empty() {
             return Ok(None);
         }
-        let to = stepper.elapsed();
         let turn = stepper.turn(to - from);
         let mut found = Vec::new();
         for event in 0..self.rules.len() {
@@ -100,7 +111,7 @@ impl<'a, E> Lookout<'a, E> {
         }
         found.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
         for (place, event) in found {
-            let phase = if place == to {
+            let phase = if place == stepper.elapsed() {
                 stepper.phase()
             } else {
                 stepper.within(place)?

@@ -203,6 +203,8 @@ impl<E> Run<E> {
         } else {
             Vec::new()
         };
+        // Looks for events within a step of many turns count as steps.
+        let mut within_steps = 0;
         loop {
             let before = stepper.elapsed();
             if before == length {
@@ -216,31 +218,47 @@ impl<E> Run<E> {
                 return Ok(Reached::Flip { index, time });
             }
             let reached = stepper.elapsed();
-            let ended = lookout.look(stepper, from, before)?;
-            let (last, phase) = ended.unwrap_or((reached, stepper.phase()));
-            while let Some(elapsed) = task.times.get(*next).map(|t| t - from)
-                && elapsed.abs() <= last.abs()
-            {
-                self.samples[*next] = if elapsed == last {
-                    phase
+            let stages = lookout.stages(stepper.turn(reached - before));
+            let (mut stage, mut begin) = (0.0, before);
+            while stage < stages {
+                stage += 1.0;
+                let end = if stage == stages {
+                    reached
                 } else {
-                    stepper.within(elapsed)?
+                    before + (reached - before) * (stage / stages)
                 };
-                *next += 1;
+                let ended = lookout.look(stepper, from, begin, end)?;
+                let (last, phase) = match ended {
+                    Some(event) => event,
+                    None if end == reached => (end, stepper.phase()),
+                    None => (end, stepper.within(end)?),
+                };
+                while let Some(elapsed) = task.times.get(*next).map(|t| t - from)
+                    && elapsed.abs() <= last.abs()
+                {
+                    self.samples[*next] = if elapsed == last {
+                        phase
+                    } else {
+                        stepper.within(elapsed)?
+                    };
+                    *next += 1;
+                }
+                (self.time, self.phase) = (from + last, phase);
+                if ended.is_some() {
+                    return Ok(Reached::Over(End::Event));
+                }
+                if watch(end).is_break() {
+                    return Ok(Reached::Over(End::Stopped));
+                }
+                let (start, all) = (
+                    task.times[0],
+                    task.times[task.times.len() - 1] - task.times[0],
+                );
+                within_steps += u64::from(stage < stages);
+                let steps = self.effort.steps + stepper.effort().steps + within_steps;
+                check_steps(steps, start, self.time - start, all)?;
+                begin = end;
             }
-            (self.time, self.phase) = (from + last, phase);
-            if ended.is_some() {
-                return Ok(Reached::Over(End::Event));
-            }
-            if watch(reached).is_break() {
-                return Ok(Reached::Over(End::Stopped));
-            }
-            let (start, all) = (
-                task.times[0],
-                task.times[task.times.len() - 1] - task.times[0],
-            );
-            let steps = self.effort.steps + stepper.effort().steps;
-            check_steps(steps, start, self.time - start, all)?;
         }
     }
 }

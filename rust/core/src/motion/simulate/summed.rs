@@ -30,7 +30,7 @@ pub(super) fn solve<E: From<Error>>(
             step,
             error: PhantomData,
         };
-        halt = match lookout.look(&mut summed, start, step.ends[0]) {
+        halt = match lookout.look(&mut summed, start, step.ends[0], step.ends[1]) {
             Ok(None) => return watch(step.ends[1] / (end - start)),
             Ok(Some((elapsed, phase))) => Some((elapsed, phase, End::Event)),
             Err(error) => Some((step.ends[0], step.at(step.ends[0]), End::Failed(error))),
