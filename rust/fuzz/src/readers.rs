@@ -10,7 +10,7 @@ use polhode::io::stl::{self, StlStream};
 use polhode::io::{StreamError, Triangle, TriangleMesh, TriangleStream, plates};
 use polhode::mass::polyhedron::streamed::streamed;
 use polhode::mass::polyhedron::{Options, polyhedron_watched};
-use polhode::mass::provenance::MomentsFrom;
+use polhode::mass::provenance::{Checks, MomentsFrom};
 use polhode::mass::{Amount, MassAccumulator, Provenance};
 use polhode::motion::euler_angles::Sequence;
 
@@ -374,12 +374,12 @@ fn array(mut draw: Draw<'_>) -> Result<()> {
         numbers[place] = draw.number()?;
     }
     if let Ok(body) = RigidBody::from_array(&numbers) {
-        // Of moments that were given nobody knows what was admitted.
-        let is_given = matches!(
-            body.provenance().moments,
-            MomentsFrom::Given | MomentsFrom::Tensor
-        );
-        is_body(&body, if is_given { 1.0 } else { 1e-10 });
+        // Of moments that were given nobody knows what was admitted, of what was not checked nothing at all.
+        let provenance = body.provenance();
+        let is_given = matches!(provenance.moments, MomentsFrom::Given | MomentsFrom::Tensor);
+        if !provenance.checks.contains(Checks::UNCHECKED) {
+            is_body(&body, if is_given { 1.0 } else { 1e-10 });
+        }
     }
     let provenance = Provenance::from_array(&draw.numbers::<9>()?);
     let numbers = provenance.to_array();

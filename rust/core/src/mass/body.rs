@@ -382,7 +382,7 @@ impl RigidBody {
             center_of_mass: numbers[23],
             inertia: numbers[24],
         };
-        let provenance: [f64; 9] = std::array::from_fn(|k| numbers[25 + k]);
+        let provenance = Provenance::from_array(&std::array::from_fn(|k| numbers[25 + k]));
         let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         let center_of_mass = Vector3::new(x, y, z);
         check_mass(mass)?;
@@ -395,8 +395,10 @@ impl RigidBody {
         // The least numbers of float64 have few digits.
         let rounding = 1e-12 * trace(&inertia)
             + f64::MIN_POSITIVE * 64.0 * f64::EPSILON
-            + 2.0 * error_bound.inertia.max(0.0);
-        if difference > rounding || !(0.0 <= i1 && i1 <= i2 && i2 <= i3) {
+            + 6.0 * error_bound.inertia.max(0.0);
+        let is_ordered = i1 <= i2 && i2 <= i3;
+        let may_be_negative = provenance.checks.contains(Checks::UNCHECKED);
+        if difference > rounding || !is_ordered || !(i1 >= 0.0 || may_be_negative) {
             let law = "that of the ascending principal moments and the axes stored beside it";
             return Err(Error::OutOfDomain {
                 what: "inertia",
@@ -404,12 +406,13 @@ impl RigidBody {
                 value: difference,
             });
         }
-        let provenance = Provenance::from_array(&provenance);
-        // What a second moment gave obeys the law but for rounding; what was given may have been admitted as it is.
-        if matches!(
+        // What a second moment gave obeys the law but for rounding, if it was checked; what was given may have been admitted as
+        // it is.
+        let is_summed = matches!(
             provenance.moments,
             MomentsFrom::SecondMoment | MomentsFrom::OwnAxes
-        ) {
+        );
+        if is_summed && !provenance.checks.contains(Checks::UNCHECKED) {
             check_moments(&moments, 2.0 * error_bound.inertia.max(0.0), 1e-12, "")?;
         }
         for (what, value) in [

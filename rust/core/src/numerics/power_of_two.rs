@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(times_dot(3.0, &a, &nothing), 0.0);
         assert_eq!(times_cross(3.0, &nothing, &b), nothing);
         assert!(times_dot(1.0, &a, &Vector3::repeat(f64::NAN)).is_nan());
-        assert!(times_dot(1.0, &a, &Vector3::x_axis().scale(f64::INFINITY)).is_infinite());
+        assert!(times_dot(1.0, &a, &Vector3::new(f64::INFINITY, 0.0, 0.0)).is_infinite());
     }
 
     #[test]

@@ -39,6 +39,12 @@ pub enum PolygonFault {
         /// Where the other edge starts.
         second: usize,
     },
+    /// The boundary passes through itself where a corner lies on it.
+    #[error(
+        "vertices must bound a simple polygon: the boundary passes through itself at a corner, so that a part of the area counts \
+         as negative; order the corners along the boundary, and cut a hole out by subtracting a polygon"
+    )]
+    Overlapping,
     /// Nothing inside.
     #[error(
         "vertices enclose no area: {area:?} with an extent of {size:?}; model a line as a thin rod instead"
@@ -142,7 +148,10 @@ pub fn polygon(
         };
         embedded(mass, &center, &central, &axes, error_bound)
     };
-    of_matter(unit, Measure::Area(area), amount, Source::Lamina, of_mass)
+    let body = of_matter(unit, Measure::Area(area), amount, Source::Lamina, of_mass)?;
+    // Edges that touch pass the search for those that cross.
+    (body.check_possible()).map_err(|_| Error::from(PolygonFault::Overlapping))?;
+    Ok(body)
 }
 
 /// What a lamina with this second moment, in these axes of its plane, is in space.
@@ -320,6 +329,17 @@ mod tests {
             second: 2,
         };
         assert_eq!(fault, Error::Polygon(crossing));
+        // Two triangles, one the other way round, the smaller far away: more second moment is negative than not.
+        let through = [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 4.0],
+            [0.0, 0.0],
+            [-30.0, 0.0],
+            [-30.0, 0.1],
+        ];
+        let fault = polygon(&through, Amount::Mass(1.0)).expect_err("through itself");
+        assert_eq!(fault, Error::Polygon(PolygonFault::Overlapping));
         let line = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]];
         let fault = polygon(&line, Amount::Mass(1.0)).expect_err("line");
         assert!(matches!(fault, Error::Polygon(PolygonFault::NoArea { .. })));
