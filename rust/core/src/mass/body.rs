@@ -175,7 +175,7 @@ impl RigidBody {
         let moments = principal_axes(&self.inertia).moments;
         let [i1, i2, i3] = moments;
         let deficit = i3 - i2 - i1;
-        if deficit > 1e-9 * i3 + 4.0 * self.error_bound.inertia {
+        if deficit > 2e-12 * i3 + 8.0 * self.error_bound.inertia {
             return Err(Error::TriangleInequality {
                 moments,
                 deficit,
@@ -439,9 +439,9 @@ impl RigidBody {
     /// to `rtol` of its distance from the origin or of the radius of gyration, whichever is larger; each `+ atol`.
     #[must_use]
     pub fn is_close(&self, other: &Self, rtol: f64, atol: f64) -> bool {
-        // The trace may be beyond all numbers.
+        // The trace may be beyond all numbers, and so may the distance.
         let gyration = 2.0 * root_of_ratio(trace(&(other.inertia * 0.25)), other.mass);
-        let size = gyration.max(length(&other.center_of_mass));
+        let size = gyration.max(length(&other.center_of_mass)).min(f64::MAX);
         (self.mass - other.mass).abs() <= atol + rtol * other.mass
             && length(&(self.center_of_mass - other.center_of_mass)) <= atol + rtol * size
             && (self.inertia - other.inertia).abs().max() <= atol + rtol * other.inertia.abs().max()

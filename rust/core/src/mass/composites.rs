@@ -30,6 +30,7 @@ pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
             check_mass(sum.mass)?;
             all_finite("center_of_mass", &sum.center)?;
             all_finite("inertia", &sum.inertia)?;
+            all_finite("inertia", &[sum.spread])?;
             // The sum of possible bodies is possible.
             let mut principal = principal_axes(&sum.inertia);
             if is_thin(&principal) {
@@ -75,6 +76,7 @@ impl RigidBody {
         let rest = Assembly::of(2, |i| pair[i]);
         all_finite("center_of_mass", &rest.center)?;
         all_finite("inertia", &rest.inertia)?;
+        all_finite("inertia", &[rest.spread])?;
         let mut principal = principal_axes(&rest.inertia);
         let [i1, i2, i3] = principal.moments;
         // Along the axis of the largest moment the second moment is the smallest.

@@ -30,12 +30,29 @@ pub(super) fn solve<E: From<Error>>(
             step,
             error: PhantomData,
         };
-        halt = match lookout.look(&mut summed, start, step.ends[0], step.ends[1]) {
-            Ok(None) => return watch(step.ends[1] / (end - start)),
-            Ok(Some((elapsed, phase))) => Some((elapsed, phase, End::Event)),
-            Err(error) => Some((step.ends[0], step.at(step.ends[0]), End::Failed(error))),
-        };
-        ControlFlow::Break(())
+        let [from, to] = step.ends;
+        let stages = lookout.stages(step.turn());
+        let (mut stage, mut begin) = (0.0, from);
+        while stage < stages {
+            stage += 1.0;
+            let reached = if stage == stages {
+                to
+            } else {
+                from + (to - from) * (stage / stages)
+            };
+            halt = match lookout.look(&mut summed, start, begin, reached) {
+                Ok(None) if watch(reached / (end - start)).is_continue() => None,
+                Ok(None) if reached == to => return ControlFlow::Break(()),
+                Ok(None) => Some((reached, step.at(reached), End::Stopped)),
+                Ok(Some((elapsed, phase))) => Some((elapsed, phase, End::Event)),
+                Err(error) => Some((from, step.at(from), End::Failed(error))),
+            };
+            if halt.is_some() {
+                return ControlFlow::Break(());
+            }
+            begin = reached;
+        }
+        ControlFlow::Continue(())
     })
     .with_error(E::from);
     run.crossings = lookout.crossings;
