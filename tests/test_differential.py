@@ -15,6 +15,10 @@ Floats = NDArray[np.float64]
 KINDS = ("body_torque", "space_torque", "linear", "quadratic", "feedback")
 STEP = 0.04
 """Of the reference; rates are near one, so that order 8 leaves rounding alone."""
+HALVINGS = 6
+"""Of that step at most, where two references are too far apart."""
+STRICTEST, LOOSEST = 1e-11, 1e-6
+"""The tolerances."""
 MOVED = 1e-10
 DIRECTIONS = 3
 """How far a start is moved, and in how many directions, to see what becomes of small changes."""
@@ -131,16 +135,23 @@ def compare(n: int, seed: int) -> dict[str, float]:
         moved = states + _unit(rng, n, 7) * MOVED
         moved[:, :4] /= np.linalg.norm(moved[:, :4], axis=1)[:, None]
         kappa = np.maximum(kappa, apart(motions.run(moved, start, end, STEP), want, scale) / MOVED)
-    fine = motions.run(states, start, end, 0.5 * STEP)
-    doubt = apart(fine, want, scale)
+    doubt = np.full(n, np.inf)
+    rows, step = np.arange(n), STEP
+    for _ in range(HALVINGS):
+        step *= 0.5
+        fine = motions.rows(rows).run(states[rows], start[rows], end[rows], step)
+        doubt[rows] = apart(fine, want[rows], scale[rows])
+        want[rows] = fine
+        rows = np.flatnonzero((doubt >= 10 * STRICTEST * kappa) & (kappa <= 1e8))
     worst: dict[str, float] = {}
     left_out = 0
+    wrong: list[str] = []
     for row in range(n):
         if kappa[row] > 1e8:
             left_out += 1
             continue
         body = RigidBody(1.0, motions.inertia[row])
-        rtol = float(10.0 ** rng.uniform(-11, -6))
+        rtol = float(np.exp(rng.uniform(np.log(STRICTEST), np.log(LOOSEST))))
         for method in serving(motions, row):
             tolerance = max(rtol, 1e-9) if method == "radau" else rtol
             run = body.simulate(
@@ -156,8 +167,10 @@ def compare(n: int, seed: int) -> dict[str, float]:
             assert doubt[row] < 0.1 * allowed, f"{seed=} {row=}: the reference is off by {doubt[row]:.2e}"
             ratio = float(apart(got, want[row], scale[row]) / allowed)
             worst[method] = max(worst.get(method, 0.0), ratio)
-            where = f"{seed=} {row=} {method} rtol={tolerance:.2e} κ={kappa[row]:.2e}"
-            assert ratio < 1.0, f"{where}: {ratio:.2e} of what is allowed"
+            if ratio >= 1.0:
+                where = f"{seed=} {row=} {method} rtol={tolerance:.2e} κ={kappa[row]:.2e}"
+                wrong.append(f"{where}: {ratio:.2e} of what is allowed")
+    assert not wrong, "\n".join(wrong)
     assert left_out <= max(1, 0.01 * n)
     return worst
 
