@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 #: Rows of the stacks, and of those whose rows take longer.
-ROWS, DEAR, DEAREST = 1_000_000, 150_000, 3_000
+ROWS, DEAR, DEAREST = 1_600_000, 150_000, 3_000
 
 
 def calls() -> dict[str, Callable[[], object]]:
@@ -109,7 +109,7 @@ def calls() -> dict[str, Callable[[], object]]:
         "heavy_top.at": lambda: heavy.at(np.linspace(0.0, 1.0, 20)),
         "effective_potential": lambda: heavy.effective_potential(np.linspace(0.0, 1.0, 200)),
         "exact runs": lambda: bodies.simulate([0.0, 1.0], vectors),
-        "taylor runs": lambda: some.simulate([0.0, 3.0], rates, load=drag),
+        "taylor runs": lambda: some.simulate([0.0, 30.0], rates, load=drag),
         "dop853 runs": lambda: some.simulate([0.0, 1.0], rates, load=drag, method="dop853"),
         "radau runs": lambda: few.simulate([0.0, 1.0], rates[:DEAREST], load=drag, method="radau"),
         "splitting runs": lambda: few.simulate([0.0, 9.0], rates[:DEAREST], load=push, method="splitting"),

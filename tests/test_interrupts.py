@@ -41,7 +41,7 @@ def check(latencies: dict[str, float | None], bar: float) -> None:
 
 
 def test_ctrl_c_ends_every_call() -> None:
-    check(struck([0.15], threads=1), BAR)
+    check(struck([0.1], threads=1), BAR)
 
 
 def test_ctrl_c_ends_what_runs_on_two_threads() -> None:
