@@ -170,7 +170,8 @@ fn of_mesh(draw: &mut Draw<'_>) -> Result<Option<RigidBody>> {
     if let Ok(area) = area(vertices, faces, watch) {
         assert!(area >= 0.0, "area {area:?}");
     }
-    let body = match draw.up_to(5)? {
+    let kind = draw.up_to(5)?;
+    let body = match kind {
         0 => surface(vertices, faces, amount, watch).ok(),
         1 => capped(vertices, faces, amount, options, watch).ok(),
         2 => {
@@ -181,7 +182,7 @@ fn of_mesh(draw: &mut Draw<'_>) -> Result<Option<RigidBody>> {
         _ => polyhedron_watched(vertices, faces, amount, options, watch).ok(),
     };
     // What nobody checked may be no body.
-    if !check {
+    if !check && !matches!(kind, 0 | 2 | 3) {
         return Ok(None);
     }
     if let (Some(body), Amount::Mass(mass)) = (&body, amount) {

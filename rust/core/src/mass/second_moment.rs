@@ -88,3 +88,33 @@ impl SecondMoment {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::eigen3::eigen3;
+
+    #[test]
+    fn a_negative_square_is_zero_as_far_as_rounding_goes() {
+        for bound in [0.0, 1e-6] {
+            let limit = 1e-12 + 4.0 * bound;
+            for (negative, is_rounding) in [(0.99 * limit, true), (1.01 * limit, false)] {
+                let central = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -negative));
+                let matter = SecondMoment {
+                    mass: 1.0,
+                    center_of_mass: Vector3::zeros(),
+                    central,
+                    axes: Matrix3::identity(),
+                    error_bound: ErrorBound {
+                        mass: 0.0,
+                        center_of_mass: 0.0,
+                        inertia: bound,
+                    },
+                };
+                let [i1, _, i3] = matter.principal_axes(&eigen3(&central)).moments;
+                assert_eq!(i1 == 1.0, is_rounding, "{negative:e} {i1:?}");
+                assert_eq!(i3, 2.0);
+            }
+        }
+    }
+}
