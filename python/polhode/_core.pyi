@@ -438,6 +438,7 @@ class HeavyTop:
 
 @final
 class Load:
+    __array_ufunc__: None
     def torque(
         self,
         t: ArrayLike,

@@ -92,14 +92,18 @@ pub fn is_body(body: &RigidBody, admitted: f64) {
     let [i1, i2, i3] = principal.moments;
     assert!(i1 >= 0.0, "negative moment {i1:?}: {body:?}");
     let deficit = i3 - i2 - i1;
+    // It is twice what the least second moment lacks. Where each element of the tensor is off by the bound, those of half
+    // the trace less the tensor are by 3/2 of it on the diagonal and 1 beside it: an eigenvalue by 7/2.
     assert!(
-        deficit <= (1e-14 + 3.0 * admitted) * i3 + 3.0 * bound.inertia + LEAST,
+        deficit <= (1e-14 + 3.0 * admitted) * i3 + 7.0 * bound.inertia + LEAST,
         "{i1:?} + {i2:?} < {i3:?}: {body:?}"
     );
-    for radius in body.radii_of_gyration() {
+    for (radius, moment) in body.radii_of_gyration().into_iter().zip(principal.moments) {
+        // Beyond float64 it is infinite, as a quotient is.
+        let want = moment.sqrt() / mass.sqrt();
         assert!(
-            radius >= 0.0 && radius.is_finite(),
-            "radius of gyration {radius:?}: {body:?}"
+            radius == want || (radius - want).abs() <= 1e-14 * want || radius.min(want) > 1e308,
+            "radius of gyration {radius:?} for {want:?}: {body:?}"
         );
     }
     let numbers = body.to_array();

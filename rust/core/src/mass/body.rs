@@ -198,19 +198,19 @@ impl RigidBody {
         // All that is rounding is relative to it; a trace beyond all numbers would admit anything.
         finite("the trace of inertia", scale)?;
         let principal = principal_axes(&inertia);
+        finite(
+            "the largest principal moment of inertia",
+            principal.moments[2],
+        )?;
         check_moments(
             &principal.moments,
             ROUNDING * scale,
             ROUNDING.max(rtol),
             hint,
         )?;
-        Ok(Self::admitted(
-            mass,
-            inertia,
-            center_of_mass,
-            principal,
-            scale,
-        ))
+        let body = Self::admitted(mass, inertia, center_of_mass, principal, scale);
+        all_finite("inertia", &body.inertia)?;
+        Ok(body)
     }
 
     /// The body of a tensor that obeys the laws; moments that it cannot tell from zero are zero.
@@ -406,13 +406,14 @@ impl RigidBody {
                 value: difference,
             });
         }
-        // What a second moment gave obeys the law but for rounding, if it was checked; what was given may have been admitted as
-        // it is.
+        // What a second moment gave obeys the law but for rounding, if it was checked; a tensor that was given, alone or as a part,
+        // may have been admitted as it is.
         let is_summed = matches!(
             provenance.moments,
             MomentsFrom::SecondMoment | MomentsFrom::OwnAxes
         );
-        if is_summed && !provenance.checks.contains(Checks::UNCHECKED) {
+        let may_break = [Checks::UNCHECKED, Checks::TENSOR];
+        if is_summed && !(may_break.into_iter()).any(|check| provenance.checks.contains(check)) {
             check_moments(&moments, 2.0 * error_bound.inertia.max(0.0), 1e-12, "")?;
         }
         for (what, value) in [

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::body::{RigidBody, root_of_ratio};
 use super::validity::{ROUNDING, check_mass};
-use crate::error::{Error, finite};
+use crate::error::{Error, all_finite, finite};
 
 /// Particles: masses and where they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,8 @@ const SQRT_3_2: f64 = 1.224_744_871_391_589;
 /// Source: mex143; Routh, Dynamics of a System of Rigid Bodies, elementary part, §34.
 ///
 /// # Errors
-/// [`Error::TriangleInequality`] for a body that was admitted (`rtol`) with moments that no masses have.
+/// [`Error::TriangleInequality`] for a body that was admitted (`rtol`) with moments that no masses have; a body larger than
+/// any number, `√(I/m)`.
 pub fn equimomental_particles(body: &RigidBody) -> Result<Particles, Error> {
     let (spread, corners) = spreads(&body.principal().moments)?;
     let (m, c, axes) = (body.mass(), body.center_of_mass(), body.principal().axes);
@@ -49,9 +50,11 @@ pub fn equimomental_particles(body: &RigidBody) -> Result<Particles, Error> {
         let along = Vector3::from_fn(|k, _| lengths[k] * corner[k]);
         (c + axes * along).into()
     };
+    let positions: Vec<[f64; 3]> = corners.iter().map(place).collect();
+    all_finite("positions", positions.as_flattened())?;
     Ok(Particles {
         masses: vec![m / corners.len() as f64; corners.len()],
-        positions: corners.iter().map(place).collect(),
+        positions,
     })
 }
 

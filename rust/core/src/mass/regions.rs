@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
 use super::amount::{Amount, length, ordered};
-use super::polyhedron::{Index, Options, polyhedron_watched};
+use super::polyhedron::{Index, Options, View, find_components, polyhedron_watched};
 use crate::error::{Error, all_finite};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::quadrature::{Cell, Rule};
@@ -35,12 +35,19 @@ enum Kind {
         radius: f64,
         height: f64,
     },
-    /// One chart for each face: the signed tetrahedron from a point amid the mesh, drawn together at that point and at
-    /// the first corner.
+    /// One chart for each face: the signed tetrahedron from a point amid its component, drawn together at that point and
+    /// at the first corner.
     Mesh {
-        apex: Vector3<f64>,
-        faces: Vec<[Vector3<f64>; 3]>,
+        apexes: Vec<Vector3<f64>>,
+        faces: Vec<Face>,
     },
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Face {
+    /// Which component of the mesh it belongs to.
+    component: usize,
+    corners: [Vector3<f64>; 3],
 }
 
 impl Region {
@@ -135,13 +142,20 @@ impl Region {
             Options::default(),
             watch,
         )?;
-        Ok(Self(Kind::Mesh {
-            apex: solid.center_of_mass(),
-            faces: faces
-                .iter()
-                .map(|face| face.map(|k| Vector3::from(vertices[k.position()])))
-                .collect(),
-        }))
+        let found =
+            find_components(&View { vertices, faces }, watch).map_err(|_| Error::Stopped)?;
+        let component = |face: usize| found.as_ref().map_or(0, |(of_faces, _)| of_faces[face]);
+        let faces: Vec<Face> = (faces.iter().enumerate())
+            .map(|(number, face)| Face {
+                component: component(number),
+                corners: face.map(|k| Vector3::from(vertices[k.position()])),
+            })
+            .collect();
+        let apexes = match &found {
+            None => vec![solid.center_of_mass()],
+            Some((_, count)) => middles(&faces, *count),
+        };
+        Ok(Self(Kind::Mesh { apexes, faces }))
     }
 
     /// The region in units of its own size, and which power of two they are.
@@ -150,9 +164,9 @@ impl Region {
             Kind::Box { low, high } => (high * 0.5 - low * 0.5).amax(),
             Kind::Ellipsoid { semi_axes, .. } => semi_axes.amax(),
             Kind::Cylinder { radius, height, .. } => radius.max(*height),
-            Kind::Mesh { apex, faces } => (faces.iter().flatten())
+            Kind::Mesh { apexes, faces } => (faces.iter().flat_map(|face| &face.corners))
                 .fold(0.0, |size: f64, corner| {
-                    size.max((corner * 0.5 - apex * 0.5).amax())
+                    size.max((corner * 0.5 - apexes[0] * 0.5).amax())
                 }),
         };
         let power = exponent(size);
@@ -182,11 +196,14 @@ impl Region {
                 radius: own(*radius),
                 height: own(*height),
             },
-            Kind::Mesh { apex, faces } => Kind::Mesh {
-                apex: apex.map(own),
+            Kind::Mesh { apexes, faces } => Kind::Mesh {
+                apexes: apexes.iter().map(|apex| apex.map(own)).collect(),
                 faces: faces
                     .iter()
-                    .map(|face| face.map(|corner| corner.map(own)))
+                    .map(|face| Face {
+                        component: face.component,
+                        corners: face.corners.map(|corner| corner.map(own)),
+                    })
                     .collect(),
             },
         };
@@ -250,13 +267,31 @@ impl Region {
                 let at = center + Vector3::new(u * cos, u * sin, height * (w - 0.5));
                 (at, u * height)
             }
-            Kind::Mesh { apex, faces } => {
-                let [a, b, c] = faces[chart].map(|corner| corner - apex);
+            Kind::Mesh { apexes, faces } => {
+                let Face { component, corners } = &faces[chart];
+                let apex = apexes[*component];
+                let [a, b, c] = corners.map(|corner| corner - apex);
                 let at = a + ((b - a) + (c - b) * w) * v;
                 (apex + at * u, a.dot(&b.cross(&c)) * (u * u * v))
             }
         }
     }
+}
+
+/// A point amid each component: the signed tetrahedra from a point far away would cancel one another.
+fn middles(faces: &[Face], count: usize) -> Vec<Vector3<f64>> {
+    let mut boxes = vec![None; count];
+    for Face { component, corners } in faces {
+        for corner in corners {
+            let (low, high): &mut (Vector3<f64>, Vector3<f64>) =
+                boxes[*component].get_or_insert((*corner, *corner));
+            (*low, *high) = (low.inf(corner), high.sup(corner));
+        }
+    }
+    let middle = |ends: Option<(Vector3<f64>, Vector3<f64>)>| {
+        ends.map_or_else(Vector3::zeros, |(low, high)| low * 0.5 + high * 0.5)
+    };
+    boxes.into_iter().map(middle).collect()
 }
 
 fn positive(what: &'static str, value: f64) -> Result<(), Error> {

@@ -82,6 +82,12 @@ impl Phase {
             q.i, q.j, q.k, q.w, w.x, w.y, w.z, r.x, r.y, r.z, v.x, v.y, v.z,
         ]
     }
+
+    /// Whether all its numbers are.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.numbers().iter().all(|x| x.is_finite())
+    }
 }
 
 /// A motion in closed form: its state at any time costs the same.

@@ -116,6 +116,28 @@ pub fn fill_blocks<T: Send, E: Send>(
     }
 }
 
+/// Does `work` on each item, in order and on this thread. Every few thousand items `watch` gets the fraction done and may end
+/// it.
+///
+/// # Errors
+/// [`Halt::Stopped`] if `watch` said so, else [`Halt::Failed`] with the error of the first item that failed.
+pub fn each_watched<T, E>(
+    items: impl ExactSizeIterator<Item = T>,
+    watch: &mut Watch<'_>,
+    mut work: impl FnMut(T) -> Result<(), E>,
+) -> Result<(), Halt<E>> {
+    /// Items between two looks.
+    const STRETCH: usize = 4096;
+    let total = items.len();
+    for (index, item) in items.enumerate() {
+        if index % STRETCH == STRETCH - 1 && watch(fraction(index, total)).is_break() {
+            return Err(Halt::Stopped);
+        }
+        work(item).map_err(Halt::Failed)?;
+    }
+    Ok(())
+}
+
 fn fraction(done: usize, total: usize) -> f64 {
     done as f64 / total as f64
 }
@@ -214,7 +236,8 @@ impl<I, E> Drop for Leaving<'_, I, E> {
 #[cfg(test)]
 mod tests {
     use super::{
-        ControlFlow, Duration, Halt, Instant, NonZeroUsize, fill_blocks, set_thread_limit, thread,
+        ControlFlow, Duration, Halt, Instant, NonZeroUsize, each_watched, fill_blocks,
+        set_thread_limit, thread,
     };
 
     fn go_on(_: f64) -> ControlFlow<()> {
@@ -276,5 +299,32 @@ mod tests {
         assert_eq!(outcome, Err(Halt::Stopped));
         assert!(seen.is_sorted() && seen[0] > 0.0 && seen[2] < 1.0);
         assert!(start.elapsed() < Duration::from_secs(2));
+    }
+
+    #[test]
+    fn a_pass_is_watched_and_ends_at_the_first_that_fails() {
+        let mut sum = 0;
+        let mut looks = 0;
+        let all = each_watched(
+            0..10_000_usize,
+            &mut |_| {
+                looks += 1;
+                go_on(0.0)
+            },
+            |k| {
+                sum += k;
+                Ok::<(), usize>(())
+            },
+        );
+        assert_eq!((all, sum, looks), (Ok(()), 49_995_000, 2));
+        let failed = each_watched(0..10, &mut go_on, |k| if k < 3 { Ok(()) } else { Err(k) });
+        assert_eq!(failed, Err(Halt::Failed(3)));
+        let stop = &mut |_| ControlFlow::Break(());
+        let mut done = 0;
+        let stopped = each_watched(0..10_000, stop, |_| {
+            done += 1;
+            Ok::<(), usize>(())
+        });
+        assert_eq!((stopped, done), (Err(Halt::Stopped), 4095));
     }
 }

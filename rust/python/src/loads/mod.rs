@@ -16,8 +16,9 @@ mod evaluate;
 mod part;
 mod terms;
 
+use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use polhode::motion::loads::Term;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyNotImplemented, PyTuple};
 use pyo3::{PyTraverseError, PyVisit};
@@ -129,6 +130,29 @@ impl PyLoad {
     }
 }
 
+/// What scales a load: a real number of Python or NumPy, also one in an array without axes; `None` of anything else.
+fn real_number(factor: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if factor.is_instance_of::<PyFloat>() || factor.is_instance_of::<PyInt>() {
+        return factor.extract().map(Some);
+    }
+    let py = factor.py();
+    if let Ok(array) = factor.cast::<PyUntypedArray>() {
+        if array.ndim() == 0 && factor.is_exact_instance_of::<PyUntypedArray>() {
+            return real_number(&array.call_method0("item")?);
+        }
+        // NumPy's own answer would be about anything but loads.
+        return Err(PyTypeError::new_err(
+            "a load is scaled by one number, not by an array: for a stack of loads give the function that makes it a stack \
+             of arguments",
+        ));
+    }
+    let real = py.import("numbers")?.getattr("Real")?;
+    if factor.is_instance(&real)? {
+        return factor.extract().map(Some);
+    }
+    Ok(None)
+}
+
 /// Whether the word `about` fixes the origin.
 pub(crate) fn is_pivot(about: &str) -> PyResult<bool> {
     match about {
@@ -220,11 +244,9 @@ impl PyLoad {
         py: Python<'py>,
         factor: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let is_number = factor.is_instance_of::<PyFloat>() || factor.is_instance_of::<PyInt>();
-        if !is_number {
+        let Some(factor) = real_number(factor)? else {
             return Ok(PyNotImplemented::get(py).to_owned().into_any());
-        }
-        let factor = factor.extract()?;
+        };
         let scaled = self.map(|part| part.scaled(py, factor))?;
         Ok(scaled.into_pyobject(py)?.into_any())
     }
@@ -235,6 +257,12 @@ impl PyLoad {
         factor: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.__mul__(py, factor)
+    }
+
+    /// A load is no array: NumPy leaves ``2.0 * load`` to the load, also where the number is one of NumPy's.
+    #[classattr]
+    fn __array_ufunc__() -> Option<bool> {
+        None
     }
 
     fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
@@ -251,7 +279,7 @@ impl PyLoad {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         if self.compiled().next().is_some() {
-            return Err(pyo3::exceptions::PyTypeError::new_err(
+            return Err(PyTypeError::new_err(
                 "a load with a compiled function cannot be pickled: its address holds in this process alone",
             ));
         }

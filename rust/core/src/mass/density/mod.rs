@@ -14,7 +14,7 @@ use super::second_moment::SecondMoment;
 use super::units::Units;
 use crate::error::{Error, finite};
 use crate::numerics::power_of_two::{exponent, halves};
-use crate::numerics::quadrature::{Cell, Cubature, Integrand, Leaf, integrate};
+use crate::numerics::quadrature::{Cell, Integrand, Leaf, integrate};
 use crate::numerics::reduce::{depth, sum_terms};
 
 /// What the bound is of the error told. Of one jump between two nodes of a box the Kronrod rule is off by no more than
@@ -91,19 +91,23 @@ pub fn from_density<E: From<Error>>(
         let (count, mass) = (found.evaluations, total.mass);
         return Err(Error::NoMassFound { count, mass }.into());
     }
-    let relative = JUMP * found.error + 2.0 * UNIT * (depth(found.evaluations) + 32.0);
-    let (width, spread) = (total.width(), total.second.trace());
+    let error = (JUMP * found.error).min(f64::MAX);
+    let rounding = 2.0 * UNIT * (depth(found.evaluations) + 32.0);
+    let (width, spread) = (total.width(), total.second.trace().max(0.0));
+    let sizes = &total.sizes;
+    let reach = (sizes.mass / total.mass * (sizes.spread / total.mass)).sqrt();
     // Points are rounded to the last place of their coordinates.
-    let place = 8.0 * UNIT * (total.center.amax() + width);
+    let place = 8.0 * UNIT * (sizes.first / total.mass + reach);
+    let center_of_mass = error * width + rounding * reach + place;
     let body = RigidBody::from_second_moment(&SecondMoment {
         mass: total.mass,
         center_of_mass: total.center,
         central: total.second,
         axes: Matrix3::identity(),
         error_bound: ErrorBound {
-            mass: relative * total.mass,
-            center_of_mass: relative * width + place,
-            inertia: 2.0 * (relative * spread + total.mass * width * place),
+            mass: error * total.mass + rounding * sizes.mass,
+            center_of_mass,
+            inertia: 2.0 * (error * spread + rounding * sizes.spread + total.mass * reach * place),
         },
     })?;
     let provenance = Provenance::of_matter(Source::Density, found.evaluations, Checks::FINITE);
@@ -113,16 +117,23 @@ pub fn from_density<E: From<Error>>(
         place: length,
     };
     let body = units.told(&body.with_provenance(provenance))?;
-    converged(&body, &found, effort)
+    // Signed charts that cancel one another leave less than they have.
+    let cancelled = rounding * (sizes.mass / total.mass).max(sizes.spread / spread) - rounding;
+    let error = if cancelled.is_nan() {
+        found.error
+    } else {
+        found.error + cancelled
+    };
+    converged(&body, error, found.evaluations, effort)
 }
 
 /// The body, or its estimate as an error.
-fn converged<E: From<Error>, const D: usize, const K: usize>(
+fn converged<E: From<Error>>(
     body: &RigidBody,
-    found: &Cubature<D, K>,
+    error: f64,
+    evaluations: usize,
     effort: Effort,
 ) -> Result<RigidBody, E> {
-    let (error, evaluations) = (found.error, found.evaluations);
     if error <= effort.rtol {
         return Ok(*body);
     }
@@ -237,7 +248,12 @@ where
             return vec![[0.0; 3]; leaves.len()]; // nothing there to refine
         }
         let (width, spread) = (total.width(), total.second.trace());
-        let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
+        // A spread that is none yet, as of signed charts that cancel, says nothing.
+        let relative = |value: f64, scale: f64| match value / scale {
+            _ if value == 0.0 => 0.0,
+            relative if relative >= 0.0 => relative,
+            _ => f64::INFINITY,
+        };
         leaves
             .iter()
             .map(|leaf| {
@@ -258,6 +274,16 @@ struct Total {
     mass: f64,
     center: Vector3<f64>,
     second: Matrix3<f64>,
+    sizes: Sizes,
+}
+
+/// Sums over the leaves without their signs.
+struct Sizes {
+    mass: f64,
+    /// Of mass times the largest coordinate.
+    first: f64,
+    /// Of the traces of the second moments.
+    spread: f64,
 }
 
 impl Total {
@@ -275,14 +301,23 @@ impl Total {
             [mass, first.x, first.y, first.z]
         });
         let center = reference + Vector3::new(x, y, z) / mass;
-        let [xx, xy, xz, yy, yz, zz] = sum_terms(leaves.len(), |i| {
-            let (_, _, s) = about(&leaves[i].sums, &(middles[i] - center));
-            [s.m11, s.m12, s.m13, s.m22, s.m23, s.m33]
+        let [xx, xy, xz, yy, yz, zz, masses, first, spread] = sum_terms(leaves.len(), |i| {
+            let (m, _, s) = about(&leaves[i].sums, &(middles[i] - center));
+            let (size, spread) = (m.abs(), s.trace().abs());
+            let first = size * middles[i].amax();
+            [
+                s.m11, s.m12, s.m13, s.m22, s.m23, s.m33, size, first, spread,
+            ]
         });
         Self {
             mass,
             center,
             second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            sizes: Sizes {
+                mass: masses,
+                first,
+                spread,
+            },
         }
     }
 

@@ -91,7 +91,7 @@ pub fn from_radial_density<E: From<Error>>(
         place: length,
     };
     let body = units.told(&body.with_provenance(provenance))?;
-    converged(&body, &found, effort)
+    converged(&body, found.error, found.evaluations, effort)
 }
 
 /// ρ r² and ρ r⁴, lengths in units of `2^length`.

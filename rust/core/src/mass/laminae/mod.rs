@@ -3,6 +3,7 @@
 //! Those known by lengths have their centre of mass at the origin; triangles and polygons stay where their corners are.
 
 mod polygon;
+mod simple;
 
 use std::f64::consts::PI;
 

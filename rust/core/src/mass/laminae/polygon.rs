@@ -12,6 +12,7 @@ use super::super::body::RigidBody;
 use super::super::error_bound::{ErrorBound, UNIT};
 use super::super::provenance::Source;
 use super::super::second_moment::SecondMoment;
+use super::simple::check_simple;
 use crate::error::{Error, finite};
 use crate::numerics::power_of_two::times_power_of_two;
 use crate::numerics::reduce::{depth, sum_terms};
@@ -39,10 +40,11 @@ pub enum PolygonFault {
         /// Where the other edge starts.
         second: usize,
     },
-    /// The boundary passes through itself where a corner lies on it.
+    /// The boundary passes through itself where a corner lies on it, or goes round twice.
     #[error(
-        "vertices must bound a simple polygon: the boundary passes through itself at a corner, so that a part of the area counts \
-         as negative; order the corners along the boundary, and cut a hole out by subtracting a polygon"
+        "vertices must bound a simple polygon: where the boundary touches itself it also passes through itself, so that a part \
+         of the area counts as negative or twice; order the corners along the boundary, and cut a hole out by subtracting a \
+         polygon"
     )]
     Overlapping,
     /// Nothing inside.
@@ -149,7 +151,7 @@ pub fn polygon(
         embedded(mass, &center, &central, &axes, error_bound)
     };
     let body = of_matter(unit, Measure::Area(area), amount, Source::Lamina, of_mass)?;
-    // Edges that touch pass the search for those that cross.
+    // What rounding hid from the search for edges that pass through one another.
     (body.check_possible()).map_err(|_| Error::from(PolygonFault::Overlapping))?;
     Ok(body)
 }
@@ -238,64 +240,6 @@ fn check_finite(vertices: &[[f64; 2]]) -> Result<(), Error> {
         .iter()
         .flatten()
         .try_for_each(|&x| finite("vertices", x).map(drop))
-}
-
-/// No two edges cross; edges that touch within rounding pass, since they bound the same area either way.
-fn check_simple(vertices: &[[f64; 2]], watch: &mut Watch<'_>) -> Result<(), Error> {
-    let count = vertices.len();
-    let ends = |k: usize| (vertices[k], vertices[(k + 1) % count]);
-    let range = |k: usize, axis: usize| {
-        let (a, b) = ends(k);
-        (a[axis].min(b[axis]), a[axis].max(b[axis]))
-    };
-    // Along x, each edge against those that start before it ends.
-    let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by(|&i, &j| range(i, 0).0.total_cmp(&range(j, 0).0));
-    let mut compared = 0;
-    for (place, &i) in order.iter().enumerate() {
-        let ((_, end), (low, high)) = (range(i, 0), range(i, 1));
-        let overlapping = order[place + 1..]
-            .iter()
-            .take_while(|&&j| range(j, 0).0 <= end)
-            .inspect(|_| compared += 1)
-            .filter(|&&j| range(j, 1).0 <= high && range(j, 1).1 >= low);
-        for &j in overlapping {
-            if cross(ends(i), ends(j)) {
-                let (first, second) = (i.min(j), i.max(j));
-                return Err(PolygonFault::Crossing { first, second }.into());
-            }
-        }
-        compared += 1;
-        if compared > MANY {
-            compared = 0;
-            if watch(place as f64 / count as f64).is_break() {
-                return Err(Error::Stopped);
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Edges that are compared between two questions whether to go on.
-const MANY: usize = 100_000;
-
-/// Whether the ends of each edge lie on different sides of the other.
-fn cross((a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])) -> bool {
-    let side = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
-        let (u, v) = (
-            SplitVector::difference(&q, &p),
-            SplitVector::difference(&r, &p),
-        );
-        let size = (u.high[0] * v.high[1]).abs() + (u.high[1] * v.high[0]).abs();
-        let area = cross2(&u, &v);
-        // Beyond what the rounding of the products' rests can have done.
-        if area.abs() <= 8.0 * UNIT * UNIT * size {
-            0.0
-        } else {
-            area.signum()
-        }
-    };
-    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
 #[cfg(test)]

@@ -39,6 +39,7 @@ use boundary::{Boundary, Replay, find_unbalanced};
 use duplicates::Marks;
 use fault::Corner;
 pub use fault::MeshFault;
+pub(super) use nesting::find_components;
 use triangles::Faces;
 pub use triangles::Index;
 pub(super) use triangles::{View, widen};

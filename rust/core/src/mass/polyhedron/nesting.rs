@@ -98,6 +98,15 @@ pub(super) fn find_inside_out<I: Index>(
     }))
 }
 
+/// The component of each face of a mesh, and how many there are; `None` where it is one.
+pub(in crate::mass) fn find_components<I: Index>(
+    mesh: &View<'_, I>,
+    watch: &mut Watch<'_>,
+) -> Result<Option<(Vec<usize>, usize)>, Halt<Infallible>> {
+    let found = Parts::of(mesh, watch)?.map(|parts| components(mesh, &parts));
+    Ok(found.map(|(components, of_faces)| (of_faces, components.len())))
+}
+
 /// Sets of vertices that faces join, each named by its lowest vertex: for any order, on any number of threads.
 struct Parts(Vec<AtomicUsize>);
 

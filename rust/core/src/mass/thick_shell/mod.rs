@@ -53,16 +53,20 @@ pub fn thick_shell<I: Index>(
     }
     let mesh = View { vertices, faces };
     let failed = |fault: MeshFault| Halt::Failed(fault.into());
+    let halted = |halt: Halt<MeshFault>| match halt {
+        Halt::Stopped => Halt::Stopped,
+        Halt::Failed(fault) => failed(fault),
+    };
     if faces.is_empty() {
         return Err(failed(MeshFault::NoFaces));
     }
     let frame = mesh.used_frame();
-    let offset = offset(&mesh, frame.unit).map_err(failed)?;
+    let offset = offset(&mesh, frame.unit, watch).map_err(halted)?;
     if offset.faces.is_empty() {
         let faces = faces.len();
         return Err(failed(MeshFault::NoArea { area: 0.0, faces }));
     }
-    let limit = offset.limit(vertices, frame.unit);
+    let limit = offset.limit(vertices, frame.unit, watch).map_err(halted)?;
     if thickness > limit.thickness {
         return Err(failed(MeshFault::TooThick {
             face: offset.numbers[limit.face],

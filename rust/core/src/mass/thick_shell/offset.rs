@@ -8,6 +8,7 @@ use crate::mass::error_bound::UNIT;
 use crate::mass::polyhedron::fault::{Corner, Count, MeshFault};
 use crate::mass::polyhedron::{Index, View};
 use crate::numerics::split_vector::{SplitVector, cross};
+use crate::numerics::threads::{Halt, Watch, each_watched};
 use crate::principal::{PrincipalAxes, principal_axes};
 
 /// Directions in which the normals at a vertex spread by less than the root of this leave it where it is: they are one
@@ -35,25 +36,30 @@ pub(super) struct Offset {
 /// With unit normals n of the faces at a vertex, weighted by their angles w there, d makes `Σ w (n·d − 1)²` least and is
 /// the shortest that does: where at most three planes meet, or all of them touch one cone, each face moves by exactly s.
 /// On a finer and finer mesh of a smooth surface they do so to the second order in the size of the triangles.
-pub(super) fn offset<I: Index>(mesh: &View<'_, I>, unit: f64) -> Result<Offset, MeshFault> {
+pub(super) fn offset<I: Index>(
+    mesh: &View<'_, I>,
+    unit: f64,
+    watch: &mut Watch<'_>,
+) -> Result<Offset, Halt<MeshFault>> {
     if let Some(fault) = mesh.find_unusable() {
-        return Err(fault);
+        return Err(Halt::Failed(fault));
     }
-    let same = same_corners(mesh.vertices);
+    let same = same_corners(mesh.vertices, watch)?;
     let mut faces = Vec::with_capacity(mesh.faces.len());
     let mut numbers = Vec::with_capacity(mesh.faces.len());
-    for (number, face) in mesh.faces.iter().enumerate() {
+    each_watched(mesh.faces.iter().enumerate(), watch, |(number, face)| {
         let corners = face.map(|k| same[k.position()]);
         if corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0] {
             faces.push(corners);
             numbers.push(number);
         }
-    }
-    check_edges(&faces, &numbers)?;
+        Ok(())
+    })?;
+    check_edges(&faces, &numbers, mesh.vertices.len(), watch)?;
 
     let mut around = vec![Around::default(); mesh.vertices.len()];
     let mut normals = Vec::with_capacity(faces.len());
-    for (corners, &face) in faces.iter().zip(&numbers) {
+    each_watched(faces.iter().zip(&numbers), watch, |(corners, &face)| {
         let [a, b, c] = corners.map(|k| &mesh.vertices[k]);
         let edge = |to: &[f64; 3]| SplitVector::difference(to, a).scaled(1.0 / unit);
         let (to_b, to_c) = (edge(b), edge(c));
@@ -75,23 +81,38 @@ pub(super) fn offset<I: Index>(mesh: &View<'_, I>, unit: f64) -> Result<Offset, 
             angles[place] = angle;
         }
         normals.push((normal, angles));
-    }
+        Ok(())
+    })?;
     for at in &mut around {
         at.middle = at.sum.try_normalize(FLAT * at.weight).unwrap_or_default();
     }
-    for (corners, (normal, _)) in faces.iter().zip(&normals) {
-        for &corner in corners {
-            let at = &mut around[corner];
-            at.cosine = at.cosine.min(at.middle.dot(normal));
-        }
-    }
-    let mut ways: Vec<Way> = around.iter().map(Around::way).collect();
-    for _ in 0..REFINED {
-        for (corners, (normal, angles)) in faces.iter().zip(&normals) {
-            for (&corner, &angle) in corners.iter().zip(angles) {
-                ways[corner].miss(normal, angle);
+    each_watched(
+        faces.iter().zip(&normals),
+        watch,
+        |(corners, (normal, _))| {
+            for &corner in corners {
+                let at = &mut around[corner];
+                at.cosine = at.cosine.min(at.middle.dot(normal));
             }
-        }
+            Ok(())
+        },
+    )?;
+    let mut ways: Vec<Way> = Vec::with_capacity(around.len());
+    each_watched(around.iter(), watch, |at| {
+        ways.push(at.way());
+        Ok(())
+    })?;
+    for _ in 0..REFINED {
+        each_watched(
+            faces.iter().zip(&normals),
+            watch,
+            |(corners, (normal, angles))| {
+                for (&corner, &angle) in corners.iter().zip(angles) {
+                    ways[corner].miss(normal, angle);
+                }
+                Ok(())
+            },
+        )?;
         for (way, at) in ways.iter_mut().zip(&around) {
             way.refine(at.weight);
         }
@@ -107,53 +128,81 @@ pub(super) fn offset<I: Index>(mesh: &View<'_, I>, unit: f64) -> Result<Offset, 
 }
 
 /// The number of the first vertex with the same coordinates (−0 is +0), for each vertex.
-fn same_corners(vertices: &[[f64; 3]]) -> Vec<usize> {
+fn same_corners(
+    vertices: &[[f64; 3]],
+    watch: &mut Watch<'_>,
+) -> Result<Vec<usize>, Halt<MeshFault>> {
     let mut numbers: HashMap<[u64; 3], usize> = HashMap::with_capacity(vertices.len());
-    let numbered = vertices.iter().enumerate();
-    numbered
-        .map(|(number, vertex)| {
-            let bits = vertex.map(|x| (x + 0.0).to_bits());
-            *numbers.entry(bits).or_insert(number)
-        })
-        .collect()
+    let mut same = Vec::with_capacity(vertices.len());
+    each_watched(vertices.iter().enumerate(), watch, |(number, vertex)| {
+        let bits = vertex.map(|x| (x + 0.0).to_bits());
+        same.push(*numbers.entry(bits).or_insert(number));
+        Ok(())
+    })?;
+    Ok(same)
 }
 
 /// Every edge has one face, or two that run along it in opposite directions.
-fn check_edges(faces: &[[usize; 3]], numbers: &[usize]) -> Result<(), MeshFault> {
-    let mut runs: Vec<(usize, usize, bool, usize)> = faces
-        .iter()
-        .zip(numbers)
-        .flat_map(|(&[a, b, c], &face)| {
-            [(a, b), (b, c), (c, a)].map(|(from, to)| (from.min(to), from.max(to), from < to, face))
-        })
-        .collect();
-    runs.sort_unstable();
-    for group in runs.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)) {
-        match *group {
-            [(low, high, p, first), (_, _, q, second)] if p == q => {
-                let (from, to) = if p { (low, high) } else { (high, low) };
-                return Err(MeshFault::InconsistentWinding {
-                    from: Corner::Vertex(from),
-                    to: Corner::Vertex(to),
-                    first,
-                    second,
-                    count: Count {
-                        seen: 1,
-                        is_least: true,
-                    },
-                });
-            }
-            [] | [_] | [_, _] => {}
-            [(low, high, ..), ..] => {
-                return Err(MeshFault::Branching {
-                    from: Corner::Vertex(low),
-                    to: Corner::Vertex(high),
-                    faces: group.len(),
-                });
-            }
-        }
+///
+/// The edges are brought together by their lower ends, so that no more than those of one vertex are sorted at a time.
+fn check_edges(
+    faces: &[[usize; 3]],
+    numbers: &[usize],
+    vertices: usize,
+    watch: &mut Watch<'_>,
+) -> Result<(), Halt<MeshFault>> {
+    let edges = |&[a, b, c]: &[usize; 3]| [(a, b), (b, c), (c, a)];
+    let mut ends = vec![0; vertices + 1];
+    for (from, to) in faces.iter().flat_map(edges) {
+        ends[from.min(to) + 1] += 1;
     }
-    Ok(())
+    for vertex in 0..vertices {
+        ends[vertex + 1] += ends[vertex];
+    }
+    // The higher end, whether the face runs toward it, and the face.
+    let mut runs = vec![(0, false, 0); 3 * faces.len()];
+    let mut next = ends.clone();
+    each_watched(faces.iter().zip(numbers), watch, |(corners, &face)| {
+        for (from, to) in edges(corners) {
+            let place = &mut next[from.min(to)];
+            runs[*place] = (from.max(to), from < to, face);
+            *place += 1;
+        }
+        Ok(())
+    })?;
+    each_watched(0..vertices, watch, |low| {
+        let runs = &mut runs[ends[low]..ends[low + 1]];
+        runs.sort_unstable();
+        for group in runs.chunk_by(|p, q| p.0 == q.0) {
+            check_edge(low, group)?;
+        }
+        Ok(())
+    })
+}
+
+/// The edge from the vertex `low` to a higher one, with the faces at it.
+fn check_edge(low: usize, group: &[(usize, bool, usize)]) -> Result<(), MeshFault> {
+    match *group {
+        [(high, p, first), (_, q, second)] if p == q => {
+            let (from, to) = if p { (low, high) } else { (high, low) };
+            Err(MeshFault::InconsistentWinding {
+                from: Corner::Vertex(from),
+                to: Corner::Vertex(to),
+                first,
+                second,
+                count: Count {
+                    seen: 1,
+                    is_least: true,
+                },
+            })
+        }
+        [] | [_] | [_, _] => Ok(()),
+        [(high, ..), ..] => Err(MeshFault::Branching {
+            from: Corner::Vertex(low),
+            to: Corner::Vertex(high),
+            faces: group.len(),
+        }),
+    }
 }
 
 /// The faces around a vertex.
@@ -297,12 +346,17 @@ impl Offset {
     /// each face, for |s| up to half the thickness, with e, f the edges and e′, f′ those between the d.
     ///
     /// J is the volume that the surface sweeps for each ds, and linear between the corners.
-    pub(super) fn limit(&self, vertices: &[[f64; 3]], unit: f64) -> Limit {
+    pub(super) fn limit(
+        &self,
+        vertices: &[[f64; 3]],
+        unit: f64,
+        watch: &mut Watch<'_>,
+    ) -> Result<Limit, Halt<MeshFault>> {
         let mut limit = Limit {
             face: 0,
             thickness: f64::INFINITY,
         };
-        for (face, corners) in self.faces.iter().enumerate() {
+        each_watched(self.faces.iter().enumerate(), watch, |(face, corners)| {
             let [a, b, c] = corners.map(|k| Vector3::from(vertices[k]));
             let d = corners.map(|k| self.directions[k]);
             let ((e, f), (de, df)) = (((b - a) / unit, (c - a) / unit), (d[1] - d[0], d[2] - d[0]));
@@ -316,8 +370,9 @@ impl Offset {
                     };
                 }
             }
-        }
-        limit
+            Ok(())
+        })?;
+        Ok(limit)
     }
 }
 

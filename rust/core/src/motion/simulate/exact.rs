@@ -27,10 +27,10 @@ pub(super) fn solve<E: From<Error>>(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<End<E>, E> {
     let closed = Closed::new(task, terms, &task.initial)?;
-    closed.reaches(task.times[task.times.len() - 1] - task.times[0])?;
+    let (start, last) = (task.times[0], task.times[task.times.len() - 1]);
+    closed.reaches(start, last - start)?;
     // A top's attitude counts to its last bit, and may be a unit quaternion to rounding alone.
     run.samples[0].attitude = UnitQuaternion::new_normalize(task.initial.attitude.into_inner());
-    let start = task.times[0];
     let elapsed: Vec<f64> = task.times.iter().map(|t| t - start).collect();
     let count = elapsed.len();
     let room = count.min(PATIENCE);
@@ -110,19 +110,28 @@ impl Closed {
         }
     }
 
-    /// That the states this long after the start are known.
-    fn reaches(&self, elapsed: f64) -> Result<(), Error> {
+    /// That the states are known from `start` until this long after it.
+    fn reaches(&self, start: f64, elapsed: f64) -> Result<(), Error> {
         match &self.motion {
-            Motion::Free(motion) => motion.reaches(elapsed),
-            Motion::Top(motion) => motion.reaches(elapsed),
+            Motion::Free(motion) => motion.reaches(elapsed)?,
+            Motion::Top(motion) => motion.reaches(elapsed)?,
         }
+        if self.place(elapsed).iter().all(|x| x.is_finite()) {
+            return Ok(());
+        }
+        let time = start + elapsed;
+        Err(Error::NotFiniteMotion { time })
+    }
+
+    fn place(&self, elapsed: f64) -> Vector3<f64> {
+        self.position + self.velocity * elapsed
     }
 
     fn placed(&self, elapsed: f64, state: State) -> Phase {
         Phase {
             attitude: state.attitude,
             omega: state.omega,
-            position: self.position + self.velocity * elapsed,
+            position: self.place(elapsed),
             velocity: self.velocity,
         }
     }
@@ -150,7 +159,7 @@ impl<E: From<Error>> Exact<E> {
     pub(super) fn new(task: &Task<'_>, span: &Span, terms: Option<&[Term]>) -> Result<Self, E> {
         let closed = Closed::new(task, terms.unwrap_or_default(), &span.phase)?;
         let length = span.to - span.from;
-        closed.reaches(length)?;
+        closed.reaches(span.from, length)?;
         let turn = std::f64::consts::TAU / closed.fastest;
         let step = (turn / PARTS_OF_A_TURN).min(length.abs()).copysign(length);
         Ok(Self {

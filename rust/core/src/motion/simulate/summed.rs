@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::events::Events;
 use super::lookout::Lookout;
 use super::stepper::Dense;
-use super::{End, Run, Task};
+use super::{End, Run, Task, check_steps};
 use crate::error::Error;
 use crate::motion::integrate::taylor::{Step, solve_seen};
 use crate::motion::loads::Term;
@@ -25,6 +25,8 @@ pub(super) fn solve<E: From<Error>>(
         Ok(lookout) => lookout,
         Err(error) => return Run::at_start(task, End::Failed(error)),
     };
+    // Looks for events within a step of many turns count as steps.
+    let mut looks = 0;
     let mut run = solve_seen(task, terms, &mut |step| {
         let mut summed = Summed {
             step,
@@ -48,6 +50,11 @@ pub(super) fn solve<E: From<Error>>(
                 Err(error) => Some((from, step.at(from), End::Failed(error))),
             };
             if halt.is_some() {
+                return ControlFlow::Break(());
+            }
+            looks += 1;
+            if let Err(error) = check_steps(looks, start, reached, end - start) {
+                halt = Some((reached, step.at(reached), End::Failed(error.into())));
                 return ControlFlow::Break(());
             }
             begin = reached;
@@ -92,7 +99,8 @@ impl<E> Dense for Summed<'_, E> {
         Ok(self.step.at(elapsed))
     }
 
-    fn turn(&self, _: f64) -> f64 {
-        self.step.turn()
+    fn turn(&self, length: f64) -> f64 {
+        let [from, to] = self.step.ends;
+        self.step.turn() * (length / (to - from)).abs()
     }
 }

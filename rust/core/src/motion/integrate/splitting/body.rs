@@ -119,7 +119,14 @@ impl Body {
             q_bp: from_axes(euler.axes()),
             massless,
             symmetry: Symmetry::of(&moments, &massless),
-            kappa: [0, 1, 2].map(|i| euler.differences()[i] / moments[i]),
+            kappa: [0, 1, 2].map(|i| {
+                // A point's ω stays as it is.
+                if moments[i] == 0.0 {
+                    0.0
+                } else {
+                    euler.differences()[i] / moments[i]
+                }
+            }),
         }
     }
 

@@ -13,7 +13,7 @@ mod tests;
 
 use self::body::{Body, Point};
 pub use self::scheme::Scheme;
-use self::step_length::cheapest;
+use self::step_length::{cheapest, rate, share};
 use crate::error::Error;
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::loads::Load;
@@ -165,8 +165,9 @@ impl Splitting {
         self.body
             .step(self.scheme, &mut halves, load, at, 0.5 * h)?;
         (self.body).step(self.scheme, &mut halves, load, at + 0.5 * h, 0.5 * h)?;
-        self.evaluations += 3 * self.scheme.kicks() as u64;
-        let error = self.body.difference(&whole, &halves) / self.tolerance;
+        self.evaluations += 3 * self.scheme.kicks() as u64 + 1;
+        let rate = rate(&self.body, &self.point, load, at)?;
+        let error = self.body.difference(&whole, &halves) / (self.tolerance * share(h, rate));
         Ok((error, whole))
     }
 
@@ -219,7 +220,7 @@ impl Splitting {
             self.unchecked += 1;
             point
         };
-        if !(self.body.phase(&point).numbers().iter()).all(|x| x.is_finite()) {
+        if !self.body.phase(&point).is_finite() {
             let time = self.start + self.elapsed();
             return Err(Error::NotFiniteMotion { time }.into());
         }

@@ -11,6 +11,20 @@ const ROUNDS: usize = 5;
 /// Of the length of step at which a trial just meets the tolerance.
 pub(super) const SAFETY: f64 = 0.9;
 
+/// Steps for each radian up to which a step may err by all that it is told to. Of more steps each may err by less, as their
+/// errors add up within the same turn.
+const PER_RADIAN: f64 = 20.0;
+
+/// The part of the tolerance that a step of length `h` may take when the body moves by `rate` radians a time.
+pub(super) fn share(h: f64, rate: f64) -> f64 {
+    let steps = 1.0 / (h * rate).abs();
+    if steps.is_finite() {
+        (PER_RADIAN / steps).min(1.0)
+    } else {
+        1.0 // at rest
+    }
+}
+
 /// The scheme that takes fewest kicks at the length of step at which it meets the tolerance.
 pub(super) fn cheapest<L: Load>(
     body: &Body,
@@ -53,7 +67,11 @@ fn longest<L: Load>(
     scheme: Scheme,
     evaluations: &mut u64,
 ) -> Result<f64, L::Error> {
-    let mut step = first_trial(body, point, load, start, span)?;
+    let rate = rate(body, point, load, start)?;
+    let most = span.abs() / TRIALS as f64;
+    // A twentieth of a turn or a swing.
+    let first = std::f64::consts::TAU / 20.0 / rate;
+    let mut step = if first < most { first } else { most }.copysign(span);
     for _ in 0..ROUNDS {
         let mut worst: f64 = 0.0;
         let mut fine = *point;
@@ -68,7 +86,8 @@ fn longest<L: Load>(
             body.step(scheme, &mut fine, load, at, 0.5 * step)?;
             body.step(scheme, &mut fine, load, at + 0.5 * step, 0.5 * step)?;
             *evaluations += 3 * scheme.kicks() as u64;
-            worst = worst.max(body.difference(&coarse, &fine) / tolerance);
+            let allowed = tolerance * share(step, rate);
+            worst = worst.max(body.difference(&coarse, &fine) / allowed);
             reached += step;
         }
         if worst == 0.0 && reached != 0.0 {
@@ -88,23 +107,19 @@ fn longest<L: Load>(
     Ok(step)
 }
 
-/// A twentieth of the faster of a turn and a swing.
-fn first_trial<L: Load>(
+/// How fast the body turns, or swings, in radians a time.
+pub(super) fn rate<L: Load>(
     body: &Body,
     point: &Point,
     load: &mut L,
-    start: f64,
-    span: f64,
+    at: f64,
 ) -> Result<f64, L::Error> {
     let phase = body.phase(point);
-    let torque = load.wrench(start, &phase)?.torque;
+    let torque = load.wrench(at, &phase)?.torque;
     let along = body.q_bp.inverse_transform_vector(&torque);
     let swing: f64 = (along.iter().zip(body.moments))
         .filter(|&(_, moment)| moment > 0.0)
         .map(|(torque, moment)| (torque / moment).abs())
         .fold(0.0, f64::max);
-    let rate = phase.omega.norm().max(swing.sqrt());
-    let step = std::f64::consts::TAU / 20.0 / rate;
-    let most = span.abs() / TRIALS as f64;
-    Ok(if step < most { step } else { most }.copysign(span))
+    Ok(phase.omega.norm().max(swing.sqrt()))
 }

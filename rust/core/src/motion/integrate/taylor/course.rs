@@ -541,6 +541,11 @@ impl<'a, X: Precision> Course<'a, X> {
         self.last_time() - self.task.times[0]
     }
 
+    /// The time of an output.
+    pub(super) fn time_of(&self, output: usize) -> f64 {
+        self.task.times[output]
+    }
+
     pub(super) fn last_time(&self) -> f64 {
         self.task.times[self.task.times.len() - 1]
     }

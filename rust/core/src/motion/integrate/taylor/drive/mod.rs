@@ -388,6 +388,17 @@ where
         };
         let phase = lead.job.course.phase(state, place, now);
         let run = &mut *lead.job.run;
+        if !phase.is_finite() {
+            // It came to the last state that is one.
+            let before = lead.next - 1;
+            run.effort = effort(lead.steps);
+            run.time = lead.job.course.time_of(before);
+            run.phase = run.samples[before];
+            let time = lead.job.course.time_of(lead.next);
+            run.end = End::Failed(Error::NotFiniteMotion { time });
+            self.leads[row] = None;
+            return;
+        }
         run.samples[lead.next] = phase;
         lead.next += 1;
         if lead.next == run.samples.len() {
