@@ -66,7 +66,8 @@ def calls() -> dict[str, Callable[[], object]]:
     pseudo, parameters = _core.to_pseudo_inertia(bodies), _core.to_parameters(bodies)
     logarithms = _core.to_log_cholesky(bodies)
     found = principal_axes(tensors)
-    vertices, faces = sphere(600)
+    vertices, faces = sphere(1000)
+    nodes, cells = 30.0 * vectors, rng.integers(0, ROWS, (ROWS, 4))
     accumulator = MassAccumulator()
     pickled = pickle.dumps(bodies)
     windows = np.arange(2.0 * ROWS).reshape(-1, 2)
@@ -160,6 +161,8 @@ def calls() -> dict[str, Callable[[], object]]:
         "accumulator": lambda: accumulator.add(heavy_ones, long),
         "from_mesh": lambda: RigidBody.from_mesh(vertices, faces, mass=1.0, orient=True),
         "from_surface": lambda: RigidBody.from_surface(vertices, faces, mass=1.0, thickness=1e-4),
+        "thin surface": lambda: RigidBody.from_surface(vertices, faces, mass=1.0),
+        "from_tetrahedra": lambda: RigidBody.from_tetrahedra(nodes, cells, density=1.0),
         "region": lambda: regions.mesh(vertices, faces),
         "from_density": lambda: RigidBody.from_density(waves, regions.ball(1.0), rtol=1e-12),
         "a list of numbers": lambda: solids.sphere(rows * 5, mass=1.0),

@@ -186,6 +186,27 @@ class TestSuite:
         assert worst_error(body.center_of_mass, exact.centroid) <= 1e-14
         assert worst_error(body.inertia / 3, exact.inertia) <= 1e-13
 
+    @pytest.mark.parametrize("distance", [10.0, 1e6, 1e12])
+    def test_over_a_mesh_of_two_parts(self, distance: float) -> None:
+        """However far apart they are, each part keeps its digits: nothing of one cancels in the other."""
+        one, faces = icosphere(1, 1.0)
+        other = 0.25 * one + [distance, 0, 0]
+        vertices, both = np.vstack([one, other]), np.vstack([faces, faces + len(one)])
+        body = RigidBody.from_density(lambda r: np.full(len(r), 2.0), regions.mesh(vertices, both))
+        exact = polyhedron(vertices, both)
+        assert worst_error(body.mass / 2, exact.volume) <= 1e-13
+        assert worst_error(body.inertia[0, 0] / 2, exact.inertia[0][0]) <= 1e-12
+        assert worst_error(body.inertia[1, 1] / 2, exact.inertia[1][1]) <= 1e-13
+        assert body.error_bound.inertia <= 1e-10 * body.principal_moments[2]
+
+    def test_surfaces_that_cross_are_no_matter(self) -> None:
+        """A ball less what reaches out of it, as one mesh: mass is left, but no moments that masses have."""
+        one, faces = icosphere(1, 1.0)
+        long = one * [3.0, 0.2, 0.2]
+        vertices, both = np.vstack([one, long]), np.vstack([faces, faces[:, ::-1] + len(one)])
+        with pytest.raises(PolhodeError):
+            RigidBody.from_density(lambda r: np.ones(len(r)), regions.mesh(vertices, both))
+
     def test_over_a_mesh_that_is_not_convex(self) -> None:
         """An L-shaped bar: two boxes, one of them shortened."""
         outline = np.array([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], dtype=float)

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
-from polhode import MassAccumulator, RigidBody, laminae, parallel_axis, regions, rods, solids
-from polhode.errors import InvalidInertiaError, PolhodeError
+from oracles.meshes import icosphere
+from oracles.motion_cases import unit_floats
+from polhode import (
+    MassAccumulator,
+    RigidBody,
+    equimomental,
+    laminae,
+    loads,
+    parallel_axis,
+    regions,
+    rods,
+    solids,
+)
+from polhode.errors import IntegrationError, InvalidInertiaError, PolhodeError
 
 NODES = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
 CELL = [(0, 1, 2, 3)]
@@ -184,3 +197,97 @@ def test_densities_of_any_size_in_shapes_of_any_size(length: int, density: int) 
         assert other.mass == np.ldexp(one.mass, mass)
         assert np.array_equal(other.inertia, np.ldexp(one.inertia, mass + 2 * length))
         assert np.array_equal(other.center_of_mass, np.ldexp(one.center_of_mass, length))
+
+
+@pytest.mark.parametrize("method", ["exact", "taylor", "dop853", "radau", "splitting"])
+def test_places_beyond_all_numbers_are_told(method: Any) -> None:
+    """A body that flies out of float64 is not somewhere at infinity."""
+    body = RigidBody.from_principal(1.0, (1.0, 1.2, 1.5))
+    load = None if method == "exact" else loads.uniform_gravity((0.0, 0.0, -1e307))
+    fast = (0.0, 0.0, 1.5e308 if method == "exact" else 0.0)
+    with pytest.raises(IntegrationError, match=r"float64|finite|cannot go on"):
+        body.simulate([0.0, 1.0, 40.0], (0, 0, 1), load=load, velocity=fast, method=method, rtol=1e-6)
+
+
+@pytest.mark.parametrize("method", ["taylor", "dop853", "radau", "splitting"])
+def test_a_point_keeps_its_rate(method: Any) -> None:
+    """Nothing has a moment to turn it: as of a rod about itself."""
+    body = RigidBody.from_particles([2.0], [(0.0, 0.0, 0.0)])
+    load = loads.uniform_gravity((0.0, 0.0, -1.0))
+    for end in (-0.1, 4.0):
+        run = body.simulate([0.0, end], (0.0, 0.2, 0.4), load=load, method=method)
+        assert run.omega[-1] == pytest.approx([0.0, 0.2, 0.4], abs=1e-15)
+        half = 0.5 * end * np.hypot(0.2, 0.4)
+        assert abs(run.quaternion[-1, 3]) == pytest.approx(abs(np.cos(half)), abs=1e-9)
+        assert run.position[-1, 2] == pytest.approx(-0.5 * end**2, rel=1e-9)
+
+
+def test_events_of_a_body_that_turns_too_fast_end_with_the_limit_of_steps() -> None:
+    """A long step of Taylor series is looked through turn by turn: of 1e187 turns there is no end."""
+    body = RigidBody.from_principal(1.7, (1.3, 1.3, 2.6))
+    load = loads.uniform_gravity((3.0, 3.0, 3.0))
+    with pytest.raises(IntegrationError, match="a run takes 1e9 at most"):
+        body.simulate(
+            [0.0, -1e12], (0.0, 0.0, -5e187), load=load, events=lambda t, *_: t + 2.0, method="taylor"
+        )
+
+
+def test_events_in_a_step_of_many_turns_are_all_found() -> None:
+    """Spin about the axis of symmetry under gravity at C: one step of series, thousands of turns."""
+    body = RigidBody.from_principal(1.7, (1.3, 1.3, 2.6))
+    load = loads.uniform_gravity((0.0, 0.0, -3.0))
+    spin, end = 2000.0, 10.0
+    run = body.simulate(
+        [0.0, end], (0, 0, spin), load=load, events=lambda _t, _w, q, *_: q[2], method="taylor", rtol=1e-12
+    )
+    assert run.events.t == pytest.approx(np.arange(1, int(spin * end / 2 / np.pi) + 1) * 2 * np.pi / spin)
+
+
+def test_what_leaves_float64_on_the_way_is_refused() -> None:
+    far = RigidBody.from_principal(1.0, (1, 1, 1), center_of_mass=(-1.7e308, -1.7e308, -1.7e308))
+    with pytest.raises(PolhodeError, match="center_of_mass must be finite"):
+        far.rotated(unit_floats(0.2, 0.5, -0.3, 0.8))
+    with pytest.raises(PolhodeError, match="moment of inertia about the axis must be finite"):
+        far.moment_about((0, 0, 1), (1e308, 0, 0))
+
+
+def test_a_body_whose_mass_has_no_parts() -> None:
+    least = RigidBody.from_principal(5e-324, (1.0, 1.0, 1.0))
+    with pytest.raises(PolhodeError, match="mass of each particle"):
+        least.equimomental_particles()
+    with pytest.raises(PolhodeError, match="positions must be finite"):
+        RigidBody.from_principal(
+            1e-307, (0.0, 8e307, 8e307), center_of_mass=(1.79e308, 0, 0)
+        ).equimomental_particles()
+
+
+def test_a_stick_of_lengths_that_differ_by_much() -> None:
+    for inertia, a, b, mass in ((1e200, 1e205, 1e-150, 1e160), (1e-200, 1e120, 1e-120, 1.0)):
+        masses = equimomental.stick(mass, inertia, a, b).masses
+        want = [Fraction(inertia) / Fraction(x) / (Fraction(a) + Fraction(b)) for x in (a, b)]
+        assert masses[:2] == pytest.approx([float(x) for x in want], rel=1e-15)
+
+
+def test_a_light_particle_far_away_keeps_its_share_of_a_chunk() -> None:
+    """The sums of a chunk start from its heaviest particle, wherever the first one is."""
+    masses = [5e-324, 0.0, 1e100]
+    positions = [(-2.6784660491453424e160, 1.3e154, 1.3e154), (-4, 3, -4), (-4, -4, -3)]
+    chunks = MassAccumulator()
+    chunks.add(masses, positions)
+    product = 5e-324 * 2.6784660491453424e160 * 1.3e154
+    for body in (chunks.finish(), RigidBody.from_particles(masses, positions)):
+        assert body.inertia[0, 1:] == pytest.approx([product, product], rel=1e-13)
+        assert body.inertia[0, 0] == pytest.approx(2 * 5e-324 * 1.3e154 * 1.3e154, rel=1e-13)
+
+
+@pytest.mark.parametrize("thickness", [1e-100, 1e-300, 1e-310, 5e-324])
+def test_a_shell_as_thin_as_you_like_keeps_its_digits(thickness: float) -> None:
+    vertices, faces = icosphere(1, 1.0)
+    thin = RigidBody.from_surface(vertices, faces, density=1e300, thickness=1e-20)
+    shell = RigidBody.from_surface(vertices, faces, mass=thin.mass, thickness=thickness)
+    assert shell.isclose(thin, rtol=1e-14)
+    dense = RigidBody.from_surface(vertices, faces, density=1e300, thickness=thickness)
+    assert dense.mass == pytest.approx(
+        thin.mass / 1e-20 * thickness, rel=1e-14 if thickness > 1e-308 else 1e-2
+    )
+    assert dense.isclose(shell.scaled(1.0, dense.mass / shell.mass), rtol=1e-13)

@@ -67,6 +67,45 @@ POLYGONS: dict[str, Any] = {
 }  # fmt: skip
 
 
+def fan(rng: np.random.Generator, signs: list[int]) -> np.ndarray:
+    """Triangles about the origin, one after the other, each gone round as its sign says."""
+    count = len(signs)
+    corners = []
+    for k, sign in enumerate(signs):
+        angles = (k + rng.uniform(0.1, 0.4) + np.array([0.0, rng.uniform(0.1, 0.5)])) * 2 * np.pi / count
+        ends = rng.uniform(0.5, 2.0, (2, 1)) * np.column_stack([np.cos(angles), np.sin(angles)])
+        corners += [np.zeros(2), *ends[::sign]]
+    return np.array(corners)
+
+
+class TestTouching:
+    """Boundaries that touch themselves: refused where they pass through themselves."""
+
+    @pytest.mark.parametrize("seed", range(20))
+    def test_triangles_that_share_a_corner(self, seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        signs = [1] * int(rng.integers(2, 6))
+        corners = np.roll(fan(rng, signs), int(rng.integers(0, 9)), axis=0) + 1e3 * rng.normal(size=2)
+        same = laminae.polygon(corners, density=1.0)
+        exact = polygon(corners)
+        assert worst_error(same.mass, abs(exact.mass)) <= 1e-12
+        signs[int(rng.integers(0, len(signs)))] = -1
+        with pytest.raises(ValueError, match=r"passes through itself|no area"):
+            laminae.polygon(fan(rng, signs), density=1.0)
+
+    def test_gone_round_twice(self) -> None:
+        square = [(0, 0), (2, 0), (2, 1), (0, 1)]
+        assert laminae.polygon([*square, square[0]], density=1.0).mass == 2.0
+        with pytest.raises(ValueError, match="negative or twice"):
+            laminae.polygon(square * 2, density=1.0)
+
+    def test_a_hole_joined_by_a_cut(self) -> None:
+        outside, inside = [(0, 0), (5, 0), (5, 5), (0, 5), (0, 0)], [(1, 1), (1, 3), (3, 3), (3, 1), (1, 1)]
+        assert laminae.polygon(outside + inside, density=1.0).mass == pytest.approx(21.0, rel=1e-15)
+        with pytest.raises(ValueError, match="negative or twice"):
+            laminae.polygon(outside + inside[::-1], density=1.0)
+
+
 class TestPolygons:
     @pytest.mark.parametrize("name", POLYGONS)
     @pytest.mark.parametrize("distance", [0.0, 1e3, 1e8])

@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -111,6 +112,51 @@ class TestCallback:
         assert np.array_equal(
             BODY.simulate([0.0, 1.0], RATES, load=loads.torque_callback(nested)).omega, free.omega
         )
+
+
+class TestScaling:
+    """A load is scaled by one real number, whoever's it is, and by nothing else."""
+
+    @pytest.mark.parametrize(
+        "two",
+        [
+            2,
+            2.0,
+            Fraction(2),
+            np.int64(2),
+            np.uint8(2),
+            np.float32(2),
+            np.float64(2),
+            np.array(2.0),
+            np.array(2),
+        ],
+    )
+    def test_by_a_number_of_any_kind(self, two: Any) -> None:
+        load = loads.constant_torque((0, 0, 1.5))
+        for scaled in (load * two, two * load):
+            assert repr(scaled) == "<Load: 2.0 * constant_torque>"
+            assert scaled.torque(0.0, RATES, (0, 0, 0, 1))[2] == 3.0
+
+    @pytest.mark.parametrize(
+        "factor",
+        [
+            *(
+                np.ma.masked_array(2.0),
+                np.ma.masked_array([1.0, 2.0], [False, True]),
+                np.ones(2),
+                np.ones((1,)),
+            ),
+            *(np.array(1j), [2.0], "2", 1j, np.complex128(1), None, loads.constant_torque((0, 0, 1))),
+        ],
+        ids=repr,
+    )
+    def test_by_anything_else_it_is_refused(self, factor: Any) -> None:
+        load = loads.constant_torque((0, 0, 1.5))
+        refused = r"a load is scaled by one number|unsupported operand|can't multiply|not support ufuncs"
+        with pytest.raises(TypeError, match=refused):
+            load * factor
+        with pytest.raises(TypeError, match=refused):
+            factor * load
 
 
 class TestMistakes:

@@ -218,21 +218,27 @@ fn of_cells(draw: &mut Draw<'_>) -> Result<Made> {
     } else {
         cells
     };
+    let watch = &mut patience(1000);
     Ok(match draw.up_to(2)? {
-        0 => tetrahedra(&nodes, &cells, CellDensity::Uniform(draw.positive()?)),
+        0 => tetrahedra(
+            &nodes,
+            &cells,
+            CellDensity::Uniform(draw.positive()?),
+            watch,
+        ),
         1 => {
             let density = cells
                 .iter()
                 .map(|_| draw.positive())
                 .collect::<Result<Vec<_>>>()?;
-            tetrahedra(&nodes, &cells, CellDensity::PerCell(&density))
+            tetrahedra(&nodes, &cells, CellDensity::PerCell(&density), watch)
         }
         _ => {
             let density = nodes
                 .iter()
                 .map(|_| draw.positive())
                 .collect::<Result<Vec<_>>>()?;
-            tetrahedra(&nodes, &cells, CellDensity::PerNode(&density))
+            tetrahedra(&nodes, &cells, CellDensity::PerNode(&density), watch)
         }
     })
 }

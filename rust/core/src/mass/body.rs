@@ -170,12 +170,14 @@ impl RigidBody {
     }
 
     /// Whether the tensor is one of matter, which has no negative squares: surfaces that cross one another, or bytes that
-    /// were damaged, may. What the bounds allow is rounding.
+    /// were damaged, may. What the bounds allow is rounding: half the trace less the tensor is off by 3/2 of the bound on its
+    /// diagonal and 1 beside it, an eigenvalue of it by 7/2, and the deficit by twice that.
     pub(super) fn check_possible(&self) -> Result<(), Error> {
         let moments = principal_axes(&self.inertia).moments;
         let [i1, i2, i3] = moments;
         let deficit = i3 - i2 - i1;
-        if deficit > 2e-12 * i3 + 8.0 * self.error_bound.inertia {
+        let is_rounding = deficit <= 2e-12 * i3 + 7.0 * self.error_bound.inertia;
+        if !is_rounding {
             return Err(Error::TriangleInequality {
                 moments,
                 deficit,
@@ -326,7 +328,7 @@ impl RigidBody {
     /// Moment of inertia about the axis through P with direction `axis`: `n·I_P·n`, n the unit vector along `axis`.
     ///
     /// # Errors
-    /// When `axis` is zero or not finite.
+    /// When `axis` is zero or not finite, or the moment is beyond all numbers.
     pub fn moment_about(&self, axis: &Vector3<f64>, point: &Vector3<f64>) -> Result<f64, Error> {
         all_finite("axis", axis)?;
         let longest = axis.amax();
@@ -341,7 +343,8 @@ impl RigidBody {
         );
         let [i1, i2, i3] = self.principal.moments;
         let central = i1 * w.x * w.x + i2 * w.y * w.y + i3 * w.z * w.z;
-        Ok((central + times_dot(self.mass, &lever, &lever)) / n.dot(&n))
+        let moment = (central + times_dot(self.mass, &lever, &lever)) / n.dot(&n);
+        finite("the moment of inertia about the axis", moment)
     }
 
     /// Radii of gyration `√(I_k / m)` about the principal axes through C, ascending.

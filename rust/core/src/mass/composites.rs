@@ -35,6 +35,7 @@ pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
             let mut principal = principal_axes(&sum.inertia);
             if is_thin(&principal) {
                 principal = sum.refined(&principal);
+                all_finite("moments", &principal.moments)?;
                 principal.moments = principal.moments.map(|moment| moment.max(0.0));
                 let provenance = sum.provenance().in_own_axes();
                 return Ok(sum.body(principal).with_provenance(provenance));
@@ -92,6 +93,7 @@ impl RigidBody {
         let mut provenance = rest.provenance();
         if is_thin(&principal) {
             principal = rest.refined(&principal);
+            all_finite("moments", &principal.moments)?;
             provenance = provenance.in_own_axes();
         }
         principal.moments = principal.moments.map(|moment| moment.max(0.0));
@@ -184,7 +186,7 @@ impl<'a, F: Fn(usize) -> (f64, &'a RigidBody)> Assembly<'a, F> {
         });
         let first_moment = Vector3::new(x, y, z);
         let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-            - first_moment * first_moment.transpose() / self.mass;
+            - first_moment * (first_moment / self.mass).transpose();
         let s = eigen3(&second);
         let [s1, s2, s3] = s.values;
         let column = |k: usize| first.axes * s.vectors.column(k);

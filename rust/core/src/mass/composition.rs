@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::provenance::Provenance;
-use super::units::Units;
+use super::units::{QUANTUM, Units};
 use super::validity::{check_mass, check_rotation, mean_of_halves, trace};
 use crate::error::{Error, all_finite, finite};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
@@ -30,11 +30,13 @@ impl RigidBody {
     /// The body turned about the origin by the rotation matrix R: `C → R C`, `I → R I Rᵀ`; its moments stay as they are.
     ///
     /// # Errors
-    /// When R is not a rotation.
+    /// When R is not a rotation; a turned centre of mass or tensor that is not finite.
     pub fn rotated(&self, rotation: &Matrix3<f64>) -> Result<Self, Error> {
         check_rotation("rotation", rotation)?;
         let inertia = mean_of_halves(&(rotation * self.inertia * rotation.transpose()));
         let center_of_mass = rotation * self.center_of_mass;
+        all_finite("center_of_mass", &center_of_mass)?;
+        all_finite("inertia", &inertia)?;
         // Each element of a turned vector takes up three others, of a turned tensor nine, by factors of one at most.
         let turned = ErrorBound {
             mass: self.error_bound.mass,
@@ -79,6 +81,12 @@ impl RigidBody {
             times_power_of_two(mass, -units.mass),
         );
         let scale = |x: f64| x * mass * length * length;
+        // Below the normal numbers moments have few digits: what they lack is seen when they are larger.
+        let faint = if trace(&self.inertia) < f64::MIN_POSITIVE / f64::EPSILON {
+            16.0 * QUANTUM
+        } else {
+            0.0
+        };
         let scaled = units.told(&Self {
             mass: self.mass * mass,
             center_of_mass: self.center_of_mass * length,
@@ -90,7 +98,7 @@ impl RigidBody {
             error_bound: ErrorBound {
                 mass: self.error_bound.mass * mass + 2.0 * UNIT * self.mass * mass,
                 center_of_mass: self.error_bound.center_of_mass * length,
-                inertia: scale(self.error_bound.inertia),
+                inertia: scale(self.error_bound.inertia + faint),
             }
             .rounded(&(self.center_of_mass * length), scale(trace(&self.inertia))),
             provenance: Provenance {

@@ -10,6 +10,7 @@ use super::simplex::{Corners, Frame, Wire};
 use super::solids::Amount;
 use super::surface::{finish, thin};
 use crate::error::{Error, all_finite};
+use crate::numerics::power_of_two::exponent;
 use crate::numerics::threads::Watch;
 
 /// Points joined by straight segments.
@@ -60,7 +61,8 @@ pub fn curve(
     let error =
         sums.roundings() * sums.content + 8.0 * UNIT * sums.extent.norm() * sums.count as f64;
     let checks = Checks::FINITE.and(Checks::VOLUME);
-    let body = finish(&sums, 1, 2.0 * error, amount)?;
+    let length = exponent(sums.frame.unit);
+    let body = finish(&sums, length, 2.0 * error, amount)?;
     Ok(body.with_provenance(Provenance {
         moments,
         ..Provenance::of_matter(Source::Curve, sums.count, checks)

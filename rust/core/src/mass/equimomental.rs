@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use super::body::{RigidBody, root_of_ratio};
 use super::validity::{ROUNDING, check_mass};
 use crate::error::{Error, all_finite, finite};
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// Particles: masses and where they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +42,7 @@ const SQRT_3_2: f64 = 1.224_744_871_391_589;
 ///
 /// # Errors
 /// [`Error::TriangleInequality`] for a body that was admitted (`rtol`) with moments that no masses have; a body larger than
-/// any number, `√(I/m)`.
+/// any number, `√(I/m)`, or whose mass has no parts that are normal numbers.
 pub fn equimomental_particles(body: &RigidBody) -> Result<Particles, Error> {
     let (spread, corners) = spreads(&body.principal().moments)?;
     let (m, c, axes) = (body.mass(), body.center_of_mass(), body.principal().axes);
@@ -50,10 +51,19 @@ pub fn equimomental_particles(body: &RigidBody) -> Result<Particles, Error> {
         let along = Vector3::from_fn(|k, _| lengths[k] * corner[k]);
         (c + axes * along).into()
     };
+    let count = corners.len() as f64;
+    let mass = m / count;
+    if mass < f64::MIN_POSITIVE && mass * count != m {
+        return Err(Error::OutOfRange {
+            what: "mass of each particle",
+            mantissa: times_power_of_two(m, 60) / count,
+            exponent: -60,
+        });
+    }
     let positions: Vec<[f64; 3]> = corners.iter().map(place).collect();
     all_finite("positions", positions.as_flattened())?;
     Ok(Particles {
-        masses: vec![m / corners.len() as f64; corners.len()],
+        masses: vec![mass; corners.len()],
         positions,
     })
 }
@@ -111,7 +121,12 @@ pub fn stick(mass: f64, inertia: f64, a: f64, b: f64) -> Result<Particles, Error
             return Err(Error::OutOfDomain { what, law, value });
         }
     }
-    let removed = inertia / a / b;
+    // Divided by the larger length first, in a unit of its own: nothing leaves the range of float64 on the way.
+    let power = exponent(inertia);
+    let over = |long: f64, short: f64| {
+        times_power_of_two(times_power_of_two(inertia, -power) / long / short, power)
+    };
+    let removed = over(a.max(b), a.min(b));
     let mut central = mass - removed;
     if central.abs() <= ROUNDING * mass {
         central = 0.0; // two particles alone, to rounding
@@ -122,8 +137,10 @@ pub fn stick(mass: f64, inertia: f64, a: f64, b: f64) -> Result<Particles, Error
             least: inertia / mass,
         });
     }
+    let masses = vec![over(a + b, a), over(a + b, b), central];
+    all_finite("masses", &masses)?;
     Ok(Particles {
-        masses: vec![inertia / a / (a + b), inertia / b / (a + b), central],
+        masses,
         positions: vec![[0.0, 0.0, a], [0.0, 0.0, -b], [0.0; 3]],
     })
 }

@@ -8,6 +8,7 @@ use super::simplex::{Corners, FaintShell, Frame, Kind, Shell, Sums, sums};
 use super::solids::Amount;
 use super::units::QUANTUM;
 use crate::error::Error;
+use crate::numerics::power_of_two::exponent;
 use crate::numerics::threads::{Halt, Watch};
 use crate::principal::principal_axes;
 
@@ -54,7 +55,8 @@ pub fn surface<I: Index>(
         + UNIT * (8.0 * sums.scale.x + 8.0 * sums.extent.max() * sums.scale.y)
         + 8.0 * QUANTUM * faces.len() as f64;
     let checks = Checks::INDICES.and(Checks::FINITE).and(Checks::VOLUME);
-    finish(&sums, 2, 2.0 * error, amount)
+    let area = 2 * exponent(sums.frame.unit);
+    finish(&sums, area, 2.0 * error, amount)
         .map(|body| {
             body.with_provenance(Provenance {
                 moments,
@@ -123,11 +125,11 @@ pub(super) fn thin<C: Corners<N>, K: Kind<N>, const N: usize>(
 /// frame.
 pub(super) fn finish(
     sums: &Sums,
-    dimension: i32,
+    content: i32,
     error: f64,
     amount: Amount,
 ) -> Result<RigidBody, Error> {
-    let (mass, units) = in_units(sums, dimension, amount)?;
+    let (mass, units) = in_units(sums, content, amount)?;
     let relative = error / sums.content;
     let bound = ErrorBound {
         mass: match amount {

@@ -38,6 +38,9 @@ impl Units {
             let what = "largest principal moment of inertia";
             return Err(Self::refused(what, i3, moment));
         }
+        // Of what is no matter, as of surfaces that cross, other elements may be larger than the largest moment.
+        let element = body.inertia.amax();
+        Self::number("largest element of the inertia tensor", element, moment)?;
         let mut principal = body.principal;
         principal.moments = principal.moments.map(|x| times_power_of_two(x, moment));
         let bound = body.error_bound;

@@ -5,6 +5,7 @@ use polhode::RigidBody;
 use polhode::mass::density::{Effort, from_density, from_radial_density};
 use polhode::mass::regions::Region;
 use polhode::mass::tetrahedra::{CellDensity, CellFault, tetrahedra};
+use polhode::numerics::threads;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -12,6 +13,8 @@ use super::PyRigidBody;
 use crate::arrays::{Item, read, read_indices, read_list, write};
 use crate::depth::Deeper;
 use crate::errors::{new, to_py};
+use crate::interrupt::Interrupt;
+use crate::meshes::finish;
 use crate::regions::PyRegion;
 use crate::stack::{Stack, tuple};
 
@@ -68,8 +71,14 @@ impl PyRigidBody {
         })?;
         let density: Stack<f64> = read(density, "density")?;
         let given = placed(&density, at, cells.len(), nodes.rows.len())?;
-        let body = py.detach(|| tetrahedra(&nodes.rows, &cells, given));
-        Ok(Stack::one(body.map_err(|error| to_py(py, &error))?).into())
+        let interrupt = Interrupt::new(None);
+        let watch = &mut |_| interrupt.poll(None);
+        let body = py.detach(|| tetrahedra(&nodes.rows, &cells, given, watch));
+        let body = body.map_err(|error| match error {
+            Error::Stopped => threads::Halt::Stopped,
+            error => threads::Halt::Failed(error),
+        });
+        Ok(Stack::one(finish(py, interrupt, body)?).into())
     }
 
     /// Body that fills a region of space with a density given as a function.

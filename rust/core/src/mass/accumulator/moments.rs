@@ -16,6 +16,9 @@ type Vector = [DoubleDouble; 3];
 /// Where xx, xy, xz, yy, yz, zz stand in a symmetric matrix.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
+/// How often a block is summed again at most.
+const AGAIN: usize = 4;
+
 /// m, C, and S = Σ m (r − c)(r − c)ᵀ, each to 2⁻¹⁰⁰ or so of the whole: enough that the smallest principal moment of a
 /// rod 1e-8 as thick as long keeps fourteen digits, wherever the rod stands and whichever way it points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,15 +32,19 @@ pub(super) struct Moments {
 impl Moments {
     /// Of at most a block of particles.
     pub(super) fn of(particles: Particles<'_>) -> Result<Self, Error> {
-        let reference = sample_center(particles);
-        let found = Self::about(particles, reference)?;
-        let center = Vector3::from(found.center.map(DoubleDouble::rounded));
-        let spread = found.central[0].high + found.central[3].high + found.central[5].high;
-        if found.mass.high * (center - reference).norm_squared() <= spread {
-            return Ok(found);
+        let mut reference = sample_center(particles);
+        let mut found = Self::about(particles, reference)?;
+        // A few particles far away may have drawn the sample out of the body.
+        for _ in 0..AGAIN {
+            let center = Vector3::from(found.center.map(DoubleDouble::rounded));
+            let spread = found.central[0].high + found.central[3].high + found.central[5].high;
+            if found.mass.high * (center - reference).norm_squared() <= spread {
+                break;
+            }
+            reference = center;
+            found = Self::about(particles, reference)?;
         }
-        // A few particles far away drew the sample out of the body.
-        Self::about(particles, center)
+        Ok(found)
     }
 
     fn about(particles: Particles<'_>, reference: Vector3<f64>) -> Result<Self, Error> {

@@ -116,6 +116,7 @@ pub fn from_density<E: From<Error>>(
         length,
         place: length,
     };
+    body.check_possible()?;
     let body = units.told(&body.with_provenance(provenance))?;
     // Signed charts that cancel one another leave less than they have.
     let cancelled = rounding * (sizes.mass / total.mass).max(sizes.spread / spread) - rounding;

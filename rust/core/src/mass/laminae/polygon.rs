@@ -115,7 +115,6 @@ pub fn polygon(
         return Err(PolygonFault::TooFew { count }.into());
     }
     check_finite(vertices)?;
-    check_simple(vertices, watch)?;
     let (low, high) = vertices.iter().fold(
         (
             Vector2::repeat(f64::INFINITY),
@@ -126,6 +125,9 @@ pub fn polygon(
     let middle = low * 0.5 + high * 0.5;
     let size = (high - low).max();
     let (unit, [own_size]) = Unit::of([size]);
+    let own = |&[x, y]: &[f64; 2]| [x, y].map(|x| times_power_of_two(x, -unit.0));
+    let in_units: Vec<[f64; 2]> = vertices.iter().map(own).collect();
+    check_simple(&in_units, watch)?;
     let told = |lengths: Vector2<f64>| lengths.map(|x| times_power_of_two(x, unit.0));
     let (first, magnitude) = sums(vertices, unit, &middle, &Matrix2::identity());
     if first.area.abs() <= 8.0 * UNIT * depth(count) * magnitude {

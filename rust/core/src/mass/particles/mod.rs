@@ -170,8 +170,10 @@ pub(super) fn sample_center(Particles { masses, positions }: Particles<'_>) -> V
     let count = masses.len();
     let stride = count.div_ceil(SAMPLE).max(1);
     let sample = || (0..count).step_by(stride);
-    let Some(base) = sample()
-        .find(|&i| masses[i] > 0.0)
+    // From the heaviest of them, so that nothing cancels where another one is far away.
+    let heaviest = sample().max_by(|&i, &j| masses[i].total_cmp(&masses[j]));
+    let Some(base) = heaviest
+        .filter(|&i| masses[i] > 0.0)
         .or_else(|| (0..count).max_by(|&i, &j| masses[i].total_cmp(&masses[j])))
     else {
         return Vector3::zeros();

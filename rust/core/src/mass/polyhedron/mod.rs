@@ -294,7 +294,7 @@ fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), E
     if sums.content < 0.0 && !orient {
         return Err(MeshFault::Inverted { volume }.into());
     }
-    let (mass, units) = in_units(sums, 3, amount)?;
+    let (mass, units) = in_units(sums, 3 * exponent(sums.frame.unit), amount)?;
     let relative = error / sums.content.abs();
     let bound = ErrorBound {
         mass: match amount {
@@ -306,13 +306,13 @@ fn body(sums: &Sums, amount: Amount, orient: bool) -> Result<(RigidBody, f64), E
     Ok((matter(sums, mass, relative, bound, units)?, volume.abs()))
 }
 
-/// The mass of what has these sums, a length, area or volume by its dimension, in units of the frame.
-pub(super) fn in_units(sums: &Sums, dimension: i32, amount: Amount) -> Result<(f64, Units), Error> {
+/// The mass of what has these sums, whose content is counted in `2^content`, and its units.
+pub(super) fn in_units(sums: &Sums, content: i32, amount: Amount) -> Result<(f64, Units), Error> {
     let length = exponent(sums.frame.unit);
     let (mass, power) = amount.mass_in_units(sums.content.abs())?;
     let of_content = match amount {
         Amount::Mass(_) => 0,
-        Amount::Density(_) => dimension * length,
+        Amount::Density(_) => content,
     };
     let units = Units {
         mass: power + of_content,

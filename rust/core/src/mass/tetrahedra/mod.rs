@@ -21,6 +21,7 @@ use self::sums::{Cells, FAR, FAR_POWER, largest_coordinate};
 use super::body::RigidBody;
 use super::provenance::{Checks, Provenance, Source};
 use crate::error::Error;
+use crate::numerics::threads::Watch;
 
 /// Below this ratio of smallest to largest principal moment the sums are taken in the body's own axes.
 const THIN: f64 = 0.05;
@@ -41,11 +42,12 @@ pub enum CellDensity<'a> {
 
 /// The body of these cells; four nodes each, in either order.
 ///
-/// Cells are what they cover: their volumes are counted as positive, and cells that overlap count twice.
+/// Cells are what they cover: their volumes are counted as positive, and cells that overlap count twice. `watch` is asked about
+/// every 20 ms whether to go on.
 ///
 /// # Errors
 /// [`CellFault`] names the cell, node or density that is at fault; [`Error::OutOfRange`] a mass or moment that is too large
-/// or too small for float64.
+/// or too small for float64; [`Error::Stopped`] where `watch` said so.
 ///
 /// # Panics
 /// When there are not as many densities as cells or nodes.
@@ -53,27 +55,34 @@ pub fn tetrahedra(
     nodes: &[[f64; 3]],
     cells: &[[usize; 4]],
     density: CellDensity<'_>,
+    watch: &mut Watch<'_>,
 ) -> Result<RigidBody, Error> {
     check(nodes, cells, density)?;
     // Differences of coordinates this large could overflow.
-    let (nearer, place) = if largest_coordinate(nodes, cells) >= FAR {
+    let (nearer, place) = if largest_coordinate(nodes, cells, watch)? >= FAR {
         let nearer: Vec<_> = nodes.iter().map(|r| r.map(|x| x / FAR)).collect();
         (Some(nearer), FAR_POWER)
     } else {
         (None, 0)
     };
-    let cells = Cells::new(nearer.as_deref().unwrap_or(nodes), cells, density, place)?;
+    let cells = Cells::new(
+        nearer.as_deref().unwrap_or(nodes),
+        cells,
+        density,
+        place,
+        watch,
+    )?;
     let middle = cells.frame.reference;
-    let first = cells.sums(&middle, &Matrix3::identity());
+    let first = cells.sums(&middle, &Matrix3::identity(), watch)?;
     // About the centre of mass, which the cells' bounding box may be far from when their densities differ much.
     let mut center = cells.place(&middle, &first);
-    let mut sums = cells.sums(&center, &Matrix3::identity());
+    let mut sums = cells.sums(&center, &Matrix3::identity(), watch)?;
     for _ in 1..AGAIN {
         if sums.is_central() {
             break;
         }
         center = cells.place(&center, &sums);
-        sums = cells.sums(&center, &Matrix3::identity());
+        sums = cells.sums(&center, &Matrix3::identity(), watch)?;
     }
     let matter = cells.matter(&sums, &center);
     let provenance = Provenance::of_matter(
@@ -86,7 +95,7 @@ pub fn tetrahedra(
     if principal.moments[0] >= THIN * principal.moments[2] {
         return cells.units.told(&body);
     }
-    let mut thin = cells.matter(&cells.sums(&center, &principal.axes), &center);
+    let mut thin = cells.matter(&cells.sums(&center, &principal.axes, watch)?, &center);
     thin.axes = principal.axes;
     thin.center_of_mass = matter.center_of_mass;
     let body = RigidBody::from_second_moment(&thin)?;
@@ -99,7 +108,17 @@ pub fn tetrahedra(
 mod tests {
     use nalgebra::Vector3;
 
+    use std::ops::ControlFlow;
+
     use super::*;
+
+    fn tetrahedra(
+        nodes: &[[f64; 3]],
+        cells: &[[usize; 4]],
+        density: CellDensity<'_>,
+    ) -> Result<RigidBody, Error> {
+        super::tetrahedra(nodes, cells, density, &mut |_| ControlFlow::Continue(()))
+    }
 
     const CORNER: [[f64; 3]; 4] = [
         [0.0, 0.0, 0.0],

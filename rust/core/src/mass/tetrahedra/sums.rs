@@ -10,8 +10,9 @@ use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::Frame;
 use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
-use crate::numerics::reduce::{depth, sum_terms};
+use crate::numerics::reduce::{block_sum, depth, sum_blocks};
 use crate::numerics::split_vector::SplitVector;
+use crate::numerics::threads::{Watch, each_watched};
 
 /// Coordinates of this size and more, 2⁹⁶⁰, are divided by it.
 pub(super) const FAR: f64 = f64::from_bits((1023 + FAR_POWER as u64) << 52);
@@ -19,9 +20,18 @@ pub(super) const FAR: f64 = f64::from_bits((1023 + FAR_POWER as u64) << 52);
 pub(super) const FAR_POWER: i32 = 960;
 
 /// The largest coordinate of the nodes that cells use.
-pub(super) fn largest_coordinate(nodes: &[[f64; 3]], cells: &[[usize; 4]]) -> f64 {
-    let used = cells.iter().flatten().flat_map(|&k| nodes[k]);
-    used.fold(0.0, |largest, x| x.abs().max(largest))
+pub(super) fn largest_coordinate(
+    nodes: &[[f64; 3]],
+    cells: &[[usize; 4]],
+    watch: &mut Watch<'_>,
+) -> Result<f64, Error> {
+    let mut largest: f64 = 0.0;
+    each_watched(cells.iter(), watch, |cell| {
+        let used = cell.iter().flat_map(|&k| nodes[k]);
+        largest = used.fold(largest, |largest, x| x.abs().max(largest));
+        Ok::<(), Error>(())
+    })?;
+    Ok(largest)
 }
 
 /// Cells with their volumes and densities in units.
@@ -51,39 +61,50 @@ impl<'a> Cells<'a> {
         cells: &'a [[usize; 4]],
         density: CellDensity<'a>,
         place: i32,
+        watch: &mut Watch<'_>,
     ) -> Result<Self, Error> {
-        let used = || cells.iter().flatten().map(|&k| Vector3::from(nodes[k]));
-        let low = used().fold(Vector3::repeat(f64::INFINITY), |low, v| low.inf(&v));
-        let high = used().fold(Vector3::repeat(f64::NEG_INFINITY), |high, v| high.sup(&v));
+        let mut low = Vector3::repeat(f64::INFINITY);
+        let mut high = Vector3::repeat(f64::NEG_INFINITY);
+        let mut volumes: Vec<Volume> = Vec::with_capacity(cells.len());
+        each_watched(cells.iter(), watch, |cell| {
+            let corners = cell.map(|k| nodes[k]);
+            for corner in corners.map(Vector3::from) {
+                (low, high) = (low.inf(&corner), high.sup(&corner));
+            }
+            volumes.push(sixfold(&corners));
+            Ok::<(), Error>(())
+        })?;
         let frame = Frame::of_box(&low, &high);
-        let volumes: Vec<Volume> = cells
-            .iter()
-            .map(|cell| sixfold(&cell.map(|k| nodes[k])))
-            .collect();
         let densest = |cell: usize| {
             let densities = densities(cells, density, cell);
             densities.into_iter().fold(0.0, f64::max)
         };
         let power = |cell: usize| volumes[cell].exponent + exponent(densest(cell));
-        let solid = (0..cells.len()).filter(|&cell| volumes[cell].mantissa * densest(cell) > 0.0);
-        let Some(heaviest) = solid.map(power).max() else {
+        let mut heaviest = None;
+        each_watched(0..cells.len(), watch, |cell| {
+            if volumes[cell].mantissa * densest(cell) > 0.0 {
+                heaviest = heaviest.max(Some(power(cell)));
+            }
+            Ok::<(), Error>(())
+        })?;
+        let Some(heaviest) = heaviest else {
             let (count, mass) = (cells.len(), 0.0);
             return Err(CellFault::NoMass { count, mass }.into());
         };
         let mut lost = 0.0;
-        let weights = (0..cells.len())
-            .map(|cell| {
-                let Volume {
-                    mantissa, error, ..
-                } = volumes[cell];
-                let shift = power(cell) - heaviest;
-                lost += times_power_of_two(error, shift);
-                Weight {
-                    volume: times_power_of_two(mantissa, shift) / 6.0,
-                    density: halves(-exponent(densest(cell))),
-                }
-            })
-            .collect();
+        let mut weights = Vec::with_capacity(cells.len());
+        each_watched(0..cells.len(), watch, |cell| {
+            let Volume {
+                mantissa, error, ..
+            } = volumes[cell];
+            let shift = power(cell) - heaviest;
+            lost += times_power_of_two(error, shift);
+            weights.push(Weight {
+                volume: times_power_of_two(mantissa, shift) / 6.0,
+                density: halves(-exponent(densest(cell))),
+            });
+            Ok::<(), Error>(())
+        })?;
         let length = exponent(frame.unit) + place;
         let mass = heaviest + 3 * place;
         Ok(Self {
@@ -111,11 +132,16 @@ impl<'a> Cells<'a> {
     }
 
     /// The sums about a point in the given axes.
-    pub(super) fn sums(&self, reference: &Vector3<f64>, axes: &Matrix3<f64>) -> Sums {
+    pub(super) fn sums(
+        &self,
+        reference: &Vector3<f64>,
+        axes: &Matrix3<f64>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Sums, Error> {
         let columns: [[f64; 3]; 3] = axes.data.0;
         let origin: [f64; 3] = (*reference).into();
         let inverse = 1.0 / self.frame.unit;
-        let [m, x, y, z, xx, xy, xz, yy, yz, zz] = sum_terms(self.count(), |cell| {
+        let of_cell = |cell: usize| {
             let corners = self.corners[cell].map(|k| self.nodes[k]);
             let Weight {
                 volume: v,
@@ -148,12 +174,15 @@ impl<'a> Cells<'a> {
                 second(1, 2),
                 second(2, 2),
             ]
-        });
-        Sums {
+        };
+        let [m, x, y, z, xx, xy, xz, yy, yz, zz] = sum_blocks(self.count(), watch, |range| {
+            block_sum(range.start, range.end, &of_cell)
+        })?;
+        Ok(Sums {
             mass: m,
             moment: Vector3::new(x, y, z),
             second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-        }
+        })
     }
 
     /// The matter about its own centre, which `center` is but for rounding.

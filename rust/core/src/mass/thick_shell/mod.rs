@@ -21,6 +21,7 @@ use super::provenance::{Checks, MomentsFrom, Provenance, Source};
 use super::simplex::{Frame, Sums};
 use super::surface::finish;
 use crate::error::Error;
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::reduce::{block_sum, sum_blocks};
 use crate::numerics::threads::{Halt, Watch};
 use crate::principal::principal_axes;
@@ -79,7 +80,9 @@ pub fn thick_shell<I: Index>(
         .and(Checks::FINITE)
         .and(Checks::WINDING)
         .and(Checks::VOLUME);
-    finish(&sums, 3, error, amount)
+    // A surface counts in squares of the unit, and the thickness in a unit of its own, however thin it is.
+    let content = 2 * exponent(sums.frame.unit) + exponent(thickness);
+    finish(&sums, content, error, amount)
         .map(|body| {
             body.with_provenance(Provenance {
                 moments,
@@ -122,8 +125,9 @@ struct Placed<'a> {
     offset: &'a Offset,
     corners: Vec<Vector3<f64>>,
     directions: Vec<Vector3<f64>>,
-    /// Half the thickness.
+    /// Half the thickness, and the same in its own power of two.
     half: f64,
+    weight: f64,
     extent: Vector3<f64>,
 }
 
@@ -147,6 +151,7 @@ impl<'a> Placed<'a> {
             corners,
             directions,
             half,
+            weight: 0.5 * times_power_of_two(thickness, -exponent(thickness)),
             extent,
         }
     }
@@ -186,8 +191,8 @@ impl<'a> Placed<'a> {
             .iter()
             .fold(0.0_f64, |worst, &k| worst.max(self.offset.errors[k]));
         let mut terms = [0.0; TERMS];
-        for (s, weight) in [(-NODE, 5.0), (0.0, 8.0), (NODE, 5.0)] {
-            let (s, weight) = (s * self.half, weight * self.half / 9.0);
+        for (node, weight) in [(-NODE, 5.0), (0.0, 8.0), (NODE, 5.0)] {
+            let (s, weight) = (node * self.half, weight * self.weight / 9.0);
             let r = [0, 1, 2].map(|i| v[i] + d[i] * s);
             let (e, f) = (r[1] - r[0], r[2] - r[0]);
             let area = e.cross(&f);
@@ -205,8 +210,7 @@ impl<'a> Placed<'a> {
             };
             let first = (sum * g + weighted) / 24.0;
             let (e, f) = (e.norm(), f.norm());
-            let roundings =
-                e * f + self.extent.norm() * (e + f) * (1.0 + s.abs() * longest / self.half);
+            let roundings = e * f + self.extent.norm() * (e + f) * (1.0 + f64::abs(node) * longest);
             let slack = area.norm() * worst + 16.0 * UNIT * longest * roundings;
             let parts = [
                 g / 6.0,

@@ -13,7 +13,7 @@ mod tests;
 
 use self::body::{Body, Point};
 pub use self::scheme::Scheme;
-use self::step_length::{cheapest, rate, share};
+use self::step_length::{allowed, cheapest, rate};
 use crate::error::Error;
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::loads::Load;
@@ -167,7 +167,7 @@ impl Splitting {
         (self.body).step(self.scheme, &mut halves, load, at + 0.5 * h, 0.5 * h)?;
         self.evaluations += 3 * self.scheme.kicks() as u64 + 1;
         let rate = rate(&self.body, &self.point, load, at)?;
-        let error = self.body.difference(&whole, &halves) / (self.tolerance * share(h, rate));
+        let error = self.body.difference(&whole, &halves) / allowed(self.tolerance, h, rate);
         Ok((error, whole))
     }
 

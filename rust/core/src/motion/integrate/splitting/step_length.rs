@@ -15,13 +15,16 @@ pub(super) const SAFETY: f64 = 0.9;
 /// errors add up within the same turn.
 const PER_RADIAN: f64 = 20.0;
 
-/// The part of the tolerance that a step of length `h` may take when the body moves by `rate` radians a time.
-pub(super) fn share(h: f64, rate: f64) -> f64 {
+/// What rounding alone does to a step.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// What a step of length `h` may err by when the body moves by `rate` radians a time.
+pub(super) fn allowed(tolerance: f64, h: f64, rate: f64) -> f64 {
     let steps = 1.0 / (h * rate).abs();
     if steps.is_finite() {
-        (PER_RADIAN / steps).min(1.0)
+        (tolerance * (PER_RADIAN / steps).min(1.0)).max(tolerance.min(ROUNDING))
     } else {
-        1.0 // at rest
+        tolerance // at rest
     }
 }
 
@@ -86,7 +89,7 @@ fn longest<L: Load>(
             body.step(scheme, &mut fine, load, at, 0.5 * step)?;
             body.step(scheme, &mut fine, load, at + 0.5 * step, 0.5 * step)?;
             *evaluations += 3 * scheme.kicks() as u64;
-            let allowed = tolerance * share(step, rate);
+            let allowed = allowed(tolerance, step, rate);
             worst = worst.max(body.difference(&coarse, &fine) / allowed);
             reached += step;
         }
