@@ -14,6 +14,9 @@ use polhode_fuzz::HARNESSES;
 /// An input that takes longer hangs.
 const LONGEST: Duration = Duration::from_secs(30);
 
+/// Of a thread that replays: unoptimised, the wide kernels need more than a test has.
+const STACK: usize = 64 << 20;
+
 /// Marsaglia's xorshift: the same bytes on every machine.
 struct Bytes(u64);
 
@@ -33,6 +36,11 @@ impl Bytes {
 
 #[test]
 fn seeds() {
+    let replay = thread::Builder::new().stack_size(STACK).spawn(each_seed);
+    replay.expect("a thread").join().expect("every seed passes");
+}
+
+fn each_seed() {
     for (name, harness) in HARNESSES {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("seeds")
@@ -53,7 +61,8 @@ fn generated(name: &str, count: u64) {
     let (_, harness) = found.expect("a harness");
     let (told, hear) = mpsc::channel();
     let harness = *harness;
-    thread::spawn(move || {
+    let replay = thread::Builder::new().stack_size(STACK);
+    let spawned = replay.spawn(move || {
         let mut bytes = Bytes(0x9e37_79b9_7f4a_7c15);
         for k in 0..count {
             let input = bytes.some();
@@ -64,6 +73,7 @@ fn generated(name: &str, count: u64) {
             }
         }
     });
+    spawned.expect("a thread");
     for k in 0..count {
         let (number, is_good, input) = hear
             .recv_timeout(LONGEST)
