@@ -126,3 +126,21 @@ pub(super) fn rate<L: Load>(
         .fold(0.0, f64::max);
     Ok(phase.omega.norm().max(swing.sqrt()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_steps_in_a_radian_may_err_by_less_each_down_to_rounding() {
+        // Up to twenty steps a radian all of it, of forty half.
+        for (steps, part) in [(10.0, 1.0), (19.9, 1.0), (20.1, 0.995), (40.0, 0.5)] {
+            let found = allowed(1e-6, -1.0 / steps / 3.0, 3.0) / 1e-6;
+            assert!((found - part).abs() < 1e-4, "{steps} {found}");
+        }
+        assert_eq!(allowed(1e-6, 1e-300, 0.0), 1e-6);
+        // A step cannot err by less than rounding, nor by more than it is told to.
+        assert_eq!(allowed(1e-14, 1e-5, 1.0), ROUNDING);
+        assert_eq!(allowed(0.5 * ROUNDING, 1e-5, 1.0), 0.5 * ROUNDING);
+    }
+}
