@@ -71,7 +71,7 @@ const METHODS: [Method; 6] = [
 ];
 
 /// Looks at the watch before a run is given up: as many steps.
-const STEPS: u32 = 120;
+const STEPS: u32 = 60;
 
 /// A run of a body, whose samples and events are as its end says.
 ///
