@@ -9,7 +9,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
-import mpmath
+import mpmath as mp
 import numpy as np
 import pytest
 import random_matter
@@ -50,6 +50,17 @@ def rightly_refused(error: PolhodeError, mass: Fraction, inertia: Any) -> bool:
     trace = sum(inertia[k][k] for k in range(3)) / 2
     law = "float64 holds 2.2e-308 to 1.8e+308" in str(error)
     return law and (mass < LEAST or mass > MOST or 0 < largest < LEAST or trace > MOST / 2)
+
+
+def is_of_matter(inertia: Any) -> bool:
+    """Whether these exact numbers are the tensor of masses: one whose second moment has no negative value."""
+    trace = sum(inertia[k][k] for k in range(3)) / 2
+    with mp.workdps(80):
+        second = mp.matrix(3, 3)
+        for i, j in np.ndindex(3, 3):
+            element = ((trace if i == j else 0) - inertia[i][j]) / trace
+            second[i, j] = mp.mpf(element.numerator) / element.denominator
+        return bool(min(mp.eigsy(second, eigvals_only=True)) >= 0)
 
 
 def cell_faults(number: int) -> list[str]:
@@ -139,6 +150,9 @@ def mesh_faults(number: int) -> list[str]:
             size, far = np.ptp(vertices, axis=0).max(), np.abs(vertices).max()
             is_flat = float(exact.volume / Fraction(size) ** 2 / Fraction(far + size)) < 1e-13
             return [] if is_flat else [f"{number}: refused, {error}"]
+        if "triangle inequality" in str(error):
+            # Thin ones far from the origin cross themselves where their corners are rounded.
+            return [f"{number}: refused, {error}"] if is_of_matter(exact.inertia) else []
         inertia = [[x * Fraction(rho) for x in row] for row in exact.inertia]
         is_right = rightly_refused(error, exact.volume * Fraction(rho), inertia)
         return [] if is_right else [f"{number}: refused, {error}"]
@@ -166,7 +180,7 @@ def thin_faults(
     faces = np.array([rng.permutation(count)[:3] for _ in range(rng.integers(1, 5))])
     shape = (points, faces) if source == "surface" else (points,)
     rho = float(random_matter.amounts(rng, 1)[0])
-    with mpmath.workdps(400):
+    with mp.workdps(400):
         try:
             exact = exact_of(*shape, digits=400)
         except ZeroDivisionError:  # without area or length

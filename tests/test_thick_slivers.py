@@ -88,7 +88,7 @@ class Tetrahedron:
 
 
 def errors(number: int) -> tuple[float, float, list[str]] | None:
-    """Flatness, relative error of the shell, and what is beyond its bound; none where no mitre is made."""
+    """Thinness, relative error of the shell, and what is beyond its bound; none where no mitre is made."""
     rng = np.random.default_rng([20261122, number])
     flatness = 10.0 ** -rng.uniform(0, 4)
     vertices = rng.normal(size=(4, 3)) * [1, 1, flatness] @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
@@ -97,6 +97,9 @@ def errors(number: int) -> tuple[float, float, list[str]] | None:
     exact = Tetrahedron(vertices)
     if not exact.is_mitred():
         return None
+    # Some are thin by chance: the ball inside tells, 1 of a regular tetrahedron.
+    longest = max(np.linalg.norm(a - b) for a in vertices for b in vertices)
+    thinness = 2 * np.sqrt(6) * float(exact.radius) / longest
     thickness = float(exact.radius) * 2 * rng.uniform(0.05, 0.95)
     mass, center, inertia = exact.shell(thickness)
     try:
@@ -112,7 +115,7 @@ def errors(number: int) -> tuple[float, float, list[str]] | None:
         "inertia": (max(abs(body.inertia[x, y] - inertia[x][y]) for x in range(3) for y in range(3)), trace),
     }
     short = [name for name, (error, _) in told.items() if error > getattr(body.error_bound, name)]
-    return flatness, max(float(error / size) for error, size in told.values()), short
+    return thinness, max(float(error / size) for error, size in told.values()), short
 
 
 def check(numbers: range) -> None:
@@ -120,7 +123,7 @@ def check(numbers: range) -> None:
         found = [result for number in numbers if (result := errors(number)) is not None]
     assert len(found) > 0.9 * len(numbers)
     assert [short for _, _, short in found if short] == []
-    assert max(flatness * error for flatness, error, _ in found) < 2e-13
+    assert max(thinness * error for thinness, error, _ in found) < 1e-15
     assert max(error for _, error, _ in found) < 5e-11
 
 
