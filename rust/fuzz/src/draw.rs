@@ -4,6 +4,7 @@ use arbitrary::{Result, Unstructured};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_4;
 use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 /// What float64 has at its ends, and where squares and cubes leave it.
 const EXTREMES: [f64; 24] = [
@@ -236,11 +237,15 @@ impl<'a> Draw<'a> {
     }
 }
 
-/// A watch that stops what goes on after so many looks.
+/// How long anything goes on: an input that takes ten seconds counts as one that hangs, also on a busy machine.
+const LONGEST: Duration = Duration::from_secs(2);
+
+/// A watch that stops what goes on after so many looks, or after two seconds.
 pub fn patience(mut looks: u32) -> impl FnMut(f64) -> ControlFlow<()> {
+    let start = Instant::now();
     move |_| {
         looks = looks.saturating_sub(1);
-        if looks == 0 {
+        if looks == 0 || start.elapsed() > LONGEST {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
