@@ -55,7 +55,8 @@ impl PyRigidBody {
     ///     any load, for those that are stiff, such as strong damping. "splitting" kicks the body between
     ///     exact free motions: loads that depend on time, attitude and position alone, for long times, since
     ///     the energy does not drift. Its steps are equal until a check against two half steps asks for shorter
-    ///     ones; they are chosen anew where a load begins or ends.
+    ///     ones; they are chosen anew where a load begins or ends. Where more than twenty of them make a radian each
+    ///     errs by less than `rtol` allows, since their errors add up.
     /// rtol : float, optional
     ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
     ///     distance and speed so far; from 2.3e-15 to 0.1, and for "taylor" from 1e-28. Below 2.3e-15 (ten units
