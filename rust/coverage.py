@@ -54,28 +54,22 @@ def run(*command: str | Path, **environment: str) -> None:
 
 
 def of_cargo() -> list[Path]:
-    """Run the tests of the core; the programs that were run."""
-    arguments = [
-        "--locked",
-        "--package",
-        "polhode",
-        "--package",
-        "polhode-fuzz",
-        "--profile",
-        "coverage",
-        "--target-dir",
-        TARGET,
-    ]
-    run("cargo", "test", *arguments, "--lib", "--tests", "--no-fail-fast")
-    told = subprocess.run(
-        ["cargo", "test", *map(str, arguments), "--lib", "--tests", "--no-run"],
-        check=True,
-        cwd=ROOT,
-        text=True,
-        capture_output=True,
-        env={**os.environ, "RUSTFLAGS": FLAGS},
-    )
-    return [ROOT / path for path in re.findall(r"\((\S+?)\)$", told.stderr, re.MULTILINE)]
+    """Run the tests of the core, and the seeds of the fuzzers; the programs that were run."""
+    programs = []
+    for manifest, package in (("Cargo.toml", "polhode"), ("rust/fuzz/Cargo.toml", "polhode-fuzz")):
+        arguments = ["--locked", "--manifest-path", manifest, "--package", package]
+        arguments += ["--profile", "coverage", "--target-dir", str(TARGET), "--lib", "--tests"]
+        run("cargo", "test", *arguments, "--no-fail-fast")
+        told = subprocess.run(
+            ["cargo", "test", *arguments, "--no-run"],
+            check=True,
+            cwd=ROOT,
+            text=True,
+            capture_output=True,
+            env={**os.environ, "RUSTFLAGS": FLAGS},
+        )
+        programs += [ROOT / path for path in re.findall(r"\((\S+?)\)$", told.stderr, re.MULTILINE)]
+    return programs
 
 
 def of_pytest(options: list[str]) -> Path:
