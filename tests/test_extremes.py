@@ -199,6 +199,24 @@ def test_densities_of_any_size_in_shapes_of_any_size(length: int, density: int) 
         assert np.array_equal(other.center_of_mass, np.ldexp(one.center_of_mass, length))
 
 
+@pytest.mark.parametrize("by", ["exact", "taylor", "dop853", "radau", "splitting"])
+def test_a_straight_path_out_of_float64_is_told(by: Any) -> None:
+    """Without a force nothing integrates the place: it is where the velocity brings it."""
+    body = RigidBody.from_principal(1.0, (1.0, 1.2, 1.5))
+    free: dict[str, Any] = {} if by == "exact" else {"method": by}
+    if by in ("dop853", "radau"):
+        free["load"] = loads.torque_callback(lambda *_: (0, 0, 0))
+    if by in ("taylor", "splitting"):
+        free["load"] = loads.constant_torque((0, 0, 0.1))
+    looking: list[dict[str, Any]] = [{}, {"events": lambda t, *_: t - 30.0}]
+    for options in looking:
+        with pytest.raises(IntegrationError, match="not finite at t") as caught:
+            body.simulate([0.0, 1.0, 40.0], (0, 0, 1), velocity=(0, 0, 1.5e308), **free, **options)
+        if by in ("taylor", "dop853", "radau"):
+            assert caught.value.partial is not None
+            assert np.isfinite(caught.value.partial.position[1]).all()
+
+
 @pytest.mark.parametrize("method", ["exact", "taylor", "dop853", "radau", "splitting"])
 def test_places_beyond_all_numbers_are_told(method: Any) -> None:
     """A body that flies out of float64 is not somewhere at infinity."""

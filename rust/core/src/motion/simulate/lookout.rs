@@ -3,6 +3,7 @@
 use super::along::{Look, View, sign};
 use super::events::{Crossing, Direction, Events, Rule};
 use super::stepper::Dense;
+use crate::error::Error;
 use crate::motion::state::Phase;
 
 /// How far the body turns in a part of a step, in radians.
@@ -22,7 +23,7 @@ pub(super) struct Lookout<'a, E> {
     pub(super) crossings: Vec<Crossing>,
 }
 
-impl<'a, E> Lookout<'a, E> {
+impl<'a, E: From<Error>> Lookout<'a, E> {
     pub(super) fn new(
         events: &'a mut dyn Events<Error = E>,
         t: f64,
@@ -116,11 +117,11 @@ impl<'a, E> Lookout<'a, E> {
             } else {
                 stepper.within(place)?
             };
-            self.crossings.push(Crossing {
-                event,
-                time: start + place,
-                phase,
-            });
+            let time = start + place;
+            if !phase.is_finite() {
+                return Err(Error::NotFiniteMotion { time }.into());
+            }
+            self.crossings.push(Crossing { event, time, phase });
             self.counts[event] += 1;
             if self.counts[event] == self.rules[event].last {
                 return Ok(Some((place, phase)));

@@ -182,6 +182,15 @@ impl<E> Run<E> {
         Ok(End::Complete)
     }
 
+    /// Has come to this time and state, if that is one.
+    fn reach(&mut self, time: f64, phase: Phase) -> Result<(), Error> {
+        if !phase.is_finite() {
+            return Err(Error::NotFiniteMotion { time });
+        }
+        (self.time, self.phase) = (time, phase);
+        Ok(())
+    }
+
     /// Steps to the end of a span, or to where the law of the load changes if that `may_flip`, or where the run ends.
     #[expect(clippy::too_many_arguments, reason = "what a run is on its way with")]
     fn span(
@@ -236,14 +245,16 @@ impl<E> Run<E> {
                 while let Some(elapsed) = task.times.get(*next).map(|t| t - from)
                     && elapsed.abs() <= last.abs()
                 {
-                    self.samples[*next] = if elapsed == last {
+                    let sample = if elapsed == last {
                         phase
                     } else {
                         stepper.within(elapsed)?
                     };
+                    self.reach(task.times[*next], sample)?;
+                    self.samples[*next] = sample;
                     *next += 1;
                 }
-                (self.time, self.phase) = (from + last, phase);
+                self.reach(from + last, phase)?;
                 if ended.is_some() {
                     return Ok(Reached::Over(End::Event));
                 }
