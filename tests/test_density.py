@@ -17,7 +17,7 @@ from oracles import worst_error
 from oracles.exact_polyhedron import polyhedron
 from oracles.meshes import icosphere, tetrahedron
 from polhode import RigidBody, regions, solids
-from polhode.errors import MeshError, PolhodeError, QuadratureError
+from polhode.errors import InvalidInertiaError, MeshError, PolhodeError, QuadratureError
 
 mp.dps = 40
 
@@ -200,12 +200,14 @@ class TestSuite:
         assert body.error_bound.inertia <= 1e-10 * body.principal_moments[2]
 
     def test_surfaces_that_cross_are_no_matter(self) -> None:
-        """A ball less what reaches out of it, as one mesh: mass is left, but no moments that masses have."""
+        """A ball less a needle that reaches out of it: where that is dense, no masses have the moments."""
         one, faces = icosphere(1, 1.0)
-        long = one * [3.0, 0.2, 0.2]
-        vertices, both = np.vstack([one, long]), np.vstack([faces, faces[:, ::-1] + len(one)])
-        with pytest.raises(PolhodeError):
-            RigidBody.from_density(lambda r: np.ones(len(r)), regions.mesh(vertices, both))
+        needle = one * [1.5, 0.2, 0.2]
+        crossing = regions.mesh(np.vstack([one, needle]), np.vstack([faces, faces[:, ::-1] + len(one)]))
+        few = RigidBody.from_density(lambda r: 1 + 0.05 * r[:, 0] ** 16, crossing, rtol=1e-6)
+        assert (few.principal_moments > 0).all()
+        with pytest.raises(InvalidInertiaError, match="triangle inequality"):
+            RigidBody.from_density(lambda r: 1 + 2.0 * r[:, 0] ** 16, crossing, rtol=1e-6)
 
     def test_over_a_mesh_that_is_not_convex(self) -> None:
         """An L-shaped bar: two boxes, one of them shortened."""

@@ -212,6 +212,7 @@ def test_a_straight_path_out_of_float64_is_told(by: Any) -> None:
     for options in looking:
         with pytest.raises(IntegrationError, match="not finite at t") as caught:
             body.simulate([0.0, 1.0, 40.0], (0, 0, 1), velocity=(0, 0, 1.5e308), **free, **options)
+        # The closed form is refused before it begins; of splitting the step that leaves float64 gives no samples.
         if by in ("taylor", "dop853", "radau"):
             assert caught.value.partial is not None
             assert np.isfinite(caught.value.partial.position[1]).all()
@@ -250,8 +251,8 @@ def test_events_of_a_body_that_turns_too_fast_end_with_the_limit_of_steps() -> N
         )
 
 
-def test_events_in_a_step_of_many_turns_are_all_found() -> None:
-    """Spin about the axis of symmetry under gravity at C: one step of series, thousands of turns."""
+def test_events_over_thousands_of_turns_are_all_found() -> None:
+    """Spin about the axis of symmetry under gravity at C: two passages in each turn."""
     body = RigidBody.from_principal(1.7, (1.3, 1.3, 2.6))
     load = loads.uniform_gravity((0.0, 0.0, -3.0))
     spin, end = 2000.0, 10.0

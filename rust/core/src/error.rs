@@ -664,7 +664,10 @@ impl Error {
 
 impl From<Error> for Halt<Error> {
     fn from(error: Error) -> Self {
-        Self::Failed(error)
+        match error {
+            Error::Stopped => Self::Stopped,
+            error => Self::Failed(error),
+        }
     }
 }
 

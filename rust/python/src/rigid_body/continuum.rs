@@ -74,11 +74,8 @@ impl PyRigidBody {
         let interrupt = Interrupt::new(None);
         let watch = &mut |_| interrupt.poll(None);
         let body = py.detach(|| tetrahedra(&nodes.rows, &cells, given, watch));
-        let body = body.map_err(|error| match error {
-            Error::Stopped => threads::Halt::Stopped,
-            error => threads::Halt::Failed(error),
-        });
-        Ok(Stack::one(finish(py, interrupt, body)?).into())
+        let body = finish(py, interrupt, body.map_err(threads::Halt::from))?;
+        Ok(Stack::one(body).into())
     }
 
     /// Body that fills a region of space with a density given as a function.

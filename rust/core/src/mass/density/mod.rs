@@ -59,12 +59,12 @@ impl Effort {
 /// The density should be smooth within the region, on the scale of some tenth of it to be noticed at all; a jump belongs
 /// on the boundary, which may mean several regions whose bodies are added. A jump inside is noticed and counted in the error:
 /// one along the faces of the charts (a plane across a box, a sphere about the centre of a ball) is found to any tolerance,
-/// one across them to a few digits. In a mesh that is not star-shaped about its
-/// centroid the density is also asked for outside, where the signed parts cancel.
+/// one across them to a few digits. In a mesh whose parts are not star-shaped about their
+/// middles the density is also asked for outside, where the signed parts cancel.
 ///
 /// # Errors
 /// [`Error::Quadrature`] with the estimate when the evaluations do not suffice; when a value is negative or not finite;
-/// whatever the density itself fails with.
+/// [`Error::TriangleInequality`] where surfaces of a mesh cross so that no masses have its moments; whatever the density itself fails with.
 pub fn from_density<E: From<Error>>(
     region: &Region,
     density: impl FnMut(&[[f64; 3]], &mut [f64]) -> Result<(), E>,
@@ -91,6 +91,7 @@ pub fn from_density<E: From<Error>>(
         let (count, mass) = (found.evaluations, total.mass);
         return Err(Error::NoMassFound { count, mass }.into());
     }
+    // An error without limit is told by the estimate's own bounds, which are numbers.
     let error = (JUMP * found.error).min(f64::MAX);
     let rounding = 2.0 * UNIT * (depth(found.evaluations) + 32.0);
     let (width, spread) = (total.width(), total.second.trace().max(0.0));

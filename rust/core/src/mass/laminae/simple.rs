@@ -220,6 +220,10 @@ mod tests {
         outcome
     }
 
+    /// A square, and a smaller one within that is gone round the other way; each ends where it begins.
+    const OUTSIDE: [[f64; 2]; 5] = [[0.0, 0.0], [5.0, 0.0], [5.0, 5.0], [0.0, 5.0], [0.0, 0.0]];
+    const INSIDE: [[f64; 2]; 5] = [[1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 1.0], [1.0, 1.0]];
+
     #[test]
     fn what_touches_itself_and_does_not_pass_through_is_simple() {
         // Two triangles that share a corner, gone round the same way.
@@ -233,18 +237,7 @@ mod tests {
         ];
         assert_eq!(check(&corner), Ok(()));
         // A square with a square hole, joined by a cut that is gone along twice.
-        let cut = [
-            [0.0, 0.0],
-            [5.0, 0.0],
-            [5.0, 5.0],
-            [0.0, 5.0],
-            [0.0, 0.0],
-            [1.0, 1.0],
-            [1.0, 3.0],
-            [3.0, 3.0],
-            [3.0, 1.0],
-            [1.0, 1.0],
-        ];
+        let cut = [OUTSIDE, INSIDE].concat();
         assert_eq!(check(&cut), Ok(()));
         // A corner that lies on another edge, from within; a spike; a corner that stands twice.
         let on_edge = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 0.0], [0.0, 4.0]];
@@ -281,18 +274,9 @@ mod tests {
         // A square gone round twice, and the hole of a square the same way as the square.
         let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         assert_eq!(check(&[square, square].concat()), overlapping);
-        let island = [
-            [0.0, 0.0],
-            [5.0, 0.0],
-            [5.0, 5.0],
-            [0.0, 5.0],
-            [0.0, 0.0],
-            [1.0, 1.0],
-            [3.0, 1.0],
-            [3.0, 3.0],
-            [1.0, 3.0],
-            [1.0, 1.0],
-        ];
+        let mut round = INSIDE;
+        round.reverse();
+        let island = [OUTSIDE, round].concat();
         assert_eq!(check(&island), overlapping);
     }
 }

@@ -5,7 +5,6 @@
 
 use std::collections::HashMap;
 use std::convert::Infallible;
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nalgebra::Vector3;
@@ -15,7 +14,7 @@ use super::fault::MeshFault;
 use super::triangles::{Index, View};
 use crate::mass::simplex::Corners;
 use crate::numerics::reduce::BLOCK;
-use crate::numerics::threads::{Halt, Watch, fill_blocks};
+use crate::numerics::threads::{Halt, Watch, each_watched, fill_blocks};
 
 /// A part of a mesh that is connected by its corners.
 #[derive(Clone, Copy)]
@@ -249,16 +248,12 @@ fn windings<I: Index>(
         seen[component] += 1;
     }
     rays.sort_by(|p, q| p.from.z.total_cmp(&q.from.z));
-    for (face, &component) in of_faces.iter().enumerate() {
-        if face % BLOCK == 0 && watch(face as f64 / of_faces.len() as f64) == ControlFlow::Break(())
-        {
-            return Err(Halt::Stopped);
-        }
+    each_watched(of_faces.iter().enumerate(), watch, |(face, &component)| {
         let corners = mesh.corners(face).map(Vector3::from);
         let [low, high] = [f64::min, f64::max]
             .map(|least: fn(f64, f64) -> f64| corners.map(|r| r.z).into_iter().reduce(least));
         let (Some(low), Some(high)) = (low, high) else {
-            continue;
+            return Ok(());
         };
         let from = rays.partition_point(|ray| ray.from.z < low);
         for ray in rays[from..].iter_mut().take_while(|ray| ray.from.z <= high) {
@@ -266,7 +261,8 @@ fn windings<I: Index>(
                 ray.passed += passed(&ray.from, &corners);
             }
         }
-    }
+        Ok(())
+    })?;
     let mut windings = vec![Vec::new(); components.len()];
     for ray in rays {
         windings[ray.component].push(ray.passed);
@@ -303,6 +299,8 @@ fn passed(q: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
 
     /// Cubes (centre, half the side, whether outward), one after the other.

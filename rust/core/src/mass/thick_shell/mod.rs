@@ -9,6 +9,7 @@
 //! all J are positive, so a shell as thin as you like keeps its digits. Over λ the integrals are closed forms, over s
 //! polynomials of the fourth degree, for which three points of Gauss are exact.
 
+mod edges;
 mod offset;
 
 use nalgebra::{Matrix3, Vector3};
