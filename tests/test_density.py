@@ -200,7 +200,7 @@ class TestSuite:
         assert body.error_bound.inertia <= 1e-10 * body.principal_moments[2]
 
     def test_surfaces_that_cross_are_no_matter(self) -> None:
-        """A ball less a needle that reaches out of it: where that is dense, no masses have the moments."""
+        """A ball less a needle that reaches out of it, dense out there: no masses have such moments."""
         one, faces = icosphere(1, 1.0)
         needle = one * [1.5, 0.2, 0.2]
         crossing = regions.mesh(np.vstack([one, needle]), np.vstack([faces, faces[:, ::-1] + len(one)]))

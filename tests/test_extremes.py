@@ -212,7 +212,7 @@ def test_a_straight_path_out_of_float64_is_told(by: Any) -> None:
     for options in looking:
         with pytest.raises(IntegrationError, match="not finite at t") as caught:
             body.simulate([0.0, 1.0, 40.0], (0, 0, 1), velocity=(0, 0, 1.5e308), **free, **options)
-        # The closed form is refused before it begins; of splitting the step that leaves float64 gives no samples.
+        # The closed form is refused at once; the step of splitting that leaves float64 gives no samples.
         if by in ("taylor", "dop853", "radau"):
             assert caught.value.partial is not None
             assert np.isfinite(caught.value.partial.position[1]).all()
