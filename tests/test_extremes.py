@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -19,6 +21,7 @@ from polhode import (
     regions,
     rods,
     solids,
+    tops,
 )
 from polhode.errors import IntegrationError, InvalidInertiaError, PolhodeError
 
@@ -310,3 +313,38 @@ def test_a_shell_as_thin_as_you_like_keeps_its_digits(thickness: float) -> None:
         thin.mass / 1e-20 * thickness, rel=1e-14 if thickness > 1e-308 else 1e-2
     )
     assert dense.isclose(shell.scaled(1.0, dense.mass / shell.mass), rtol=1e-13)
+
+
+METHODS = ("auto", "taylor", "dop853", "radau", "splitting")
+
+
+def pivoted_run(body: RigidBody, method: Any) -> Any:
+    """A short motion about the origin, under gravity."""
+    load = loads.uniform_gravity((0.0, 0.0, -9.0))
+    return body.simulate([0.0, 0.1], (0.1, 0.2, 3.0), load=load, about="origin", method=method).omega
+
+
+@pytest.mark.parametrize("moments", [(2.0, 2.0, 2.0), (1.0, 1.0, 2.0), (1.0, 2.0, 2.5)])
+def test_points_too_far_for_a_moment_of_inertia_are_refused(moments: Any) -> None:
+    # From d = 1.3e154 on m d² is beyond float64: tops had quaternions of length 0.95, and axes were NaN.
+    calls: list[Callable[[RigidBody], Any]] = [
+        lambda body: body.inertia_about("origin"),
+        lambda body: body.moment_about((1.0, 0.0, 0.0), "origin"),
+        lambda body: body.principal_about("origin"),
+        lambda body: body.angular_acceleration((1.0, 2.0, 3.0), about="origin"),
+        lambda body: body.torque((1.0, 2.0, 3.0), about="origin"),
+        lambda body: body.stability(1.0, about="origin"),
+    ]
+    if moments[0] == moments[1]:
+        calls += [
+            lambda body: body.heavy_top((0.1, 0.2, 3.0), None, (0.0, 0.0, -9.0)).at([0.0, 0.1]).omega,
+            lambda body: tops.free_precession(body, (0.1, 0.2, 3.0), about="origin").axis,
+        ]
+    calls += [functools.partial(pivoted_run, method=method) for method in METHODS]
+    far = RigidBody.from_principal(1.0, moments, center_of_mass=(0.0, 0.0, 1.4e154))
+    for call in calls:
+        with pytest.raises(PolhodeError, match=r"moment of inertia about .* must be finite, got inf"):
+            call(far)
+    near = RigidBody.from_principal(1.0, moments, center_of_mass=(0.0, 0.0, 1.2e154))
+    for call in calls[:6]:
+        call(near)

@@ -65,6 +65,7 @@ pub(crate) fn free_precession<'py>(
     let shapes = [&bodies.shape[..], &omega.shape, &about.shape];
     let grid = Broadcast::of(["body", "omega", "about"], shapes)?;
     let found = grid.try_map(py, |[b, w, p]| {
+        bodies[b].check_about(&about[p])?;
         let top = SymmetricTop::of(&bodies[b].principal_about(&about[p]), rtol)?;
         free_precession_of(&top, &omega[w])
     })?;

@@ -192,6 +192,7 @@ impl PyRigidBody {
         ];
         let grid = Broadcast::of(["body", "omega", "torque", "about"], shapes)?;
         let acceleration = grid.try_map(py, |[b, w, n, p]| {
+            self.bodies[b].check_about(&about[p])?;
             EulerEquations::about(&self.bodies[b], &about[p])
                 .angular_acceleration(&omega[w], &torque[n])
         })?;
@@ -246,6 +247,7 @@ impl PyRigidBody {
         ];
         let grid = Broadcast::of(["body", "omega", "angular_acceleration", "about"], shapes)?;
         let torque = grid.try_map(py, |[b, w, a, p]| {
+            self.bodies[b].check_about(&about[p])?;
             Ok(EulerEquations::about(&self.bodies[b], &about[p])
                 .torque(&omega[w], &acceleration[a]))
         })?;

@@ -286,6 +286,7 @@ impl PyRigidBody {
         let shapes = [&self.bodies.shape[..], &rate.shape, &about.shape];
         let squares =
             Broadcast::of(["body", "rate", "about"], shapes)?.try_map(py, |[b, w, p]| {
+                self.bodies[b].check_about(&about[p])?;
                 let moments = self.bodies[b].principal_about(&about[p]).moments;
                 Ok(stability(&moments, rate[w]))
             })?;

@@ -88,7 +88,10 @@ impl PyRigidBody {
         let grid = self.with("point", &points)?;
         write(
             py,
-            &grid.try_map(py, |[b, p]| Ok(self.bodies[b].inertia_about(&points[p])))?,
+            &grid.try_map(py, |[b, p]| {
+                self.bodies[b].check_about(&points[p])?;
+                Ok(self.bodies[b].inertia_about(&points[p]))
+            })?,
         )
     }
 
@@ -154,6 +157,7 @@ impl PyRigidBody {
         with_rtols(
             py,
             &grid.try_map(py, |[b, p]| {
+                self.bodies[b].check_about(&points[p])?;
                 let found = self.bodies[b].principal_about(&points[p]);
                 Ok((found, self.bodies[b].top_rtols(&found.moments)))
             })?,

@@ -184,7 +184,7 @@ impl PyRigidBody {
             .map_err(|error| to_py(py, &error))?;
         if method != Method::Exact {
             for (row, body) in start.bodies.rows.iter().enumerate() {
-                check_scales(body, &times)
+                check_scales(body, pivoted, &times)
                     .map_err(|error| at_row(&start.bodies.shape, row, &to_py(py, &error), py))?;
             }
         }

@@ -62,10 +62,12 @@ impl PivotedTop {
     /// than `rtol` radii of gyration. The axis of a spherical body is the line from O to C.
     ///
     /// # Errors
-    /// [`Error::NotASymmetricTop`], [`Error::PivotOffAxis`]; [`Error::OutOfDomain`] for a point at the pivot.
+    /// [`Error::NotASymmetricTop`], [`Error::PivotOffAxis`]; [`Error::OutOfDomain`] for a point at the pivot,
+    /// [`Error::NonFinite`] where C is so far from it that `m l²` is beyond float64.
     pub fn of(body: &RigidBody, rtol: f64) -> Result<Self, Error> {
         let principal = body.principal();
         let (m, c) = (body.mass(), body.center_of_mass());
+        body.check_about(&Vector3::zeros())?;
         let top = SymmetricTop::of(&principal, rtol)?;
         let [i1, _, i3] = principal.moments;
         let is_spherical = i3 - i1 <= rtol * i3;

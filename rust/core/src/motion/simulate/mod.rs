@@ -52,7 +52,7 @@ pub fn simulate<L: Load>(
     let method = (task.method).serving(task.subject.pivoted, terms, &task.tolerance, is_top);
     let method = method.and_then(|method| {
         if method != Method::Exact {
-            check_scales(task.body, task.times)?;
+            check_scales(task.body, task.subject.pivoted, task.times)?;
         }
         Ok(method)
     });

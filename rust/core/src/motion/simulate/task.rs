@@ -1,5 +1,7 @@
 //! What is to be simulated, and how.
 
+use nalgebra::Vector3;
+
 use super::method::Method;
 use crate::error::{Error, all_finite, finite};
 use crate::mass::RigidBody;
@@ -211,12 +213,16 @@ const SPANS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 /// Likewise of the largest moment over the square of the span.
 const TORQUES: std::ops::RangeInclusive<f64> = 1e-250..=1e250;
 
-/// Checks that the equations of motion of a body through these times can be integrated in float64: rates are of the order of
-/// one over the span or more, and torques are moments times their squares.
+/// Checks that the equations of motion of a body through these times can be integrated in float64: its moments about the point
+/// that is fixed, if one is, must be finite; rates are of the order of one over the span or more, and torques are moments times
+/// their squares.
 ///
 /// # Errors
-/// [`Error::OutOfDomain`].
-pub fn check_scales(body: &RigidBody, times: &[f64]) -> Result<(), Error> {
+/// [`Error::NonFinite`], [`Error::OutOfDomain`].
+pub fn check_scales(body: &RigidBody, is_pivoted: bool, times: &[f64]) -> Result<(), Error> {
+    if is_pivoted {
+        body.check_about(&Vector3::zeros())?;
+    }
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
         return Ok(());
     };
