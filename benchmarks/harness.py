@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
 
-__all__ = ["Result", "Row", "measure", "report"]
+__all__ = ["Result", "Row", "measure", "repeats", "report", "seconds"]
 
 
 @dataclass(frozen=True)
@@ -72,12 +72,12 @@ class Result:
 def measure(row: Row, rounds: int = 9, least_seconds: float = 0.02) -> Result:
     """Compare the answers of a row, then time both sides in turn, each round long enough for the clock."""
     row.compare(row.ours(), row.theirs())
-    repeats = [_repeats(call, least_seconds) for call in (row.ours, row.theirs)]
+    counts = [repeats(call, least_seconds) for call in (row.ours, row.theirs)]
     items_each = (row.items, row.peer_items or row.items)
     times = [
         [
-            _seconds(call, count) / items
-            for call, count, items in zip((row.ours, row.theirs), repeats, items_each, strict=True)
+            seconds(call, count) / items
+            for call, count, items in zip((row.ours, row.theirs), counts, items_each, strict=True)
         ]
         for _ in range(rounds)
     ]
@@ -108,13 +108,14 @@ def report(results: Iterable[Result], path: Path | None = None) -> None:
         path.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
 
 
-def _repeats(call: Callable[[], Any], least_seconds: float) -> int:
+def repeats(call: Callable[[], Any], least_seconds: float) -> int:
     """How many calls last long enough for the clock."""
-    once = _seconds(call, 1)
+    once = seconds(call, 1)
     return max(1, round(least_seconds / max(once, 1e-9)))
 
 
-def _seconds(call: Callable[[], Any], count: int) -> float:
+def seconds(call: Callable[[], Any], count: int) -> float:
+    """Seconds a call, over so many of them."""
     start = time.perf_counter()
     for _ in range(count):
         call()

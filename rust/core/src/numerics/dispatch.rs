@@ -133,8 +133,14 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         Level::Avx2 => unsafe { avx2(kernel) },
         #[cfg(target_arch = "aarch64")]
         Level::Neon => kernel.run::<Double<true>>(),
-        _ => kernel.run::<Double<false>>(),
+        _ => baseline(kernel),
     }
+}
+
+// Out of line: the kernel would be compiled again wherever a caller of `dispatch` is.
+#[inline(never)]
+fn baseline<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Double<false>>()
 }
 
 #[cfg(target_arch = "x86_64")]

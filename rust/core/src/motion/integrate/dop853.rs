@@ -3,11 +3,9 @@
 
 use nalgebra::SVector;
 
-use super::first_step::first_step;
+use super::runge_kutta::{Progress, RungeKutta};
+use super::system::System;
 use super::tableau::{DENSE, ERROR_3, ERROR_5, EXTENDED_STAGES, NODES, Row, STAGE_WEIGHTS, STAGES};
-use super::{Compensated, System};
-use crate::error::Error;
-use crate::numerics::double_double::fast_two_sum;
 
 /// The factor by which a step may shrink or grow, and the part of the optimal factor that is used.
 const SHRINK: f64 = 1.0 / 3.0;
@@ -19,157 +17,102 @@ const EXPONENT: f64 = 1.0 / 8.0;
 /// An integration under way.
 #[derive(Clone, Debug)]
 pub struct Dop853<const N: usize> {
-    start: f64,
-    span: f64,
-    /// Time since the start, and what rounding has left out of it.
-    elapsed: (f64, f64),
-    state: Compensated<N>,
-    /// The step to try next.
-    step: f64,
+    progress: Progress<N>,
     /// The slopes of the last accepted step; the thirteenth is the slope at its end.
     slopes: [SVector<f64, N>; EXTENDED_STAGES],
     /// Time and state before the last accepted step, and its length.
     last: (f64, SVector<f64, N>, f64),
-    /// Accepted steps.
-    pub steps: u64,
-    /// Evaluations of the equations.
-    pub evaluations: u64,
+    /// Its polynomial, once it is asked for.
+    dense: Option<Dense<N>>,
 }
 
-impl<const N: usize> Dop853<N> {
-    /// At the state `y` at time `start`, on the way to `end`, with `step` to try first or one of its own choice.
-    ///
-    /// # Errors
-    /// What the equations refuse at the start; a slope there that is not finite.
-    pub fn new<S: System<N>>(
+impl<const N: usize> RungeKutta<N> for Dop853<N> {
+    fn new<S: System<N>>(
         system: &mut S,
         start: f64,
         end: f64,
         y: SVector<f64, N>,
         step: Option<f64>,
     ) -> Result<Self, S::Error> {
-        let mut state = Compensated::new(y);
-        system.accept(&mut state);
-        let mut stepper = Self {
-            start,
-            span: end - start,
-            elapsed: (0.0, 0.0),
-            state,
-            step: 0.0,
-            slopes: [SVector::zeros(); EXTENDED_STAGES],
-            last: (0.0, y, 0.0),
-            steps: 0,
-            evaluations: 0,
-        };
-        let slope = stepper.slope(system, 0.0, &state.value)?;
-        if !slope.iter().all(|x| x.is_finite()) {
-            return Err(Error::NotFiniteMotion { time: start }.into());
-        }
-        stepper.slopes[STAGES] = slope;
-        stepper.step = match step {
-            Some(step) if step != 0.0 => step.abs().min(stepper.span.abs()).copysign(stepper.span),
-            _ => {
-                stepper.evaluations += 1;
-                first_step(system, start, stepper.span, &state.value, &slope, EXPONENT)?
-            }
-        };
-        Ok(stepper)
+        let (progress, slope) = Progress::new(system, [start, end], y, step, EXPONENT)?;
+        let mut slopes = [SVector::zeros(); EXTENDED_STAGES];
+        slopes[STAGES] = slope;
+        Ok(Self {
+            last: (0.0, progress.state.value, 0.0),
+            progress,
+            slopes,
+            dense: None,
+        })
     }
 
-    /// Time since the start.
-    #[must_use]
-    pub fn elapsed(&self) -> f64 {
-        self.elapsed.0
+    fn progress(&self) -> &Progress<N> {
+        &self.progress
     }
 
-    /// The step that would be tried next.
-    #[must_use]
-    pub fn step(&self) -> f64 {
-        self.step
-    }
-
-    /// Whether the end is reached.
-    #[must_use]
-    pub fn is_finished(&self) -> bool {
-        self.elapsed.0 == self.span
-    }
-
-    /// The state now.
-    #[must_use]
-    pub fn state(&self) -> &SVector<f64, N> {
-        &self.state.value
-    }
-
-    /// One accepted step toward the end.
-    ///
-    /// # Errors
-    /// What the equations refuse; a step too small to advance the time.
-    pub fn advance<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
+    fn advance<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
+        self.dense = None;
         let mut largest = GROW;
         loop {
-            let remaining = (self.span - self.elapsed.0) - self.elapsed.1;
-            let is_last = 1.01 * self.step.abs() >= remaining.abs();
-            let h = if is_last { remaining } else { self.step };
-            if self.elapsed.0 + h == self.elapsed.0 && !is_last {
-                return Err(self.stuck(h).into());
-            }
-            let y = self.state.value;
+            let (h, is_last) = self.progress.next()?;
+            let y = self.progress.state.value;
             self.slopes[0] = self.slopes[STAGES];
             let slope_at_start = self.slopes[0];
             for stage in 1..STAGES {
                 self.slopes[stage] = self.stage_slope(system, stage, &y, h)?;
             }
-            let state = self.state.plus(&(self.weighted(STAGE_WEIGHTS[STAGES]) * h));
+            let state = (self.progress.state).plus(&(self.weighted(STAGE_WEIGHTS[STAGES]) * h));
             let error = self.error(system, &y, &state.value, h);
             let factor = SAFETY * error.powf(-EXPONENT); // infinite for no error, NaN for one that is not finite
+            let progress = &mut self.progress;
             if error <= 1.0 {
-                self.last = (self.elapsed.0, y, h);
-                self.state = state;
-                self.elapsed = if is_last {
-                    (self.span, 0.0)
-                } else {
-                    let (sum, rest) = fast_two_sum(self.elapsed.0, h + self.elapsed.1);
-                    (sum, rest)
-                };
-                self.step = h * factor.clamp(SHRINK, largest);
-                self.steps += 1;
-                system.accept(&mut self.state);
-                self.slopes[STAGES] =
-                    self.slope(system, self.elapsed.0, &self.state.value.clone())?;
+                self.last = (progress.elapsed.0, y, h);
+                progress.state = state;
+                progress.advance(h, is_last);
+                progress.step = h * factor.clamp(SHRINK, largest);
+                system.accept(&mut progress.state);
+                let y = progress.state.value;
+                self.slopes[STAGES] = progress.slope(system, progress.elapsed.0, &y)?;
                 return Ok(());
             }
             self.slopes[STAGES] = slope_at_start;
-            self.step = h * if factor.is_nan() {
+            progress.step = h * if factor.is_nan() {
                 SHRINK
             } else {
                 factor.clamp(SHRINK, 1.0)
             };
             largest = 1.0;
-            if self.elapsed.0 + self.step == self.elapsed.0 {
-                return Err(if error.is_nan() {
-                    Error::NotFiniteMotion {
-                        time: self.start + self.elapsed.0,
-                    }
-                } else {
-                    self.stuck(self.step)
-                }
-                .into());
-            }
+            progress.check_advances(error)?;
         }
     }
 
+    fn within<S: System<N>>(
+        &mut self,
+        system: &mut S,
+        elapsed: f64,
+    ) -> Result<SVector<f64, N>, S::Error> {
+        let dense = match self.dense.take() {
+            Some(dense) => dense,
+            None => self.polynomial(system)?,
+        };
+        let y = dense.at(elapsed);
+        self.dense = Some(dense);
+        Ok(y)
+    }
+}
+
+impl<const N: usize> Dop853<N> {
     /// The states during the last accepted step as a polynomial in time.
     ///
     /// # Errors
     /// What the equations refuse in the three more evaluations it takes.
-    pub fn dense<S: System<N>>(&mut self, system: &mut S) -> Result<Dense<N>, S::Error> {
+    fn polynomial<S: System<N>>(&mut self, system: &mut S) -> Result<Dense<N>, S::Error> {
         let (start, y, h) = self.last;
         for stage in STAGES + 1..EXTENDED_STAGES {
             let weighted = self.weighted(STAGE_WEIGHTS[stage]);
             self.slopes[stage] =
-                self.slope(system, start + NODES[stage] * h, &(y + weighted * h))?;
+                (self.progress).slope(system, start + NODES[stage] * h, &(y + weighted * h))?;
         }
-        let change = self.state.value - y;
+        let change = self.progress.state.value - y;
         let (before, after) = (self.slopes[0] * h, self.slopes[STAGES] * h);
         let mut coefficients = [change; 7];
         coefficients[1] = before - change;
@@ -185,16 +128,6 @@ impl<const N: usize> Dop853<N> {
         })
     }
 
-    fn slope<S: System<N>>(
-        &mut self,
-        system: &mut S,
-        elapsed: f64,
-        y: &SVector<f64, N>,
-    ) -> Result<SVector<f64, N>, S::Error> {
-        self.evaluations += 1;
-        system.derivative(self.start + elapsed, y)
-    }
-
     fn stage_slope<S: System<N>>(
         &mut self,
         system: &mut S,
@@ -203,7 +136,8 @@ impl<const N: usize> Dop853<N> {
         h: f64,
     ) -> Result<SVector<f64, N>, S::Error> {
         let y = y + self.weighted(STAGE_WEIGHTS[stage]) * h;
-        self.slope(system, self.elapsed.0 + NODES[stage] * h, &y)
+        let elapsed = self.progress.elapsed.0 + NODES[stage] * h;
+        self.progress.slope(system, elapsed, &y)
     }
 
     #[inline]
@@ -234,18 +168,11 @@ impl<const N: usize> Dop853<N> {
             fifth * (fifth / fifth.hypot(0.1 * third))
         }
     }
-
-    fn stuck(&self, step: f64) -> Error {
-        Error::StepTooSmall {
-            time: self.start + self.elapsed.0,
-            step,
-        }
-    }
 }
 
 /// The states during one step as a polynomial of degree 7 in time.
 #[derive(Clone, Debug)]
-pub struct Dense<const N: usize> {
+struct Dense<const N: usize> {
     start: f64,
     step: f64,
     y: SVector<f64, N>,
@@ -254,8 +181,7 @@ pub struct Dense<const N: usize> {
 
 impl<const N: usize> Dense<N> {
     /// The state at `elapsed` since the start of the integration.
-    #[must_use]
-    pub fn at(&self, elapsed: f64) -> SVector<f64, N> {
+    fn at(&self, elapsed: f64) -> SVector<f64, N> {
         let x = (elapsed - self.start) / self.step;
         let mut y = SVector::zeros();
         for (i, coefficient) in self.coefficients.iter().enumerate().rev() {
@@ -268,6 +194,8 @@ impl<const N: usize> Dense<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Error;
+    use crate::motion::integrate::Compensated;
     use nalgebra::Vector2;
 
     /// ẍ = −x, whose solution from (1, 0) is (cos t, −sin t).
@@ -297,14 +225,18 @@ mod tests {
         while !stepper.is_finished() {
             let before = stepper.elapsed();
             stepper.advance(&mut system).expect("smooth");
-            let dense = stepper.dense(&mut system).expect("smooth");
             for part in [0.0, 0.3, 0.5, 0.9, 1.0] {
                 let t = before + part * (stepper.elapsed() - before);
-                between = between.max((dense.at(t) - Vector2::new(t.cos(), -t.sin())).norm());
+                let y = stepper.within(&mut system, t).expect("smooth");
+                between = between.max((y - Vector2::new(t.cos(), -t.sin())).norm());
             }
         }
         let exact = Vector2::new(end.cos(), -end.sin());
-        ((stepper.state() - exact).norm(), between, stepper.steps)
+        (
+            (stepper.state() - exact).norm(),
+            between,
+            stepper.progress.steps,
+        )
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::System;
+use super::system::System;
 
 /// A step that a method whose error is of the order 1/`exponent` may try first, at most `span`, with its sign; takes one
 /// evaluation of the equations.

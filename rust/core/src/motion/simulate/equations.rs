@@ -3,11 +3,11 @@
 
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 
-use super::Tolerance;
 use crate::motion::attitude::{from_axes, rate};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::integrate::{Compensated, System};
 use crate::motion::loads::{Load, Switch};
+use crate::motion::problem::Tolerance;
 use crate::motion::state::Phase;
 
 /// The numbers that turning takes: (x, y, z, w) of `q_NP` and ω in P, P the principal axes.

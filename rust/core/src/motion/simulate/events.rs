@@ -1,27 +1,7 @@
 //! Events: the times at which a function of time and state passes through zero.
 
+use crate::motion::problem::Rule;
 use crate::motion::state::Phase;
-
-/// Which passages through zero count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Direction {
-    /// All.
-    #[default]
-    Any,
-    /// From below, forward in time.
-    Rising,
-    /// From above, forward in time.
-    Falling,
-}
-
-/// What to do with the passages of one function.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rule {
-    /// Which of them count.
-    pub direction: Direction,
-    /// The run ends at the passage of this number; 0 for never.
-    pub last: u64,
-}
 
 /// Functions whose passages through zero are events.
 pub trait Events {
@@ -60,15 +40,4 @@ impl<E> Events for NoEvents<E> {
     fn value(&mut self, _: usize, _: f64, _: &Phase) -> Result<f64, E> {
         Ok(f64::NAN)
     }
-}
-
-/// A passage through zero.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
-    /// The number of the function.
-    pub event: usize,
-    /// When.
-    pub time: f64,
-    /// The state then.
-    pub phase: Phase,
 }

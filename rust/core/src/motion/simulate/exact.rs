@@ -4,13 +4,13 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::method::{closed_top, gravity_alone};
+use super::choose::{closed_top, gravity_alone};
 use super::stepper::{Carry, Dense, Span, Stepper};
-use super::{Effort, End, Run, Task};
 use crate::error::Error;
 use crate::motion::free::FreeMotion;
 use crate::motion::heavy_top::HeavyTop;
 use crate::motion::loads::{Switch, Term};
+use crate::motion::problem::{Effort, End, Run, Task};
 use crate::motion::state::{ClosedForm, Phase, State};
 use crate::numerics::power_of_two::{exponent, length, times_power_of_two};
 

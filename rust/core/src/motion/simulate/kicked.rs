@@ -1,10 +1,10 @@
 //! Splitting into kicks and free motions.
 
 use super::stepper::{Carry, Dense, Span, Stepper};
-use super::{Effort, Task};
 use crate::error::Error;
 use crate::motion::integrate::Splitting;
 use crate::motion::loads::{Load, Switch};
+use crate::motion::problem::{Effort, Task};
 use crate::motion::state::Phase;
 
 /// A run of [`Splitting`].

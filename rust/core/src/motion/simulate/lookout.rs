@@ -1,9 +1,10 @@
 //! The search for events, step by step.
 
 use super::along::{Look, View, sign};
-use super::events::{Crossing, Direction, Events, Rule};
+use super::events::Events;
 use super::stepper::Dense;
 use crate::error::Error;
+use crate::motion::problem::{Crossing, Direction, Rule};
 use crate::motion::state::Phase;
 
 /// How far the body turns in a part of a step, in radians.

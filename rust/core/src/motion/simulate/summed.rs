@@ -6,10 +6,11 @@ use std::ops::ControlFlow;
 use super::events::Events;
 use super::lookout::Lookout;
 use super::stepper::Dense;
-use super::{End, Run, Task, check_steps};
 use crate::error::Error;
 use crate::motion::integrate::taylor::{Step, solve_seen};
 use crate::motion::loads::Term;
+use crate::motion::problem::limits::check_steps;
+use crate::motion::problem::{End, Run, Task};
 use crate::motion::state::Phase;
 
 /// The motion of `task` under `terms`.

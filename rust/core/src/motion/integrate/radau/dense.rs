@@ -7,7 +7,7 @@ use super::{Stages, combine};
 
 /// The states during one step as a polynomial of degree 3 in time.
 #[derive(Clone, Debug)]
-pub struct Dense<const N: usize> {
+pub(super) struct Dense<const N: usize> {
     start: f64,
     pub(super) step: f64,
     y: SVector<f64, N>,
@@ -26,8 +26,7 @@ impl<const N: usize> Dense<N> {
     }
 
     /// The state at `elapsed` since the start of the integration.
-    #[must_use]
-    pub fn at(&self, elapsed: f64) -> SVector<f64, N> {
+    pub(super) fn at(&self, elapsed: f64) -> SVector<f64, N> {
         let x = (elapsed - self.start) / self.step;
         let [first, second, third] = &self.coefficients;
         self.y + (first + (second + third * x) * x) * x

@@ -9,12 +9,10 @@ mod tests;
 
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU, SVector};
 
-pub use self::dense::Dense;
+use self::dense::Dense;
 use self::tableau::{COMPLEX, ERROR, NODES, REAL, T, T_INVERSE};
-use super::first_step::first_step;
-use super::{Compensated, System};
-use crate::error::Error;
-use crate::numerics::double_double::fast_two_sum;
+use super::runge_kutta::{Progress, RungeKutta};
+use super::system::System;
 
 /// Newton's iterations before the step is shortened.
 const ITERATIONS: i32 = 7;
@@ -31,25 +29,15 @@ type Stages<const N: usize> = [SVector<f64, N>; 3];
 /// An integration under way.
 #[derive(Clone, Debug)]
 pub struct Radau<const N: usize> {
-    start: f64,
-    span: f64,
-    /// Time since the start, and what rounding has left out of it.
-    elapsed: (f64, f64),
-    state: Compensated<N>,
+    progress: Progress<N>,
     /// The slope at the state.
     slope: SVector<f64, N>,
-    /// The step to try next.
-    step: f64,
     jacobian: DMatrix<f64>,
     /// Whether the Jacobian is that of the present state.
     is_current: bool,
     factors: Option<Factors>,
     /// The last accepted step, and the error it was accepted with.
     last: Option<(Dense<N>, f64)>,
-    /// Accepted steps.
-    pub steps: u64,
-    /// Evaluations of the equations, those for Jacobians included.
-    pub evaluations: u64,
 }
 
 /// `γ/h − J` and `(α + iβ)/h − J`, factored.
@@ -91,100 +79,42 @@ impl Factors {
     }
 }
 
-impl<const N: usize> Radau<N> {
-    /// At the state `y` at time `start`, on the way to `end`, with `step` to try first or one of its own choice.
-    ///
-    /// # Errors
-    /// What the equations refuse at the start; a slope there that is not finite.
-    pub fn new<S: System<N>>(
+impl<const N: usize> RungeKutta<N> for Radau<N> {
+    fn new<S: System<N>>(
         system: &mut S,
         start: f64,
         end: f64,
         y: SVector<f64, N>,
         step: Option<f64>,
     ) -> Result<Self, S::Error> {
-        let mut state = Compensated::new(y);
-        system.accept(&mut state);
-        let span = end - start;
-        let slope = system.derivative(start, &state.value)?;
-        if !slope.iter().all(|x| x.is_finite()) {
-            return Err(Error::NotFiniteMotion { time: start }.into());
-        }
-        let (step, evaluations) = match step {
-            Some(step) if step != 0.0 => (step.abs().min(span.abs()).copysign(span), 1),
-            _ => (
-                first_step(system, start, span, &state.value, &slope, EXPONENT)?,
-                2,
-            ),
-        };
+        let (progress, slope) = Progress::new(system, [start, end], y, step, EXPONENT)?;
         let mut stepper = Self {
-            start,
-            span,
-            elapsed: (0.0, 0.0),
-            state,
+            progress,
             slope,
-            step,
             jacobian: DMatrix::zeros(N, N),
             is_current: false,
             factors: None,
             last: None,
-            steps: 0,
-            evaluations,
         };
         stepper.linearize(system)?;
         Ok(stepper)
     }
 
-    /// Time since the start.
-    #[must_use]
-    pub fn elapsed(&self) -> f64 {
-        self.elapsed.0
+    fn progress(&self) -> &Progress<N> {
+        &self.progress
     }
 
-    /// The step that would be tried next.
-    #[must_use]
-    pub fn step(&self) -> f64 {
-        self.step
-    }
-
-    /// Whether the end is reached.
-    #[must_use]
-    pub fn is_finished(&self) -> bool {
-        self.elapsed.0 == self.span
-    }
-
-    /// The state now.
-    #[must_use]
-    pub fn state(&self) -> &SVector<f64, N> {
-        &self.state.value
-    }
-
-    /// The states during the last accepted step as the polynomial of its collocation; `None` before the first step.
-    #[must_use]
-    pub fn dense(&self) -> Option<&Dense<N>> {
-        self.last.as_ref().map(|(dense, _)| dense)
-    }
-
-    /// One accepted step toward the end.
-    ///
-    /// # Errors
-    /// What the equations refuse; a step too small to advance the time.
-    pub fn advance<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
+    fn advance<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
         let mut rejected = false;
         loop {
-            let remaining = (self.span - self.elapsed.0) - self.elapsed.1;
-            let is_last = 1.01 * self.step.abs() >= remaining.abs();
-            let h = if is_last { remaining } else { self.step };
-            if self.elapsed.0 + h == self.elapsed.0 && !is_last {
-                return Err(self.stuck(h).into());
-            }
+            let (h, is_last) = self.progress.next()?;
             let factors = match self.factors.take() {
                 Some(factors) if factors.step == h => factors,
                 _ => Factors::of(&self.jacobian, h),
             };
             let Some((stages, iterations, rate)) = self.collocate(system, &factors, h)? else {
                 if self.is_current {
-                    self.step = 0.5 * h;
+                    self.progress.step = 0.5 * h;
                     rejected = true;
                 } else {
                     self.linearize(system)?;
@@ -201,33 +131,36 @@ impl<const N: usize> Radau<N> {
                 self.accept(system, &stages, h, error, is_last)?;
                 if iterations > 2 && rate > 1e-3 {
                     self.linearize(system)?;
-                    self.step = h * growth;
+                    self.progress.step = h * growth;
                 } else if (1.0..1.2).contains(&growth) {
-                    self.step = h; // a little more would cost new factors
+                    self.progress.step = h; // a little more would cost new factors
                     self.factors = Some(factors);
                 } else {
-                    self.step = h * growth;
+                    self.progress.step = h * growth;
                 }
                 return Ok(());
             }
-            self.step = h * if factor.is_nan() {
+            self.progress.step = h * if factor.is_nan() {
                 SHRINK
             } else {
                 factor.clamp(SHRINK, 1.0)
             };
             rejected = true;
-            if self.elapsed.0 + self.step == self.elapsed.0 {
-                let time = self.start + self.elapsed.0;
-                return Err(if error.is_nan() {
-                    Error::NotFiniteMotion { time }
-                } else {
-                    self.stuck(self.step)
-                }
-                .into());
-            }
+            self.progress.check_advances(error)?;
         }
     }
 
+    fn within<S: System<N>>(
+        &mut self,
+        _: &mut S,
+        elapsed: f64,
+    ) -> Result<SVector<f64, N>, S::Error> {
+        let dense = self.last.as_ref().map(|(dense, _)| dense);
+        Ok(dense.map_or(self.progress.state.value, |dense| dense.at(elapsed)))
+    }
+}
+
+impl<const N: usize> Radau<N> {
     fn accept<S: System<N>>(
         &mut self,
         system: &mut S,
@@ -236,18 +169,15 @@ impl<const N: usize> Radau<N> {
         error: f64,
         is_last: bool,
     ) -> Result<(), S::Error> {
-        let dense = Dense::new(self.elapsed.0, h, &self.state.value, stages);
-        self.state = self.state.plus(&stages[2]);
-        system.accept(&mut self.state);
-        self.elapsed = if is_last {
-            (self.span, 0.0)
-        } else {
-            fast_two_sum(self.elapsed.0, h + self.elapsed.1)
-        };
+        let progress = &mut self.progress;
+        let dense = Dense::new(progress.elapsed.0, h, &progress.state.value, stages);
+        progress.state = progress.state.plus(&stages[2]);
+        system.accept(&mut progress.state);
+        progress.advance(h, is_last);
         self.last = Some((dense, error));
-        self.steps += 1;
         self.is_current = false;
-        self.slope = self.at(system, self.elapsed.0, &self.state.value.clone())?;
+        let y = progress.state.value;
+        self.slope = progress.slope(system, progress.elapsed.0, &y)?;
         Ok(())
     }
 
@@ -261,33 +191,26 @@ impl<const N: usize> Radau<N> {
         }
     }
 
-    fn at<S: System<N>>(
-        &mut self,
-        system: &mut S,
-        elapsed: f64,
-        y: &SVector<f64, N>,
-    ) -> Result<SVector<f64, N>, S::Error> {
-        self.evaluations += 1;
-        system.derivative(self.start + elapsed, y)
-    }
-
     /// `∂f/∂y` by differences: Newton's iteration needs its size and direction, not its digits.
     fn linearize<S: System<N>>(&mut self, system: &mut S) -> Result<(), S::Error> {
-        let (y, slope) = (self.state.value, self.slope);
+        let (y, slope) = (self.progress.state.value, self.slope);
         let size = system.error_norm(&y, &y, &y);
         for j in 0..N {
             let mut unit = SVector::<f64, N>::zeros();
             unit[j] = 1.0;
             // The largest value of the group that the component belongs to, as the norm weighs it.
             let group = size / system.error_norm(&y, &y, &unit);
-            let scale = [group, (slope[j] * self.step).abs()]
+            let scale = [group, (slope[j] * self.progress.step).abs()]
                 .into_iter()
                 .filter(|x| x.is_finite())
                 .fold(y[j].abs(), f64::max);
             let scale = if scale > 0.0 { scale } else { 1.0 };
             let mut moved = y;
             moved[j] += f64::EPSILON.sqrt() * scale;
-            let change = self.at(system, self.elapsed.0, &moved)? - slope;
+            let change = self
+                .progress
+                .slope(system, self.progress.elapsed.0, &moved)?
+                - slope;
             let by = moved[j] - y[j];
             for i in 0..N {
                 self.jacobian[(i, j)] = change[i] / by;
@@ -306,9 +229,9 @@ impl<const N: usize> Radau<N> {
         factors: &Factors,
         h: f64,
     ) -> Result<Option<(Stages<N>, i32, f64)>, S::Error> {
-        let y = self.state.value;
+        let y = self.progress.state.value;
         let mut stages = match &self.last {
-            Some((last, _)) => NODES.map(|node| last.at(self.elapsed.0 + node * h) - y),
+            Some((last, _)) => NODES.map(|node| last.at(self.progress.elapsed.0 + node * h) - y),
             None => [SVector::zeros(); 3],
         };
         let mut transformed = combined(&T_INVERSE, &stages);
@@ -316,7 +239,11 @@ impl<const N: usize> Radau<N> {
         for iteration in 1..=ITERATIONS {
             let mut slopes = [SVector::zeros(); 3];
             for (slope, (stage, node)) in slopes.iter_mut().zip(stages.iter().zip(NODES)) {
-                *slope = self.at(system, self.elapsed.0 + node * h, &(y + stage))?;
+                *slope = self.progress.slope(
+                    system,
+                    self.progress.elapsed.0 + node * h,
+                    &(y + stage),
+                )?;
             }
             let right = combined(&T_INVERSE, &slopes);
             let real = factors.solve_real(&(right[0] - transformed[0] * (REAL / h)));
@@ -372,7 +299,7 @@ impl<const N: usize> Radau<N> {
         h: f64,
         rejected: bool,
     ) -> Result<f64, S::Error> {
-        let y = self.state.value;
+        let y = self.progress.state.value;
         let y_new = y + stages[2];
         let weighted = combine(&ERROR, stages) / h;
         let error = factors.solve_real(&(self.slope + weighted));
@@ -380,16 +307,11 @@ impl<const N: usize> Radau<N> {
         if norm <= 1.0 || !(rejected || self.last.is_none()) {
             return Ok(norm);
         }
-        let slope = self.at(system, self.elapsed.0, &(y + error))?;
+        let slope = self
+            .progress
+            .slope(system, self.progress.elapsed.0, &(y + error))?;
         let error = factors.solve_real(&(slope + weighted));
         Ok(system.error_norm(&y, &y_new, &error))
-    }
-
-    fn stuck(&self, step: f64) -> Error {
-        Error::StepTooSmall {
-            time: self.start + self.elapsed.0,
-            step,
-        }
     }
 }
 

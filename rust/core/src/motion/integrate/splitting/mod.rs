@@ -17,7 +17,7 @@ use self::step_length::{allowed, cheapest, rate};
 use crate::error::Error;
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::loads::Load;
-use crate::motion::simulate::MOST_STEPS;
+use crate::motion::problem::MOST_STEPS;
 use crate::motion::state::Phase;
 
 /// What a step is chosen to err by, in parts of the tolerance: over the many steps of a long motion errors add up.

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::motion::attitude::{components, from_axes};
 use crate::motion::free::RefinedPrincipal;
-use crate::motion::simulate::Task;
+use crate::motion::problem::Task;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;
 

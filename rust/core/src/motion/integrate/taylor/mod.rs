@@ -46,14 +46,14 @@ use abreast::Abreast;
 use alone::Alone;
 use course::{Course, parts};
 pub(crate) use drive::Step;
-use drive::{Job, Settings, drive, drive_seen};
+use drive::{Job, See, Settings, drive};
 use field::Parts;
 use frame::Precision;
 use twin::Twin;
 
 use crate::error::Error;
 use crate::motion::loads::Term;
-use crate::motion::simulate::{End, Run, Task};
+use crate::motion::problem::{End, Run, Task};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
@@ -72,7 +72,7 @@ const FEW: usize = 4;
 /// About every 64 steps `watch` gets the fraction done and may stop the run.
 ///
 /// # Panics
-/// When there are no times; see [`check_times`](crate::motion::simulate::check_times).
+/// When there are no times; see [`check_times`](crate::motion::problem::check_times).
 pub fn solve_one(
     task: &Task<'_>,
     terms: &[Term],
@@ -86,6 +86,7 @@ pub fn solve_one(
             settings,
             jobs,
             watch,
+            see: None,
         });
     } else {
         let jobs = &mut job(task, terms, &mut run).into_iter();
@@ -93,6 +94,7 @@ pub fn solve_one(
             settings,
             jobs,
             watch,
+            see: None,
         });
     }
     run
@@ -112,12 +114,33 @@ pub(crate) fn solve_seen(
 ) -> Run<Error> {
     let mut run = Run::at_start(task, End::Stopped);
     let settings = settings(task, parts(terms, task.subject.pivoted));
-    let last = if task.tolerance.is_beyond_doubles() {
-        job::<DoubleDouble>(task, terms, &mut run)
-            .and_then(|job| dispatch(Seen { settings, job, see }))
-    } else {
-        job::<f64>(task, terms, &mut run).and_then(|job| dispatch(Seen { settings, job, see }))
+    let watch = &mut |_| ControlFlow::Continue(());
+    let mut last = None;
+    let mut each = |step: Step, is_last| {
+        if is_last {
+            last = Some(step);
+            return ControlFlow::Continue(());
+        }
+        see(&step)
     };
+    let each: Option<See> = Some(&mut each);
+    if task.tolerance.is_beyond_doubles() {
+        let jobs = &mut job(task, terms, &mut run).into_iter();
+        let _ = dispatch(Precisely {
+            settings,
+            jobs,
+            watch,
+            see: each,
+        });
+    } else {
+        let jobs = &mut job(task, terms, &mut run).into_iter();
+        let _ = dispatch(OneByOne {
+            settings,
+            jobs,
+            watch,
+            see: each,
+        });
+    }
     if let Some(last) = last
         && run.end == End::Complete
     {
@@ -172,6 +195,7 @@ pub fn solve_many<'a>(
                 settings,
                 jobs,
                 watch,
+                see: None,
             })
         } else {
             let jobs = &mut rows(first, runs, &begin);
@@ -180,6 +204,7 @@ pub fn solve_many<'a>(
                     settings,
                     jobs,
                     watch,
+                    see: None,
                 })
             } else {
                 dispatch(SideBySide {
@@ -243,6 +268,7 @@ struct Precisely<'a, 'b> {
     settings: Settings,
     jobs: &'b mut dyn Iterator<Item = Job<'a, DoubleDouble>>,
     watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+    see: Option<See<'b>>,
 }
 
 impl Kernel for Precisely<'_, '_> {
@@ -254,11 +280,12 @@ impl Kernel for Precisely<'_, '_> {
             settings,
             jobs,
             watch,
+            see,
         } = self;
         match settings.parts.directions {
-            0 => drive::<Twofold<L>, Twin<L, 0, 4>, 0, 1>(settings, jobs, watch),
-            1 => drive::<Twofold<L>, Twin<L, 1, 8>, 1, 1>(settings, jobs, watch),
-            _ => drive::<Twofold<L>, Twin<L, 3, 16>, 3, 1>(settings, jobs, watch),
+            0 => drive::<Twofold<L>, Twin<L, 0, 4>, 0, 1>(settings, jobs, watch, see),
+            1 => drive::<Twofold<L>, Twin<L, 1, 8>, 1, 1>(settings, jobs, watch, see),
+            _ => drive::<Twofold<L>, Twin<L, 3, 16>, 3, 1>(settings, jobs, watch, see),
         }
     }
 }
@@ -268,6 +295,7 @@ struct OneByOne<'a, 'b> {
     settings: Settings,
     jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
     watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+    see: Option<See<'b>>,
 }
 
 impl Kernel for OneByOne<'_, '_> {
@@ -279,46 +307,12 @@ impl Kernel for OneByOne<'_, '_> {
             settings,
             jobs,
             watch,
+            see,
         } = self;
         match settings.parts.directions {
-            0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch),
-            1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch),
-            _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch),
-        }
-    }
-}
-
-/// One motion whose steps are shown as they are made.
-struct Seen<'a, 'b, X: Precision> {
-    settings: Settings,
-    job: Job<'a, X>,
-    see: &'b mut dyn FnMut(&Step) -> ControlFlow<()>,
-}
-
-impl Kernel for Seen<'_, '_, f64> {
-    type Output = Option<Step>;
-
-    #[inline(always)]
-    fn run<L: Lane>(self) -> Option<Step> {
-        let Self { settings, job, see } = self;
-        match settings.parts.directions {
-            0 => drive_seen::<L, Alone<L, 0>, 0>(settings, job, see),
-            1 => drive_seen::<L, Alone<L, 1>, 1>(settings, job, see),
-            _ => drive_seen::<L, Alone<L, 3>, 3>(settings, job, see),
-        }
-    }
-}
-
-impl Kernel for Seen<'_, '_, DoubleDouble> {
-    type Output = Option<Step>;
-
-    #[inline(always)]
-    fn run<L: Lane>(self) -> Option<Step> {
-        let Self { settings, job, see } = self;
-        match settings.parts.directions {
-            0 => drive_seen::<Twofold<L>, Twin<L, 0, 4>, 0>(settings, job, see),
-            1 => drive_seen::<Twofold<L>, Twin<L, 1, 8>, 1>(settings, job, see),
-            _ => drive_seen::<Twofold<L>, Twin<L, 3, 16>, 3>(settings, job, see),
+            0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch, see),
+            1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch, see),
+            _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch, see),
         }
     }
 }
@@ -341,9 +335,9 @@ impl Kernel for SideBySide<'_, '_> {
             watch,
         } = self;
         match settings.parts.directions {
-            0 => drive::<L, Abreast<L, 0, ROWS>, 0, ROWS>(settings, jobs, watch),
-            1 => drive::<L, Abreast<L, 1, ROWS>, 1, ROWS>(settings, jobs, watch),
-            _ => drive::<L, Abreast<L, 3, ROWS>, 3, ROWS>(settings, jobs, watch),
+            0 => drive::<L, Abreast<L, 0, ROWS>, 0, ROWS>(settings, jobs, watch, None),
+            1 => drive::<L, Abreast<L, 1, ROWS>, 1, ROWS>(settings, jobs, watch, None),
+            _ => drive::<L, Abreast<L, 3, ROWS>, 3, ROWS>(settings, jobs, watch, None),
         }
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::numbers::{Block, Matrix, Number, Rows, Vector, WIDTH, ZERO, product, times, turned};
 use super::parameters::{CENTER, MASS, MOMENTS, PRODUCTS};
-use crate::motion::simulate::Task;
+use crate::motion::problem::Task;
 
 /// Moments and products in principal axes, in a unit of their own; mass and centre of mass.
 #[derive(Clone, Debug)]

@@ -38,7 +38,7 @@ pub use self::parameters::{Parameter, parameters};
 use self::walk::Walk;
 use crate::error::Error;
 use crate::motion::loads::Term;
-use crate::motion::simulate::Task;
+use crate::motion::problem::Task;
 
 /// Derivatives of (δ, ω) at a time: δ is a small rotation of the body from its attitude, `R → R exp(δ×)`, components in the body
 /// frame as it stands at that time, ω likewise in the body frame.
@@ -67,7 +67,7 @@ pub struct Variation {
 /// When a term cannot act, the motion cannot go on, [`Error::NotFiniteDerivative`], or [`Error::Stopped`].
 ///
 /// # Panics
-/// When there are no times; see [`check_times`](crate::motion::simulate::check_times).
+/// When there are no times; see [`check_times`](crate::motion::problem::check_times).
 pub fn variations(
     task: &Task<'_>,
     terms: &[Term],

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::mass::RigidBody;
 use crate::motion::free::FreeMotion;
 use crate::motion::loads::{Feedback, Frame, GravityGradient, Term};
-use crate::motion::simulate::{Method, Task, Tolerance};
+use crate::motion::problem::{Method, Task, Tolerance};
 use crate::motion::state::{Phase, State};
 
 fn body(moments: [f64; 3]) -> RigidBody {

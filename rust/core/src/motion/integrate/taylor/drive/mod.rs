@@ -15,13 +15,14 @@ use super::push::Push;
 use super::series::{Coefficient, Series};
 use super::step::{Compensated, increment, longest};
 use crate::error::Error;
-use crate::motion::simulate::{Effort, End, HELD, Run};
+use crate::motion::problem::limits::HELD;
+use crate::motion::problem::{Effort, End, Run};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
 use crate::numerics::number::{Number, Real};
 use search::Landing;
+pub(super) use seen::See;
 pub(crate) use seen::Step;
-pub(super) use seen::drive_seen;
 pub(super) use settings::Settings;
 
 /// Steps between two looks at the watch.
@@ -86,7 +87,7 @@ struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const R: usize> 
 }
 
 /// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
-/// done, and may stop them.
+/// done, and may stop them. `see` is for motions one after the other.
 #[inline(always)]
 pub(super) fn drive<
     L: Number<Real: Precision>,
@@ -97,6 +98,7 @@ pub(super) fn drive<
     settings: Settings,
     jobs: &mut dyn Iterator<Item = Job<'_, L::Real>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    mut see: Option<See>,
 ) -> ControlFlow<()> {
     let mut lanes = Lanes::<L, S, B, R>::new(settings);
     let mut patience = PATIENCE;
@@ -112,7 +114,20 @@ pub(super) fn drive<
                 return ControlFlow::Continue(());
             }
         }
+        let before = if R == 1 && see.is_some() {
+            lanes.before()
+        } else {
+            None
+        };
         idle = lanes.step();
+        if let (Some(see), Some(before)) = (&mut see, before) {
+            let step = lanes.seen(before);
+            idle |= lanes.refuse_endless();
+            if see(step, idle).is_break() {
+                lanes.end(0, End::Stopped);
+                return ControlFlow::Break(());
+            }
+        }
         patience -= 1;
         if patience == 0 {
             patience = PATIENCE;

@@ -4,13 +4,12 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::{Job, Lanes, Settings};
+use super::Lanes;
 use crate::motion::integrate::taylor::course::Course;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::Pack;
 use crate::motion::integrate::taylor::series::{Coefficient, Series};
 use crate::motion::integrate::taylor::step::Compensated;
-use crate::motion::simulate::End;
 use crate::motion::state::Phase;
 use crate::numerics::number::{Number, Real};
 
@@ -79,50 +78,26 @@ impl Step {
     }
 }
 
-/// Runs one motion and shows each step; the last one, on which the run has ended by itself, comes back.
-#[inline(always)]
-pub(in crate::motion::integrate::taylor) fn drive_seen<
-    L: Number<Real: Precision>,
-    S: Series<Pack<L, 1>, B>,
-    const B: usize,
->(
-    settings: Settings,
-    job: Job<'_, L::Real>,
-    see: &mut dyn FnMut(&Step) -> ControlFlow<()>,
-) -> Option<Step> {
-    let mut lanes = Lanes::<L, S, B, 1>::new(settings);
-    lanes.load(0, &mut std::iter::once(job));
-    loop {
-        let before = lanes.before()?;
-        lanes.step();
-        let step = lanes.seen(before);
-        if lanes.leads[0].is_none() {
-            return Some(step);
-        }
-        if lanes.refuse_endless() {
-            return Some(step);
-        }
-        if see(&step).is_break() {
-            lanes.end(0, End::Stopped);
-            return None;
-        }
-    }
-}
+/// Gets each step of a motion as it is made, and whether the motion has ended with it; may stop the run.
+pub(in crate::motion::integrate::taylor) type See<'a> =
+    &'a mut dyn FnMut(Step, bool) -> ControlFlow<()>;
 
 /// What a step begins with.
-struct Before<'a, L: Number> {
+pub(super) struct Before<'a, L: Number, const R: usize> {
     course: Course<'a, L::Real>,
     now: (f64, f64),
-    state: Compensated<Pack<L, 1>>,
+    state: Compensated<Pack<L, R>>,
     place: Option<[L::Real; 6]>,
 }
 
-impl<'a, L, S, const B: usize> Lanes<'a, L, S, B, 1>
+impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
 where
     L: Number<Real: Precision>,
-    S: Series<Pack<L, 1>, B>,
+    S: Series<Pack<L, R>, B>,
 {
-    fn before(&self) -> Option<Before<'a, L>> {
+    /// What the step that the first motion is to make begins with.
+    #[inline(never)]
+    pub(super) fn before(&self) -> Option<Before<'a, L, R>> {
         let lead = self.leads[0].as_ref()?;
         Some(Before {
             course: lead.job.course.clone(),
@@ -133,8 +108,8 @@ where
     }
 
     /// The step that began with `before` and was the last one made.
-    #[inline(always)]
-    fn seen(&self, before: Before<'a, L>) -> Step {
+    #[inline(never)]
+    pub(super) fn seen(&self, before: Before<'a, L, R>) -> Step {
         let Before {
             course,
             now,

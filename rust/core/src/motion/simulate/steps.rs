@@ -1,92 +1,19 @@
-//! What a run gives, and how methods of steps get through it.
+//! How methods of steps get through a run.
 
 use std::ops::ControlFlow;
 
-use super::events::{Crossing, Events};
+use super::begin::begin;
+use super::events::Events;
 use super::flips;
 use super::lookout::Lookout;
-use super::method::Method;
-use super::stepper::{self, Carry, Span, Stepper};
-use super::task::{Task, check_steps};
+use super::stepper::{Carry, Span, Stepper};
 use crate::error::Error;
 use crate::motion::loads::Load;
+use crate::motion::problem::limits::{HELD, check_steps, spans};
+use crate::motion::problem::{Effort, End, Method, Run, Task};
 use crate::motion::state::Phase;
 
-/// What an integration took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Effort {
-    /// Accepted steps.
-    pub steps: u64,
-    /// Evaluations of the equations of motion.
-    pub evaluations: u64,
-}
-
-/// How a run ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum End<E> {
-    /// At the last time.
-    Complete,
-    /// At an event that ends it.
-    Event,
-    /// Where the watch asked for it.
-    Stopped,
-    /// Where the equations or the load failed.
-    Failed(E),
-}
-
-/// What a run gave.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Run<E> {
-    /// The states at the times; not numbers after the end.
-    pub samples: Vec<Phase>,
-    /// The passages through zero, in the order of the run.
-    pub crossings: Vec<Crossing>,
-    /// What it took.
-    pub effort: Effort,
-    /// The time it came to.
-    pub time: f64,
-    /// The state then.
-    pub phase: Phase,
-    /// How it ended.
-    pub end: End<E>,
-}
-
-/// The changes of a law on one spot after which a run gives up.
-pub(crate) const HELD: u32 = 3;
-
 impl<E> Run<E> {
-    /// One that has come no further than the first time.
-    pub(crate) fn at_start(task: &Task<'_>, end: End<E>) -> Self {
-        let mut samples = vec![Phase::nan(); task.times.len()];
-        samples[0] = task.initial;
-        Self {
-            samples,
-            crossings: Vec::new(),
-            effort: Effort::default(),
-            time: task.times[0],
-            phase: task.initial,
-            end,
-        }
-    }
-
-    /// The same run, its error through `f`.
-    #[must_use]
-    pub fn with_error<F>(self, f: impl FnOnce(E) -> F) -> Run<F> {
-        Run {
-            samples: self.samples,
-            crossings: self.crossings,
-            effort: self.effort,
-            time: self.time,
-            phase: self.phase,
-            end: match self.end {
-                End::Complete => End::Complete,
-                End::Event => End::Event,
-                End::Stopped => End::Stopped,
-                End::Failed(error) => End::Failed(f(error)),
-            },
-        }
-    }
-
     /// Goes by steps to the last time, or to where the run ends.
     pub(super) fn through<L: Load<Error = E>>(
         &mut self,
@@ -121,7 +48,7 @@ impl<E> Run<E> {
                     phase: self.phase,
                     carry,
                 };
-                let mut stepper = stepper::start(method, task, &span, load)?;
+                let mut stepper = begin(method, task, &span, load)?;
                 let before = self.effort;
                 let mut watch = |elapsed: f64| watch((from - start + elapsed) / (end - start));
                 let ended = self.span(
@@ -282,20 +209,4 @@ enum Reached<E> {
     Flip { index: usize, time: f64 },
     /// The end of the run.
     Over(End<E>),
-}
-
-/// The ends of the spans into which `breaks` cut the time from the first to the last of `times`.
-pub(in crate::motion) fn spans(times: &[f64], mut breaks: Vec<f64>) -> Vec<f64> {
-    let (start, end) = (times[0], times[times.len() - 1]);
-    if start == end {
-        return vec![start];
-    }
-    breaks.retain(|t| (t - start) * (t - end) < 0.0);
-    breaks.extend([start, end]);
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup();
-    if end < start {
-        breaks.reverse();
-    }
-    breaks
 }

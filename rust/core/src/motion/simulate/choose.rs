@@ -1,48 +1,15 @@
-//! The methods, and which of them serves a run.
+//! Which method serves a run.
 
 use nalgebra::Vector3;
 
-use super::Tolerance;
 use crate::error::Error;
 use crate::mass::RigidBody;
 use crate::mass::validity::ROUNDING;
 use crate::motion::heavy_top::PivotedTop;
 use crate::motion::loads::Term;
-
-/// How a motion is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Method {
-    /// The first of exact, Taylor and DOP853 that can serve the run.
-    #[default]
-    Auto,
-    /// In closed form: a free body without a load, and a symmetric top pivoted on its axis under uniform gravity.
-    Exact,
-    /// Taylor series of the order at which the work is least: analytic loads. At tolerances that doubles cannot serve in numbers
-    /// of twice their precision.
-    Taylor,
-    /// The explicit Runge-Kutta method of order 8 by Dormand and Prince: every load.
-    Dop853,
-    /// The implicit Runge-Kutta method Radau IIA of order 5: every load, for those that are stiff.
-    Radau,
-    /// Kicks between exact free motions at equal steps: loads that do not depend on rates, for long times.
-    Splitting,
-}
+use crate::motion::problem::{Method, Tolerance};
 
 impl Method {
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Exact => "exact",
-            Self::Taylor => "taylor",
-            Self::Dop853 => "dop853",
-            Self::Radau => "radau",
-            Self::Splitting => "splitting",
-        }
-    }
-
     /// The method that serves a run: itself, or what [`Self::Auto`] chooses.
     ///
     /// `terms`: of the load, where it has analytic ones alone. `pivoted`: whether the origin of the body is fixed. `is_top`
@@ -138,7 +105,7 @@ pub(super) fn gravity_alone(terms: &[Term]) -> Option<Vector3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::simulate::TIGHTEST;
+    use crate::motion::problem::TIGHTEST;
     use nalgebra::Vector3;
 
     #[test]

@@ -1,20 +1,20 @@
-//! Radau IIA on the equations in principal axes.
+//! Runge-Kutta methods on the equations in principal axes.
 
 use super::equations::Equations;
 use super::stepper::{Carry, Dense, Span, Stepper};
-use super::{Effort, Task};
-use crate::motion::integrate::Radau;
+use crate::motion::integrate::RungeKutta;
 use crate::motion::loads::{Load, Switch};
+use crate::motion::problem::{Effort, Task};
 use crate::motion::state::Phase;
 
-/// A run of [`Radau`].
-pub(super) struct Implicit<'a, L, const N: usize> {
+/// A run of the method `M`, whose state has `N` numbers.
+pub(super) struct Solved<'a, L, M, const N: usize> {
     equations: Equations<'a, L, N>,
     start: f64,
-    stepper: Radau<N>,
+    method: M,
 }
 
-impl<'a, L: Load, const N: usize> Implicit<'a, L, N> {
+impl<'a, L: Load, M: RungeKutta<N>, const N: usize> Solved<'a, L, M, N> {
     pub(super) fn new(task: &Task<'_>, span: &Span, load: &'a mut L) -> Result<Self, L::Error> {
         let mut equations = Equations::new(
             &task.euler,
@@ -26,49 +26,49 @@ impl<'a, L: Load, const N: usize> Implicit<'a, L, N> {
             span.carry.scales,
         );
         let y = equations.principal(&span.phase);
-        let stepper = Radau::new(&mut equations, span.from, span.to, y, span.carry.step)?;
+        let method = M::new(&mut equations, span.from, span.to, y, span.carry.step)?;
         Ok(Self {
             equations,
             start: span.from,
-            stepper,
+            method,
         })
     }
 }
 
-impl<L: Load, const N: usize> Dense for Implicit<'_, L, N> {
+impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for Solved<'_, L, M, N> {
     type Error = L::Error;
 
     fn elapsed(&self) -> f64 {
-        self.stepper.elapsed()
+        self.method.elapsed()
     }
 
     fn phase(&self) -> Phase {
-        self.equations
-            .phase(self.start + self.elapsed(), self.stepper.state())
+        (self.equations).phase(self.start + self.elapsed(), self.method.state())
     }
 
     fn within(&mut self, elapsed: f64) -> Result<Phase, L::Error> {
-        let y = (self.stepper.dense()).map_or(*self.stepper.state(), |dense| dense.at(elapsed));
+        let y = self.method.within(&mut self.equations, elapsed)?;
         Ok(self.equations.phase(self.start + elapsed, &y))
     }
 }
 
-impl<L: Load, const N: usize> Stepper for Implicit<'_, L, N> {
+impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> {
     fn advance(&mut self) -> Result<(), L::Error> {
-        self.stepper.advance(&mut self.equations)
+        self.method.advance(&mut self.equations)
     }
 
     fn effort(&self) -> Effort {
+        let progress = self.method.progress();
         Effort {
-            steps: self.stepper.steps,
-            evaluations: self.stepper.evaluations,
+            steps: progress.steps,
+            evaluations: progress.evaluations,
         }
     }
 
     fn carry(&self) -> Carry {
         Carry {
             scales: self.equations.scales,
-            step: Some(self.stepper.step()),
+            step: Some(self.method.step()),
             scheme: None,
         }
     }

@@ -1,0 +1,100 @@
+"""Two builds of polhode, our side of every row, in turn: ``python benchmarks/builds.py OLD NEW [NAME ...]``.
+
+OLD and NEW are folders that hold a built package ``polhode`` (``python`` of a checkout after ``make build``). Each
+build has a process of its own; a round times a row in one and then in the other, so that what the machine does meanwhile
+meets both. The ratios are times of OLD over times of NEW: above one, NEW is faster.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from run import FILES_OF_ROWS
+
+HERE = Path(__file__).resolve().parent
+
+
+class Build:
+    """A process with the rows of one build."""
+
+    def __init__(self, folder: Path, names: list[str]) -> None:
+        path = os.pathsep.join([str(folder.resolve()), str(HERE)])
+        self.process = subprocess.Popen(
+            [sys.executable, __file__, "--serve", *names],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONPATH": path},
+        )
+
+    def ask(self, *question: Any) -> Any:
+        """Send a question, and wait for the answer."""
+        stdin, stdout = self.process.stdin, self.process.stdout
+        if stdin is None or stdout is None:
+            raise RuntimeError("the process has no pipes")
+        stdin.write(json.dumps(question) + "\n")
+        stdin.flush()
+        return json.loads(stdout.readline())
+
+
+def serve(names: list[str]) -> None:
+    """Answer questions: which rows there are, how often a row fits the clock, how long it takes."""
+    from importlib import import_module
+
+    from harness import repeats, seconds
+
+    answers, sys.stdout = sys.stdout, sys.stderr
+    rows = {f"{name}: {row.name}": row for name in names for row in import_module(name).rows()}
+    for line in sys.stdin:
+        what, *rest = json.loads(line)
+        if what == "rows":
+            answer: Any = list(rows)
+        elif what == "repeats":
+            answer = repeats(rows[rest[0]].ours, 0.02)
+        else:
+            answer = seconds(rows[rest[0]].ours, rest[1])
+        print(json.dumps(answer), file=answers, flush=True)
+
+
+def main() -> None:
+    """Time all rows that both builds have."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("old", type=Path, metavar="OLD")
+    parser.add_argument("new", type=Path, metavar="NEW")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(FILES_OF_ROWS)}")
+    parser.add_argument("--rounds", type=int, default=15)
+    options = parser.parse_args()
+    names = options.names or list(FILES_OF_ROWS)
+    old, new = Build(options.old, names), Build(options.new, names)
+    known = old.ask("rows")
+    ratios = []
+    print(f"{'what':80} {'old/new':>8}   least to most of {options.rounds} rounds")
+    for row in dict.fromkeys(new.ask("rows")):
+        if row not in known:
+            print(f"{row:80} only in the new build")
+            continue
+        count = min(build.ask("repeats", row) for build in (old, new))
+        found = []
+        for turn in range(options.rounds):
+            # Who goes first changes from round to round.
+            pair = [(build, build.ask("seconds", row, count)) for build in ((old, new), (new, old))[turn % 2]]
+            times = dict(pair)
+            found.append(times[old] / times[new])
+        ratio = statistics.median(found)
+        ratios.append(ratio)
+        print(f"{row:80} {ratio:8.3f}   {min(found):.3f} to {max(found):.3f}", flush=True)
+    print(f"{'geometric mean':80} {statistics.geometric_mean(ratios):8.3f}")
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--serve"]:
+        serve(sys.argv[2:])
+    else:
+        main()

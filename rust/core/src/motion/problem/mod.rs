@@ -1,0 +1,15 @@
+//! What is asked of a method, and what it gives: plain data that steppers and runs share.
+
+mod crossing;
+pub(in crate::motion) mod limits;
+mod method;
+mod outcome;
+mod task;
+mod tolerance;
+
+pub use self::crossing::{Crossing, Direction, Rule};
+pub use self::limits::{MOST_STEPS, check_scales, check_times};
+pub use self::method::Method;
+pub use self::outcome::{Effort, End, Run};
+pub use self::task::{Footing, Task};
+pub use self::tolerance::{TIGHTEST, TIGHTEST_TWOFOLD, Tolerance};

@@ -1,0 +1,78 @@
+//! What a run gives.
+
+use super::crossing::Crossing;
+use super::task::Task;
+use crate::motion::state::Phase;
+
+/// What an integration took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Evaluations of the equations of motion.
+    pub evaluations: u64,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End<E> {
+    /// At the last time.
+    Complete,
+    /// At an event that ends it.
+    Event,
+    /// Where the watch asked for it.
+    Stopped,
+    /// Where the equations or the load failed.
+    Failed(E),
+}
+
+/// What a run gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run<E> {
+    /// The states at the times; not numbers after the end.
+    pub samples: Vec<Phase>,
+    /// The passages through zero, in the order of the run.
+    pub crossings: Vec<Crossing>,
+    /// What it took.
+    pub effort: Effort,
+    /// The time it came to.
+    pub time: f64,
+    /// The state then.
+    pub phase: Phase,
+    /// How it ended.
+    pub end: End<E>,
+}
+
+impl<E> Run<E> {
+    /// One that has come no further than the first time.
+    pub(crate) fn at_start(task: &Task<'_>, end: End<E>) -> Self {
+        let mut samples = vec![Phase::nan(); task.times.len()];
+        samples[0] = task.initial;
+        Self {
+            samples,
+            crossings: Vec::new(),
+            effort: Effort::default(),
+            time: task.times[0],
+            phase: task.initial,
+            end,
+        }
+    }
+
+    /// The same run, its error through `f`.
+    #[must_use]
+    pub fn with_error<F>(self, f: impl FnOnce(E) -> F) -> Run<F> {
+        Run {
+            samples: self.samples,
+            crossings: self.crossings,
+            effort: self.effort,
+            time: self.time,
+            phase: self.phase,
+            end: match self.end {
+                End::Complete => End::Complete,
+                End::Event => End::Event,
+                End::Stopped => End::Stopped,
+                End::Failed(error) => End::Failed(f(error)),
+            },
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! How accurate a motion is to be.
+
+use crate::error::{Error, finite};
+
+/// The tightest relative tolerance that float64 can serve.
+pub const TIGHTEST: f64 = 10.0 * f64::EPSILON;
+/// The tightest relative tolerance that numbers of twice the precision can serve.
+pub const TIGHTEST_TWOFOLD: f64 = 1e-28;
+
+/// How accurate each step is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Of the attitude in radians (half), and of ω, position and velocity relative to the largest so far.
+    pub relative: f64,
+    /// Of ω, added to the relative one.
+    pub absolute: f64,
+}
+
+impl Tolerance {
+    /// Checked tolerances.
+    ///
+    /// # Errors
+    /// When `relative` is not within [`TIGHTEST_TWOFOLD`]..0.1 or `absolute` is negative.
+    pub fn new(relative: f64, absolute: f64) -> Result<Self, Error> {
+        finite("rtol", relative)?;
+        finite("atol", absolute)?;
+        if !(TIGHTEST_TWOFOLD..=0.1).contains(&relative) {
+            let law = "between 1e-28 and 0.1; below 2.3e-15 (ten units of rounding) method=\"taylor\" alone serves it";
+            return Err(Error::OutOfDomain {
+                what: "rtol",
+                law,
+                value: relative,
+            });
+        }
+        if absolute < 0.0 {
+            return Err(Error::OutOfDomain {
+                what: "atol",
+                law: "zero or more",
+                value: absolute,
+            });
+        }
+        Ok(Self { relative, absolute })
+    }
+
+    /// Whether it is tighter than doubles can serve.
+    #[must_use]
+    pub fn is_beyond_doubles(&self) -> bool {
+        self.relative < TIGHTEST
+    }
+}
