@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use arbitrary::Result;
 use nalgebra::Vector3;
-use polhode::motion::integrate::variation::{self, variations};
+use polhode::motion::integrate::variation::variations;
 use polhode::motion::loads::{Analytic, Load, Term, Wrench};
 use polhode::motion::simulate::{
     Direction, End, Events, Method, NoEvents, Phase, Rule, Run, State, Task, Tolerance,
@@ -224,7 +224,7 @@ fn derivatives(task: &Task<'_>, terms: &[Term]) {
         assert_eq!(found.len(), task.times.len());
         let numbers: usize = terms
             .iter()
-            .flat_map(variation::parameters)
+            .flat_map(Term::parameters)
             .map(|parameter| parameter.count())
             .sum();
         for variation in found {

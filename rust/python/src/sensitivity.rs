@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use nalgebra::{Matrix6, UnitQuaternion, Vector3};
 use numpy::PyArrayDyn;
 use polhode::RigidBody;
-use polhode::motion::integrate::variation::{Variation, parameters, variations};
+use polhode::motion::integrate::variation::{Variation, variations};
 use polhode::motion::loads::Term;
 use polhode::motion::simulate::{Method, Task, Tolerance};
 use polhode::motion::state::{Phase, State};
@@ -139,7 +139,7 @@ fn by_load<'py>(
     let mut dictionaries = Vec::new();
     for term in terms.rows.first().into_iter().flatten() {
         let dictionary = PyDict::new(py);
-        for parameter in parameters(term) {
+        for parameter in term.parameters() {
             let columns = first..first + parameter.count();
             let slopes = columns_of(py, found, columns.clone(), &parameter.shape)?;
             dictionary.set_item(parameter.name, slopes)?;

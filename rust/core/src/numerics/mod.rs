@@ -39,6 +39,7 @@ pub mod planes;
 pub mod power_of_two;
 pub mod quad_double;
 pub mod quadrature;
+pub(crate) mod quaternion;
 pub mod reduce;
 pub mod sign_changes;
 pub mod split_vector;

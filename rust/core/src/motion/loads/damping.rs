@@ -2,7 +2,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::law::{Character, Kept, Law, Parts};
+use super::linear::{Axes, Exact, Linear};
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::wrench::Wrench;
 use crate::error::{Error, all_finite};
+use crate::motion::state::Phase;
 
 /// `N = −D ω − E |ω| ω`: linear damping, as of a viscous film, and quadratic, as of a stirred fluid.
 ///
@@ -35,9 +41,58 @@ impl Damping {
     pub fn torque(&self, omega: &Vector3<f64>) -> Vector3<f64> {
         -(self.linear * omega + self.quadratic * (omega * omega.norm()))
     }
+}
 
-    pub(super) fn scaled(&self, factor: f64) -> Result<Self, Error> {
+impl Law for Damping {
+    fn character(&self, _: bool) -> Character {
+        Character {
+            exerts_force: false,
+            depends_on_rates: true,
+            needs_body: false,
+            needs_epoch: false,
+            keeps: Kept::Nothing,
+            parts: Parts {
+                on_omega: true,
+                quadratic: self.quadratic != Matrix3::zeros(),
+                ..Parts::default()
+            },
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![
+            Parameter::new("matrix", &[3, 3]),
+            Parameter::new("quadratic", &[3, 3]),
+        ]
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
         Self::new(&(self.linear * factor), &(self.quadratic * factor))
+    }
+
+    fn anchored(self, _: f64) -> Self {
+        self
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
+        Wrench::couple(self.torque(&phase.omega))
+    }
+
+    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+        None
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        linear.on_omega -= axes.tensor(&self.linear);
+        linear.quadratic += axes.tensor(&self.quadratic);
     }
 }
 

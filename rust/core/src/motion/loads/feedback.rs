@@ -1,9 +1,16 @@
 //! Attitude feedback: a controller that turns the body toward a target and damps it.
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3, Vector4};
 
+use super::law::{Character, Kept, Law, Parts};
+use super::linear::{Axes, Exact, Linear};
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::switch::Switch;
+use super::wrench::Wrench;
 use crate::error::{Error, all_finite};
 use crate::motion::state::Phase;
+use crate::numerics::quaternion::{conjugate, product};
 
 /// `N = −K sign(w) vec(e) − D ω` with the error `e = q_target⁻¹ ∘ q` and w its scalar part.
 ///
@@ -64,7 +71,7 @@ impl Feedback {
     ///
     /// From `ẇ = −½ vec(e)·ω` follows `d/dt 2k (1 − |w|) = k sign(w) vec(e)·ω = −N·ω`. Other gains have no potential.
     #[must_use]
-    pub fn potential(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
+    pub fn energy(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
         let k = self.stiffness[(0, 0)];
         if self.stiffness != Matrix3::from_diagonal_element(k) || self.damping != Matrix3::zeros() {
             return None;
@@ -74,41 +81,93 @@ impl Feedback {
         Some(2.0 * k * error.imag().norm_squared() / (1.0 + error.w.abs()))
     }
 
-    pub(super) fn scaled(&self, factor: f64) -> Result<Self, Error> {
+    /// `q_target⁻¹ ∘ q_NP ∘ q_PB` is linear in (x, y, z, w) of `q_NP`: its column for each of them.
+    fn error_columns<X: Exact>(&self, axes: &Axes<'_, X>) -> [[X; 4]; 4] {
+        let left = X::quaternion(&self.target);
+        let [o, l] = [X::zero(), X::one()];
+        let units = [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, l]];
+        units.map(|unit| product(product(conjugate(left), unit), conjugate(*axes.q_bp)))
+    }
+}
+
+impl Law for Feedback {
+    fn character(&self, _: bool) -> Character {
+        Character {
+            exerts_force: false,
+            depends_on_rates: self.damping.iter().any(|&x| x != 0.0),
+            needs_body: false,
+            needs_epoch: false,
+            keeps: Kept::Nothing,
+            parts: Parts {
+                on_omega: true,
+                on_attitude: true,
+                ..Parts::default()
+            },
+        }
+    }
+
+    /// A target has three: a small rotation of it, `R → R exp(δ×)`.
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![
+            Parameter::new("K", &[3, 3]),
+            Parameter::new("D", &[3, 3]),
+            Parameter::new("target", &[3]),
+        ]
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
         Self::new(
             &(self.stiffness * factor),
             &(self.damping * factor),
             &self.target,
         )
     }
-}
 
-/// What changes the law of a feedback: the sign of the scalar part w of its error. Both w and its rate `ẇ = −½ vec(e)·ω` are continuous
-/// where it does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Switch {
-    target: UnitQuaternion<f64>,
-    /// The sign that the law has been taken for.
-    pub side: f64,
-}
-
-impl Switch {
-    /// That of `feedback` at the attitude of `phase`.
-    #[must_use]
-    pub fn of(feedback: &Feedback, phase: &Phase) -> Self {
-        let error = feedback.target.conjugate() * phase.attitude;
-        Self {
-            target: feedback.target,
-            side: if error.w < 0.0 { -1.0 } else { 1.0 },
-        }
+    fn anchored(self, _: f64) -> Self {
+        self
     }
 
-    /// w and ẇ, each times the side: the law changes where the first becomes negative.
-    #[must_use]
-    pub fn value_and_rate(&self, phase: &Phase) -> [f64; 2] {
-        let error = self.target.conjugate() * phase.attitude;
-        let rate = -0.5 * error.imag().dot(&phase.omega);
-        [error.w * self.side, rate * self.side]
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+        Ok(())
+    }
+
+    #[inline]
+    fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
+        Wrench::couple(self.torque(&phase.attitude, &phase.omega))
+    }
+
+    fn potential(&self, _: &Subject, phase: &Phase) -> Option<f64> {
+        self.energy(&phase.attitude)
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
+        linear.on_omega -= axes.tensor(&self.damping);
+        let stiffness = axes.columns.tr_mul(&self.stiffness.map(X::from));
+        let columns = self.error_columns(axes);
+        let vector = Matrix3x4::from_columns(&columns.map(|[x, y, z, _]| Vector3::new(x, y, z)));
+        linear.on_attitude -= stiffness * vector * X::from(side);
+    }
+
+    fn may_switch(&self) -> bool {
+        true
+    }
+
+    fn switch(&self, phase: &Phase) -> Option<Switch> {
+        Some(Switch::toward(&self.target, phase))
+    }
+
+    #[inline]
+    fn settled_wrench(&self, side: f64, _: &Subject, _: f64, phase: &Phase) -> Wrench {
+        Wrench::couple(self.torque_on(side, &phase.attitude, &phase.omega))
+    }
+
+    fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
+        let columns = self.error_columns(axes);
+        Some(Vector4::from(columns.map(|[_, _, _, w]| w)))
     }
 }
 
@@ -129,7 +188,7 @@ mod tests {
             let torque = feedback.torque(&attitude, &Vector3::zeros()).z;
             let expected = if angle > 1.0 { 1.0 } else { -angle.signum() } * 0.25_f64.sin();
             assert!((torque - expected).abs() < 1e-15, "{angle} {torque}");
-            let potential = feedback.potential(&attitude).expect("isotropic");
+            let potential = feedback.energy(&attitude).expect("isotropic");
             assert!((potential - 2.0 * (1.0 - 0.25_f64.cos())).abs() < 1e-15);
         }
     }

@@ -2,9 +2,14 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::Subject;
 use super::kepler::Orbit;
+use super::law::{Character, Kept, Law, Parts};
+use super::linear::{Axes, Exact, Linear};
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::wrench::Wrench;
 use crate::error::{Error, finite};
+use crate::motion::state::Phase;
 
 /// `N_C = 3μ/r⁵ r×(I_C r)`, r from the attractor to C, on a Kepler orbit that the body's attitude does not change.
 ///
@@ -76,26 +81,68 @@ impl GravityGradient {
         let n = attitude.inverse_transform_vector(&(r / distance));
         n.cross(&(subject.inertia * n)) * (self.coefficient() / distance / distance / distance)
     }
+}
 
-    pub(super) fn scaled(&self, factor: f64) -> Self {
-        Self {
-            strength: self.strength * factor,
-            ..*self
+impl Law for GravityGradient {
+    fn character(&self, _: bool) -> Character {
+        Character {
+            exerts_force: false,
+            depends_on_rates: false,
+            needs_body: true,
+            needs_epoch: self.epoch.is_none(),
+            keeps: Kept::Nothing,
+            parts: Parts {
+                is_timed: true,
+                gradients: 1,
+                ..Parts::default()
+            },
         }
     }
 
-    /// Whether its epoch is the start of the motion.
-    #[must_use]
-    pub fn needs_epoch(&self) -> bool {
-        self.epoch.is_none()
+    /// A factor is none of them: it stays as it is.
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![
+            Parameter::new("mu", &[]),
+            Parameter::new("position", &[3]),
+            Parameter::new("velocity", &[3]),
+        ]
     }
 
-    /// The same with the epoch `t` where it has none.
-    #[must_use]
-    pub fn anchored(self, t: f64) -> Self {
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        Ok(Self {
+            strength: self.strength * factor,
+            ..*self
+        })
+    }
+
+    /// The epoch is `t` where it has none.
+    fn anchored(self, t: f64) -> Self {
         Self {
             epoch: self.epoch.or(Some(t)),
             ..self
         }
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn check(&self, subject: &Subject, _: f64, _: f64) -> Result<(), Error> {
+        if subject.pivoted {
+            return Err(Error::PivotedInOrbit);
+        }
+        Ok(())
+    }
+
+    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
+        Wrench::couple(self.torque(subject, t, &phase.attitude))
+    }
+
+    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+        None
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, _: &Axes<'_, X>, _: f64) {
+        linear.gradients.push(self);
     }
 }

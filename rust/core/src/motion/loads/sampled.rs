@@ -3,8 +3,14 @@
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-use super::Frame;
+use super::law::{Character, Kept, Law, Parts};
+use super::linear::{Axes, Exact, Linear};
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::wrench::{Wrench, in_body};
 use crate::error::{Error, all_finite, finite};
+use crate::motion::kinematics::Frame;
+use crate::motion::state::Phase;
 
 /// A torque about the reference point, given at times and interpolated by a cubic spline, smooth to the second derivative.
 ///
@@ -95,7 +101,7 @@ impl Sampled {
     ///
     /// # Errors
     /// [`Error::OutsideSamples`].
-    pub fn check(&self, t: f64) -> Result<(), Error> {
+    pub fn check_at(&self, t: f64) -> Result<(), Error> {
         let (first, last) = (self.knots()[0], self.knots()[self.knots().len() - 1]);
         if (first..=last).contains(&t) {
             Ok(())
@@ -103,8 +109,32 @@ impl Sampled {
             Err(Error::OutsideSamples { t, first, last })
         }
     }
+}
 
-    pub(super) fn scaled(&self, factor: f64) -> Result<Self, Error> {
+impl Law for Sampled {
+    fn character(&self, _: bool) -> Character {
+        Character {
+            exerts_force: false,
+            depends_on_rates: false,
+            needs_body: false,
+            needs_epoch: false,
+            keeps: Kept::Nothing,
+            parts: Parts {
+                directions: match self.frame {
+                    Frame::Body => 0,
+                    Frame::Space => 3,
+                },
+                is_timed: true,
+                ..Parts::default()
+            },
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("torque", &[self.knots().len(), 3])]
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
         let Spline { knots, pieces } = &*self.spline;
         let pieces: Vec<_> = (pieces.iter().map(|piece| piece.map(|c| c * factor))).collect();
         all_finite(
@@ -116,6 +146,30 @@ impl Sampled {
             spline: Arc::new(Spline { knots, pieces }),
             frame: self.frame,
         })
+    }
+
+    fn anchored(self, _: f64) -> Self {
+        self
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.knots().to_vec()
+    }
+
+    fn check(&self, _: &Subject, from: f64, to: f64) -> Result<(), Error> {
+        self.check_at(from).and_then(|()| self.check_at(to))
+    }
+
+    fn wrench(&self, _: &Subject, t: f64, phase: &Phase) -> Wrench {
+        Wrench::couple(in_body(&self.at(t), self.frame, &phase.attitude))
+    }
+
+    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+        None
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, _: &Axes<'_, X>, _: f64) {
+        linear.sampled.push(self);
     }
 }
 
@@ -201,7 +255,7 @@ mod tests {
         for t in [-1.0, -0.3, 0.5, 0.99, 1.7, 3.9, 4.0] {
             assert!((sampled.at(t) - cubic(t)).norm() < 1e-13, "{t}");
         }
-        assert!(sampled.check(4.0).is_ok() && sampled.check(4.1).is_err());
+        assert!(sampled.check_at(4.0).is_ok() && sampled.check_at(4.1).is_err());
         let short = |times: &[f64], value: fn(f64) -> f64| {
             let values: Vec<_> = times.iter().map(|&t| Vector3::repeat(value(t))).collect();
             Sampled::new(times, &values, Frame::Body).expect("ascending")

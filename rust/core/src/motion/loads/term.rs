@@ -1,51 +1,221 @@
-//! The analytic terms of loads, and what each of them is asked.
+//! The analytic laws of loads, each of them on all the time or in windows of time.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Vector3, Vector4};
 
-use super::{Damping, Feedback, Frame, GravityGradient, Kept, Sampled, Subject, Windows, Wrench};
-use crate::error::{Error, all_finite, finite};
+use super::constant_force::ConstantForce;
+use super::constant_torque::ConstantTorque;
+use super::damping::Damping;
+use super::feedback::Feedback;
+use super::gravity_gradient::GravityGradient;
+use super::law::{Character, Kept, Law};
+use super::linear::{Axes, Exact, Linear};
+use super::parameter::Parameter;
+use super::sampled::Sampled;
+use super::schedule::Windows;
+use super::subject::Subject;
+use super::switch::Switch;
+use super::uniform_gravity::UniformGravity;
+use super::wrench::Wrench;
+use crate::error::{Error, finite};
+use crate::motion::kinematics::Frame;
 use crate::motion::state::Phase;
 
-/// One analytic term of a load.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Term {
-    /// A torque about the reference point of the motion, constant in `frame`.
-    ConstantTorque {
-        /// Its components.
-        vector: Vector3<f64>,
-        /// In which frame they are constant: a torque constant in B turns with the body.
-        frame: Frame,
-    },
-    /// A force constant in `frame`, at a point of the body.
-    ConstantForce {
-        /// Its components.
-        vector: Vector3<f64>,
-        /// In which frame they are constant: the thrust of a nozzle turns with the body.
-        frame: Frame,
-        /// Where it acts, from the origin of B; at C where there is none.
-        point: Option<Vector3<f64>>,
-    },
+/// The list of the laws: each is a variant of [`Term`], which passes every question on to it. A law that is not asked
+/// something does not compile.
+macro_rules! laws {
+    ($($(#[doc = $about:literal])+ $law:ident,)+) => {
+        /// One analytic term of a load.
+        #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub enum Term {
+            $($(#[doc = $about])+ $law($law),)+
+            /// A term that acts in some windows of time only.
+            Scheduled {
+                /// When.
+                windows: Windows,
+                /// Which.
+                term: Box<Term>,
+            },
+        }
+
+        $(impl From<$law> for Term {
+            fn from(law: $law) -> Self {
+                Self::$law(law)
+            }
+        })+
+
+        impl Term {
+            /// What it depends on and does, on a pivoted body or on a free one.
+            #[must_use]
+            pub fn character(&self, pivoted: bool) -> Character {
+                match self {
+                    $(Self::$law(law) => law.character(pivoted),)+
+                    Self::Scheduled { term, .. } => term.character(pivoted),
+                }
+            }
+
+            /// Its numbers, under the names and with the shapes that they have where the term is made. Those that were
+            /// multiplied by a factor are those after it.
+            #[must_use]
+            pub fn parameters(&self) -> Vec<Parameter> {
+                match self {
+                    $(Self::$law(law) => law.parameters(),)+
+                    Self::Scheduled { term, .. } => term.parameters(),
+                }
+            }
+
+            /// The term that exerts `factor` times as much.
+            ///
+            /// # Errors
+            /// When `factor` or what it makes is not finite.
+            pub fn scaled(&self, factor: f64) -> Result<Self, Error> {
+                finite("the factor of a load", factor)?;
+                Ok(match self {
+                    $(Self::$law(law) => Self::$law(law.scaled(factor)?),)+
+                    Self::Scheduled { windows, term } => Self::Scheduled {
+                        windows: windows.clone(),
+                        term: Box::new(term.scaled(factor)?),
+                    },
+                })
+            }
+
+            /// The term of a motion that began at `t`, for the rest of it.
+            #[must_use]
+            pub fn anchored(self, t: f64) -> Self {
+                match self {
+                    $(Self::$law(law) => Self::$law(law.anchored(t)),)+
+                    Self::Scheduled { windows, term } => Self::Scheduled {
+                        windows,
+                        term: Box::new(term.anchored(t)),
+                    },
+                }
+            }
+
+            /// The times at which it is not smooth, where a step must end; not sorted.
+            #[must_use]
+            pub fn breaks(&self) -> Vec<f64> {
+                match self {
+                    $(Self::$law(law) => law.breaks(),)+
+                    Self::Scheduled { windows, term } => {
+                        let mut breaks = windows.switches();
+                        breaks.extend(term.breaks());
+                        breaks
+                    }
+                }
+            }
+
+            /// Checks that the term can act on `subject` from one time to another.
+            ///
+            /// # Errors
+            /// [`Error::OutsideSamples`]; [`Error::PivotedInOrbit`].
+            pub fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
+                match self {
+                    $(Self::$law(law) => law.check(subject, from, to),)+
+                    Self::Scheduled { term, .. } => term.check(subject, from, to),
+                }
+            }
+
+            /// Force in N and torque in B about the reference point at time `t`. A scheduled term counts as switched on or off
+            /// by the time; in a run by [`Term::active`].
+            #[inline]
+            #[must_use]
+            pub fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
+                match self {
+                    $(Self::$law(law) => law.wrench(subject, t, phase),)+
+                    Self::Scheduled { windows, term } => {
+                        if windows.contains(t) {
+                            term.wrench(subject, t, phase)
+                        } else {
+                            Wrench::default()
+                        }
+                    }
+                }
+            }
+
+            /// The energy of position that the body has in the term's field, when it has one: force and torque are what it
+            /// loses. Positions from the origin of N. A term that depends on time has none.
+            #[must_use]
+            pub fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64> {
+                match self {
+                    $(Self::$law(law) => law.potential(subject, phase),)+
+                    Self::Scheduled { .. } => None,
+                }
+            }
+
+            /// Adds what the term, switched on, does to the equations of a series; `side` is the sign that its law is taken for.
+            pub(in crate::motion) fn add_to<'a, X: Exact>(
+                &'a self,
+                linear: &mut Linear<'a, X>,
+                axes: &Axes<'_, X>,
+                side: f64,
+            ) {
+                match self {
+                    $(Self::$law(law) => law.add_to(linear, axes, side),)+
+                    Self::Scheduled { term, .. } => term.add_to(linear, axes, side),
+                }
+            }
+
+            /// What changes its law at `phase`, if its law has a sign that changes with the state.
+            pub(super) fn switch(&self, phase: &Phase) -> Option<Switch> {
+                match self {
+                    $(Self::$law(law) => law.switch(phase),)+
+                    Self::Scheduled { term, .. } => term.switch(phase),
+                }
+            }
+
+            /// As [`Self::wrench`], with the law of the term, switched on, on one side of its switch.
+            #[inline]
+            pub(super) fn settled_wrench(
+                &self,
+                side: f64,
+                subject: &Subject,
+                t: f64,
+                phase: &Phase,
+            ) -> Wrench {
+                match self {
+                    $(Self::$law(law) => law.settled_wrench(side, subject, t, phase),)+
+                    Self::Scheduled { term, .. } => term.settled_wrench(side, subject, t, phase),
+                }
+            }
+
+            /// The function of the attitude (x, y, z, w), linear in it, whose sign its law has.
+            pub(in crate::motion) fn switching<X: Exact>(
+                &self,
+                axes: &Axes<'_, X>,
+            ) -> Option<Vector4<X>> {
+                match self {
+                    $(Self::$law(law) => law.switching(axes),)+
+                    Self::Scheduled { term, .. } => term.switching(axes),
+                }
+            }
+
+            /// Whether its law has a sign that changes with the state.
+            #[inline]
+            pub(super) fn may_switch(&self) -> bool {
+                match self {
+                    $(Self::$law(law) => law.may_switch(),)+
+                    Self::Scheduled { term, .. } => term.may_switch(),
+                }
+            }
+        }
+    };
+}
+
+laws! {
+    /// A torque about the reference point of the motion.
+    ConstantTorque,
+    /// A force at a point of the body.
+    ConstantForce,
     /// The weight m g at C.
-    UniformGravity {
-        /// g, in N.
-        gravity: Vector3<f64>,
-    },
+    UniformGravity,
     /// The torque of a distant attractor's field on a body in a Kepler orbit.
-    GravityGradient(GravityGradient),
+    GravityGradient,
     /// A torque against ω.
-    Damping(Damping),
+    Damping,
     /// A torque known at some times.
-    Sampled(Sampled),
+    Sampled,
     /// A torque that turns the body toward an attitude.
-    Feedback(Feedback),
-    /// A term that acts in some windows of time only.
-    Scheduled {
-        /// When.
-        windows: Windows,
-        /// Which.
-        term: Box<Term>,
-    },
+    Feedback,
 }
 
 impl Term {
@@ -54,11 +224,7 @@ impl Term {
     /// # Errors
     /// When a component is not finite.
     pub fn constant_torque(vector: &Vector3<f64>, frame: Frame) -> Result<Self, Error> {
-        all_finite("vector", vector)?;
-        Ok(Self::ConstantTorque {
-            vector: *vector,
-            frame,
-        })
+        ConstantTorque::new(vector, frame).map(Self::from)
     }
 
     /// A force constant in `frame` at `point` (from the origin of B), or at C.
@@ -70,13 +236,7 @@ impl Term {
         frame: Frame,
         point: Option<&Vector3<f64>>,
     ) -> Result<Self, Error> {
-        all_finite("vector", vector)?;
-        all_finite("point", point.into_iter().flatten())?;
-        Ok(Self::ConstantForce {
-            vector: *vector,
-            frame,
-            point: point.copied(),
-        })
+        ConstantForce::new(vector, frame, point).map(Self::from)
     }
 
     /// The weight of the body in the field g (in N).
@@ -84,46 +244,7 @@ impl Term {
     /// # Errors
     /// When a component is not finite.
     pub fn uniform_gravity(gravity: &Vector3<f64>) -> Result<Self, Error> {
-        all_finite("gravity", gravity)?;
-        Ok(Self::UniformGravity { gravity: *gravity })
-    }
-
-    /// The term that exerts `factor` times as much.
-    ///
-    /// # Errors
-    /// When `factor` or what it makes is not finite.
-    pub fn scaled(&self, factor: f64) -> Result<Self, Error> {
-        finite("the factor of a load", factor)?;
-        let times = |vector: &Vector3<f64>| {
-            let product = vector * factor;
-            all_finite("the load times its factor", &product).map(|()| product)
-        };
-        Ok(match self {
-            Self::ConstantTorque { vector, frame } => Self::ConstantTorque {
-                vector: times(vector)?,
-                frame: *frame,
-            },
-            Self::ConstantForce {
-                vector,
-                frame,
-                point,
-            } => Self::ConstantForce {
-                vector: times(vector)?,
-                frame: *frame,
-                point: *point,
-            },
-            Self::UniformGravity { gravity } => Self::UniformGravity {
-                gravity: times(gravity)?,
-            },
-            Self::GravityGradient(term) => Self::GravityGradient(term.scaled(factor)),
-            Self::Damping(term) => Self::Damping(term.scaled(factor)?),
-            Self::Sampled(term) => Self::Sampled(term.scaled(factor)?),
-            Self::Feedback(term) => Self::Feedback(term.scaled(factor)?),
-            Self::Scheduled { windows, term } => Self::Scheduled {
-                windows: windows.clone(),
-                term: Box::new(term.scaled(factor)?),
-            },
-        })
+        UniformGravity::new(gravity).map(Self::from)
     }
 
     /// The term in `windows` only; of a scheduled one, where both sets of windows are open.
@@ -144,76 +265,6 @@ impl Term {
         }
     }
 
-    /// Whether it pushes, so that a free body's position depends on it.
-    #[must_use]
-    pub fn exerts_force(&self) -> bool {
-        match self {
-            Self::ConstantForce { .. } | Self::UniformGravity { .. } => true,
-            Self::Scheduled { term, .. } => term.exerts_force(),
-            _ => false,
-        }
-    }
-
-    /// Whether it depends on ω or on the velocity.
-    #[must_use]
-    pub fn depends_on_rates(&self) -> bool {
-        match self {
-            Self::Damping(_) => true,
-            Self::Feedback(feedback) => feedback.damping.iter().any(|&x| x != 0.0),
-            Self::Scheduled { term, .. } => term.depends_on_rates(),
-            _ => false,
-        }
-    }
-
-    /// Whether it depends on the body it acts on.
-    #[must_use]
-    pub fn needs_body(&self) -> bool {
-        match self {
-            Self::ConstantForce { .. } | Self::UniformGravity { .. } | Self::GravityGradient(_) => {
-                true
-            }
-            Self::Scheduled { term, .. } => term.needs_body(),
-            _ => false,
-        }
-    }
-
-    /// Whether it begins with the motion, wherever in time that is.
-    #[must_use]
-    pub fn needs_epoch(&self) -> bool {
-        match self {
-            Self::GravityGradient(term) => term.needs_epoch(),
-            Self::Scheduled { term, .. } => term.needs_epoch(),
-            _ => false,
-        }
-    }
-
-    /// The term of a motion that began at `t`, for the rest of it.
-    #[must_use]
-    pub fn anchored(self, t: f64) -> Self {
-        match self {
-            Self::GravityGradient(term) => Self::GravityGradient(term.anchored(t)),
-            Self::Scheduled { windows, term } => Self::Scheduled {
-                windows,
-                term: Box::new(term.anchored(t)),
-            },
-            term => term,
-        }
-    }
-
-    /// The times at which it is not smooth, where a step must end; not sorted.
-    #[must_use]
-    pub fn breaks(&self) -> Vec<f64> {
-        match self {
-            Self::Sampled(sampled) => sampled.knots().to_vec(),
-            Self::Scheduled { windows, term } => {
-                let mut breaks = windows.switches();
-                breaks.extend(term.breaks());
-                breaks
-            }
-            _ => Vec::new(),
-        }
-    }
-
     /// The term as it acts throughout a span of time without breaks around `middle`: nothing where it is switched off,
     /// else never a scheduled one.
     #[must_use]
@@ -222,116 +273,37 @@ impl Term {
             Self::Scheduled { windows, term } => {
                 (windows.contains(middle)).then(|| term.active(middle))?
             }
-            _ => Some(self),
+            law => Some(law),
         }
     }
 
-    /// Checks that the term, which is not a scheduled one, can act on `subject` from one time to another.
-    ///
-    /// # Errors
-    /// [`Error::OutsideSamples`]; [`Error::PivotedInOrbit`].
-    pub fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
-        match self {
-            Self::Sampled(sampled) => sampled.check(from).and_then(|()| sampled.check(to)),
-            Self::GravityGradient(_) if subject.pivoted => Err(Error::PivotedInOrbit),
-            _ => Ok(()),
-        }
-    }
-
-    /// Force in N and torque in B about the reference point at time `t`. A scheduled term counts as switched on or off by
-    /// the time; in a run by [`Term::active`].
+    /// Whether it pushes, so that a free body's position depends on it.
     #[must_use]
-    pub fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
-        let attitude = &phase.attitude;
-        match self {
-            Self::ConstantTorque { vector, frame } => {
-                Wrench::couple(in_body(vector, *frame, attitude))
-            }
-            Self::ConstantForce {
-                vector,
-                frame,
-                point,
-            } => {
-                let arm = point.map_or(subject.center, |point| point - subject.point);
-                let force = match frame {
-                    Frame::Body => attitude * vector,
-                    Frame::Space => *vector,
-                };
-                Wrench {
-                    force,
-                    torque: arm.cross(&in_body(vector, *frame, attitude)),
-                }
-            }
-            Self::UniformGravity { gravity } => {
-                let weight = gravity * subject.mass;
-                Wrench {
-                    force: weight,
-                    torque: (subject.center).cross(&attitude.inverse_transform_vector(&weight)),
-                }
-            }
-            Self::GravityGradient(term) => Wrench::couple(term.torque(subject, t, attitude)),
-            Self::Damping(damping) => Wrench::couple(damping.torque(&phase.omega)),
-            Self::Sampled(sampled) => {
-                Wrench::couple(in_body(&sampled.at(t), sampled.frame(), attitude))
-            }
-            Self::Feedback(feedback) => Wrench::couple(feedback.torque(attitude, &phase.omega)),
-            Self::Scheduled { windows, term } => {
-                if windows.contains(t) {
-                    term.wrench(subject, t, phase)
-                } else {
-                    Wrench::default()
-                }
-            }
-        }
+    pub fn exerts_force(&self) -> bool {
+        self.character(false).exerts_force
+    }
+
+    /// Whether it depends on ω or on the velocity.
+    #[must_use]
+    pub fn depends_on_rates(&self) -> bool {
+        self.character(false).depends_on_rates
+    }
+
+    /// Whether it depends on the body it acts on.
+    #[must_use]
+    pub fn needs_body(&self) -> bool {
+        self.character(false).needs_body
+    }
+
+    /// Whether it begins with the motion, wherever in time that is.
+    #[must_use]
+    pub fn needs_epoch(&self) -> bool {
+        self.character(false).needs_epoch
     }
 
     /// What of the angular momentum about the reference point it leaves as it is, on a pivoted body or on a free one.
     #[must_use]
     pub fn keeps(&self, pivoted: bool) -> Kept {
-        match self {
-            Self::UniformGravity { gravity } if pivoted => Kept::along(gravity),
-            Self::UniformGravity { .. } => Kept::All,
-            Self::ConstantForce { point: None, .. } if !pivoted => Kept::All,
-            Self::ConstantForce {
-                vector,
-                frame: Frame::Space,
-                ..
-            } => Kept::along(vector),
-            Self::Scheduled { term, .. } => term.keeps(pivoted),
-            _ => Kept::Nothing,
-        }
-    }
-
-    /// The energy of position that the body has in the term's field, when it has one: force and torque are what it loses.
-    ///
-    /// `−m g·r_C` in uniform gravity, `−F·r` of a force constant in N at a point r, and that of [`Feedback::potential`]
-    /// without damping. Positions from the origin of N. A term that depends on time has none.
-    #[must_use]
-    pub fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64> {
-        let place = |arm: &Vector3<f64>| phase.position + phase.attitude * arm;
-        match self {
-            Self::UniformGravity { gravity } => {
-                Some(-subject.mass * gravity.dot(&place(&subject.center)))
-            }
-            Self::ConstantForce {
-                vector,
-                frame: Frame::Space,
-                point,
-            } => {
-                let arm = point.map_or(subject.center, |point| point - subject.point);
-                Some(-vector.dot(&place(&arm)))
-            }
-            Self::Feedback(feedback) => feedback.potential(&phase.attitude),
-            _ => None,
-        }
-    }
-}
-
-/// A vector constant in `frame`, components in B.
-#[inline]
-fn in_body(vector: &Vector3<f64>, frame: Frame, attitude: &UnitQuaternion<f64>) -> Vector3<f64> {
-    match frame {
-        Frame::Body => *vector,
-        Frame::Space => attitude.inverse_transform_vector(vector),
+        self.character(pivoted).keeps
     }
 }

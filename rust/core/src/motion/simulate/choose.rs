@@ -97,7 +97,7 @@ pub(super) fn gravity_alone(terms: &[Term]) -> Option<Vector3<f64>> {
     terms
         .iter()
         .try_fold(Vector3::zeros(), |sum, term| match term {
-            Term::UniformGravity { gravity } => Some(sum + gravity),
+            Term::UniformGravity(law) => Some(sum + law.gravity),
             _ => None,
         })
 }

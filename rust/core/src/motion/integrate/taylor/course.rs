@@ -1,51 +1,19 @@
 //! One motion as the stepper needs it: in principal axes, in a unit of time of its own, from break to break of its load.
 
-use nalgebra::{Matrix3, Matrix3x4, Quaternion, UnitQuaternion, Vector3, Vector4};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3, Vector4};
 
-use super::field::{Field, Parts};
-use super::frame::{Precision, conjugate, cross_matrix, normalized, product};
+use super::field::Field;
+use super::frame::Precision;
 use super::moment::{Moment, Orbit};
 use crate::error::Error;
 use crate::mass::validity::ROUNDING;
-use crate::motion::loads::{Feedback, Frame, GravityGradient, Sampled, Term};
+use crate::motion::loads::{Axes, Frame, Linear, Parts, Term};
 use crate::motion::problem::Task;
 use crate::motion::problem::limits::check_steps;
 use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::number::Real;
-
-/// What acts between two breaks, linear in what varies: torques about the reference point in principal axes.
-#[derive(Clone, Debug)]
-struct Linear<'a, X> {
-    constant: Vector3<X>,
-    on_omega: Matrix3<X>,
-    on_attitude: Matrix3x4<X>,
-    /// E of quadratic damping.
-    quadratic: Matrix3<X>,
-    /// Torques `M R_PN v` of vectors v fixed in space.
-    on_space: Vec<(Vector3<X>, Matrix3<X>)>,
-    /// Forces in N, and in principal axes.
-    force: Vector3<X>,
-    thrust: Vector3<X>,
-    sampled: Vec<&'a Sampled>,
-    gradients: Vec<&'a GravityGradient>,
-}
-
-impl<X: Real> Default for Linear<'_, X> {
-    fn default() -> Self {
-        Self {
-            constant: Vector3::zeros(),
-            on_omega: Matrix3::zeros(),
-            on_attitude: Matrix3x4::zeros(),
-            quadratic: Matrix3::zeros(),
-            on_space: Vec::new(),
-            force: Vector3::zeros(),
-            thrust: Vector3::zeros(),
-            sampled: Vec::new(),
-            gradients: Vec::new(),
-        }
-    }
-}
+use crate::numerics::quaternion::{conjugate, normalized, product};
 
 /// The scalar part w of a feedback's error, which is linear in the attitude (x, y, z, w), and the sign of it that the torques
 /// are made for.
@@ -143,15 +111,16 @@ impl<'a, X: Precision> Course<'a, X> {
     fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
         let mut linear = Linear::default();
         let mut switches: Vec<Switch<X>> = Vec::new();
+        let axes = self.principal_axes();
         for term in self.acting(self.segment_start(), self.breaks[self.segment]) {
-            if let Term::Feedback(feedback) = term {
-                let scalar = self.error_scalar(feedback);
-                let mut switch = Switch { scalar, side: 1.0 };
+            let mut side = 1.0;
+            if let Some(scalar) = term.switching(&axes) {
+                let mut switch = Switch { scalar, side };
                 switch.side = switch.sign(state);
+                side = switch.side;
                 switches.push(switch);
             }
-            let side = switches.last().map_or(1.0, |switch| switch.side);
-            self.add(&mut linear, term, side);
+            term.add_to(&mut linear, &axes, side);
         }
         self.switches = switches;
         self.check_massless(&linear, state)?;
@@ -159,77 +128,12 @@ impl<'a, X: Precision> Course<'a, X> {
         Ok(())
     }
 
-    fn add(&self, linear: &mut Linear<'a, X>, term: &'a Term, sign: f64) {
-        let subject = &self.task.subject;
-        let exact = |vector: &Vector3<f64>| vector.map(X::from);
-        let in_p = |vector: &Vector3<X>| self.axes.tr_mul(vector);
-        let turned = |matrix: &Matrix3<f64>| self.axes.tr_mul(&matrix.map(X::from)) * self.axes;
-        match term {
-            Term::ConstantTorque { vector, frame } => match frame {
-                Frame::Body => linear.constant += in_p(&exact(vector)),
-                Frame::Space => linear.on_space.push((exact(vector), Matrix3::identity())),
-            },
-            Term::ConstantForce {
-                vector,
-                frame,
-                point,
-            } => {
-                let arm = point.map_or(exact(&subject.center), |point| {
-                    exact(&point) - exact(&subject.point)
-                });
-                let vector = exact(vector);
-                match frame {
-                    Frame::Body => {
-                        linear.constant += in_p(&arm.cross(&vector));
-                        linear.thrust += in_p(&vector);
-                    }
-                    Frame::Space => {
-                        if turns(term, subject.pivoted) {
-                            let lever = cross_matrix(&in_p(&arm));
-                            linear.on_space.push((vector, lever));
-                        }
-                        linear.force += vector;
-                    }
-                }
-            }
-            Term::UniformGravity { gravity } => {
-                let (gravity, mass) = (exact(gravity), X::from(subject.mass));
-                if subject.pivoted {
-                    let lever = cross_matrix(&in_p(&(exact(&subject.center) * mass)));
-                    linear.on_space.push((gravity, lever));
-                }
-                linear.force += gravity * mass;
-            }
-            Term::Damping(damping) => {
-                linear.on_omega -= turned(&damping.linear);
-                linear.quadratic += turned(&damping.quadratic);
-            }
-            Term::Feedback(feedback) => {
-                linear.on_omega -= turned(&feedback.damping);
-                let stiffness = self.axes.tr_mul(&feedback.stiffness.map(X::from));
-                linear.on_attitude -= stiffness * self.error_vector(feedback) * X::from(sign);
-            }
-            Term::Sampled(sampled) => linear.sampled.push(sampled),
-            Term::GravityGradient(gradient) => linear.gradients.push(gradient),
-            Term::Scheduled { .. } => {} // never active itself
+    fn principal_axes(&self) -> Axes<'_, X> {
+        Axes {
+            subject: &self.task.subject,
+            columns: &self.axes,
+            q_bp: &self.q_bp,
         }
-    }
-
-    /// `q_target⁻¹ ∘ q_NP ∘ q_PB` is linear in (x, y, z, w) of `q_NP`: its column for each of them.
-    fn error_columns(&self, feedback: &Feedback) -> [[X; 4]; 4] {
-        let (left, right) = (X::quaternion(&feedback.target), self.q_bp);
-        let [o, l] = [X::zero(), X::one()];
-        let units = [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, l]];
-        units.map(|unit| product(product(conjugate(left), unit), conjugate(right)))
-    }
-
-    fn error_vector(&self, feedback: &Feedback) -> Matrix3x4<X> {
-        let columns = self.error_columns(feedback);
-        Matrix3x4::from_columns(&columns.map(|[x, y, z, _]| Vector3::new(x, y, z)))
-    }
-
-    fn error_scalar(&self, feedback: &Feedback) -> Vector4<X> {
-        Vector4::from(self.error_columns(feedback).map(|[_, _, _, w]| w))
     }
 
     /// A torque along an axis without moment of inertia has nothing to turn.
@@ -571,67 +475,8 @@ impl<'a, X: Precision> Course<'a, X> {
 /// What kind of equations a sum of terms leads to. Apart from quadratic damping, which may be zero, and directions, which
 /// may all be vertical, it does not depend on the numbers in them.
 pub(super) fn parts(terms: &[Term], pivoted: bool) -> Parts {
-    let mut parts = Parts::default();
-    let mut needs_all = false;
-    for term in terms {
-        let term = match term {
-            Term::Scheduled { term, .. } => term,
-            term => term,
-        };
-        if turns(term, pivoted) {
-            parts.directions = 1;
-            needs_all |= !is_vertical(term);
-        }
-        parts.is_pushed |= !pivoted && term.exerts_force();
-        match term {
-            Term::ConstantForce {
-                frame: Frame::Body, ..
-            } => needs_all |= !pivoted,
-            Term::Damping(damping) => {
-                parts.on_omega = true;
-                parts.quadratic |= damping.quadratic != Matrix3::zeros();
-            }
-            Term::Feedback(_) => {
-                parts.on_omega = true;
-                parts.on_attitude = true;
-            }
-            Term::Sampled(sampled) => {
-                parts.is_timed = true;
-                needs_all |= sampled.frame() == Frame::Space;
-            }
-            Term::GravityGradient(_) => {
-                parts.is_timed = true;
-                parts.gradients += 1;
-            }
-            _ => {}
-        }
-    }
-    if needs_all {
-        parts.directions = 3;
-    }
-    parts
-}
-
-/// Whether the vector of the term is along the axis 3 of its frame.
-fn is_vertical(term: &Term) -> bool {
-    match term {
-        Term::ConstantTorque { vector, .. }
-        | Term::ConstantForce { vector, .. }
-        | Term::UniformGravity { gravity: vector } => vector.x == 0.0 && vector.y == 0.0,
-        _ => false,
-    }
-}
-
-/// Whether the term exerts a torque through a vector fixed in space.
-fn turns(term: &Term, pivoted: bool) -> bool {
-    match term {
-        Term::ConstantTorque { frame, .. } => *frame == Frame::Space,
-        Term::ConstantForce { frame, point, .. } => {
-            *frame == Frame::Space && (pivoted || point.is_some())
-        }
-        Term::UniformGravity { .. } => pivoted,
-        _ => false,
-    }
+    let parts = terms.iter().map(|term| term.character(pivoted).parts);
+    parts.fold(Parts::default(), Parts::and)
 }
 
 fn over<X: Real>(number: X, moment: X) -> X {

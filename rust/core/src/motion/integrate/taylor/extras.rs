@@ -2,12 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::field::{Field, Parts};
+use super::field::Field;
 use super::frame::Precision;
 use super::moment::{Moment, Orbit};
 use super::pack::Pack;
 use super::series::Series;
 use super::terms::{Analytic, Forced, Gradient, Quadratic, STILL};
+use crate::motion::loads::Parts;
 use crate::numerics::number::{Number, Real};
 
 /// Those that the load has; most loads have none.

@@ -2,6 +2,7 @@
 
 use super::pack::Pack;
 use super::series::Coefficient;
+use crate::motion::loads::Parts;
 use crate::numerics::number::Number;
 
 type Square<T> = [[T; 3]; 3];
@@ -22,43 +23,6 @@ pub(super) struct Field<T, const B: usize> {
     /// Force over mass in N, and that constant in the body.
     pub(super) force: [T; 3],
     pub(super) thrust: [T; 3],
-}
-
-/// Which parts the equations have; the others are zero, and are left out.
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "the parts come in every combination"
-)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Parts {
-    /// How many directions fixed in space: none, the vertical axis, or all.
-    pub(super) directions: usize,
-    pub(super) on_omega: bool,
-    pub(super) on_attitude: bool,
-    pub(super) quadratic: bool,
-    /// How many gravity gradients.
-    pub(super) gradients: usize,
-    /// Whether parts depend on time.
-    pub(super) is_timed: bool,
-    /// Whether a force acts on a free body.
-    pub(super) is_pushed: bool,
-}
-
-impl Parts {
-    /// The parts of two motions under terms of the same kinds: of these only the directions and quadratic damping depend on
-    /// the numbers in them.
-    pub(super) fn with(self, other: &Self) -> Self {
-        Self {
-            directions: self.directions.max(other.directions),
-            quadratic: self.quadratic || other.quadratic,
-            ..*other
-        }
-    }
-
-    /// Whether the law may change with the state: by the sign of a feedback, or of ω that passes through zero.
-    pub(super) fn may_flip(&self) -> bool {
-        self.on_attitude || self.quadratic
-    }
 }
 
 impl<T: Copy, const B: usize> Field<T, B> {

@@ -1,12 +1,14 @@
 //! The principal frame of a motion, to the precision of its numbers.
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::Matrix3;
 
 use crate::motion::attitude::{components, from_axes};
 use crate::motion::free::RefinedPrincipal;
+use crate::motion::loads::Exact;
 use crate::motion::problem::Task;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;
+use crate::numerics::quaternion::normalized;
 
 /// Moments and axes about the reference point.
 #[derive(Clone, Copy, Debug)]
@@ -22,13 +24,11 @@ pub(super) struct Principal<X> {
 }
 
 /// The numbers of a run: doubles, or of twice their precision.
-pub(super) trait Precision: Real {
+pub(super) trait Precision: Exact {
     /// Whether an orbit goes from step to step by its own series: Kepler's equation is solved in doubles.
     const CARRIES_ORBITS: bool;
     /// The principal frame of what is simulated.
     fn principal(task: &Task<'_>) -> Principal<Self>;
-    /// (x, y, z, w) of a rotation.
-    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4];
 }
 
 impl Precision for f64 {
@@ -42,10 +42,6 @@ impl Precision for f64 {
             axes,
             q_bp: components(&from_axes(&axes)),
         }
-    }
-
-    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
-        components(rotation)
     }
 }
 
@@ -64,36 +60,6 @@ impl Precision for DoubleDouble {
             q_bp: of_matrix(&axes),
         }
     }
-
-    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
-        normalized(components(rotation).map(Self::from))
-    }
-}
-
-/// p ∘ q, components (x, y, z, w).
-pub(super) fn product<X: Real>(p: [X; 4], q: [X; 4]) -> [X; 4] {
-    let ([a, b, c, d], [x, y, z, w]) = (p, q);
-    [
-        d * x + a * w + b * z - c * y,
-        d * y + b * w + c * x - a * z,
-        d * z + c * w + a * y - b * x,
-        d * w - a * x - b * y - c * z,
-    ]
-}
-
-pub(super) fn conjugate<X: Real>([x, y, z, w]: [X; 4]) -> [X; 4] {
-    [-x, -y, -z, w]
-}
-
-pub(super) fn normalized<X: Real>(q: [X; 4]) -> [X; 4] {
-    let length = q.into_iter().fold(X::zero(), |sum, x| sum + x * x).root();
-    q.map(|x| x / length)
-}
-
-/// `M v = a × v`.
-pub(super) fn cross_matrix<X: Real>(a: &Vector3<X>) -> Matrix3<X> {
-    let zero = X::zero();
-    Matrix3::new(zero, -a.z, a.y, a.z, zero, -a.x, -a.y, a.x, zero)
 }
 
 /// (x, y, z, w) of a rotation matrix, from the largest of the four.
@@ -137,6 +103,8 @@ fn of_matrix<X: Real>(m: &Matrix3<X>) -> [X; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::quaternion::{conjugate, product};
+    use nalgebra::{UnitQuaternion, Vector3};
 
     #[test]
     fn quaternions_of_matrices_turn_as_they_do() {
@@ -147,7 +115,7 @@ mod tests {
             (0.0, 0.1, 3.1),
         ] {
             let q = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-            let q = <DoubleDouble as Precision>::quaternion(&q);
+            let q = <DoubleDouble as Exact>::quaternion(&q);
             let turned = |i: usize| {
                 let mut e = [DoubleDouble::default(); 4];
                 e[i] = 1.0.into();

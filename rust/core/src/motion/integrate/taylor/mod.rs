@@ -47,12 +47,11 @@ use alone::Alone;
 use course::{Course, parts};
 pub(crate) use drive::Step;
 use drive::{Job, See, Settings, drive};
-use field::Parts;
 use frame::Precision;
 use twin::Twin;
 
 use crate::error::Error;
-use crate::motion::loads::Term;
+use crate::motion::loads::{Parts, Term};
 use crate::motion::problem::{End, Run, Task};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::double_double::DoubleDouble;

@@ -11,7 +11,9 @@ use super::numbers::{
 use super::spline::Spline;
 use crate::error::Error;
 use crate::motion::attitude::from_axes;
-use crate::motion::loads::{Feedback, Frame, Subject, Term};
+use crate::motion::loads::{
+    ConstantForce, ConstantTorque, Feedback, Frame, Subject, Term, UniformGravity,
+};
 
 /// The part of the fastest ω below which quadratic damping is left out: the error of the derivatives is its square, that of ω its
 /// cube.
@@ -100,23 +102,23 @@ impl Place<'_> {
             seen: Rows::default(),
         };
         Ok(match term {
-            Term::ConstantTorque { vector, frame } => {
+            Term::ConstantTorque(ConstantTorque { vector, frame }) => {
                 let vector = block.vector(vector, first);
                 vec![match frame {
                     Frame::Body => Act::Constant(inertia.principal(&vector, over_torque)),
                     Frame::Space => in_space(&vector, None),
                 }]
             }
-            Term::ConstantForce { point: None, .. } | Term::UniformGravity { .. }
+            Term::ConstantForce(ConstantForce { point: None, .. }) | Term::UniformGravity(_)
                 if !subject.pivoted =>
             {
                 Vec::new()
             }
-            Term::ConstantForce {
+            Term::ConstantForce(ConstantForce {
                 vector,
                 frame,
                 point,
-            } => {
+            }) => {
                 let vector = block.vector(vector, first);
                 let arm = match point {
                     None => inertia.arm,
@@ -136,7 +138,7 @@ impl Place<'_> {
                     Frame::Space => in_space(&vector, Some(arm)),
                 }]
             }
-            Term::UniformGravity { gravity } => {
+            Term::UniformGravity(UniformGravity { gravity }) => {
                 let lever = inertia.arm.map(|x| x * inertia.mass);
                 vec![in_space(&block.vector(gravity, first), Some(lever))]
             }

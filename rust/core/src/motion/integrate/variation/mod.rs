@@ -34,7 +34,6 @@ use nalgebra::{Matrix6, Matrix6x3, Vector6};
 
 use self::numbers::{Block, WIDTH};
 use self::parameters::{ATTITUDE, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, count};
-pub use self::parameters::{Parameter, parameters};
 use self::walk::Walk;
 use crate::error::Error;
 use crate::motion::loads::Term;
@@ -55,7 +54,7 @@ pub struct Variation {
     pub center_of_mass: Matrix6x3<f64>,
     /// By the mass.
     pub mass: Vector6<f64>,
-    /// By the numbers of the load's terms, one after the other, in the order of [`parameters`].
+    /// By the numbers of the load's terms, one after the other, in the order of [`Term::parameters`].
     pub load: Vec<Vector6<f64>>,
 }
 

@@ -1,6 +1,6 @@
 //! The order of the series and the size of their last terms.
 
-use crate::motion::integrate::taylor::field::Parts;
+use crate::motion::loads::Parts;
 
 /// Relative to the tolerance of a step, the size of the last term of its series: the terms left out are a quarter of that,
 /// and at the tightest tolerance stay below the rounding of the state even where they all have the same sign.

@@ -1,0 +1,144 @@
+//! A constant force at a point of the body.
+
+use nalgebra::Vector3;
+
+use super::law::{Character, Kept, Law, Parts, directions_of};
+use super::linear::{Axes, Exact, Linear, exact};
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::wrench::{Wrench, in_body, times};
+use crate::error::{Error, all_finite};
+use crate::motion::kinematics::Frame;
+use crate::motion::state::Phase;
+use crate::numerics::quaternion::cross_matrix;
+
+/// A force constant in `frame`, at a point of the body: `N = (p − P)×F` about the reference point P.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConstantForce {
+    /// Its components.
+    pub vector: Vector3<f64>,
+    /// In which frame they are constant: the thrust of a nozzle turns with the body.
+    pub frame: Frame,
+    /// Where it acts, from the origin of B; at C where there is none.
+    pub point: Option<Vector3<f64>>,
+}
+
+impl ConstantForce {
+    /// With checked components, at `point` (from the origin of B), or at C.
+    ///
+    /// # Errors
+    /// When a component is not finite.
+    pub fn new(
+        vector: &Vector3<f64>,
+        frame: Frame,
+        point: Option<&Vector3<f64>>,
+    ) -> Result<Self, Error> {
+        all_finite("vector", vector)?;
+        all_finite("point", point.into_iter().flatten())?;
+        Ok(Self {
+            vector: *vector,
+            frame,
+            point: point.copied(),
+        })
+    }
+
+    /// From the reference point to where it acts.
+    fn arm(&self, subject: &Subject) -> Vector3<f64> {
+        (self.point).map_or(subject.center, |point| point - subject.point)
+    }
+
+    /// Whether it may turn a body that is pivoted or free.
+    fn turns(&self, pivoted: bool) -> bool {
+        pivoted || self.point.is_some()
+    }
+}
+
+impl Law for ConstantForce {
+    fn character(&self, pivoted: bool) -> Character {
+        Character {
+            exerts_force: true,
+            depends_on_rates: false,
+            needs_body: true,
+            needs_epoch: false,
+            keeps: match self.frame {
+                _ if !self.turns(pivoted) => Kept::All,
+                Frame::Space => Kept::along(&self.vector),
+                Frame::Body => Kept::Nothing,
+            },
+            parts: Parts {
+                directions: match self.frame {
+                    Frame::Space if self.turns(pivoted) => directions_of(&self.vector),
+                    Frame::Body if !pivoted => 3,
+                    _ => 0,
+                },
+                is_pushed: !pivoted,
+                ..Parts::default()
+            },
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let mut parameters = vec![Parameter::new("vector", &[3])];
+        if self.point.is_some() {
+            parameters.push(Parameter::new("point", &[3]));
+        }
+        parameters
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        Ok(Self {
+            vector: times(&self.vector, factor)?,
+            ..*self
+        })
+    }
+
+    fn anchored(self, _: f64) -> Self {
+        self
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn wrench(&self, subject: &Subject, _: f64, phase: &Phase) -> Wrench {
+        let force = match self.frame {
+            Frame::Body => phase.attitude * self.vector,
+            Frame::Space => self.vector,
+        };
+        Wrench {
+            force,
+            torque: (self.arm(subject)).cross(&in_body(&self.vector, self.frame, &phase.attitude)),
+        }
+    }
+
+    /// `−F·r` of a force constant in N at the point r, from the origin of N.
+    fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64> {
+        let place = || phase.position + phase.attitude * self.arm(subject);
+        (self.frame == Frame::Space).then(|| -self.vector.dot(&place()))
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        let subject = axes.subject;
+        let arm = self.point.map_or(exact(&subject.center), |point| {
+            exact::<X>(&point) - exact(&subject.point)
+        });
+        let vector = exact(&self.vector);
+        match self.frame {
+            Frame::Body => {
+                linear.constant += axes.principal(&arm.cross(&vector));
+                linear.thrust += axes.principal(&vector);
+            }
+            Frame::Space => {
+                if self.turns(subject.pivoted) {
+                    let lever = cross_matrix(&axes.principal(&arm));
+                    linear.on_space.push((vector, lever));
+                }
+                linear.force += vector;
+            }
+        }
+    }
+}

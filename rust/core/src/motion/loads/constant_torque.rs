@@ -1,0 +1,93 @@
+//! A constant torque.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::law::{Character, Kept, Law, Parts, directions_of};
+use super::linear::{Axes, Exact, Linear, exact};
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::wrench::{Wrench, in_body, times};
+use crate::error::{Error, all_finite};
+use crate::motion::kinematics::Frame;
+use crate::motion::state::Phase;
+
+/// A torque about the reference point of the motion, constant in `frame`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConstantTorque {
+    /// Its components.
+    pub vector: Vector3<f64>,
+    /// In which frame they are constant: a torque constant in B turns with the body.
+    pub frame: Frame,
+}
+
+impl ConstantTorque {
+    /// With checked components.
+    ///
+    /// # Errors
+    /// When a component is not finite.
+    pub fn new(vector: &Vector3<f64>, frame: Frame) -> Result<Self, Error> {
+        all_finite("vector", vector)?;
+        Ok(Self {
+            vector: *vector,
+            frame,
+        })
+    }
+}
+
+impl Law for ConstantTorque {
+    fn character(&self, _: bool) -> Character {
+        Character {
+            exerts_force: false,
+            depends_on_rates: false,
+            needs_body: false,
+            needs_epoch: false,
+            keeps: Kept::Nothing,
+            parts: Parts {
+                directions: match self.frame {
+                    Frame::Body => 0,
+                    Frame::Space => directions_of(&self.vector),
+                },
+                ..Parts::default()
+            },
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("vector", &[3])]
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        Ok(Self {
+            vector: times(&self.vector, factor)?,
+            ..*self
+        })
+    }
+
+    fn anchored(self, _: f64) -> Self {
+        self
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
+        Wrench::couple(in_body(&self.vector, self.frame, &phase.attitude))
+    }
+
+    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+        None
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        let vector = exact(&self.vector);
+        match self.frame {
+            Frame::Body => linear.constant += axes.principal(&vector),
+            Frame::Space => linear.on_space.push((vector, Matrix3::identity())),
+        }
+    }
+}

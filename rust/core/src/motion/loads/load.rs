@@ -1,0 +1,56 @@
+//! A load, whoever computes it.
+
+use super::switch::Switch;
+use super::term::Term;
+use super::wrench::Wrench;
+use crate::error::Error;
+use crate::motion::state::Phase;
+
+/// A load as a function of time and state, whoever computes it.
+pub trait Load {
+    /// What may go wrong in it, besides what the equations of motion themselves may refuse.
+    type Error: From<Error>;
+
+    /// Its terms, when it is a sum of analytic terms and nothing else.
+    fn analytic(&self) -> Option<&[Term]> {
+        None
+    }
+
+    /// Whether it may push, so that a free body's position depends on it.
+    fn exerts_force(&self) -> bool;
+
+    /// Whether it may depend on ω or on the velocity: whether it can do else than exchange the energy of motion for that of
+    /// position.
+    fn depends_on_rates(&self) -> bool;
+
+    /// The times at which it is not smooth, where a step must end; in any order.
+    fn breaks(&self) -> Vec<f64>;
+
+    /// From now on it is asked for times within from..to alone, both ends included, between which there are no breaks.
+    ///
+    /// # Errors
+    /// When it cannot act there.
+    fn enter(&mut self, from: f64, to: f64) -> Result<(), Self::Error>;
+
+    /// From now on its law is the one that it has at `phase`, on both sides of where a sign in it changes, until it is told again: so that
+    /// it is smooth over a step. Before it is told for the first time in a span, the law changes with the state.
+    fn settle(&mut self, phase: &Phase) {
+        let _ = phase;
+    }
+
+    /// The signs that it was settled for; none of a law without such signs.
+    fn switches(&self) -> Vec<Switch> {
+        Vec::new()
+    }
+
+    /// Changes its law to that beyond the zero of switch number `index`.
+    fn flip(&mut self, index: usize) {
+        let _ = index;
+    }
+
+    /// Force in N and torque in B about the reference point.
+    ///
+    /// # Errors
+    /// Ends the integration and comes back to the caller as it is.
+    fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Self::Error>;
+}

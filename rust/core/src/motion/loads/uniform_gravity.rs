@@ -1,0 +1,102 @@
+//! Weight in a uniform field.
+
+use nalgebra::Vector3;
+
+use super::law::{Character, Kept, Law, Parts, directions_of};
+use super::linear::{Axes, Exact, Linear, exact};
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::wrench::{Wrench, times};
+use crate::error::{Error, all_finite};
+use crate::motion::state::Phase;
+use crate::numerics::quaternion::cross_matrix;
+
+/// The weight m g at C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UniformGravity {
+    /// g, in N.
+    pub gravity: Vector3<f64>,
+}
+
+impl UniformGravity {
+    /// In the field g (in N).
+    ///
+    /// # Errors
+    /// When a component is not finite.
+    pub fn new(gravity: &Vector3<f64>) -> Result<Self, Error> {
+        all_finite("gravity", gravity)?;
+        Ok(Self { gravity: *gravity })
+    }
+}
+
+impl Law for UniformGravity {
+    fn character(&self, pivoted: bool) -> Character {
+        Character {
+            exerts_force: true,
+            depends_on_rates: false,
+            needs_body: true,
+            needs_epoch: false,
+            keeps: if pivoted {
+                Kept::along(&self.gravity)
+            } else {
+                Kept::All
+            },
+            parts: Parts {
+                directions: if pivoted {
+                    directions_of(&self.gravity)
+                } else {
+                    0
+                },
+                is_pushed: !pivoted,
+                ..Parts::default()
+            },
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("gravity", &[3])]
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        Ok(Self {
+            gravity: times(&self.gravity, factor)?,
+        })
+    }
+
+    fn anchored(self, _: f64) -> Self {
+        self
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn wrench(&self, subject: &Subject, _: f64, phase: &Phase) -> Wrench {
+        let weight = self.gravity * subject.mass;
+        let in_body = phase.attitude.inverse_transform_vector(&weight);
+        Wrench {
+            force: weight,
+            torque: subject.center.cross(&in_body),
+        }
+    }
+
+    /// `−m g·r_C`, from the origin of N.
+    fn potential(&self, subject: &Subject, phase: &Phase) -> Option<f64> {
+        let place = phase.position + phase.attitude * subject.center;
+        Some(-subject.mass * self.gravity.dot(&place))
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        let (gravity, mass) = (exact(&self.gravity), X::from(axes.subject.mass));
+        if axes.subject.pivoted {
+            let lever = exact(&axes.subject.center) * mass;
+            let lever = cross_matrix(&axes.principal(&lever));
+            linear.on_space.push((gravity, lever));
+        }
+        linear.force += gravity * mass;
+    }
+}
