@@ -11,8 +11,9 @@
 //! The coefficient of order k of u² is twice the sum of `u_j u_{k−j}` over j < k/2, and for even k the square in the middle.
 //! The sums begin in the middle, so that the newest coefficients are last.
 
-use super::pack::Pack;
+use super::pack::{Pack, cross_term};
 use crate::numerics::lane::Lane;
+use crate::numerics::number::Number;
 
 /// The axis of space that is direction `b` of `B`.
 pub(super) const fn axis<const B: usize>(b: usize) -> usize {
@@ -81,6 +82,23 @@ pub(super) fn halved<L: Lane, const R: usize>(roots: &[Pack<L, R>; 6]) -> [Pack<
     let half = Pack::new(0.5);
     let [a, b, c, d, e, f] = *roots;
     [a * half, b * half, c * half, d * half, e * half, f * half]
+}
+
+/// A direction fixed in space as seen from the body: `Rᵀ e` for the attitude (x, y, z, w).
+#[inline(always)]
+pub(super) fn seen<L: Number, const R: usize>(
+    q: &[Pack<L, R>; 4],
+    e: &[Pack<L, R>; 3],
+) -> [Pack<L, R>; 3] {
+    let [x, y, z, w] = *q;
+    let (u, zero) = ([x, y, z], [Pack::new(0.0); 3]);
+    let t = cross_term(&u, e, zero);
+    let t = [t[0] + t[0], t[1] + t[1], t[2] + t[2]];
+    let mut seen = cross_term(&u, &t, zero);
+    for i in 0..3 {
+        seen[i] = (-w).mul_add(t[i], e[i]) + seen[i];
+    }
+    seen
 }
 
 #[cfg(test)]

@@ -4,8 +4,9 @@
 //! ω. Both are linear in the state, so that their series are known with it, and all their zeros within a step are
 //! found, however many and however close.
 
-use super::{Lanes, Pack};
+use super::lanes::{Landing, Lanes};
 use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::pack::Pack;
 use crate::motion::integrate::taylor::series::Series;
 use crate::motion::integrate::taylor::twin::COUNT;
 use crate::numerics::number::Number;
@@ -13,14 +14,6 @@ use crate::numerics::sign_changes::sign_changes;
 
 /// How far behind the zero of its series, relative to the step, a function is asked for its sign.
 const HIDDEN: f64 = 1e-9;
-
-/// Why the equations of a motion change after a step.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Landing {
-    None,
-    Break,
-    Flip,
-}
 
 impl<L, S, const B: usize, const R: usize> Lanes<'_, L, S, B, R>
 where

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::Lanes;
+use super::lanes::Lanes;
 use crate::motion::integrate::taylor::course::Course;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::Pack;

@@ -1,0 +1,134 @@
+//! Motions side by side.
+
+use super::settings::Settings;
+use crate::error::Error;
+use crate::motion::integrate::taylor::course::Course;
+use crate::motion::integrate::taylor::extras::Extras;
+use crate::motion::integrate::taylor::field::Field;
+use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::push::Push;
+use crate::motion::integrate::taylor::series::Series;
+use crate::motion::integrate::taylor::step::Compensated;
+use crate::motion::problem::{Effort, Run};
+use crate::numerics::number::{Number, Real};
+
+/// A motion to be run, and its run, which is at its start.
+pub(in crate::motion::integrate::taylor) struct Job<'a, X: Precision> {
+    pub(in crate::motion::integrate::taylor) course: Course<'a, X>,
+    pub(in crate::motion::integrate::taylor) run: &'a mut Run<Error>,
+}
+
+/// What a motion comes to next.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    /// A time of output.
+    Output,
+    /// A break of its load.
+    Break,
+}
+
+/// Why the equations of a motion change after a step.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Landing {
+    None,
+    Break,
+    Flip,
+}
+
+/// A motion under way.
+pub(super) struct Lead<'a, X: Precision> {
+    pub(super) job: Job<'a, X>,
+    /// The next output.
+    pub(super) next: usize,
+    pub(super) stop: Stop,
+    pub(super) steps: u64,
+    /// Changes of the law without a step between them.
+    pub(super) flips_at_once: u32,
+}
+
+/// `R` motions under way. Times are since the start, in the unit of each motion.
+pub(super) struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const R: usize> {
+    pub(super) settings: Settings,
+    pub(super) series: S,
+    pub(super) field: Field<Pack<L, R>, B>,
+    pub(super) extras: Extras<Pack<L, R>>,
+    pub(super) directions: [[Pack<L, R>; 3]; B],
+    pub(super) state: Compensated<Pack<L, R>>,
+    pub(super) push: Option<Box<Push<Pack<L, R>>>>,
+    pub(super) leads: [Option<Lead<'a, L::Real>>; R],
+    /// The times now and of the next stop, each with what rounding has left out.
+    pub(super) now: [(f64, f64); R],
+    pub(super) stop: [(f64, f64); R],
+    /// The largest |ω| so far, or what else counts as large, and 1 or −1 for backward in time.
+    pub(super) fastest: [f64; R],
+    pub(super) direction: [f64; R],
+    /// The components of ω that are constant in each motion.
+    pub(super) still: [[bool; 3]; R],
+}
+
+impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
+where
+    L: Number<Real: Precision>,
+    S: Series<Pack<L, R>, B>,
+{
+    /// All empty.
+    #[inline(always)]
+    pub(super) fn new(settings: Settings) -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            settings,
+            series: S::new(),
+            field: Field::none(zero),
+            extras: Extras::new(&settings.parts),
+            directions: [[zero; 3]; B],
+            state: Compensated::new(),
+            push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
+            leads: [const { None }; R],
+            now: [(0.0, 0.0); R],
+            stop: [(f64::INFINITY, 0.0); R],
+            fastest: [1.0; R],
+            direction: [1.0; R],
+            still: [[true; 3]; R],
+        }
+    }
+
+    /// Tells the series which component of ω is constant in all motions.
+    pub(super) fn hold(&mut self) {
+        let is_still = |n: &usize| self.still.iter().all(|row| row[*n]);
+        let still = [0, 2].into_iter().find(is_still);
+        self.series.hold(still.filter(|_| !self.extras.is_timed()));
+    }
+
+    /// The time from now to the next stop, positive also backward in time.
+    #[inline(always)]
+    pub(super) fn gap(&self, row: usize) -> f64 {
+        let ((now, now_rest), (stop, stop_rest)) = (self.now[row], self.stop[row]);
+        ((stop - now) + (stop_rest - now_rest)) * self.direction[row]
+    }
+
+    /// The time from now to the next stop.
+    #[inline(always)]
+    pub(super) fn time_to_stop(&self, row: usize) -> L::Real {
+        let ((now, now_rest), (stop, stop_rest)) = (self.now[row], self.stop[row]);
+        L::Real::pair(stop, -now) + L::Real::pair(stop_rest, -now_rest)
+    }
+
+    pub(super) fn time(&self, row: usize) -> f64 {
+        let lead = self.leads[row].as_ref();
+        lead.map_or(f64::NAN, |lead| lead.job.course.time(self.now[row]))
+    }
+
+    pub(super) fn fraction(&self) -> f64 {
+        let lead = self.leads[0].as_ref();
+        lead.map_or(1.0, |lead| lead.job.course.fraction(self.now[0].0))
+    }
+}
+
+/// An evaluation is that of all coefficients of a step.
+pub(super) fn effort(steps: u64) -> Effort {
+    Effort {
+        steps,
+        evaluations: steps,
+    }
+}

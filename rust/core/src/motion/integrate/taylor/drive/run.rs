@@ -1,0 +1,71 @@
+//! Until all motions are done.
+
+use std::ops::ControlFlow;
+
+use super::lanes::{Job, Lanes};
+use super::settings::Settings;
+use super::shown::See;
+use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::series::Series;
+use crate::motion::problem::End;
+use crate::numerics::number::Number;
+
+/// Steps between two looks at the watch.
+const PATIENCE: u32 = 64;
+
+/// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
+/// done, and may stop them. `see` is for motions one after the other.
+#[inline(always)]
+pub(in crate::motion::integrate::taylor) fn drive<
+    L: Number<Real: Precision>,
+    S: Series<Pack<L, R>, B>,
+    const B: usize,
+    const R: usize,
+>(
+    settings: Settings,
+    jobs: &mut dyn Iterator<Item = Job<'_, L::Real>>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    mut see: Option<See>,
+) -> ControlFlow<()> {
+    let mut lanes = Lanes::<L, S, B, R>::new(settings);
+    let mut patience = PATIENCE;
+    let mut idle = true;
+    loop {
+        if idle {
+            for row in 0..R {
+                if lanes.leads[row].is_none() {
+                    lanes.load(row, jobs);
+                }
+            }
+            if lanes.leads.iter().all(Option::is_none) {
+                return ControlFlow::Continue(());
+            }
+        }
+        let before = if R == 1 && see.is_some() {
+            lanes.before()
+        } else {
+            None
+        };
+        idle = lanes.step();
+        if let (Some(see), Some(before)) = (&mut see, before) {
+            let step = lanes.seen(before);
+            idle |= lanes.refuse_endless();
+            if see(step, idle).is_break() {
+                lanes.end(0, End::Stopped);
+                return ControlFlow::Break(());
+            }
+        }
+        patience -= 1;
+        if patience == 0 {
+            patience = PATIENCE;
+            idle |= lanes.refuse_endless();
+            if watch(lanes.fraction()).is_break() {
+                for row in 0..R {
+                    lanes.end(row, End::Stopped);
+                }
+                return ControlFlow::Break(());
+            }
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! One step of every motion.
+
+use super::lanes::{Landing, Lanes};
+use super::settings::Settings;
+use super::stops::Meeting;
+use crate::motion::integrate::taylor::directions::seen;
+use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::series::{Coefficient, Series};
+use crate::motion::integrate::taylor::step::{increment, longest};
+use crate::motion::problem::limits::HELD;
+use crate::numerics::double_double::{fast_two_sum, two_sum};
+use crate::numerics::number::{Number, Real};
+
+/// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
+pub(super) const OUTGROWN: f64 = 65_536.0;
+
+impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
+where
+    L: Number<Real: Precision>,
+    S: Series<Pack<L, R>, B>,
+{
+    /// One step of every motion; whether one has ended.
+    #[inline(always)]
+    pub(super) fn step(&mut self) -> bool {
+        let Settings {
+            order, last_term, ..
+        } = self.settings;
+        self.expand();
+        let mut h = longest(&self.series, order, last_term, &self.fastest);
+        self.extras
+            .limit(&self.series, &self.field, &self.fastest, &mut h);
+        let mut eventful = self.settings.parts.may_flip();
+        for row in 0..R {
+            let (now, gap) = (self.now[row].0, self.gap(row));
+            // What is not a number is an event too.
+            let is_plain = (h[row] < gap) & (h[row] > f64::EPSILON * now.abs());
+            eventful |= !is_plain;
+        }
+        let mut landings = [Landing::None; R];
+        if eventful {
+            for row in 0..R {
+                if self.leads[row].is_some() {
+                    (h[row], landings[row]) = self.pass(row, h[row]);
+                }
+            }
+        }
+        let mut signed = Pack::new(0.0);
+        for row in 0..R {
+            h[row] *= self.direction[row];
+            signed.set(row, h[row]);
+            if landings[row] == Landing::Break {
+                signed.put(row, self.time_to_stop(row));
+            }
+        }
+        let change = increment(&self.series, order, signed);
+        self.state.add(&change);
+        if let Some(push) = &mut self.push {
+            let change = push.increment(order, signed);
+            push.add(&change);
+        }
+        self.extras.advance(order, signed);
+        let mut ended = false;
+        let mut outgrown = false;
+        for row in 0..R {
+            let (now, rest) = self.now[row];
+            let (reached, more) = two_sum(now, h[row]);
+            self.now[row] = fast_two_sum(reached, rest + more);
+            let (x, y) = (self.state.value[0].get(row), self.state.value[1].get(row));
+            let z = self.state.value[2].get(row);
+            let speed = (x * x + y * y + z * z).sqrt();
+            if speed > self.fastest[row] {
+                self.fastest[row] = speed;
+            }
+            outgrown |= speed > OUTGROWN;
+        }
+        if eventful | outgrown {
+            for row in 0..R {
+                self.settle(row, landings[row]);
+                ended |= self.leads[row].is_none();
+            }
+        }
+        for lead in self.leads.iter_mut().flatten() {
+            lead.steps += 1;
+        }
+        ended
+    }
+
+    /// The series at the states now.
+    #[inline(always)]
+    pub(super) fn expand(&mut self) {
+        let order = self.settings.order;
+        let [w0, w1, w2, x, y, z, w] = self.state.value;
+        let q = [x, y, z, w];
+        let mut g = self.directions;
+        for g in &mut g {
+            *g = seen(&q, g);
+        }
+        self.series.start(&Coefficient {
+            w: [w0, w1, w2],
+            q,
+            g,
+        });
+        if self.extras.is_timed() {
+            for row in 0..R {
+                if let Some(lead) = &self.leads[row] {
+                    let moment = lead.job.course.moment(self.now[row]);
+                    let inverse = lead.job.course.inverse_moments();
+                    self.extras.set(row, &moment, inverse, &q);
+                }
+            }
+        }
+        self.extras.start(&self.fastest);
+        // Several motions have order 0 apart, so that what is special about it is not in their loop.
+        let first = usize::from(R > 1);
+        for k in 0..first {
+            self.extend(k);
+        }
+        for k in first..order {
+            self.extend(k);
+        }
+        if let Some(push) = &mut self.push {
+            push.expand(order, &self.series, &self.field);
+        }
+    }
+
+    /// The coefficients of order `k` + 1.
+    #[inline(always)]
+    pub(super) fn extend(&mut self, k: usize) {
+        let sums = self.series.sums(k);
+        let (spins, at) = (S::spins(&sums), self.series.get(k));
+        let acceleration = (self.field).acceleration(self.settings.parts, k, spins, &at);
+        let (series, field) = (&self.series, &self.field);
+        let acceleration = self
+            .extras
+            .plus_coefficients(k, series, field, acceleration);
+        self.series.extend(k, &sums, &acceleration);
+    }
+
+    /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.
+    #[inline(always)]
+    pub(super) fn pass(&mut self, row: usize, h: f64) -> (f64, Landing) {
+        let (mut h, landing) = if self.settings.parts.may_flip() {
+            self.until_flip(row, h)
+        } else {
+            (h, Landing::None)
+        };
+        if landing == Landing::Flip && self.is_held(row, h) {
+            h = 0.0; // which advances nothing: an error
+        }
+        loop {
+            let time = match self.meet(row, h) {
+                Meeting::Output(time) => time,
+                Meeting::Break(gap) => return (gap, Landing::Break),
+                Meeting::Nothing => return (h, landing),
+                Meeting::End => return (0.0, Landing::None),
+            };
+            let (state, place) = self.within(row, time);
+            self.give(row, &state, place.as_ref());
+        }
+    }
+
+    /// Whether the law of a motion, which changes after the step `h`, has changed on one spot again and again: then it holds the
+    /// body there.
+    pub(super) fn is_held(&mut self, row: usize, h: f64) -> bool {
+        let least = (4.0 * f64::EPSILON * self.now[row].0.abs()).max(f64::MIN_POSITIVE);
+        let Some(lead) = &mut self.leads[row] else {
+            return false;
+        };
+        lead.flips_at_once = if h > least { 0 } else { lead.flips_at_once + 1 };
+        lead.flips_at_once > HELD
+    }
+
+    /// The state of a motion, and its position and velocity when it is pushed, at a time since the start of the step.
+    #[inline(always)]
+    pub(super) fn within(&self, row: usize, time: L::Real) -> ([L::Real; 7], Option<[L::Real; 6]>) {
+        let mut within = Pack::new(0.0);
+        within.put(row, time);
+        let order = self.settings.order;
+        let state = (self.state).moved(&increment(&self.series, order, within), row);
+        // No `map`: its closure would be compiled without the instructions of the level.
+        let place = match &self.push {
+            Some(push) => Some(push.moved(&push.increment(order, within), row)),
+            None => None,
+        };
+        (state, place)
+    }
+
+    /// Whether a feedback has another sign in the `state` later in the step than at its start, or ω has passed through zero
+    /// under quadratic damping.
+    #[inline(never)]
+    pub(super) fn has_flipped(&self, row: usize, state: &[L::Real; 7]) -> bool {
+        let lead = self.leads[row].as_ref();
+        let start = [0, 1, 2].map(|i| self.state.value[i].get(row));
+        let omega = [0, 1, 2].map(|i| state[i].rounded());
+        lead.is_some_and(|lead| lead.job.course.has_flipped(state))
+            || (self.extras).is_reversed(row, &self.field, &start, &omega)
+    }
+}

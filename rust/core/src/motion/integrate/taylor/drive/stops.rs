@@ -1,0 +1,129 @@
+//! What a motion comes to: outputs, breaks of its load, changes of its law.
+
+use super::lanes::{Landing, Lanes, Stop, effort};
+use super::stepping::OUTGROWN;
+use crate::error::Error;
+use crate::motion::integrate::taylor::course::Course;
+use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::series::Series;
+use crate::motion::problem::End;
+use crate::numerics::number::{Number, Real};
+
+/// What a motion comes to within a step.
+pub(super) enum Meeting<X> {
+    /// An output, at this time since the start of the step.
+    Output(X),
+    /// A break, after this time.
+    Break(f64),
+    Nothing,
+    End,
+}
+
+impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
+where
+    L: Number<Real: Precision>,
+    S: Series<Pack<L, R>, B>,
+{
+    /// What a motion comes to next in a step as long as `h`.
+    #[inline(never)]
+    pub(super) fn meet(&mut self, row: usize, h: f64) -> Meeting<L::Real> {
+        let gap = self.gap(row);
+        let time = self.time(row);
+        let Some(lead) = &self.leads[row] else {
+            return Meeting::End;
+        };
+        let advances = h > f64::EPSILON * self.now[row].0.abs();
+        if !advances {
+            let error = if h.is_finite() {
+                Error::StepTooSmall {
+                    time,
+                    step: h / lead.job.course.unit(),
+                }
+            } else {
+                Error::NotFiniteMotion { time }
+            };
+            self.end(row, End::Failed(error));
+            return Meeting::End;
+        }
+        match lead.stop {
+            _ if gap > h => Meeting::Nothing,
+            Stop::Output => Meeting::Output(self.time_to_stop(row)),
+            Stop::Break => Meeting::Break(gap),
+        }
+    }
+
+    /// Gives a sample to a motion; after the last one it ends.
+    #[inline(never)]
+    pub(super) fn give(&mut self, row: usize, state: &[L::Real; 7], place: Option<&[L::Real; 6]>) {
+        let now = self.stop[row];
+        let Some(lead) = &mut self.leads[row] else {
+            return;
+        };
+        let phase = lead.job.course.phase(state, place, now);
+        let run = &mut *lead.job.run;
+        if !phase.is_finite() {
+            // It came to the last state that is one.
+            let before = lead.next - 1;
+            run.effort = effort(lead.steps);
+            run.time = lead.job.course.time_of(before);
+            run.phase = run.samples[before];
+            let time = lead.job.course.time_of(lead.next);
+            run.end = End::Failed(Error::NotFiniteMotion { time });
+            self.leads[row] = None;
+            return;
+        }
+        run.samples[lead.next] = phase;
+        lead.next += 1;
+        if lead.next == run.samples.len() {
+            run.effort = effort(lead.steps + 1);
+            run.time = lead.job.course.last_time();
+            run.phase = phase;
+            run.end = End::Complete;
+            self.leads[row] = None;
+        } else {
+            (self.stop[row], lead.stop) = next_stop(&lead.job.course, lead.next);
+        }
+    }
+
+    /// After a step: past a break or a flip the equations are others, and a motion that has become much faster takes
+    /// another unit.
+    #[inline(never)]
+    pub(super) fn settle(&mut self, row: usize, landing: Landing) {
+        let state = self.state.now(row);
+        let Some(lead) = &mut self.leads[row] else {
+            return;
+        };
+        let course = &mut lead.job.course;
+        let changed = match landing {
+            Landing::None => Ok(()),
+            Landing::Break => {
+                self.now[row] = self.stop[row];
+                self.extras.restart(row);
+                course.pass_break(&state)
+            }
+            Landing::Flip => course.flip(&state),
+        };
+        if let Err(error) = changed {
+            self.end(row, End::Failed(error));
+        } else if landing != Landing::None
+            || state[..3]
+                .iter()
+                .any(|w| w.rounded().abs() > 0.5 * OUTGROWN)
+        {
+            self.enter(row);
+        }
+    }
+}
+
+/// The output `next` or the end of the segment, whichever comes first.
+pub(super) fn next_stop<X: Precision>(course: &Course<X>, next: usize) -> ((f64, f64), Stop) {
+    let (output, end) = (course.output(next), course.end_of_segment());
+    // An output on a break belongs to the segment that ends there.
+    let ahead = ((output.0 - end.0) + (output.1 - end.1)) * course.direction();
+    if ahead > 0.0 {
+        (end, Stop::Break)
+    } else {
+        (output, Stop::Output)
+    }
+}
