@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use super::field::Field;
+use super::forcing::{Forcing, Orbit};
 use super::frame::Precision;
-use super::moment::{Moment, Orbit};
 use super::pack::Pack;
 use super::series::Series;
 use super::terms::{Analytic, Forced, Gradient, Quadratic, STILL};
@@ -56,12 +56,12 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     pub(super) fn set(
         &mut self,
         row: usize,
-        moment: &Moment<L::Real>,
+        forcing: &Forcing<L::Real>,
         inverse_moments: &Vector3<L::Real>,
         q: &[Pack<L, R>; 4],
     ) {
         if let Some(forced) = &mut self.forced {
-            forced.set(row, moment, inverse_moments);
+            forced.set(row, forcing, inverse_moments);
         }
         if self.are_carried[row] {
             return;
@@ -72,7 +72,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             q[2].real(row),
             q[3].real(row),
         ];
-        let mut orbits = moment.orbits.iter();
+        let mut orbits = forcing.orbits.iter();
         for gradient in &mut self.gradients {
             let orbit = orbits.next().copied().unwrap_or_else(Orbit::none);
             let position = seen_by(&q, &orbit.position);
@@ -109,7 +109,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         self.restart(row);
         let upright = Pack::new(0.0);
         let q = [upright, upright, upright, Pack::new(1.0)];
-        self.set(row, &Moment::default(), &Vector3::zeros(), &q);
+        self.set(row, &Forcing::default(), &Vector3::zeros(), &q);
     }
 
     #[inline(always)]

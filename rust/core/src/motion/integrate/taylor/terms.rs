@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::field::Field;
-use super::moment::{Moment, Orbit};
+use super::forcing::{Forcing, Orbit};
 use super::pack::{Pack, cross_term};
 use super::series::Series;
 use super::twin::COUNT;
@@ -299,13 +299,13 @@ impl<L: Number, const R: usize> Forced<Pack<L, R>> {
     pub(super) fn set(
         &mut self,
         row: usize,
-        moment: &Moment<L::Real>,
+        forcing: &Forcing<L::Real>,
         inverse_moments: &Vector3<L::Real>,
     ) {
         for i in 0..3 {
             for k in 0..4 {
-                self.in_body[k][i].put(row, moment.in_body[k][i]);
-                self.in_space[k][i].put(row, moment.in_space[k][i]);
+                self.in_body[k][i].put(row, forcing.in_body[k][i]);
+                self.in_space[k][i].put(row, forcing.in_space[k][i]);
             }
             self.inverse_moments[i].put(row, inverse_moments[i]);
         }

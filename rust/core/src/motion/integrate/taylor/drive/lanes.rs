@@ -67,7 +67,7 @@ pub(super) struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const
     pub(super) still: [[bool; 3]; R],
 }
 
-impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
+impl<L, S, const B: usize, const R: usize> Lanes<'_, L, S, B, R>
 where
     L: Number<Real: Precision>,
     S: Series<Pack<L, R>, B>,

@@ -15,7 +15,7 @@ use crate::numerics::number::{Number, Real};
 /// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
 pub(super) const OUTGROWN: f64 = 65_536.0;
 
-impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
+impl<L, S, const B: usize, const R: usize> Lanes<'_, L, S, B, R>
 where
     L: Number<Real: Precision>,
     S: Series<Pack<L, R>, B>,
@@ -104,9 +104,9 @@ where
         if self.extras.is_timed() {
             for row in 0..R {
                 if let Some(lead) = &self.leads[row] {
-                    let moment = lead.job.course.moment(self.now[row]);
+                    let forcing = lead.job.course.forcing(self.now[row]);
                     let inverse = lead.job.course.inverse_moments();
-                    self.extras.set(row, &moment, inverse, &q);
+                    self.extras.set(row, &forcing, inverse, &q);
                 }
             }
         }

@@ -20,7 +20,7 @@ pub(super) enum Meeting<X> {
     End,
 }
 
-impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
+impl<L, S, const B: usize, const R: usize> Lanes<'_, L, S, B, R>
 where
     L: Number<Real: Precision>,
     S: Series<Pack<L, R>, B>,

@@ -6,7 +6,7 @@ use crate::numerics::number::Real;
 
 /// The parts of a load that go with the time, around one time; times and rates in units of the unit of rates.
 #[derive(Clone, Debug)]
-pub(super) struct Moment<X> {
+pub(super) struct Forcing<X> {
     /// Torques in principal axes over the moments: coefficients of a cubic.
     pub(super) in_body: [Vector3<X>; 4],
     /// Torques in N: coefficients of a cubic.
@@ -27,7 +27,7 @@ pub(super) struct Orbit<X> {
     pub(super) strength: X,
 }
 
-impl<X: Real> Default for Moment<X> {
+impl<X: Real> Default for Forcing<X> {
     fn default() -> Self {
         Self {
             in_body: [Vector3::zeros(); 4],

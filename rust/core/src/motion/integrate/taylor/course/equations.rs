@@ -1,0 +1,164 @@
+//! The unit of rates of a segment, its equations, and what in them depends on time.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::segments::Course;
+use crate::motion::integrate::taylor::field::Field;
+use crate::motion::integrate::taylor::forcing::{Forcing, Orbit};
+use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::loads::{Frame, Parts, Term};
+use crate::numerics::number::Real;
+
+impl<X: Precision> Course<'_, X> {
+    pub(in crate::motion::integrate::taylor) fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// Takes the power of two at or below the fastest rate of the motion at ω (in principal axes) as the unit of rates.
+    pub(in crate::motion::integrate::taylor) fn choose_unit(&mut self, omega: &[f64; 3]) -> f64 {
+        let (linear, inverse) = (&self.linear, self.inverse_moments.map(X::rounded));
+        let over_moment = inverse.amax();
+        let squares = [
+            (linear.constant.map(X::rounded))
+                .component_mul(&inverse)
+                .amax(),
+            linear.on_attitude.map(X::rounded).amax() * over_moment,
+        ];
+        let on_space = linear.on_space.iter();
+        let on_space = on_space.map(|(vector, matrix)| {
+            vector.map(X::rounded).amax() * matrix.map(X::rounded).amax() * over_moment
+        });
+        let gradients = linear.gradients.iter().map(|gradient| {
+            let (r, v) = gradient.orbit_at(&self.task.subject, self.task.times[0]);
+            let distance = r.norm();
+            let pull = gradient.coefficient().abs().max(gradient.mu()) / distance.powi(3);
+            pull.max((v.norm() / distance).powi(2))
+        });
+        let sampled = linear
+            .sampled
+            .iter()
+            .map(|sampled| sampled.at(self.breaks[self.segment]).amax() * over_moment);
+        let square = (squares
+            .into_iter()
+            .chain(on_space)
+            .chain(gradients)
+            .chain(sampled))
+        .fold(0.0, f64::max);
+        let rate = Vector3::from(*omega)
+            .amax()
+            .max(linear.on_omega.map(X::rounded).amax() * over_moment)
+            .max(square.sqrt());
+        let power = f64::from_bits(rate.to_bits() & 0x7ff0_0000_0000_0000);
+        self.unit = if power > 0.0 && power.is_finite() {
+            power
+        } else {
+            1.0
+        };
+        self.unit
+    }
+
+    /// The equations in the segment under way.
+    pub(in crate::motion::integrate::taylor) fn field<const B: usize>(&self) -> Field<X, B> {
+        let linear = &self.linear;
+        let inverse = Matrix3::from_diagonal(&self.inverse_moments);
+        let rate = X::from(1.0 / self.unit);
+        let on_omega = inverse * linear.on_omega * rate;
+        let quadratic = -(inverse * linear.quadratic);
+        let on_attitude = inverse * linear.on_attitude * rate * rate;
+        let mass = X::from(self.task.subject.mass);
+        let mut field = Field {
+            kappa: self.kappa.into(),
+            constant: (inverse * linear.constant * rate * rate).into(),
+            on_omega: rows(&on_omega),
+            on_attitude: [0, 1, 2].map(|n| [0, 1, 2, 3].map(|i| on_attitude[(n, i)])),
+            on_space: [[[X::zero(); 3]; 3]; B],
+            quadratic: rows(&quadratic),
+            force: (linear.force / mass * rate * rate).into(),
+            thrust: (linear.thrust / mass * rate * rate).into(),
+        };
+        let directions = Self::directions::<B>();
+        for (vector, matrix) in &linear.on_space {
+            let scaled = inverse * matrix * rate * rate;
+            for (block, direction) in field.on_space.iter_mut().zip(&directions) {
+                let part = scaled * vector.dot(&Vector3::from(*direction));
+                for (row, more) in block.iter_mut().zip(rows(&part)) {
+                    for (x, more) in row.iter_mut().zip(more) {
+                        *x += more;
+                    }
+                }
+            }
+        }
+        field
+    }
+
+    /// The directions in N that the torques of what is fixed in space are made of: the vertical axis, or all.
+    pub(in crate::motion::integrate::taylor) fn directions<const B: usize>() -> [[X; 3]; B] {
+        let (zero, one) = (X::zero(), X::one());
+        let mut directions = [[zero, zero, one]; B];
+        if B > 1 {
+            for (i, direction) in directions.iter_mut().enumerate() {
+                *direction = [zero; 3];
+                direction[i] = one;
+            }
+        }
+        directions
+    }
+
+    /// What depends on the time alone, as it is at `now`.
+    pub(in crate::motion::integrate::taylor) fn forcing(&self, now: (f64, f64)) -> Forcing<X> {
+        let elapsed = X::pair(now.0, now.1) / X::from(self.unit);
+        let mut forcing = Forcing::default();
+        for sampled in &self.linear.sampled {
+            let (from, piece) = sampled.piece(self.middle());
+            let [c0, c1, c2, c3] = piece.map(|c| c.map(X::from));
+            let x = elapsed + X::pair(self.task.times[0], -from);
+            let (two, three) = (X::from(2.0), X::from(3.0));
+            let centered = [
+                c0 + (c1 + (c2 + c3 * x) * x) * x,
+                c1 + (c2 * two + c3 * (three * x)) * x,
+                c2 + c3 * (three * x),
+                c3,
+            ];
+            let mut scale = 1.0 / self.unit / self.unit;
+            for (k, torque) in centered.iter().enumerate() {
+                let torque = torque * X::from(scale);
+                match sampled.frame() {
+                    Frame::Body => forcing.in_body[k] += self.axes.tr_mul(&torque),
+                    Frame::Space => forcing.in_space[k] += torque,
+                }
+                scale /= self.unit;
+            }
+        }
+        for torque in &mut forcing.in_body {
+            torque.component_mul_assign(&self.inverse_moments);
+        }
+        for gradient in &self.linear.gradients {
+            let (r, v) = gradient.orbit_at(&self.task.subject, self.time(now));
+            let (r, v) = (r.map(X::from), v.map(X::from));
+            let (distance, unit) = (r.dot(&r).root(), X::from(self.unit));
+            let cube = distance * distance * distance * unit * unit;
+            forcing.orbits.push(Orbit {
+                position: r / distance,
+                velocity: v / (distance * unit),
+                pull: X::from(gradient.mu()) / cube,
+                strength: X::from(gradient.coefficient()) / cube,
+            });
+        }
+        forcing
+    }
+
+    pub(in crate::motion::integrate::taylor) fn inverse_moments(&self) -> &Vector3<X> {
+        &self.inverse_moments
+    }
+}
+
+/// What kind of equations a sum of terms leads to. Apart from quadratic damping, which may be zero, and directions, which
+/// may all be vertical, it does not depend on the numbers in them.
+pub(in crate::motion::integrate::taylor) fn parts(terms: &[Term], pivoted: bool) -> Parts {
+    let parts = terms.iter().map(|term| term.character(pivoted).parts);
+    parts.fold(Parts::default(), Parts::and)
+}
+
+fn rows<X: Real>(matrix: &Matrix3<X>) -> [[X; 3]; 3] {
+    [0, 1, 2].map(|n| [0, 1, 2].map(|i| matrix[(n, i)]))
+}

@@ -1,0 +1,251 @@
+//! A motion from break to break of its load, and what acts in each segment.
+
+use nalgebra::{Matrix3, Vector3, Vector4};
+
+use crate::error::Error;
+use crate::mass::validity::ROUNDING;
+use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::loads::{Axes, Frame, Linear, Term};
+use crate::motion::problem::Task;
+use crate::numerics::number::Real;
+
+/// The scalar part w of a feedback's error, which is linear in the attitude (x, y, z, w), and the sign of it that the torques
+/// are made for.
+#[derive(Clone, Copy, Debug)]
+struct Switch<X> {
+    scalar: Vector4<X>,
+    side: f64,
+}
+
+impl<X: Real> Switch<X> {
+    fn value(&self, attitude: &[X; 4]) -> f64 {
+        self.scalar.dot(&Vector4::from(*attitude)).rounded()
+    }
+
+    /// The sign of w in `state`; positive where it is zero.
+    fn sign(&self, state: &[X; 7]) -> f64 {
+        let [_, _, _, x, y, z, w] = *state;
+        if self.value(&[x, y, z, w]) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+}
+
+/// A motion on its way.
+#[derive(Clone, Debug)]
+pub(in crate::motion::integrate::taylor) struct Course<'a, X> {
+    pub(super) task: Task<'a>,
+    pub(super) terms: &'a [Term],
+    pub(super) axes: Matrix3<X>,
+    pub(super) q_bp: [X; 4],
+    pub(super) kappa: Vector3<X>,
+    pub(super) inverse_moments: Vector3<X>,
+    /// The ends of the segments, and which is under way.
+    pub(super) breaks: Vec<f64>,
+    pub(super) segment: usize,
+    pub(super) linear: Linear<'a, X>,
+    /// Of each feedback that acts, what changes its law.
+    pub(super) switches: Vec<Switch<X>>,
+    /// The unit of rates: a power of two near the fastest of the motion.
+    pub(super) unit: f64,
+}
+
+impl<'a, X: Precision> Course<'a, X> {
+    /// The course of `task` under `terms`.
+    ///
+    /// # Errors
+    /// When a term cannot act, or acts along an axis without a moment of inertia.
+    pub(in crate::motion::integrate::taylor) fn new(
+        task: &Task<'a>,
+        terms: &'a [Term],
+    ) -> Result<Self, Error> {
+        let principal = X::principal(task);
+        let ([i1, i2, i3], [d1, d2, d3]) = (principal.moments, principal.differences);
+        let one = X::one();
+        let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
+        let mut breaks: Vec<f64> = terms.iter().flat_map(Term::breaks).collect();
+        breaks.retain(|t| (t - start) * (t - end) < 0.0);
+        breaks.push(end);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        if end < start {
+            breaks.reverse();
+        }
+        let mut course = Self {
+            task: *task,
+            terms,
+            axes: principal.axes,
+            q_bp: principal.q_bp,
+            kappa: Vector3::new(over(d1, i1), over(d2, i2), over(d3, i3)),
+            inverse_moments: Vector3::new(over(one, i1), over(one, i2), over(one, i3)),
+            breaks,
+            segment: 0,
+            linear: Linear::default(),
+            switches: Vec::new(),
+            unit: 1.0,
+        };
+        let state = course.start();
+        let mut from = start;
+        for &to in &course.breaks {
+            for term in course.acting(from, to) {
+                term.check(&task.subject, from, to)?;
+            }
+            from = to;
+        }
+        course.linearize(&state)?;
+        Ok(course)
+    }
+
+    /// Past the end of a segment, in the state `state`.
+    pub(in crate::motion::integrate::taylor) fn pass_break(
+        &mut self,
+        state: &[X; 7],
+    ) -> Result<(), Error> {
+        self.segment += 1;
+        self.linearize(state)
+    }
+
+    /// What acts in the segment under way.
+    fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
+        let mut linear = Linear::default();
+        let mut switches: Vec<Switch<X>> = Vec::new();
+        let axes = self.principal_axes();
+        for term in self.acting(self.segment_start(), self.breaks[self.segment]) {
+            let mut side = 1.0;
+            if let Some(scalar) = term.switching(&axes) {
+                let mut switch = Switch { scalar, side };
+                switch.side = switch.sign(state);
+                side = switch.side;
+                switches.push(switch);
+            }
+            term.add_to(&mut linear, &axes, side);
+        }
+        self.switches = switches;
+        self.check_massless(&linear, state)?;
+        self.linear = linear;
+        Ok(())
+    }
+
+    fn principal_axes(&self) -> Axes<'_, X> {
+        Axes {
+            subject: &self.task.subject,
+            columns: &self.axes,
+            q_bp: &self.q_bp,
+        }
+    }
+
+    /// A torque along an axis without moment of inertia has nothing to turn.
+    fn check_massless(&self, linear: &Linear<'_, X>, state: &[X; 7]) -> Result<(), Error> {
+        for (n, moment) in self.task.euler.moments().into_iter().enumerate() {
+            if moment > 0.0 {
+                continue;
+            }
+            let constant = linear.constant.map(X::rounded);
+            let on_omega = linear.on_omega.map(X::rounded);
+            let on_attitude = linear.on_attitude.map(X::rounded);
+            let quadratic = linear.quadratic.map(X::rounded);
+            let mut turned = on_omega;
+            // ω along the axis is constant; where it is zero, what it would do does not matter.
+            if state[n].rounded() == 0.0 {
+                turned.column_mut(n).fill(0.0);
+            }
+            let mut parts = vec![
+                (constant[n].abs(), constant.norm()),
+                (turned.row(n).norm(), on_omega.norm()),
+                (on_attitude.row(n).norm(), on_attitude.norm()),
+                (quadratic.row(n).norm(), quadratic.norm()),
+            ];
+            for (vector, matrix) in &linear.on_space {
+                let (size, matrix) = (vector.map(X::rounded).norm(), matrix.map(X::rounded));
+                parts.push((matrix.row(n).norm() * size, matrix.norm() * size));
+            }
+            for sampled in &linear.sampled {
+                let (_, piece) = sampled.piece(self.middle());
+                for torque in piece {
+                    let along = match sampled.frame() {
+                        Frame::Body => self.axes.column(n).map(X::rounded).dot(torque).abs(),
+                        Frame::Space => torque.norm(),
+                    };
+                    parts.push((along, torque.norm()));
+                }
+            }
+            if let Some(&(torque, _)) = parts.iter().find(|(part, all)| *part > ROUNDING * all) {
+                return Err(Error::TorqueAlongMasslessAxis { torque });
+            }
+        }
+        Ok(())
+    }
+
+    /// The terms that act between two breaks.
+    fn acting(&self, from: f64, to: f64) -> impl Iterator<Item = &'a Term> + use<'a, X> {
+        let middle = from + 0.5 * (to - from);
+        self.terms
+            .iter()
+            .filter_map(move |term| term.active(middle))
+    }
+
+    fn segment_start(&self) -> f64 {
+        match self.segment {
+            0 => self.task.times[0],
+            k => self.breaks[k - 1],
+        }
+    }
+
+    pub(super) fn middle(&self) -> f64 {
+        let from = self.segment_start();
+        from + 0.5 * (self.breaks[self.segment] - from)
+    }
+
+    /// Whether the scalar part of a feedback's error has another sign in `state` than the torques are made for.
+    pub(in crate::motion::integrate::taylor) fn has_flipped(&self, state: &[X; 7]) -> bool {
+        (self.switches.iter()).any(|switch| switch.sign(state) != switch.side)
+    }
+
+    /// How many functions of the attitude change the law by their signs, and of number `index` the value in the attitude (x, y, z, w),
+    /// or in a coefficient of its series, and the sign before the step.
+    pub(in crate::motion::integrate::taylor) fn switches(&self) -> usize {
+        self.switches.len()
+    }
+
+    pub(in crate::motion::integrate::taylor) fn switch_value(
+        &self,
+        index: usize,
+        attitude: &[X; 4],
+    ) -> f64 {
+        self.switches[index].value(attitude)
+    }
+
+    pub(in crate::motion::integrate::taylor) fn side(&self, index: usize) -> f64 {
+        self.switches[index].side
+    }
+
+    /// Takes the torques of the feedbacks for the signs in `state`.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(in crate::motion::integrate::taylor) fn flip(
+        &mut self,
+        state: &[X; 7],
+    ) -> Result<(), Error> {
+        self.linearize(state)
+    }
+
+    /// 1 or −1 for backward in time.
+    pub(in crate::motion::integrate::taylor) fn direction(&self) -> f64 {
+        if self.breaks[self.segment] < self.task.times[0] {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+}
+
+fn over<X: Real>(number: X, moment: X) -> X {
+    if moment.rounded() > 0.0 {
+        number / moment
+    } else {
+        X::zero()
+    }
+}

@@ -1,0 +1,62 @@
+//! States in principal axes and units of the run, and in body axes and real units.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::segments::Course;
+use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::state::Phase;
+use crate::numerics::quaternion::{conjugate, normalized, product};
+
+impl<X: Precision> Course<'_, X> {
+    pub(in crate::motion::integrate::taylor) fn initial(&self) -> &Phase {
+        &self.task.initial
+    }
+
+    /// ω in principal axes and units of the unit of rates, and (x, y, z, w) of the attitude.
+    pub(in crate::motion::integrate::taylor) fn start(&self) -> [X; 7] {
+        let Phase {
+            attitude, omega, ..
+        } = self.task.initial;
+        let [x, y, z, w] = product(X::quaternion(&attitude), self.q_bp);
+        let omega = self.axes.tr_mul(&omega.map(X::from)) / X::from(self.unit);
+        [omega.x, omega.y, omega.z, x, y, z, w]
+    }
+
+    /// The state in body axes and real units; `place` is position and velocity, in units of the unit of rates, of a body
+    /// that is pushed.
+    pub(in crate::motion::integrate::taylor) fn phase(
+        &self,
+        state: &[X; 7],
+        place: Option<&[X; 6]>,
+        now: (f64, f64),
+    ) -> Phase {
+        let [x, y, z, i, j, k, w] = *state;
+        let initial = self.initial();
+        let (position, velocity) = if let Some(place) = place {
+            let [x, y, z, u, v, w] = place.map(X::rounded);
+            (Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit)
+        } else {
+            let elapsed = (now.0 + now.1) / self.unit;
+            (
+                initial.position + initial.velocity * elapsed,
+                initial.velocity,
+            )
+        };
+        let q_nb = normalized(product([i, j, k, w], conjugate(self.q_bp)));
+        let [i, j, k, w] = q_nb.map(X::rounded);
+        Phase {
+            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
+            omega: (self.axes * Vector3::new(x, y, z)).map(X::rounded) * self.unit,
+            position,
+            velocity,
+        }
+    }
+
+    /// ω and (x, y, z, w) in body axes and real units of a state, or of a coefficient of its series.
+    pub(in crate::motion::integrate::taylor) fn in_body(&self, state: &[X; 7]) -> [X; 7] {
+        let [x, y, z, i, j, k, w] = *state;
+        let omega = self.axes * Vector3::new(x, y, z) * X::from(self.unit);
+        let [i, j, k, w] = product([i, j, k, w], conjugate(self.q_bp));
+        [omega.x, omega.y, omega.z, i, j, k, w]
+    }
+}
