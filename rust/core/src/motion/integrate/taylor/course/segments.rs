@@ -47,7 +47,7 @@ pub(in crate::motion::integrate::taylor) struct Course<'a, X> {
     pub(super) segment: usize,
     pub(super) linear: Linear<'a, X>,
     /// Of each feedback that acts, what changes its law.
-    pub(super) switches: Vec<Switch<X>>,
+    switches: Vec<Switch<X>>,
     /// The unit of rates: a power of two near the fastest of the motion.
     pub(super) unit: f64,
 }
