@@ -6,7 +6,7 @@ use nalgebra::SVector;
 use super::first_step::first_step;
 use super::tableau::{DENSE, ERROR_3, ERROR_5, EXTENDED_STAGES, NODES, Row, STAGE_WEIGHTS, STAGES};
 use super::{Compensated, System};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::numerics::double_double::fast_two_sum;
 
 /// The factor by which a step may shrink or grow, and the part of the optimal factor that is used.
@@ -63,7 +63,7 @@ impl<const N: usize> Dop853<N> {
         };
         let slope = stepper.slope(system, 0.0, &state.value)?;
         if !slope.iter().all(|x| x.is_finite()) {
-            return Err(Error::NotFiniteMotion { time: start }.into());
+            return Err(Error::from(MotionFault::NotFiniteMotion { time: start }).into());
         }
         stepper.slopes[STAGES] = slope;
         stepper.step = match step {
@@ -147,9 +147,9 @@ impl<const N: usize> Dop853<N> {
             largest = 1.0;
             if self.elapsed.0 + self.step == self.elapsed.0 {
                 return Err(if error.is_nan() {
-                    Error::NotFiniteMotion {
+                    Error::Motion(MotionFault::NotFiniteMotion {
                         time: self.start + self.elapsed.0,
-                    }
+                    })
                 } else {
                     self.stuck(self.step)
                 }
@@ -236,10 +236,10 @@ impl<const N: usize> Dop853<N> {
     }
 
     fn stuck(&self, step: f64) -> Error {
-        Error::StepTooSmall {
+        Error::Motion(MotionFault::StepTooSmall {
             time: self.start + self.elapsed.0,
             step,
-        }
+        })
     }
 }
 

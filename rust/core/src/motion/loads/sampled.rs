@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use std::sync::Arc;
 
 use super::Frame;
-use crate::error::{Error, all_finite, finite};
+use crate::error::{Error, MotionFault, all_finite, finite};
 
 /// A torque about the reference point, given at times and interpolated by a cubic spline, smooth to the second derivative.
 ///
@@ -44,11 +44,12 @@ impl Sampled {
         finite("the span of t", times[times.len() - 1] - times[0])?;
         for (k, pair) in times.windows(2).enumerate() {
             if pair[1] <= pair[0] {
-                return Err(Error::NotMonotone {
+                return Err(MotionFault::NotMonotone {
                     index: k + 1,
                     previous: pair[0],
                     next: pair[1],
-                });
+                }
+                .into());
             }
         }
         let pieces = pieces(times, values);
@@ -94,13 +95,13 @@ impl Sampled {
     /// Checks that `t` is within its times.
     ///
     /// # Errors
-    /// [`Error::OutsideSamples`].
+    /// [`MotionFault::OutsideSamples`].
     pub fn check(&self, t: f64) -> Result<(), Error> {
         let (first, last) = (self.knots()[0], self.knots()[self.knots().len() - 1]);
         if (first..=last).contains(&t) {
             Ok(())
         } else {
-            Err(Error::OutsideSamples { t, first, last })
+            Err(MotionFault::OutsideSamples { t, first, last }.into())
         }
     }
 

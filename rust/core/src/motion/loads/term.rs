@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{Damping, Feedback, Frame, GravityGradient, Kept, Sampled, Subject, Windows, Wrench};
-use crate::error::{Error, all_finite, finite};
+use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::motion::state::Phase;
 
 /// One analytic term of a load.
@@ -229,11 +229,11 @@ impl Term {
     /// Checks that the term, which is not a scheduled one, can act on `subject` from one time to another.
     ///
     /// # Errors
-    /// [`Error::OutsideSamples`]; [`Error::PivotedInOrbit`].
+    /// [`MotionFault::OutsideSamples`]; [`MotionFault::PivotedInOrbit`].
     pub fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
         match self {
             Self::Sampled(sampled) => sampled.check(from).and_then(|()| sampled.check(to)),
-            Self::GravityGradient(_) if subject.pivoted => Err(Error::PivotedInOrbit),
+            Self::GravityGradient(_) if subject.pivoted => Err(MotionFault::PivotedInOrbit.into()),
             _ => Ok(()),
         }
     }

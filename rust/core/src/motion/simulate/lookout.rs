@@ -3,7 +3,7 @@
 use super::along::{Look, View, sign};
 use super::events::{Crossing, Direction, Events, Rule};
 use super::stepper::Dense;
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::state::Phase;
 
 /// How far the body turns in a part of a step, in radians.
@@ -119,7 +119,7 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
             };
             let time = start + place;
             if !phase.is_finite() {
-                return Err(Error::NotFiniteMotion { time }.into());
+                return Err(Error::from(MotionFault::NotFiniteMotion { time }).into());
             }
             self.crossings.push(Crossing { event, time, phase });
             self.counts[event] += 1;

@@ -8,7 +8,7 @@ use super::lookout::Lookout;
 use super::method::Method;
 use super::stepper::{self, Carry, Span, Stepper};
 use super::task::{Task, check_steps};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::loads::Load;
 use crate::motion::state::Phase;
 
@@ -161,7 +161,9 @@ impl<E> Run<E> {
                             flips_at_once += 1;
                             if flips_at_once > HELD {
                                 let step = 0.0;
-                                return Err(Error::StepTooSmall { time, step }.into());
+                                return Err(
+                                    Error::from(MotionFault::StepTooSmall { time, step }).into()
+                                );
                             }
                         } else {
                             flips_at_once = 0;
@@ -185,7 +187,7 @@ impl<E> Run<E> {
     /// Has come to this time and state, if that is one.
     fn reach(&mut self, time: f64, phase: Phase) -> Result<(), Error> {
         if !phase.is_finite() {
-            return Err(Error::NotFiniteMotion { time });
+            return Err(MotionFault::NotFiniteMotion { time }.into());
         }
         (self.time, self.phase) = (time, phase);
         Ok(())

@@ -1,7 +1,7 @@
 //! What is to be simulated, and how.
 
 use super::method::Method;
-use crate::error::{Error, all_finite, finite};
+use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::mass::RigidBody;
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::loads::Subject;
@@ -22,19 +22,20 @@ const HOPELESS: f64 = 1e3;
 /// Refuses to go on with a run that has taken all its steps, or is hopelessly far from the end of its `span` of time.
 ///
 /// # Errors
-/// [`Error::TooManySteps`].
+/// [`MotionFault::TooManySteps`].
 pub(crate) fn check_steps(steps: u64, start: f64, elapsed: f64, span: f64) -> Result<(), Error> {
     let (most, ahead) = (MOST_STEPS as f64, steps as f64 * (span / elapsed).abs());
     let is_hopeless = steps >= JUDGED && ahead > HOPELESS * most;
     if steps < MOST_STEPS && !is_hopeless {
         return Ok(());
     }
-    Err(Error::TooManySteps {
+    Err(MotionFault::TooManySteps {
         time: start + elapsed,
         steps,
         ahead,
         most,
-    })
+    }
+    .into())
 }
 
 /// How accurate each step is to be.
@@ -55,7 +56,7 @@ impl Tolerance {
         finite("rtol", relative)?;
         finite("atol", absolute)?;
         if !(TIGHTEST_TWOFOLD..=0.1).contains(&relative) {
-            let law = "between 1e-28 and 0.1; below 2.3e-15 (ten units of rounding) method=\"taylor\" alone serves it";
+            let law = "between 1e-28 and 0.1; below 2.3e-15 (ten units of rounding) the method \"taylor\" alone serves it";
             return Err(Error::OutOfDomain {
                 what: "rtol",
                 law,
@@ -196,11 +197,12 @@ pub fn check_times(times: &[f64]) -> Result<(), Error> {
             pair[1] < pair[0]
         };
         if !forward {
-            return Err(Error::NotMonotone {
+            return Err(MotionFault::NotMonotone {
                 index: k + 1,
                 previous: pair[0],
                 next: pair[1],
-            });
+            }
+            .into());
         }
     }
     Ok(())

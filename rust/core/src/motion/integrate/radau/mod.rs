@@ -13,7 +13,7 @@ pub use self::dense::Dense;
 use self::tableau::{COMPLEX, ERROR, NODES, REAL, T, T_INVERSE};
 use super::first_step::first_step;
 use super::{Compensated, System};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::numerics::double_double::fast_two_sum;
 
 /// Newton's iterations before the step is shortened.
@@ -108,7 +108,7 @@ impl<const N: usize> Radau<N> {
         let span = end - start;
         let slope = system.derivative(start, &state.value)?;
         if !slope.iter().all(|x| x.is_finite()) {
-            return Err(Error::NotFiniteMotion { time: start }.into());
+            return Err(Error::from(MotionFault::NotFiniteMotion { time: start }).into());
         }
         let (step, evaluations) = match step {
             Some(step) if step != 0.0 => (step.abs().min(span.abs()).copysign(span), 1),
@@ -219,7 +219,7 @@ impl<const N: usize> Radau<N> {
             if self.elapsed.0 + self.step == self.elapsed.0 {
                 let time = self.start + self.elapsed.0;
                 return Err(if error.is_nan() {
-                    Error::NotFiniteMotion { time }
+                    Error::Motion(MotionFault::NotFiniteMotion { time })
                 } else {
                     self.stuck(self.step)
                 }
@@ -386,10 +386,10 @@ impl<const N: usize> Radau<N> {
     }
 
     fn stuck(&self, step: f64) -> Error {
-        Error::StepTooSmall {
+        Error::Motion(MotionFault::StepTooSmall {
             time: self.start + self.elapsed.0,
             step,
-        }
+        })
     }
 }
 

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Matrix3x4, Quaternion, UnitQuaternion, Vector3, Vector4}
 use super::field::{Field, Parts};
 use super::frame::{Precision, conjugate, cross_matrix, normalized, product};
 use super::moment::{Moment, Orbit};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
 use crate::motion::loads::{Feedback, Frame, GravityGradient, Sampled, Term};
 use crate::motion::simulate::{Task, check_steps};
@@ -267,7 +267,7 @@ impl<'a, X: Precision> Course<'a, X> {
                 }
             }
             if let Some(&(torque, _)) = parts.iter().find(|(part, all)| *part > ROUNDING * all) {
-                return Err(Error::TorqueAlongMasslessAxis { torque });
+                return Err(MotionFault::TorqueAlongMasslessAxis { torque }.into());
             }
         }
         Ok(())

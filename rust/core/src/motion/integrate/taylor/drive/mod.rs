@@ -14,7 +14,7 @@ use super::pack::{Pack, cross_term};
 use super::push::Push;
 use super::series::{Coefficient, Series};
 use super::step::{Compensated, increment, longest};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::simulate::{Effort, End, HELD, Run};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
@@ -362,12 +362,12 @@ where
         let advances = h > f64::EPSILON * self.now[row].0.abs();
         if !advances {
             let error = if h.is_finite() {
-                Error::StepTooSmall {
+                Error::Motion(MotionFault::StepTooSmall {
                     time,
                     step: h / lead.job.course.unit(),
-                }
+                })
             } else {
-                Error::NotFiniteMotion { time }
+                Error::Motion(MotionFault::NotFiniteMotion { time })
             };
             self.end(row, End::Failed(error));
             return Meeting::End;
@@ -395,7 +395,7 @@ where
             run.time = lead.job.course.time_of(before);
             run.phase = run.samples[before];
             let time = lead.job.course.time_of(lead.next);
-            run.end = End::Failed(Error::NotFiniteMotion { time });
+            run.end = End::Failed(Error::Motion(MotionFault::NotFiniteMotion { time }));
             self.leads[row] = None;
             return;
         }
