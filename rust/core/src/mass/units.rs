@@ -109,7 +109,7 @@ mod tests {
     fn both_sides_of_the_range() {
         let limit = |outcome: Result<RigidBody, Error>, name: &str| match outcome {
             Err(Error::Body(BodyFault::OutOfRange { what, .. })) => {
-                assert!(what.contains(name), "{what}")
+                assert!(what.contains(name), "{what}");
             }
             other => panic!("expected a refusal, got {other:?}"),
         };
