@@ -99,7 +99,7 @@ class TestRefused:
     @pytest.mark.parametrize(
         ("body", "message"),
         [
-            (BRICK, r"no two of its principal moments are equal, by 2\.31e-1 .*method=\"taylor\" can"),
+            (BRICK, r"no two of its principal moments are equal, by 2\.31e-1 .*: method=\"taylor\""),
             (GYROSCOPE.translated((1e-3, 0.0, 0.0)), r"the origin is off the symmetry axis, by 2\.24e-2"),
         ],
     )
@@ -110,7 +110,7 @@ class TestRefused:
     def test_of_a_stack_by_its_row(self) -> None:
         pair = RigidBody.stack([GYROSCOPE, BRICK])
         options: dict[str, Any] = {"load": WEIGHT, "about": "origin", "method": "exact"}
-        with pytest.raises(PolhodeError, match='row 1: method="exact" needs a symmetric top'):
+        with pytest.raises(PolhodeError, match='row 1: the method "exact" needs a symmetric top'):
             pair.simulate([0, 1], SPIN, **options)
         run = pair.simulate([0, 1], SPIN, on_failure="keep", **options)
         assert run.status.tolist() == ["complete", "failed"]
@@ -119,7 +119,7 @@ class TestRefused:
     @pytest.mark.parametrize("about", ["origin", "center_of_mass"])
     def test_another_load(self, about: Any) -> None:
         with pytest.raises(
-            PolhodeError, match='uniform gravity alone on a symmetric top; method="taylor" can'
+            PolhodeError, match=r'uniform gravity alone on a symmetric top; .* can .*: method="taylor"'
         ):
             GYROSCOPE.simulate([0, 1], SPIN, load=loads.damping(1.0), about=about, method="exact")
 

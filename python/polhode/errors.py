@@ -33,7 +33,15 @@ class InvalidInertiaError(PolhodeError):
 
 
 class MeshError(PolhodeError):
-    """A mesh that does not bound a solid: open, inconsistently wound, inverted or degenerate."""
+    """A mesh that does not bound a solid: open, inconsistently wound, inverted or degenerate.
+
+    Attributes
+    ----------
+    is_open : bool
+        Whether the mesh has edges with a face on one side only, so that to close it is the way out.
+    """
+
+    is_open: bool = False
 
 
 class FileFormatError(PolhodeError):

@@ -18,6 +18,7 @@ _WAYS_OUT: Final = (
     ("pass rtol= for a table printed to few digits", "give more digits"),
     ("pass rtol= to take them as equal", "give equal moments"),
     ("move the body with translated()", "correct --center"),
+    ("index_base=0", "--index-base 0"),
     ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
 )
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")

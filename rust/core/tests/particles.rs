@@ -7,6 +7,7 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use polhode::error::BodyFault;
 use polhode::mass::particles::{Particles, particle_stack, particles, particles_watched};
 use polhode::mass::voxels::{Grid, voxels};
 use polhode::mass::{MassAccumulator, RigidBody};
@@ -204,7 +205,7 @@ proptest! {
         let bytes = sums.to_bytes();
         prop_assert!(MassAccumulator::from_bytes(&bytes).as_ref() == Ok(&sums));
         let kept = cut.index(bytes.len());
-        prop_assert_eq!(MassAccumulator::from_bytes(&bytes[..kept]), Err(Error::NotAnAccumulator));
+        prop_assert_eq!(MassAccumulator::from_bytes(&bytes[..kept]), Err(BodyFault::NotAnAccumulator.into()));
     }
 
     #[test]

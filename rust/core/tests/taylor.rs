@@ -228,7 +228,9 @@ fn a_rod_is_not_twisted() {
     let refused = solve_one(&task, &[twist], &mut watch).end;
     assert!(matches!(
         refused,
-        End::Failed(polhode::Error::TorqueAlongMasslessAxis { .. })
+        End::Failed(polhode::Error::Motion(
+            polhode::error::MotionFault::TorqueAlongMasslessAxis { .. }
+        ))
     ));
 }
 

@@ -332,7 +332,9 @@ fn of_density(draw: &mut Draw<'_>) -> Result<Made> {
                 .for_each(|(out, &r)| *out = law(r));
             Ok::<(), Error>(())
         };
-        return Ok(from_radial_density(&boundaries, density, effort));
+        return Ok(
+            from_radial_density(&boundaries, density, effort).and_then(|found| found.converged())
+        );
     }
     let region = match draw.up_to(4)? {
         0 => Region::cuboid(&draw.vector()?, &draw.vector()?),
@@ -355,5 +357,7 @@ fn of_density(draw: &mut Draw<'_>) -> Result<Made> {
             .for_each(|(out, p)| *out = law(p[0]));
         Ok::<(), Error>(())
     };
-    Ok(region.and_then(|region| from_density(&region, density, effort)))
+    Ok(region
+        .and_then(|region| from_density(&region, density, effort))
+        .and_then(|found| found.converged()))
 }

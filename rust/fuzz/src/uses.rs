@@ -2,6 +2,7 @@
 
 use arbitrary::Result;
 use nalgebra::Vector3;
+use polhode::error::BodyFault;
 use polhode::mass::equimomental::{equimomental_particles, stick};
 use polhode::mass::forms::SpatialOrder;
 use polhode::mass::realizable::{nearest_valid, within_box};
@@ -96,11 +97,15 @@ fn forms(body: &RigidBody, admitted: f64) {
             assert!(off <= 1e-13 * reach * body.mass(), "{what}: off by {off:e}");
         }
         // What rounding makes of a body on the edge of the possible is told.
-        Err(Fault::TriangleInequality { relative, .. }) => assert!(relative < 1e-10, "{what}"),
+        Err(Fault::Body(BodyFault::TriangleInequality { relative, .. })) => {
+            assert!(relative < 1e-10, "{what}")
+        }
         Err(error) => assert!(
             matches!(
                 error,
-                Fault::NegativeMoment { .. } | Fault::NotASpatialInertia { .. }
+                Fault::Body(
+                    BodyFault::NegativeMoment { .. } | BodyFault::NotASpatialInertia { .. }
+                )
             ),
             "{what}: {error}"
         ),

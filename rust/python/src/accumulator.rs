@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
 use crate::arrays::write;
+use crate::body::PyRigidBody;
 use crate::errors::to_py;
 use crate::particles::{ParticleArrays, watched};
-use crate::rigid_body::PyRigidBody;
 use crate::stack::Stack;
 
 /// Particles in chunks: for files larger than memory, streams, and many machines at a time.

@@ -7,10 +7,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{floats, numpy, write, zeros};
+use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::interrupt::Interrupt;
 use crate::memory;
-use crate::rigid_body::PyRigidBody;
 use crate::stack::Stack;
 
 /// That every motion knows its state at each of the times.

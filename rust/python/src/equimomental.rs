@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, read};
-use crate::rigid_body::PyRigidBody;
+use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
 #[pymethods]

@@ -1,14 +1,15 @@
 //! Errors of the core as exceptions of `polhode.errors`.
 
 use polhode::Error;
-use polhode::error::Kind;
+use polhode::error::{Kind, MeshFault};
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
+use crate::advice::in_words;
 use crate::hints;
-use crate::stack::tuple;
+use crate::shape::tuple;
 
 /// The exception for an error of the core.
 pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
@@ -19,10 +20,31 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
         Kind::SingularAttitude => "SingularAttitudeError",
         Kind::Quadrature => "QuadratureError",
         Kind::Integration => "IntegrationError",
-        Kind::Memory => return PyMemoryError::new_err(error.to_string()),
+        Kind::Memory => return PyMemoryError::new_err(in_words(error)),
         _ => "PolhodeError",
     };
-    new(py, name, error.to_string())
+    let raised = new(py, name, in_words(error));
+    match error {
+        Error::Mesh(fault) => told(py, raised, matches!(fault, MeshFault::Open { .. })),
+        _ => raised,
+    }
+}
+
+/// The exception for a mesh, which says whether to close the mesh is what it needs.
+fn told(py: Python<'_>, raised: PyErr, is_open: bool) -> PyErr {
+    match raised.value(py).setattr("is_open", is_open) {
+        Ok(()) => raised,
+        Err(error) => error,
+    }
+}
+
+/// The same exception with words in front.
+pub(crate) fn with_prefix(py: Python<'_>, prefix: &str, error: &PyErr) -> PyErr {
+    let raised = PyErr::from_type(error.get_type(py), format!("{prefix}: {}", error.value(py)));
+    match error.value(py).getattr("is_open") {
+        Ok(is_open) => told(py, raised, is_open.is_truthy().unwrap_or(false)),
+        Err(_) => raised,
+    }
 }
 
 /// An exception of `polhode.errors` by its name.
@@ -52,10 +74,7 @@ pub(crate) fn at_row(shape: &[usize], row: usize, error: &PyErr, py: Python<'_>)
         [one] => one.to_string(),
         _ => tuple(&index),
     };
-    PyErr::from_type(
-        error.get_type(py),
-        format!("row {named}: {}", error.value(py)),
-    )
+    with_prefix(py, &format!("row {named}"), error)
 }
 
 /// An argument of the wrong shape.

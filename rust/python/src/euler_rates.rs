@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
 use polhode::Error;
+use polhode::error::MotionFault;
 use pyo3::prelude::*;
 
 use crate::arrays::{read, write};
@@ -109,7 +110,7 @@ pub(crate) fn euler_rates<'py>(
     let grid = Broadcast::of(["angles", "omega"], [&angles.shape, &omega.shape])?;
     let rates = grid.try_map(py, |[a, w]| {
         match sequence.rates(&angles[a], &omega[w], frame) {
-            Err(Error::SingularEulerRates { .. }) if !raises => {
+            Err(Error::Motion(MotionFault::SingularEulerRates { .. })) if !raises => {
                 let middle = sequence.middle_rate(&angles[a], &omega[w], frame);
                 Ok([f64::NAN, middle, f64::NAN])
             }

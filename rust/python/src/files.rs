@@ -8,21 +8,22 @@ use numpy::{PyArray2, PyArrayMethods};
 use polhode::Error;
 use polhode::io::ply::PlyStream;
 use polhode::io::stl::{self, StlStream};
-use polhode::io::{FileFault, StreamError, TriangleMesh, TriangleStream, plates};
+use polhode::io::{TriangleMesh, plates};
 use polhode::mass::polyhedron::Options;
+use polhode::mass::polyhedron::stream::{StreamError, TriangleStream};
 use polhode::mass::polyhedron::streamed::streamed;
 use polhode::mass::surface;
 use polhode::numerics::threads::Halt;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::body::PyRigidBody;
 use crate::depth::Deeper;
-use crate::errors::{new, to_py};
+use crate::errors::{to_py, with_prefix};
 use crate::interrupt::Interrupt;
 use crate::meshes::{read_mesh, with_mesh};
 use crate::particles::watched;
-use crate::rigid_body::PyRigidBody;
-use crate::solids::amount;
+use crate::shapes::amount;
 use crate::stack::Stack;
 
 /// Vertices (n, 3) and faces (m, 3).
@@ -108,9 +109,7 @@ fn stream_error(py: Python<'_>, path: &Path, error: StreamError) -> PyErr {
         StreamError::Io(error) => os_error(path, &error),
         StreamError::Stopped => to_py(py, &Error::Stopped),
         StreamError::Failed(error @ (Error::Mesh(_) | Error::File(_))) => {
-            let bare = to_py(py, &error);
-            let message = format!("{}: {error}", path.display());
-            PyErr::from_type(bare.get_type(py), message)
+            with_prefix(py, &path.display().to_string(), &to_py(py, &error))
         }
         StreamError::Failed(error) => to_py(py, &error),
     }
@@ -145,7 +144,10 @@ pub(crate) fn read_plates(
     interrupt.finish(py, false)?;
     match mesh.map_err(|error: io::Error| os_error(&path, &error))? {
         Ok(mesh) => to_arrays(py, mesh),
-        Err(Halt::Failed(fault)) => Err(file_error(py, &path, &fault)),
+        Err(Halt::Failed(fault)) => {
+            let error = to_py(py, &fault.into());
+            Err(with_prefix(py, &path.display().to_string(), &error))
+        }
         Err(Halt::Stopped) => Err(to_py(py, &Error::Stopped)),
     }
 }
@@ -196,12 +198,4 @@ fn os_error(path: &Path, error: &io::Error) -> PyErr {
         }
         None => PyOSError::new_err(format!("{}: {error}", path.display())),
     }
-}
-
-fn file_error(py: Python<'_>, path: &Path, fault: &FileFault) -> PyErr {
-    new(
-        py,
-        "FileFormatError",
-        format!("{}: {fault}", path.display()),
-    )
 }

@@ -12,7 +12,7 @@ use pyo3::types::{PyFloat, PyInt, PyList, PyModule, PySlice, PyTuple};
 use crate::depth::Deeper;
 use crate::interrupt::Beat;
 use crate::memory;
-use crate::stack::tuple;
+use crate::shape::tuple;
 
 /// Numbers that NumPy is given at a time; in a few milliseconds it is done with them.
 const PIECE: usize = 1 << 18;

@@ -8,7 +8,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Argument, read, read_or, try_rows, write, write_of};
-use crate::rigid_body::PyRigidBody;
+use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
 type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;

@@ -13,9 +13,10 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::arrays::{read, write_of};
 use crate::attitudes::read_attitude;
+use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
-use crate::rigid_body::PyRigidBody;
-use crate::stack::{Broadcast, Stack, tuple};
+use crate::shape::tuple;
+use crate::stack::{Broadcast, Stack};
 
 /// The motion of a body, or of a stack of bodies, on which no torque acts about its centre of mass.
 ///

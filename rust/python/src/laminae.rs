@@ -5,8 +5,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::read_list;
-use crate::rigid_body::PyRigidBody;
-use crate::solids::{Given, amounts, lengths, one};
+use crate::body::PyRigidBody;
+use crate::shapes::{Given, amounts, lengths, one};
 use crate::stack::{Broadcast, Stack};
 
 /// Disk about z: I_z = ½ m R², I_x = ¼ m R².

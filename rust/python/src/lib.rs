@@ -5,8 +5,8 @@
 //! | `arrays`, `items`, `meshes` | NumPy layout |
 //! | `foreign` | what other objects become as arrays, and what would be lost on the way |
 //! | `memory` | whether there is room for a result |
-//! | `stack` | shape arithmetic |
-//! | `errors` | which exception an error of the core becomes |
+//! | `shape`, `stack`, `indexing` | shape arithmetic |
+//! | `errors`, `advice` | which exception an error of the core becomes, and the keyword that mends it |
 //! | `hints` | the way out of mistakes that many make |
 //! | `interrupt` | Ctrl-C and progress |
 //! | `depth` | functions of Python that call the package anew |
@@ -17,9 +17,12 @@
 // What Python sees is documented in Python's terms; the names are public to it alone.
 #![allow(missing_docs, clippy::doc_markdown, clippy::needless_pass_by_value)]
 
+mod about;
 mod accumulator;
+mod advice;
 mod arrays;
 mod attitudes;
+mod body;
 mod closed_form;
 mod depth;
 mod environment;
@@ -33,6 +36,7 @@ mod forms;
 mod free_motion;
 mod heavy_top;
 mod hints;
+mod indexing;
 mod interrupt;
 mod items;
 mod kinematics;
@@ -49,8 +53,11 @@ mod rigid_body;
 mod rods;
 mod rotations;
 mod sensitivity;
+mod shape;
+mod shapes;
 mod solids;
 mod stack;
+mod times;
 mod tops;
 
 use pyo3::prelude::*;
@@ -64,6 +71,8 @@ mod _core {
     use crate::accumulator::PyMassAccumulator;
     #[pymodule_export]
     use crate::arrays::real_numbers;
+    #[pymodule_export]
+    use crate::body::PyRigidBody;
     #[pymodule_export]
     use crate::equimomental::stick;
     #[pymodule_export]
@@ -102,8 +111,6 @@ mod _core {
     use crate::regions::{PyRegion, ball, cuboid as box_region, cylinder as cylinder_region};
     #[pymodule_export]
     use crate::regions::{ellipsoid as ellipsoid_region, mesh};
-    #[pymodule_export]
-    use crate::rigid_body::PyRigidBody;
     #[pymodule_export]
     use crate::rods::{arc, ring, rod};
     #[pymodule_export]

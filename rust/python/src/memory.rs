@@ -8,7 +8,7 @@ use std::fs;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 
-use crate::stack::tuple;
+use crate::shape::tuple;
 
 /// What is asked for without a look at what is left, in bytes: to fill more takes much longer than the look.
 const LITTLE: u64 = 1 << 26;

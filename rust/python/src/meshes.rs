@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use crate::arrays::{as_array, contiguous, floats};
 use crate::errors::to_py;
 use crate::interrupt::Interrupt;
-use crate::stack::tuple;
+use crate::shape::tuple;
 
 /// Vertices (n, 3) and faces (m, 3).
 pub(crate) struct Mesh<'py> {

@@ -90,7 +90,7 @@ pub(crate) fn read_labels<'py>(
     if shape != [count] {
         return Err(PyValueError::new_err(format!(
             "labels: expected shape ({count},), one for each particle, got {}",
-            crate::stack::tuple(&shape)
+            crate::shape::tuple(&shape)
         )));
     }
     if count > 0 && !"iu".contains(&kind) {

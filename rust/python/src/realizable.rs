@@ -6,7 +6,7 @@ use polhode::mass::realizable;
 use pyo3::prelude::*;
 
 use crate::arrays::{read, try_rows, write_numbers_of, write_of};
-use crate::rigid_body::PyRigidBody;
+use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
 /// The nearest tensors that bodies have, and their distances.

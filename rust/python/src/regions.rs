@@ -10,7 +10,8 @@ use crate::arrays::{Argument, Item, read, read_or};
 use crate::errors::to_py;
 use crate::meshes::{read_mesh, with_mesh};
 use crate::particles::watched;
-use crate::stack::{Stack, tuple};
+use crate::shape::tuple;
+use crate::stack::Stack;
 
 /// A region of space: where there is matter. Made by the functions of :mod:`polhode.regions`.
 #[pyclass(name = "Region", module = "polhode.regions", frozen)]

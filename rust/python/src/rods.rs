@@ -3,8 +3,8 @@
 use polhode::mass::rods;
 use pyo3::prelude::*;
 
-use crate::rigid_body::PyRigidBody;
-use crate::solids::{Given, lengths, one};
+use crate::body::PyRigidBody;
+use crate::shapes::{Given, lengths, one};
 
 /// Thin rod along z: I_x = I_y = m L²/12, I_z = 0.
 ///

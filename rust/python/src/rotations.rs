@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use numpy::PyArrayDyn;
 use polhode::Error;
+use polhode::error::MotionFault;
 use polhode::motion::attitude::{components, from_components, from_matrix};
 use polhode::motion::euler_angles::Sequence;
 use pyo3::exceptions::PyValueError;
@@ -113,7 +114,9 @@ pub(crate) fn euler_angles_from_quaternion<'py>(
             return Ok([f64::NAN; 3]);
         }
         match sequence.from_quaternion(&from_components("quaternion", components)?) {
-            Err(Error::GimbalLock { middle, .. }) if !raises => Ok([f64::NAN, middle, f64::NAN]),
+            Err(Error::Motion(MotionFault::GimbalLock { middle, .. })) if !raises => {
+                Ok([f64::NAN, middle, f64::NAN])
+            }
             result => result,
         }
     })?;

@@ -13,14 +13,16 @@ use polhode::numerics::threads::fill_blocks;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use crate::about::is_pivot;
 use crate::arrays::{Numbers, read, write_of};
 use crate::attitudes::read_attitude;
+use crate::body::PyRigidBody;
 use crate::errors::{at_row, new, to_py};
 use crate::interrupt::{Beat, Interrupt};
-use crate::loads::{PyLoad, is_pivot};
+use crate::loads::PyLoad;
 use crate::memory;
-use crate::rigid_body::{PyRigidBody, read_times};
 use crate::stack::{Broadcast, Stack};
+use crate::times::read_times;
 
 /// The derivatives of motions from states at the first of the times.
 #[pyfunction]

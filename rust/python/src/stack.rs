@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use crate::errors::{at_row, to_py};
 use crate::interrupt::{Beat, Interrupt};
 use crate::memory::{self, Names};
+use crate::shape::tuple;
 
 /// Rows of a large map done at a time by one thread, or between two looks at Python's signals.
 pub(crate) const BLOCK: usize = 1024;
@@ -239,19 +240,4 @@ fn mismatch<const K: usize>(names: [&str; K], shapes: [&[usize]; K]) -> PyErr {
         "stack shapes do not broadcast: {}",
         told.join(", ")
     ))
-}
-
-/// A shape as Python prints it.
-pub(crate) fn tuple(shape: &[usize]) -> String {
-    match shape {
-        [one] => format!("({one},)"),
-        _ => format!(
-            "({})",
-            shape
-                .iter()
-                .map(usize::to_string)
-                .collect::<Vec<_>>()
-                .join(", ")
-        ),
-    }
 }

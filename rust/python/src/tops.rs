@@ -8,8 +8,9 @@ use polhode::motion::heavy_top::PivotedTop;
 use polhode::principal::{SymmetricTop, TOP_RTOL};
 use pyo3::prelude::*;
 
+use crate::about::points;
 use crate::arrays::{Argument, read, read_or, write, write_numbers, write_numbers_of, write_of};
-use crate::rigid_body::{PyRigidBody, points};
+use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
 /// Torque-free precession of a symmetric top: body cone, space cone and the two rates.

@@ -7,7 +7,8 @@
 use std::ops::ControlFlow;
 use std::str::SplitWhitespace;
 
-use super::{FileFault, TriangleMesh};
+use super::mesh::TriangleMesh;
+use crate::error::FileFault;
 use crate::numerics::threads::{Halt, Watch};
 
 /// Reads `text`, in which faces count vertices from `index_base` (0 or 1).

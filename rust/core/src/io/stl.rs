@@ -5,7 +5,9 @@ use std::collections::HashMap;
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
 
-use super::{BLOCK, FileFault, StreamError, Triangle, TriangleMesh, TriangleStream};
+use super::mesh::TriangleMesh;
+use crate::error::FileFault;
+use crate::mass::polyhedron::stream::{BLOCK, StreamError, Triangle, TriangleStream};
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;

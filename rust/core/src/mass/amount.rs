@@ -7,7 +7,7 @@ use super::error_bound::ErrorBound;
 use super::provenance::{Checks, Provenance, Source};
 use super::second_moment::SecondMoment;
 use super::units::Units;
-use crate::error::{Error, finite};
+use crate::error::{Error, finite, finite_of_body};
 use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
 use crate::numerics::split_vector::SplitVector;
 
@@ -39,7 +39,10 @@ impl Amount {
             Self::Mass(mass) => ("mass", mass),
             Self::Density(density) => ("density", density),
         };
-        finite(what, value)?;
+        match self {
+            Self::Mass(mass) => finite_of_body(what, mass)?,
+            Self::Density(density) => finite(what, density)?,
+        };
         if value <= 0.0 {
             return Err(Error::OutOfDomain {
                 what,
@@ -82,7 +85,7 @@ impl Measure {
         let (lengths, value) = self.parts();
         let (own, power) = amount.mass_in_units(value)?;
         if own == 0.0 {
-            let law = "positive when density= is given (a degenerate shape takes mass=)";
+            let law = "positive where a density is given (a degenerate shape takes a mass)";
             let what = self.name();
             return Err(Error::OutOfDomain { what, law, value });
         }

@@ -2,14 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::body::{RigidBody, root_of_ratio};
+use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::parallel_axis::point_inertia;
 use super::provenance::Provenance;
 use super::validity::{ROUNDING, check_mass, trace};
-use crate::error::{Error, all_finite};
+use crate::error::{BodyFault, Error, all_finite_of_body};
 use crate::numerics::eigen3::eigen3;
-use crate::numerics::power_of_two::length;
+use crate::numerics::power_of_two::{length, root_of_ratio};
 use crate::numerics::reduce::{depth, sum_terms};
 use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
 
@@ -28,14 +28,14 @@ pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {
         many => {
             let sum = Assembly::of(many.len(), |i| (1.0, &many[i]));
             check_mass(sum.mass)?;
-            all_finite("center_of_mass", &sum.center)?;
-            all_finite("inertia", &sum.inertia)?;
-            all_finite("inertia", &[sum.spread])?;
+            all_finite_of_body("center_of_mass", &sum.center)?;
+            all_finite_of_body("inertia", &sum.inertia)?;
+            all_finite_of_body("inertia", &[sum.spread])?;
             // The sum of possible bodies is possible.
             let mut principal = principal_axes(&sum.inertia);
             if is_thin(&principal) {
                 principal = sum.refined(&principal);
-                all_finite("moments", &principal.moments)?;
+                all_finite_of_body("moments", &principal.moments)?;
                 principal.moments = principal.moments.map(|moment| moment.max(0.0));
                 let provenance = sum.provenance().in_own_axes();
                 return Ok(sum.body(principal).with_provenance(provenance));
@@ -65,35 +65,36 @@ impl RigidBody {
     /// What is left of the body when `part` is taken out of it: a cavity, a hole.
     ///
     /// # Errors
-    /// [`Error::NoRemainder`] when what is left is no body: its mass or its second moment along some axis is negative.
+    /// [`BodyFault::NoRemainder`] when what is left is no body: its mass or its second moment along some axis is negative.
     pub fn without(&self, part: &Self) -> Result<Self, Error> {
         let mass = self.mass - part.mass;
         if mass <= 0.0 {
             let (what, axis) = ("mass", None);
             let value = mass;
-            return Err(Error::NoRemainder { what, axis, value });
+            return Err(BodyFault::NoRemainder { what, axis, value }.into());
         }
         let pair = [(1.0, self), (-1.0, part)];
         let rest = Assembly::of(2, |i| pair[i]);
-        all_finite("center_of_mass", &rest.center)?;
-        all_finite("inertia", &rest.inertia)?;
-        all_finite("inertia", &[rest.spread])?;
+        all_finite_of_body("center_of_mass", &rest.center)?;
+        all_finite_of_body("inertia", &rest.inertia)?;
+        all_finite_of_body("inertia", &[rest.spread])?;
         let mut principal = principal_axes(&rest.inertia);
         let [i1, i2, i3] = principal.moments;
         // Along the axis of the largest moment the second moment is the smallest.
         let smallest = 0.5 * (i1 + i2 - i3);
         if smallest < -ROUNDING * rest.spread {
             let axis = principal.axes.column(2).into_owned();
-            return Err(Error::NoRemainder {
+            return Err(BodyFault::NoRemainder {
                 what: "second moment",
                 axis: Some([axis.x, axis.y, axis.z]),
                 value: smallest,
-            });
+            }
+            .into());
         }
         let mut provenance = rest.provenance();
         if is_thin(&principal) {
             principal = rest.refined(&principal);
-            all_finite("moments", &principal.moments)?;
+            all_finite_of_body("moments", &principal.moments)?;
             provenance = provenance.in_own_axes();
         }
         principal.moments = principal.moments.map(|moment| moment.max(0.0));
@@ -295,15 +296,18 @@ mod tests {
                 .is_close(&shell, 1e-14, 0.0)
         );
         let heavier = hole.without(&ball).expect_err("negative mass");
-        assert!(matches!(heavier, Error::NoRemainder { what: "mass", .. }));
+        assert!(matches!(
+            heavier,
+            Error::Body(BodyFault::NoRemainder { what: "mass", .. })
+        ));
         let lead = solids::sphere(1.9, Amount::Mass(20.0)).expect("lead");
         let far = lead.translated(&Vector3::new(5.0, 0.0, 0.0)).expect("far");
         let fault = ball.without(&far).expect_err("outside");
-        let Error::NoRemainder {
+        let Error::Body(BodyFault::NoRemainder {
             axis: Some([x, ..]),
             value,
             ..
-        } = fault
+        }) = fault
         else {
             panic!("{fault}");
         };

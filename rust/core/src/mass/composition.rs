@@ -7,7 +7,7 @@ use super::error_bound::{ErrorBound, UNIT};
 use super::provenance::Provenance;
 use super::units::{QUANTUM, Units};
 use super::validity::{check_mass, check_rotation, mean_of_halves, trace};
-use crate::error::{Error, all_finite, finite};
+use crate::error::{Error, all_finite, all_finite_of_body, finite};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::principal::{PrincipalAxes, with_sign_rule};
 
@@ -19,7 +19,7 @@ impl RigidBody {
     pub fn translated(&self, d: &Vector3<f64>) -> Result<Self, Error> {
         all_finite("displacement", d)?;
         let center_of_mass = self.center_of_mass + d;
-        all_finite("center_of_mass", &center_of_mass)?;
+        all_finite_of_body("center_of_mass", &center_of_mass)?;
         Ok(Self {
             center_of_mass,
             error_bound: self.error_bound.rounded(&center_of_mass, 0.0),
@@ -35,8 +35,8 @@ impl RigidBody {
         check_rotation("rotation", rotation)?;
         let inertia = mean_of_halves(&(rotation * self.inertia * rotation.transpose()));
         let center_of_mass = rotation * self.center_of_mass;
-        all_finite("center_of_mass", &center_of_mass)?;
-        all_finite("inertia", &inertia)?;
+        all_finite_of_body("center_of_mass", &center_of_mass)?;
+        all_finite_of_body("inertia", &inertia)?;
         // Each element of a turned vector takes up three others, of a turned tensor nine, by factors of one at most.
         let turned = ErrorBound {
             mass: self.error_bound.mass,
@@ -107,8 +107,8 @@ impl RigidBody {
             },
         })?;
         check_mass(scaled.mass)?;
-        all_finite("inertia", &scaled.inertia)?;
-        all_finite("center_of_mass", &scaled.center_of_mass)?;
+        all_finite_of_body("inertia", &scaled.inertia)?;
+        all_finite_of_body("center_of_mass", &scaled.center_of_mass)?;
         Ok(scaled)
     }
 }

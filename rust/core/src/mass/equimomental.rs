@@ -3,10 +3,10 @@
 
 use nalgebra::Vector3;
 
-use super::body::{RigidBody, root_of_ratio};
+use super::body::RigidBody;
 use super::validity::{ROUNDING, check_mass};
-use crate::error::{Error, all_finite, finite};
-use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::error::{BodyFault, Error, all_finite, all_finite_of_body, finite, finite_of_body};
+use crate::numerics::power_of_two::{exponent, root_of_ratio, times_power_of_two};
 
 /// Particles: masses and where they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ const SQRT_3_2: f64 = 1.224_744_871_391_589;
 /// Source: mex143; Routh, Dynamics of a System of Rigid Bodies, elementary part, §34.
 ///
 /// # Errors
-/// [`Error::TriangleInequality`] for a body that was admitted (`rtol`) with moments that no masses have; a body larger than
+/// [`BodyFault::TriangleInequality`] for a body that was admitted (`rtol`) with moments that no masses have; a body larger than
 /// any number, `√(I/m)`, or whose mass has no parts that are normal numbers.
 pub fn equimomental_particles(body: &RigidBody) -> Result<Particles, Error> {
     let (spread, corners) = spreads(&body.principal().moments)?;
@@ -54,11 +54,12 @@ pub fn equimomental_particles(body: &RigidBody) -> Result<Particles, Error> {
     let count = corners.len() as f64;
     let mass = m / count;
     if mass < f64::MIN_POSITIVE && mass * count != m {
-        return Err(Error::OutOfRange {
+        return Err(BodyFault::OutOfRange {
             what: "mass of each particle",
             mantissa: times_power_of_two(m, 60) / count,
             exponent: -60,
-        });
+        }
+        .into());
     }
     let positions: Vec<[f64; 3]> = corners.iter().map(place).collect();
     all_finite("positions", positions.as_flattened())?;
@@ -75,11 +76,12 @@ fn spreads(moments: &[f64; 3]) -> Result<([f64; 3], &'static [[f64; 3]]), Error>
     finite("the sum of the principal moments", sum)?;
     let noise = ROUNDING * sum;
     if deficit > noise {
-        return Err(Error::TriangleInequality {
+        return Err(BodyFault::TriangleInequality {
             moments: *moments,
             deficit,
             relative: deficit / sum,
-        });
+        }
+        .into());
     }
     let first = 0.5 * ((i2 - i1) + i3);
     if i3 == 0.0 {
@@ -107,10 +109,13 @@ fn spreads(moments: &[f64; 3]) -> Result<([f64; 3], &'static [[f64; 3]]), Error>
 /// Source: mex143.
 ///
 /// # Errors
-/// [`Error::NegativeCentralMass`] where `m₀ < 0`; distances and mass that are not positive, a negative moment.
+/// [`BodyFault::NegativeCentralMass`] where `m₀ < 0`; distances and mass that are not positive, a negative moment.
 pub fn stick(mass: f64, inertia: f64, a: f64, b: f64) -> Result<Particles, Error> {
     check_mass(mass)?;
     for (what, value) in [("inertia", inertia), ("a", a), ("b", b)] {
+        if what == "inertia" {
+            finite_of_body(what, value)?;
+        }
         finite(what, value)?;
         let (law, obeyed) = if what == "inertia" {
             ("zero or more", value >= 0.0)
@@ -132,13 +137,14 @@ pub fn stick(mass: f64, inertia: f64, a: f64, b: f64) -> Result<Particles, Error
         central = 0.0; // two particles alone, to rounding
     }
     if central < 0.0 {
-        return Err(Error::NegativeCentralMass {
+        return Err(BodyFault::NegativeCentralMass {
             mass: central,
             least: inertia / mass,
-        });
+        }
+        .into());
     }
     let masses = vec![over(a + b, a), over(a + b, b), central];
-    all_finite("masses", &masses)?;
+    all_finite_of_body("masses", &masses)?;
     Ok(Particles {
         masses,
         positions: vec![[0.0, 0.0, a], [0.0, 0.0, -b], [0.0; 3]],
@@ -176,7 +182,10 @@ mod tests {
             RigidBody::from_principal(1.0, &[1.0, 1.0, 2.01], &axes, &Vector3::zeros(), 0.01)
                 .expect("admitted");
         let fault = equimomental_particles(&body);
-        assert!(matches!(fault, Err(Error::TriangleInequality { .. })));
+        assert!(matches!(
+            fault,
+            Err(Error::Body(BodyFault::TriangleInequality { .. }))
+        ));
     }
 
     #[test]
@@ -187,7 +196,7 @@ mod tests {
         assert!((found.masses[0] * 0.5 - found.masses[1] * 2.0 / 3.0).abs() < 1e-15);
         let fault = stick(3.0, 1.0, 0.5, 0.5);
         assert!(
-            matches!(fault, Err(Error::NegativeCentralMass { mass, least })
+            matches!(fault, Err(Error::Body(BodyFault::NegativeCentralMass { mass, least }))
             if (mass + 1.0).abs() < 1e-15 && (least - 1.0 / 3.0).abs() < 1e-15)
         );
         assert!(stick(3.0, 1.0, 0.0, 0.5).is_err() && stick(3.0, -1.0, 1.0, 0.5).is_err());

@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3};
 use super::body::RigidBody;
 use super::parallel_axis::from_center_of_mass;
 use super::validity::{ASYMMETRY, check_mass};
-use crate::error::{Error, all_finite};
+use crate::error::{BodyFault, Error, all_finite_of_body};
 
 /// In which order a spatial inertia stacks its two halves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +41,8 @@ impl RigidBody {
         center_of_mass: &Vector3<f64>,
         rtol: f64,
     ) -> Result<Self, Error> {
-        all_finite("moments", moments)?;
-        all_finite("products", products)?;
+        all_finite_of_body("moments", moments)?;
+        all_finite_of_body("products", products)?;
         let [x, y, z] = *moments;
         let [xy, xz, yz] = products.map(|p| 0.0 - p);
         let inertia = Matrix3::new(x, xy, xz, xy, y, yz, xz, yz, z);
@@ -84,7 +84,7 @@ impl RigidBody {
     /// # Errors
     /// As [`RigidBody::from_inertia_about_origin`].
     pub fn from_parameters(parameters: &[f64; 10], rtol: f64) -> Result<Self, Error> {
-        all_finite("parameters", parameters)?;
+        all_finite_of_body("parameters", parameters)?;
         let [m, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *parameters;
         check_mass(m)?;
         let about_origin = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
@@ -113,7 +113,7 @@ impl RigidBody {
     /// When it is not symmetric; as [`RigidBody::from_inertia_about_origin`].
     pub fn from_pseudo_inertia(pseudo_inertia: &Matrix4<f64>, rtol: f64) -> Result<Self, Error> {
         let what = "pseudo_inertia";
-        all_finite(what, pseudo_inertia)?;
+        all_finite_of_body(what, pseudo_inertia)?;
         symmetric(what, pseudo_inertia, rtol)?;
         let j = (pseudo_inertia + pseudo_inertia.transpose()) * 0.5;
         let mass = j[(3, 3)];
@@ -140,7 +140,7 @@ impl RigidBody {
     /// From the spatial inertia about O.
     ///
     /// # Errors
-    /// [`Error::NotASpatialInertia`] with the element that differs from what the others imply; as
+    /// [`BodyFault::NotASpatialInertia`] with the element that differs from what the others imply; as
     /// [`RigidBody::from_inertia_about_origin`].
     pub fn from_spatial_inertia(
         spatial_inertia: &Matrix6<f64>,
@@ -148,7 +148,7 @@ impl RigidBody {
         rtol: f64,
     ) -> Result<Self, Error> {
         let what = "spatial_inertia";
-        all_finite(what, spatial_inertia)?;
+        all_finite_of_body(what, spatial_inertia)?;
         let (angular, linear) = order.halves();
         let mass = spatial_inertia[(linear, linear)];
         check_mass(mass)?;
@@ -167,12 +167,13 @@ impl RigidBody {
                 let scale = scales[usize::from(is_angular(row)) + usize::from(is_angular(column))];
                 let (got, expected) = (spatial_inertia[(row, column)], implied[(row, column)]);
                 if (got - expected).abs() > ASYMMETRY.max(rtol) * scale {
-                    return Err(Error::NotASpatialInertia {
+                    return Err(BodyFault::NotASpatialInertia {
                         row,
                         column,
                         got,
                         expected,
-                    });
+                    }
+                    .into());
                 }
             }
         }
@@ -186,7 +187,7 @@ impl RigidBody {
     /// Taken from mass, C and the second moment about C, so that a body far from O loses nothing: `α = ½ ln m`, `t = C`.
     ///
     /// # Errors
-    /// [`Error::NoLogCholesky`] for a body without thickness, whose second moments include a zero.
+    /// [`BodyFault::NoLogCholesky`] for a body without thickness, whose second moments include a zero.
     pub fn log_cholesky(&self) -> Result<[f64; 10], Error> {
         // S/m = U Uᵀ with U upper triangular, from the last row upward.
         let s = second_moment(&self.inertia()) / self.mass();
@@ -195,10 +196,10 @@ impl RigidBody {
             if square > 8.0 * f64::EPSILON * size {
                 Ok(square.sqrt())
             } else {
-                Err(Error::NoLogCholesky {
+                Err(Error::Body(BodyFault::NoLogCholesky {
                     along,
                     square: square.max(0.0) * self.mass(),
-                })
+                }))
             }
         };
         let u33 = pivot(s.m33, "z")?;
@@ -226,7 +227,7 @@ impl RigidBody {
     /// # Errors
     /// When a number is not finite, or the body overflows.
     pub fn from_log_cholesky(parameters: &[f64; 10]) -> Result<Self, Error> {
-        all_finite("parameters", parameters)?;
+        all_finite_of_body("parameters", parameters)?;
         let [alpha, d1, d2, d3, s12, s23, s13, t1, t2, t3] = *parameters;
         let mass = (2.0 * alpha).exp();
         let (u11, u22, u33) = (d1.exp(), d2.exp(), d3.exp());
@@ -309,7 +310,7 @@ fn symmetric(what: &'static str, a: &Matrix4<f64>, rtol: f64) -> Result<(), Erro
             let (a, b) = (a[(row, column)], a[(column, row)]);
             let relative = (a / largest - b / largest).abs();
             if relative > allowed {
-                return Err(Error::NotSymmetric {
+                return Err(BodyFault::NotSymmetric {
                     what,
                     row,
                     column,
@@ -317,7 +318,8 @@ fn symmetric(what: &'static str, a: &Matrix4<f64>, rtol: f64) -> Result<(), Erro
                     b,
                     relative,
                     allowed,
-                });
+                }
+                .into());
             }
         }
     }
@@ -374,17 +376,17 @@ mod tests {
         let mut matrix = brick().spatial_inertia(SpatialOrder::AngularLinear);
         matrix[(4, 4)] = 7.0;
         let fault = RigidBody::from_spatial_inertia(&matrix, SpatialOrder::AngularLinear, 0.0);
-        let expected = Error::NotASpatialInertia {
+        let expected = Error::Body(BodyFault::NotASpatialInertia {
             row: 4,
             column: 4,
             got: 7.0,
             expected: 2.5,
-        };
+        });
         assert_eq!(fault, Err(expected));
         let plate = solids::cuboid(&[1.0, 2.0, 0.0], Amount::Mass(1.0)).expect("plate");
         assert!(matches!(
             plate.log_cholesky(),
-            Err(Error::NoLogCholesky { along: "z", .. })
+            Err(Error::Body(BodyFault::NoLogCholesky { along: "z", .. }))
         ));
     }
 }

@@ -25,7 +25,7 @@ pub fn nearest_valid(inertia: &Matrix3<f64>) -> Result<(Matrix3<f64>, f64), Erro
     let inertia = mean_of_halves(inertia);
     let principal = principal_axes(&inertia);
     let scale = principal.moments.iter().map(|x| x.abs()).sum::<f64>();
-    if check_moments(&principal.moments, ROUNDING * scale, ROUNDING, "").is_ok() {
+    if check_moments(&principal.moments, ROUNDING * scale, ROUNDING, false).is_ok() {
         return Ok((inertia, 0.0));
     }
     let nearest = nearest_moments(&principal.moments);

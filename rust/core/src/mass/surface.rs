@@ -2,12 +2,12 @@
 
 use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
-use super::polyhedron::{Index, MeshFault, View, in_units, is_settled, matter};
+use super::polyhedron::{Index, View, in_units, is_settled, matter};
 use super::provenance::{Checks, MomentsFrom, Provenance, Source};
 use super::simplex::{Corners, FaintShell, Frame, Kind, Shell, Sums, sums};
 use super::solids::Amount;
 use super::units::QUANTUM;
-use crate::error::Error;
+use crate::error::{Error, MeshFault};
 use crate::numerics::power_of_two::exponent;
 use crate::numerics::threads::{Halt, Watch};
 use crate::principal::principal_axes;

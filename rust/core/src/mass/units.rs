@@ -6,7 +6,7 @@
 
 use super::body::RigidBody;
 use super::error_bound::ErrorBound;
-use crate::error::Error;
+use crate::error::{BodyFault, Error};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// The least step between two numbers, 2⁻¹⁰⁷⁴: what rounding below the normal numbers is worth.
@@ -24,7 +24,7 @@ impl Units {
     /// The body in the user's units.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] when mass or moments are beyond the largest number, or so small that digits are lost.
+    /// [`BodyFault::OutOfRange`] when mass or moments are beyond the largest number, or so small that digits are lost.
     pub(super) fn told(self, body: &RigidBody) -> Result<RigidBody, Error> {
         let moment = self.mass + 2 * self.length;
         let i3 = body.principal.moments[2];
@@ -70,11 +70,11 @@ impl Units {
 
     fn refused(what: &'static str, value: f64, power: i32) -> Error {
         let own = exponent(value);
-        Error::OutOfRange {
+        Error::Body(BodyFault::OutOfRange {
             what,
             mantissa: times_power_of_two(value, -own),
             exponent: own + power,
-        }
+        })
     }
 }
 
@@ -108,7 +108,9 @@ mod tests {
     #[test]
     fn both_sides_of_the_range() {
         let limit = |outcome: Result<RigidBody, Error>, name: &str| match outcome {
-            Err(Error::OutOfRange { what, .. }) => assert!(what.contains(name), "{what}"),
+            Err(Error::Body(BodyFault::OutOfRange { what, .. })) => {
+                assert!(what.contains(name), "{what}");
+            }
             other => panic!("expected a refusal, got {other:?}"),
         };
         // The largest moment is 1.25·2^(1 + mass + 2 length).

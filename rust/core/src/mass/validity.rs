@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::error::{Error, all_finite, finite};
+use crate::error::{BodyFault, Error, all_finite, all_finite_of_body, check_rtol, finite_of_body};
 
 /// Violations of a law up to this times the trace of the tensor are rounding, not physics.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -12,11 +12,11 @@ pub const ASYMMETRY: f64 = 8.0 * f64::EPSILON;
 
 /// m > 0 and finite.
 pub(super) fn check_mass(mass: f64) -> Result<(), Error> {
-    finite("mass", mass)?;
+    finite_of_body("mass", mass)?;
     if mass > 0.0 {
         Ok(())
     } else {
-        Err(Error::NonPositiveMass { mass })
+        Err(BodyFault::NonPositiveMass { mass }.into())
     }
 }
 
@@ -35,43 +35,32 @@ pub fn check_not_negative_mass(mass: f64) -> Result<(), Error> {
     Ok(())
 }
 
-/// 0 ≤ rtol < 1.
-pub(crate) fn check_rtol(rtol: f64) -> Result<(), Error> {
-    finite("rtol", rtol)?;
-    if (0.0..1.0).contains(&rtol) {
-        return Ok(());
-    }
-    Err(Error::OutOfDomain {
-        what: "rtol",
-        law: "at least 0 and less than 1",
-        value: rtol,
-    })
-}
-
 /// Ascending moments: none negative, and no two less than the third. `noise` is an absolute, `allowed` a relative bound of
 /// rounding.
 pub(super) fn check_moments(
     moments: &[f64; 3],
     noise: f64,
     allowed: f64,
-    hint: &'static str,
+    is_from_origin: bool,
 ) -> Result<(), Error> {
     let [i1, i2, i3] = *moments;
     if i1 < -noise.max(allowed * i3) {
-        return Err(Error::NegativeMoment {
+        return Err(BodyFault::NegativeMoment {
             moments: *moments,
-            hint,
-        });
+            is_from_origin,
+        }
+        .into());
     }
     let deficit = i3 - i2 - i1;
     // In fractions of the largest, so that moments near the ends of the float64 range do not overflow.
     let relative = (deficit / i3) / (1.0 + i2 / i3 + i1 / i3);
     if i3 > 0.0 && relative > allowed && deficit > noise {
-        return Err(Error::TriangleInequality {
+        return Err(BodyFault::TriangleInequality {
             moments: *moments,
             deficit,
             relative,
-        });
+        }
+        .into());
     }
     Ok(())
 }
@@ -82,7 +71,7 @@ pub(super) fn symmetrized(
     a: &Matrix3<f64>,
     rtol: f64,
 ) -> Result<Matrix3<f64>, Error> {
-    all_finite(what, a)?;
+    all_finite_of_body(what, a)?;
     check_rtol(rtol)?;
     check_symmetry(what, a, ASYMMETRY.max(rtol))?;
     Ok(mean_of_halves(a))
@@ -91,14 +80,14 @@ pub(super) fn symmetrized(
 /// `|a_ij − a_ji| ≤ allowed · max |a|`; a tensor with an element that is not finite passes.
 ///
 /// # Errors
-/// [`Error::NotSymmetric`] with the first pair that differs.
+/// [`BodyFault::NotSymmetric`] with the first pair that differs.
 pub fn check_symmetry(what: &'static str, a: &Matrix3<f64>, allowed: f64) -> Result<(), Error> {
     let largest = a.abs().max();
     for (row, column) in [(0, 1), (0, 2), (1, 2)] {
         let (a, b) = (a[(row, column)], a[(column, row)]);
         let relative = (a / largest - b / largest).abs();
         if relative > allowed {
-            return Err(Error::NotSymmetric {
+            return Err(BodyFault::NotSymmetric {
                 what,
                 row,
                 column,
@@ -106,7 +95,8 @@ pub fn check_symmetry(what: &'static str, a: &Matrix3<f64>, allowed: f64) -> Res
                 b,
                 relative,
                 allowed,
-            });
+            }
+            .into());
         }
     }
     Ok(())

@@ -9,7 +9,7 @@ use super::particles::sums::{Turned, block_sums};
 use super::particles::{Watch, is_thin};
 use super::second_moment::SecondMoment;
 use super::units::Units;
-use crate::error::{Error, all_finite, finite};
+use crate::error::{BodyFault, Error, all_finite, finite};
 use crate::mass::provenance::{Checks, Provenance, Source};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -244,7 +244,7 @@ impl<T: Voxel> Grid<'_, T> {
             let density = finite("density", density.into())?;
             if density < 0.0 {
                 let index = [cell / (ny * nz), cell / nz % ny, cell % nz];
-                return Err(Error::NegativeDensity { index, density });
+                return Err(BodyFault::NegativeDensity { index, density }.into());
             }
         }
         if self.density.iter().all(|&density| density.into() == 0.0) {

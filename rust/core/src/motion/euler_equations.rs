@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
 use crate::mass::validity::ROUNDING;
@@ -74,7 +74,7 @@ impl EulerEquations {
     /// Forward: the angular acceleration ω̇ under the torque N about P; components in B.
     ///
     /// # Errors
-    /// [`Error::TorqueAlongMasslessAxis`].
+    /// [`MotionFault::TorqueAlongMasslessAxis`].
     pub fn angular_acceleration(
         &self,
         omega: &Vector3<f64>,
@@ -89,7 +89,7 @@ impl EulerEquations {
     /// Along an axis with zero moment ω stays constant, the limit of a thin symmetric rod.
     ///
     /// # Errors
-    /// [`Error::TorqueAlongMasslessAxis`].
+    /// [`MotionFault::TorqueAlongMasslessAxis`].
     #[inline(always)]
     pub fn principal_acceleration(
         &self,
@@ -121,7 +121,9 @@ impl EulerEquations {
             if moment > 0.0 {
                 Ok((torque + gyroscopic) / moment)
             } else if torque.abs() > noise {
-                Err(Error::TorqueAlongMasslessAxis { torque })
+                Err(Error::Motion(MotionFault::TorqueAlongMasslessAxis {
+                    torque,
+                }))
             } else {
                 Ok(0.0 * noise) // zero, or NaN with the torque's
             }
@@ -184,7 +186,7 @@ mod tests {
         let twisted = equations.angular_acceleration(&omega, &Vector3::z());
         assert!(matches!(
             twisted,
-            Err(Error::TorqueAlongMasslessAxis { .. })
+            Err(Error::Motion(MotionFault::TorqueAlongMasslessAxis { .. }))
         ));
     }
 }

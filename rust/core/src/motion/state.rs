@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::numerics::threads::{Halt, fill_blocks};
 
 /// Attitude `R_NB` and angular velocity of B relative to N, components in B.
@@ -98,11 +98,11 @@ pub trait ClosedForm: Sync {
     /// That |t| is within [`reach`](Self::reach), or not finite, which has no state.
     ///
     /// # Errors
-    /// [`Error::BeyondReach`].
+    /// [`MotionFault::BeyondReach`].
     fn reaches(&self, t: f64) -> Result<(), Error> {
         let reach = self.reach();
         if t.is_finite() && t.abs() > reach {
-            return Err(Error::BeyondReach { t, reach });
+            return Err(MotionFault::BeyondReach { t, reach }.into());
         }
         Ok(())
     }

@@ -91,6 +91,17 @@ pub fn halves(e: i32) -> [f64; 2] {
     [2.0_f64.powi(half), 2.0_f64.powi(e - half)]
 }
 
+/// `√(a/b)`, where a/b may be beyond all numbers too.
+#[must_use]
+pub fn root_of_ratio(a: f64, b: f64) -> f64 {
+    let ratio = a / b;
+    if ratio.is_normal() || a == 0.0 {
+        ratio.sqrt()
+    } else {
+        a.sqrt() / b.sqrt()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

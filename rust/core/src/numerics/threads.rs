@@ -5,12 +5,15 @@
 //! results. The calling thread starts on the blocks by itself; only a job that is not over after a
 //! millisecond is shared with others, and from then on the calling thread serves `watch`: progress and Ctrl-C.
 
+use std::convert::Infallible;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
+
+use crate::error::Error;
 
 /// How often the calling thread looks up from waiting.
 const WATCH_INTERVAL: Duration = Duration::from_millis(20);
@@ -27,6 +30,33 @@ pub enum Halt<E> {
     Stopped,
     /// A block failed; of all failing blocks, the one that comes first.
     Failed(E),
+}
+
+impl From<Halt<Infallible>> for Error {
+    fn from(halt: Halt<Infallible>) -> Self {
+        match halt {
+            Halt::Stopped => Self::Stopped,
+            Halt::Failed(never) => match never {},
+        }
+    }
+}
+
+impl From<Error> for Halt<Error> {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Stopped => Self::Stopped,
+            error => Self::Failed(error),
+        }
+    }
+}
+
+impl From<Halt<Self>> for Error {
+    fn from(halt: Halt<Self>) -> Self {
+        match halt {
+            Halt::Stopped => Self::Stopped,
+            Halt::Failed(error) => error,
+        }
+    }
 }
 
 /// The number of threads a job may use; 0 stands for as many as the machine offers.

@@ -4,8 +4,7 @@ use nalgebra::Vector3;
 
 use super::axes::PrincipalAxes;
 use super::tops::gaps;
-use crate::error::Error;
-use crate::mass::validity::check_rtol;
+use crate::error::{BodyFault, Error, check_rtol};
 
 /// A symmetric top, in the letters of textbooks that single out its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +24,7 @@ impl SymmetricTop {
     /// spherical top, for which every axis will do, that is one of three.
     ///
     /// # Errors
-    /// [`Error::NotASymmetricTop`]; `rtol` that is not at least 0 and less than 1.
+    /// [`BodyFault::NotASymmetricTop`]; `rtol` that is not at least 0 and less than 1.
     pub fn of(principal: &PrincipalAxes, rtol: f64) -> Result<Self, Error> {
         check_rtol(rtol)?;
         let PrincipalAxes { moments, axes } = principal;
@@ -33,11 +32,12 @@ impl SymmetricTop {
         let [lower, upper] = gaps(moments);
         let gap = lower.min(upper);
         if gap > rtol {
-            return Err(Error::NotASymmetricTop {
+            return Err(BodyFault::NotASymmetricTop {
                 moments: *moments,
                 gap,
                 allowed: rtol,
-            });
+            }
+            .into());
         }
         let mean = |a: f64, b: f64| a + 0.5 * (b - a);
         let (column, axial, transverse) = if lower <= upper {
@@ -85,7 +85,7 @@ mod tests {
     fn asymmetric_top_is_refused_unless_asked_for() {
         let fault = top([1.0, 1.01, 2.0], TOP_RTOL).expect_err("asymmetric");
         assert!(
-            matches!(fault, Error::NotASymmetricTop { gap, .. } if (gap - 0.005).abs() < 1e-15)
+            matches!(fault, Error::Body(BodyFault::NotASymmetricTop { gap, .. }) if (gap - 0.005).abs() < 1e-15)
         );
         assert_eq!(
             top([1.0, 1.01, 2.0], 0.01).expect("asked for").transverse,

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use super::PyFreeMotion;
 use crate::arrays::{Argument, read, read_or};
-use crate::rigid_body::PyRigidBody;
+use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
 #[pymethods]

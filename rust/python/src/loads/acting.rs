@@ -6,9 +6,9 @@ use polhode::motion::loads::{Analytic, Load, Subject, Switch, Term, Windows, Wre
 use polhode::motion::state::Phase;
 use pyo3::prelude::*;
 
-use super::PyLoad;
 use super::address::Compiled;
 use super::called::Callback;
+use super::load::PyLoad;
 use crate::errors::to_py;
 
 /// What may go wrong while a load is integrated.

@@ -10,9 +10,6 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyCapsuleMethods, PyInt, PyTuple};
 
-use super::PyLoad;
-use super::part::{Acts, recipe};
-
 /// `void f(double t, const double state[13], double out[6], void *user_data)`.
 type Function = unsafe extern "C" fn(f64, *const f64, *mut f64, *mut c_void);
 
@@ -34,6 +31,29 @@ unsafe impl Send for Compiled {}
 unsafe impl Sync for Compiled {}
 
 impl Compiled {
+    /// The function at the address that an object of Python stands for.
+    ///
+    /// # Errors
+    /// `TypeError` or `ValueError` where it stands for none.
+    pub(super) fn new(function: &Bound<'_, PyAny>, user_data: Option<usize>) -> PyResult<Self> {
+        let (address, own_data) = address(function)?;
+        if address == 0 {
+            return Err(PyValueError::new_err("function: the address is 0"));
+        }
+        let user_data = user_data.map_or(own_data, |data| data as *mut c_void);
+        // SAFETY: a pointer that is not null may become one to a function; that one of this signature lives there is stated
+        // by whoever passes the address.
+        let called =
+            unsafe { std::mem::transmute::<*const c_void, Function>(address as *const c_void) };
+        Ok(Self {
+            function: called,
+            user_data,
+            owner: function.clone().unbind(),
+            factor: 1.0,
+            windows: None,
+        })
+    }
+
     pub(super) fn owner(&self) -> &Py<PyAny> {
         &self.owner
     }
@@ -60,62 +80,6 @@ impl Compiled {
             torque: Vector3::new(nx, ny, nz),
         }
     }
-}
-
-/// A force and a torque computed by a compiled function, which runs without the GIL.
-///
-/// Parameters
-/// ----------
-/// function : scipy.LowLevelCallable, int, or object with ``address``
-///     A function ``void f(double t, const double *state, double *out, void *user_data)``: a
-///     ``LowLevelCallable``, the ``cfunc`` of Numba, or the bare address. ``state`` holds 13 numbers, the quaternion
-///     x, y, z, w, the angular velocity in the body frame, position and velocity of the reference point in space;
-///     ``out`` takes 6, the force in space and the torque in the body frame. ``out`` is zero before the call.
-/// user_data : int, optional
-///     The address that the function gets as ``user_data``; that of the ``LowLevelCallable``, or 0, by default.
-///
-/// Returns
-/// -------
-/// Load
-///
-/// Notes
-/// -----
-/// The address is trusted: a function of another signature is undefined behaviour. Stacks call it from several threads
-/// at once. Such a load cannot be pickled.
-///
-/// Examples
-/// --------
-/// .. code-block:: python
-///
-///     from numba import cfunc, types
-///
-///     @cfunc(types.void(types.double, types.CPointer(types.double), types.CPointer(types.double), types.voidptr))
-///     def drag(t, state, out, user_data):
-///         for i in range(3):
-///             out[3 + i] = -0.1 * state[4 + i]
-///
-///     body.simulate([0, 10], omega=(0, 0, 1), load=loads.compiled(drag))
-#[pyfunction]
-#[pyo3(signature = (function, user_data=None))]
-pub(crate) fn compiled(function: &Bound<'_, PyAny>, user_data: Option<usize>) -> PyResult<PyLoad> {
-    let (address, own_data) = address(function)?;
-    if address == 0 {
-        return Err(PyValueError::new_err("function: the address is 0"));
-    }
-    let user_data = user_data.map_or(own_data, |data| data as *mut c_void);
-    // SAFETY: a pointer that is not null may become one to a function; that one of this signature lives there is stated by
-    // whoever passes the address.
-    let called =
-        unsafe { std::mem::transmute::<*const c_void, Function>(address as *const c_void) };
-    let compiled = Compiled {
-        function: called,
-        user_data,
-        owner: function.clone().unbind(),
-        factor: 1.0,
-        windows: None,
-    };
-    let recipe = recipe(function.py(), "_unpicklable", (function,))?;
-    Ok(PyLoad::one(Acts::Compiled(compiled), recipe))
 }
 
 /// The address of a function and its user data.

@@ -9,11 +9,10 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyList, PyTuple};
 
-use super::PyLoad;
-use super::part::{Acts, recipe};
 use crate::arrays::read;
 use crate::errors::new;
-use crate::stack::{Stack, tuple};
+use crate::shape::tuple;
+use crate::stack::Stack;
 
 /// A Python function as a term of a load.
 pub(super) struct Callback {
@@ -26,7 +25,7 @@ pub(super) struct Callback {
 
 /// What the function returns.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Gives {
+pub(super) enum Gives {
     /// A torque, given time, ω and attitude.
     Torque,
     /// A force and a torque, given position and velocity too.
@@ -34,6 +33,23 @@ enum Gives {
 }
 
 impl Callback {
+    /// # Errors
+    /// `TypeError` where it is no function.
+    pub(super) fn new(function: &Bound<'_, PyAny>, gives: Gives) -> PyResult<Self> {
+        if !function.is_callable() {
+            return Err(PyTypeError::new_err(format!(
+                "function: expected a callable, got {}",
+                function.get_type()
+            )));
+        }
+        Ok(Self {
+            function: function.clone().unbind(),
+            gives,
+            factor: 1.0,
+            windows: None,
+        })
+    }
+
     pub(super) fn function(&self) -> &Py<PyAny> {
         &self.function
     }
@@ -136,77 +152,4 @@ fn quickly(returned: &Bound<'_, PyAny>) -> Option<Vector3<f64>> {
         return of(&|i| list.get_item(i).ok().and_then(number));
     }
     None
-}
-
-/// A torque computed by a Python function.
-///
-/// Parameters
-/// ----------
-/// function : callable
-///     ``function(t, omega, quaternion)`` returns the torque about the reference point of the motion as
-///     three numbers in the body frame, given the time, the angular velocity in the body frame, shape
-///     (3,), and the attitude R_NB as (x, y, z, w), shape (4,).
-///
-/// Returns
-/// -------
-/// Load
-///
-/// Examples
-/// --------
-/// A body slowed down by a medium:
-///
-/// >>> from polhode import loads, solids
-/// >>> ball = solids.sphere(1.0, mass=2.5)
-/// >>> drag = loads.torque_callback(lambda t, omega, quaternion: -0.1 * omega)
-/// >>> ball.simulate([0, 10], omega=(0, 0, 1), load=drag).omega[-1].round(6)
-/// array([0.      , 0.      , 0.367879])
-#[pyfunction]
-pub(crate) fn torque_callback(function: &Bound<'_, PyAny>) -> PyResult<PyLoad> {
-    load(function, "torque_callback", Gives::Torque)
-}
-
-/// A force and a torque computed by a Python function.
-///
-/// Parameters
-/// ----------
-/// function : callable
-///     ``function(t, omega, quaternion, position, velocity)`` returns a pair: the force through the reference
-///     point of the motion, three numbers in space, and the torque about it, three numbers in the body frame.
-///     It is given the time, the angular velocity in the body frame, shape (3,), the attitude R_NB as
-///     (x, y, z, w), shape (4,), and position and velocity of the reference point in space, shape (3,).
-///
-/// Returns
-/// -------
-/// Load
-///
-/// Examples
-/// --------
-/// A ball on a spring:
-///
-/// >>> import numpy as np
-/// >>> from polhode import loads, solids
-/// >>> spring = loads.callback(lambda t, omega, quaternion, position, velocity: (-position, (0.0, 0.0, 0.0)))
-/// >>> ball = solids.sphere(1.0, mass=1.0)
-/// >>> ball.simulate([0, np.pi], (0, 0, 1), position=(2, 0, 0), load=spring).position[-1].round(6)
-/// array([-2.,  0.,  0.])
-#[pyfunction]
-pub(crate) fn callback(function: &Bound<'_, PyAny>) -> PyResult<PyLoad> {
-    load(function, "callback", Gives::ForceAndTorque)
-}
-
-fn load(function: &Bound<'_, PyAny>, name: &str, gives: Gives) -> PyResult<PyLoad> {
-    if !function.is_callable() {
-        return Err(PyTypeError::new_err(format!(
-            "function: expected a callable, got {}",
-            function.get_type()
-        )));
-    }
-    let callback = Callback {
-        function: function.clone().unbind(),
-        gives,
-        factor: 1.0,
-        windows: None,
-    };
-    let recipe = recipe(function.py(), name, (function,))?;
-    Ok(PyLoad::one(Acts::Callback(callback), recipe))
 }

@@ -9,14 +9,16 @@ use polhode::motion::state::Phase;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use super::{Acting, Fault, PyLoad, is_pivot};
+use super::acting::{Acting, Fault};
+use super::load::PyLoad;
+use crate::about::is_pivot;
 use crate::arrays::{Numbers, read, write_of};
 use crate::attitudes::read_quaternion;
+use crate::body::PyRigidBody;
 use crate::depth::Deeper;
 use crate::errors::{at_row, to_py};
 use crate::interrupt::Beat;
 use crate::memory;
-use crate::rigid_body::PyRigidBody;
 use crate::stack::{BLOCK, Broadcast, Stack};
 
 impl PyLoad {

@@ -5,8 +5,9 @@ use polhode::Error;
 use polhode::motion::loads::{Damping, Feedback, GravityGradient, Sampled, Term};
 use pyo3::prelude::*;
 
-use super::PyLoad;
-use super::part::{Acts, recipe, schedule_load};
+use super::load::{PyLoad, schedule_load};
+use super::part::Acts;
+use super::recipe::recipe;
 use crate::arrays::{as_array, list_floats, read, try_rows, write};
 use crate::attitudes::read_attitude;
 use crate::errors::to_py;

@@ -4,9 +4,9 @@ use polhode::mass::composites::combined;
 use pyo3::prelude::*;
 use pyo3::types::{PyNotImplemented, PyTuple};
 
-use super::PyRigidBody;
-use super::container::{picked_rows, to_index};
 use crate::arrays::numpy;
+use crate::body::PyRigidBody;
+use crate::indexing::{picked_rows, to_index};
 use crate::stack::Broadcast;
 
 #[pymethods]

@@ -6,9 +6,9 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::PyRigidBody;
 use crate::arrays::{Argument, read, read_or};
 use crate::attitudes::read_rotation;
+use crate::body::PyRigidBody;
 use crate::hints::refuse_unknown;
 use crate::interrupt::Beat;
 use crate::memory;
@@ -241,8 +241,8 @@ impl PyRigidBody {
         if let Some(other) = bodies.iter().find(|body| body.get().bodies.shape != *shape) {
             return Err(PyValueError::new_err(format!(
                 "bodies: expected bodies of one shape, got {} and {}",
-                crate::stack::tuple(shape),
-                crate::stack::tuple(&other.get().bodies.shape)
+                crate::shape::tuple(shape),
+                crate::shape::tuple(&other.get().bodies.shape)
             )));
         }
         let shape = [&[bodies.len()], &shape[..]].concat();

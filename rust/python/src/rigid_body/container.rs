@@ -3,17 +3,19 @@
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
-use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::PyUntypedArrayMethods;
 use polhode::RigidBody;
-use pyo3::exceptions::{PyMemoryError, PyTypeError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyList, PyTuple};
 
-use super::PyRigidBody;
-use crate::arrays::{contiguous, numpy, read, write_of};
+use crate::arrays::{read, write_of};
+use crate::body::PyRigidBody;
+use crate::indexing::{picked_by, to_index};
 use crate::interrupt::Beat;
 use crate::memory;
-use crate::stack::{BLOCK, Broadcast, Stack, extend, tuple};
+use crate::shape::tuple;
+use crate::stack::{BLOCK, Broadcast, Stack, extend};
 
 #[pymethods]
 impl PyRigidBody {
@@ -141,36 +143,4 @@ impl PyRigidBody {
             rows.join(", ")
         )
     }
-}
-
-/// The rows of a stack that a key picks, as NumPy itself tells.
-pub(crate) fn picked_by<'py>(
-    py: Python<'py>,
-    shape: &[usize],
-    key: &Bound<'py, PyAny>,
-) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
-    let rows = numpy(py)?
-        .call_method1("arange", (shape.iter().product::<usize>(),))?
-        .call_method1("reshape", (PyTuple::new(py, shape)?,))?;
-    picked_rows(&rows.get_item(key).map_err(|error| {
-        if error.is_instance_of::<PyMemoryError>(py) {
-            PyMemoryError::new_err(format!("key: {}", error.value(py)))
-        } else {
-            error
-        }
-    })?)
-}
-
-/// The rows that NumPy picked of their numbers, C-ordered.
-pub(super) fn picked_rows<'py>(
-    picked: &Bound<'py, PyAny>,
-) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
-    let picked = numpy(picked.py())?.call_method1("asarray", (picked,))?;
-    let picked = contiguous(&picked, "key", "int64")?;
-    picked.extract()
-}
-
-/// The number of a row that NumPy picked: never a negative one.
-pub(crate) fn to_index(row: i64) -> usize {
-    usize::try_from(row).unwrap_or_default()
 }

@@ -1,22 +1,23 @@
 //! Bodies from matter that fills space: tetrahedra, and densities over regions.
 
 use polhode::Error;
-use polhode::RigidBody;
-use polhode::mass::density::{Effort, from_density, from_radial_density};
+use polhode::error::CellFault;
+use polhode::mass::density::{Effort, Estimate, from_density, from_radial_density};
 use polhode::mass::regions::Region;
-use polhode::mass::tetrahedra::{CellDensity, CellFault, tetrahedra};
+use polhode::mass::tetrahedra::{CellDensity, tetrahedra};
 use polhode::numerics::threads;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::PyRigidBody;
 use crate::arrays::{Item, read, read_indices, read_list, write};
+use crate::body::PyRigidBody;
 use crate::depth::Deeper;
-use crate::errors::{new, to_py};
+use crate::errors::to_py;
 use crate::interrupt::Interrupt;
 use crate::meshes::finish;
 use crate::regions::PyRegion;
-use crate::stack::{Stack, tuple};
+use crate::shape::tuple;
+use crate::stack::Stack;
 
 #[pymethods]
 impl PyRigidBody {
@@ -224,26 +225,20 @@ impl From<PyErr> for Halt {
 }
 
 /// The body; or the user's own exception as it was; or what the law says, with the estimate where there is one.
-fn finished(py: Python<'_>, outcome: Result<RigidBody, Halt>) -> PyResult<PyRigidBody> {
-    match outcome {
+fn finished(py: Python<'_>, outcome: Result<Estimate, Halt>) -> PyResult<PyRigidBody> {
+    let found = match outcome {
+        Ok(found) => found,
+        Err(Halt::Raised(error)) => return Err(error),
+        Err(Halt::Law(error)) => return Err(to_py(py, &error)),
+    };
+    match found.converged() {
         Ok(body) => Ok(Stack::one(body).into()),
-        Err(Halt::Raised(error)) => Err(error),
-        Err(Halt::Law(error)) => {
-            let message = error.to_string();
-            let Error::Quadrature {
-                error,
-                evaluations,
-                estimate,
-                ..
-            } = error
-            else {
-                return Err(to_py(py, &error));
-            };
-            let raised = new(py, "QuadratureError", message);
+        Err(error) => {
+            let raised = to_py(py, &error);
             let value = raised.value(py);
-            value.setattr("estimate", PyRigidBody::from(Stack::one(*estimate)))?;
-            value.setattr("error", error)?;
-            value.setattr("evaluations", evaluations)?;
+            value.setattr("estimate", PyRigidBody::from(Stack::one(found.body)))?;
+            value.setattr("error", found.error)?;
+            value.setattr("evaluations", found.evaluations)?;
             Err(raised)
         }
     }

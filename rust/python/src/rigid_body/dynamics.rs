@@ -7,8 +7,9 @@ use polhode::motion::euler_equations::EulerEquations;
 use polhode::motion::kinetic_energy::{KineticEnergy, kinetic_energy};
 use pyo3::prelude::*;
 
-use super::{PyRigidBody, points};
+use crate::about::points;
 use crate::arrays::{Argument, read, read_or, write, write_numbers_of, write_of};
+use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
 #[pymethods]

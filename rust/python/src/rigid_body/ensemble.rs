@@ -13,7 +13,7 @@ use polhode::motion::state::Phase;
 use polhode::numerics::threads::fill_blocks;
 use pyo3::prelude::*;
 
-use super::PyRigidBody;
+use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
 use crate::interrupt::{Beat, Interrupt};

@@ -7,11 +7,11 @@ use polhode::numerics::threads::Watch;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::PyRigidBody;
 use crate::arrays::read_list;
+use crate::body::PyRigidBody;
 use crate::interrupt::Interrupt;
 use crate::meshes::{finish, read_mesh, with_mesh};
-use crate::solids::amount;
+use crate::shapes::amount;
 use crate::stack::{Broadcast, Stack};
 
 #[pymethods]

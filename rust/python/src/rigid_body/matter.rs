@@ -6,11 +6,12 @@ use polhode::mass::voxels::{Grid, Voxel, voxels};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::PyRigidBody;
 use crate::arrays::{Argument, floats, read, read_or};
+use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::particles::{ParticleArrays, read_labels, watched};
-use crate::stack::{Broadcast, Stack, tuple};
+use crate::shape::tuple;
+use crate::stack::{Broadcast, Stack};
 
 #[pymethods]
 impl PyRigidBody {

@@ -8,9 +8,10 @@ use polhode::motion::pivot_reaction::pivot_reaction;
 use polhode::motion::stability::stability;
 use pyo3::prelude::*;
 
-use super::{PyRigidBody, points};
+use crate::about::points;
 use crate::arrays::{Argument, read, read_or, write};
 use crate::attitudes::read_quaternion;
+use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;

@@ -11,9 +11,9 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
-use super::PyRigidBody;
 use super::ensemble::{Ensemble, Results, Runs};
 use crate::arrays::{Item, Numbers, write, write_of};
+use crate::body::PyRigidBody;
 use crate::errors::at_row;
 use crate::interrupt::Interrupt;
 use crate::loads::Cause;

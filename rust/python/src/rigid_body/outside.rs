@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::PyRigidBody;
+use crate::body::PyRigidBody;
 
 #[pymethods]
 impl PyRigidBody {

@@ -8,11 +8,12 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyNotImplemented;
 
-use super::{PyRigidBody, points};
+use crate::about::points;
 use crate::arrays::{
     Argument, read, read_or, write, write_any_of, write_numbers, write_numbers_of, write_of,
 };
 use crate::attitudes::read_rotation;
+use crate::body::PyRigidBody;
 use crate::interrupt::Beat;
 use crate::principal::{of_bodies, with_rtols};
 use crate::stack::{BLOCK, Broadcast, Stack};

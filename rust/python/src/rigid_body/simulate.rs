@@ -1,22 +1,24 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
-use polhode::motion::simulate::{Method, Tolerance, check_scales, check_times, closed_top};
+use polhode::motion::simulate::{Method, Tolerance, check_scales, closed_top};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::PyRigidBody;
 use super::ensemble::{Ensemble, Start, footing};
+use crate::about::is_pivot;
 use crate::arrays::read;
 use crate::attitudes::read_attitude_exactly;
+use crate::body::PyRigidBody;
 use crate::depth::Deeper;
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
 use crate::hints;
 use crate::interrupt::Interrupt;
-use crate::loads::{PyLoad, is_pivot};
+use crate::loads::PyLoad;
 use crate::stack::Stack;
+use crate::times::read_times;
 
 /// An optional argument of any array-like kind.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -261,16 +263,4 @@ fn at_start(vector: Given<'_, '_>, name: &str) -> PyResult<Stack<Vector3<f64>>> 
         || Ok(Stack::one(Vector3::zeros())),
         |vector| read(vector, name),
     )
-}
-
-pub(crate) fn read_times(py: Python<'_>, t: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let times: Stack<f64> = read(t, "t")?;
-    if times.shape.len() != 1 {
-        return Err(PyValueError::new_err(format!(
-            "t: expected shape (T,), got {}; the first time is the start: [0, 10], or numpy.linspace(0, 10, 1001)",
-            crate::stack::tuple(&times.shape)
-        )));
-    }
-    check_times(&times.rows).map_err(|error| to_py(py, &error))?;
-    Ok(times.rows)
 }

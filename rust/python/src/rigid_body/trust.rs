@@ -7,8 +7,8 @@ use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::PyRigidBody;
 use crate::arrays::{write_any_of, write_numbers_of, write_words_of};
+use crate::body::PyRigidBody;
 
 #[pymethods]
 impl PyRigidBody {

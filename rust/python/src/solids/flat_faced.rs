@@ -4,9 +4,9 @@ use polhode::Error;
 use polhode::mass::solids;
 use pyo3::prelude::*;
 
-use super::{Given, amounts, one};
 use crate::arrays::read;
-use crate::rigid_body::PyRigidBody;
+use crate::body::PyRigidBody;
+use crate::shapes::{Given, amounts, one};
 use crate::stack::{Broadcast, Stack};
 
 /// Box with its faces normal to the axes: I_x = m (y² + z²)/12.

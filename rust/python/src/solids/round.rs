@@ -3,8 +3,8 @@
 use polhode::mass::solids;
 use pyo3::prelude::*;
 
-use super::{Given, lengths, one};
-use crate::rigid_body::PyRigidBody;
+use crate::body::PyRigidBody;
+use crate::shapes::{Given, lengths, one};
 
 /// Ball: I = ⅖ m R².
 ///

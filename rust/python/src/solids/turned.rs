@@ -3,8 +3,8 @@
 use polhode::mass::solids;
 use pyo3::prelude::*;
 
-use super::{Given, lengths};
-use crate::rigid_body::PyRigidBody;
+use crate::body::PyRigidBody;
+use crate::shapes::{Given, lengths};
 
 /// Cylinder along z: I_z = ½ m R², I_x = m (3R² + h²)/12. A flat one is a disk, a thin one a rod.
 ///

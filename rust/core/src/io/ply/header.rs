@@ -2,7 +2,8 @@
 
 use std::io::{BufRead, Read};
 
-use crate::io::{FileFault, StreamError};
+use crate::error::FileFault;
+use crate::mass::polyhedron::stream::StreamError;
 
 /// Longer than any header of use.
 const LONGEST_HEADER: u64 = 1 << 16;

@@ -9,8 +9,8 @@ mod reader;
 use std::io::{BufRead, Seek, SeekFrom};
 use std::ops::ControlFlow;
 
-use super::{BLOCK, StreamError, Triangle, TriangleStream};
-use crate::mass::polyhedron::MeshFault;
+use crate::error::MeshFault;
+use crate::mass::polyhedron::stream::{BLOCK, StreamError, Triangle, TriangleStream};
 use header::{Element, Property, bad, header};
 use reader::{Reader, Vertices, read_vertices, skip, skip_property, truncated};
 

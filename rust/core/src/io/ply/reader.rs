@@ -3,7 +3,8 @@
 use std::io::{self, Error, ErrorKind, Read};
 
 use super::header::{Element, Property, Scalar, bad};
-use crate::io::{FileFault, StreamError};
+use crate::error::FileFault;
+use crate::mass::polyhedron::stream::StreamError;
 
 /// Coordinates in the precision they are stored in.
 #[derive(Debug)]

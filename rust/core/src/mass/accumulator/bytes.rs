@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::moments::Moments;
 use super::{MassAccumulator, Matter, Piece, WHOLE, check_loose};
-use crate::error::Error;
+use crate::error::{BodyFault, Error};
 use crate::mass::particles::Particles;
 use crate::numerics::double_double::DoubleDouble;
 
@@ -41,9 +41,9 @@ impl MassAccumulator {
     /// The accumulator that [`Self::to_bytes`] wrote, the same to the last bit.
     ///
     /// # Errors
-    /// [`Error::NotAnAccumulator`] when the bytes are something else.
+    /// [`BodyFault::NotAnAccumulator`] when the bytes are something else.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
-        let fault = Error::NotAnAccumulator;
+        let fault = Error::Body(BodyFault::NotAnAccumulator);
         let body = bytes.strip_prefix(HEADER).ok_or(fault.clone())?;
         let (numbers, rest) = body.as_chunks::<8>();
         if !rest.is_empty() {

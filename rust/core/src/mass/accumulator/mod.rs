@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use self::moments::Moments;
 use super::body::RigidBody;
 use super::particles::{ORDINARY, Particles, Watch, check};
-use crate::error::Error;
+use crate::error::{BodyFault, Error};
 use crate::mass::provenance::Provenance;
 use crate::numerics::reduce::{BLOCK, depth};
 use crate::numerics::threads::{Halt, fill_blocks};
@@ -214,10 +214,11 @@ impl MassAccumulator {
         let mut next = 0;
         for (&start, piece) in &self.pieces {
             if start > next {
-                return Err(Error::MissingParticles {
+                return Err(BodyFault::MissingParticles {
                     start: next,
                     end: start,
-                });
+                }
+                .into());
             }
             next = piece.end;
         }
@@ -231,18 +232,19 @@ impl MassAccumulator {
         if mass > 0.0 {
             return Ok((total, depth(count)));
         }
-        Err(Error::NoMass { count, mass })
+        Err(BodyFault::NoMass { count, mass }.into())
     }
 
     /// Nothing in `start..end` yet.
     fn check_free(&self, start: u64, end: u64) -> Result<(), Error> {
         match self.pieces.range(..end).next_back() {
-            Some((&from, piece)) if start < end && piece.end > start => Err(Error::Overlap {
+            Some((&from, piece)) if start < end && piece.end > start => Err(BodyFault::Overlap {
                 start,
                 end,
                 from,
                 to: piece.end,
-            }),
+            }
+            .into()),
             _ => Ok(()),
         }
     }
@@ -359,7 +361,7 @@ impl Matter {
 /// Particles that a body may have; here their masses may all be zero.
 fn check_loose(particles: Particles<'_>) -> Result<(), Error> {
     match check(particles) {
-        Err(Error::NoMass { .. }) => Ok(()),
+        Err(Error::Body(BodyFault::NoMass { .. })) => Ok(()),
         checked => checked,
     }
 }
@@ -367,10 +369,12 @@ fn check_loose(particles: Particles<'_>) -> Result<(), Error> {
 /// The error of part of a chunk, its particles counted from the chunk's first.
 fn shifted(error: Error, by: usize) -> Error {
     match error {
-        Error::NegativeMass { index, mass } => Error::NegativeMass {
-            index: index + by,
-            mass,
-        },
+        Error::Body(BodyFault::NegativeMass { index, mass }) => {
+            Error::Body(BodyFault::NegativeMass {
+                index: index + by,
+                mass,
+            })
+        }
         error => error,
     }
 }

@@ -1,9 +1,11 @@
 //! Bodies of given density: `m = ∫ ρ dV`, `C = ∫ r ρ dV/m`, `S = ∫ (r − C)(r − C)ᵀ ρ dV`, by adaptive cubature.
 
+mod effort;
 mod radial;
 
 use nalgebra::{Matrix3, Vector3};
 
+pub use effort::{Effort, Estimate};
 pub use radial::from_radial_density;
 
 use super::body::RigidBody;
@@ -12,7 +14,7 @@ use super::provenance::{Checks, Provenance, Source};
 use super::regions::Region;
 use super::second_moment::SecondMoment;
 use super::units::Units;
-use crate::error::{Error, finite};
+use crate::error::{BodyFault, Error};
 use crate::numerics::power_of_two::{exponent, halves};
 use crate::numerics::quadrature::{Cell, Integrand, Leaf, integrate};
 use crate::numerics::reduce::{depth, sum_terms};
@@ -21,38 +23,6 @@ use crate::numerics::reduce::{depth, sum_terms};
 /// 1.22 times its difference from the Gauss rule, where the volume element grows across the box by 2, and of two jumps in
 /// one box, which may cancel in the difference, seldom by more than 5; of what is smooth by far less.
 const JUMP: f64 = 8.0;
-
-/// When to stop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Effort {
-    /// Bound on the errors of the mass relative to itself, of C relative to the radius of gyration, and of the second
-    /// moments relative to their trace.
-    pub rtol: f64,
-    /// How often the density may be evaluated at most by the rules of the cubature; to look for jumps beside the faces of
-    /// its cells takes up to a sixth more.
-    pub max_evaluations: usize,
-}
-
-impl Effort {
-    /// Enough for the first look at every cell, with a tolerance that is one.
-    fn check(self, needed: usize) -> Result<Self, Error> {
-        finite("rtol", self.rtol)?;
-        if !(self.rtol > 0.0 && self.rtol < 1.0) {
-            return Err(Error::OutOfDomain {
-                what: "rtol",
-                law: "more than 0 and less than 1",
-                value: self.rtol,
-            });
-        }
-        if self.max_evaluations < needed {
-            return Err(Error::TooFewEvaluations {
-                needed,
-                given: self.max_evaluations,
-            });
-        }
-        Ok(self)
-    }
-}
 
 /// The body that fills a region with the density `ρ(r)`, given at many points at once.
 ///
@@ -63,13 +33,13 @@ impl Effort {
 /// middles the density is also asked for outside, where the signed parts cancel.
 ///
 /// # Errors
-/// [`Error::Quadrature`] with the estimate when the evaluations do not suffice; when a value is negative or not finite;
-/// [`Error::TriangleInequality`] where surfaces of a mesh cross so that no masses have its moments; whatever the density itself fails with.
+/// When a value is negative or not finite; where the evaluations do not suffice, [`Estimate::converged`] says so;
+/// [`BodyFault::TriangleInequality`] where surfaces of a mesh cross so that no masses have its moments; whatever the density itself fails with.
 pub fn from_density<E: From<Error>>(
     region: &Region,
     density: impl FnMut(&[[f64; 3]], &mut [f64]) -> Result<(), E>,
     effort: Effort,
-) -> Result<RigidBody, E> {
+) -> Result<Estimate, E> {
     let (region, length) = region.in_units();
     let region = &region;
     let (cells, rule) = (region.cells(), region.rule());
@@ -89,7 +59,7 @@ pub fn from_density<E: From<Error>>(
     let total = Total::of(region, &found.leaves);
     if total.mass <= 0.0 {
         let (count, mass) = (found.evaluations, total.mass);
-        return Err(Error::NoMassFound { count, mass }.into());
+        return Err(Error::from(BodyFault::NoMassFound { count, mass }).into());
     }
     // An error without limit is told by the estimate's own bounds, which are numbers.
     let error = (JUMP * found.error).min(f64::MAX);
@@ -126,26 +96,12 @@ pub fn from_density<E: From<Error>>(
     } else {
         found.error + cancelled
     };
-    converged(&body, error, found.evaluations, effort)
-}
-
-/// The body, or its estimate as an error.
-fn converged<E: From<Error>>(
-    body: &RigidBody,
-    error: f64,
-    evaluations: usize,
-    effort: Effort,
-) -> Result<RigidBody, E> {
-    if error <= effort.rtol {
-        return Ok(*body);
-    }
-    Err(Error::Quadrature {
+    Ok(Estimate {
+        body,
         error,
         rtol: effort.rtol,
-        evaluations,
-        estimate: Box::new(*body),
-    }
-    .into())
+        evaluations: found.evaluations,
+    })
 }
 
 /// A density in units of the first one found, a power of two.
@@ -175,7 +131,7 @@ impl<F> Scaled<F> {
         for (point, &value) in points.iter().zip(&densities) {
             if !(value.is_finite() && value >= 0.0) {
                 let point = place(point);
-                return Err(Error::ImpossibleDensity { point, value }.into());
+                return Err(Error::from(BodyFault::ImpossibleDensity { point, value }).into());
             }
         }
         let densest = densities.iter().fold(0.0, |most: f64, &rho| most.max(rho));

@@ -3,8 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
-use super::{Effort, JUMP, Scaled, converged};
-use crate::error::{Error, finite};
+use super::effort::{Effort, Estimate};
+use super::{JUMP, Scaled};
+use crate::error::{BodyFault, Error, finite};
 use crate::mass::amount;
 use crate::mass::body::RigidBody;
 use crate::mass::error_bound::{ErrorBound, UNIT};
@@ -24,7 +25,7 @@ pub fn from_radial_density<E: From<Error>>(
     boundaries: &[f64],
     density: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,
     effort: Effort,
-) -> Result<RigidBody, E> {
+) -> Result<Estimate, E> {
     for (&r, next) in boundaries.iter().zip(boundaries.iter().skip(1)) {
         amount::length("radius", r)?;
         finite("radius", *next)?;
@@ -70,7 +71,7 @@ pub fn from_radial_density<E: From<Error>>(
     let (mass, along) = (4.0 * PI * m, 4.0 / 3.0 * PI * s);
     if mass <= 0.0 {
         let count = found.evaluations;
-        return Err(Error::NoMassFound { count, mass }.into());
+        return Err(Error::from(BodyFault::NoMassFound { count, mass }).into());
     }
     let relative = JUMP * found.error + 2.0 * UNIT * (depth(found.evaluations) + 32.0);
     let body = RigidBody::from_second_moment(&SecondMoment {
@@ -91,7 +92,12 @@ pub fn from_radial_density<E: From<Error>>(
         place: length,
     };
     let body = units.told(&body.with_provenance(provenance))?;
-    converged(&body, found.error, found.evaluations, effort)
+    Ok(Estimate {
+        body,
+        error: found.error,
+        rtol: effort.rtol,
+        evaluations: found.evaluations,
+    })
 }
 
 /// ρ r² and ρ r⁴, lengths in units of `2^length`.

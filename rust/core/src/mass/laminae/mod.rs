@@ -11,7 +11,7 @@ use super::amount::{Amount, Measure, Unit, diagonal, length, ordered};
 use super::body::RigidBody;
 use crate::error::Error;
 
-pub use polygon::{PolygonFault, polygon, triangle};
+pub use polygon::{polygon, triangle};
 
 /// Disk of radius R: `I_z = ½ m R²`, `I_x = I_y = ¼ m R²`.
 ///

@@ -5,7 +5,6 @@
 //! accurate as its corners are, wherever it stands and however it is turned.
 
 use nalgebra::{Matrix2, Matrix3, Rotation2, Vector2, Vector3};
-use thiserror::Error as ThisError;
 
 use super::super::amount::{Amount, Measure, Unit, closed_form, of_matter};
 use super::super::body::RigidBody;
@@ -13,51 +12,11 @@ use super::super::error_bound::{ErrorBound, UNIT};
 use super::super::provenance::Source;
 use super::super::second_moment::SecondMoment;
 use super::simple::check_simple;
-use crate::error::{Error, finite};
+use crate::error::{Error, PolygonFault, finite};
 use crate::numerics::power_of_two::times_power_of_two;
 use crate::numerics::reduce::{depth, sum_terms};
 use crate::numerics::split_vector::{SplitVector, cross2};
 use crate::numerics::threads::Watch;
-
-/// Why corners do not bound a polygon.
-#[derive(Clone, Debug, PartialEq, ThisError)]
-#[non_exhaustive]
-pub enum PolygonFault {
-    /// Fewer than three corners.
-    #[error("vertices must be three corners or more, got {count}")]
-    TooFew {
-        /// How many there are.
-        count: usize,
-    },
-    /// Two edges cross.
-    #[error(
-        "vertices must bound a simple polygon: the edge from vertex {first} crosses the edge from vertex {second}; \
-         order the corners along the boundary, and cut a hole out by subtracting a polygon"
-    )]
-    Crossing {
-        /// Where one edge starts.
-        first: usize,
-        /// Where the other edge starts.
-        second: usize,
-    },
-    /// The boundary passes through itself where a corner lies on it, or goes round twice.
-    #[error(
-        "vertices must bound a simple polygon: where the boundary touches itself it also passes through itself, so that a part \
-         of the area counts as negative or twice; order the corners along the boundary, and cut a hole out by subtracting a \
-         polygon"
-    )]
-    Overlapping,
-    /// Nothing inside.
-    #[error(
-        "vertices enclose no area: {area:?} with an extent of {size:?}; model a line as a thin rod instead"
-    )]
-    NoArea {
-        /// The signed area.
-        area: f64,
-        /// The largest extent.
-        size: f64,
-    },
-}
 
 /// Triangle with these corners, in any order: `S = m (e₁e₁ᵀ + e₂e₂ᵀ + e₃e₃ᵀ)/36` with its edges e, C their mean.
 ///

@@ -5,8 +5,7 @@
 
 use nalgebra::Vector2;
 
-use super::polygon::PolygonFault;
-use crate::error::Error;
+use crate::error::{Error, PolygonFault};
 use crate::mass::error_bound::UNIT;
 use crate::numerics::split_vector::{SplitVector, cross2};
 use crate::numerics::threads::Watch;

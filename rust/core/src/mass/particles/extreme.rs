@@ -1,6 +1,7 @@
 //! Particles whose moments leave the range of float64 on their way: in units of their own size and mass.
 
-use super::{Particles, Watch, about_center, check, in_own_axes, is_thin};
+use super::about_center::{about_center, in_own_axes, is_thin};
+use super::list::{Particles, check};
 use crate::error::Error;
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::Provenance;
@@ -8,6 +9,7 @@ use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::Frame;
 use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::numerics::threads::Watch;
 use nalgebra::Vector3;
 
 /// The body of these particles, whatever their size and mass.

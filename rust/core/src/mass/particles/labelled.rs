@@ -1,7 +1,7 @@
 //! Particles that say which body they belong to: haloes, fragments, residues.
 
 use super::{Particles, Watch, particle_stack};
-use crate::error::Error;
+use crate::error::{BodyFault, Error};
 use crate::mass::body::RigidBody;
 
 /// The label of a particle that belongs to no body.
@@ -16,7 +16,7 @@ const STRETCH: usize = 1 << 16;
 /// then has the bits that [`particles`](super::particles) gives its particles alone.
 ///
 /// # Errors
-/// [`Error::Label`] for a number below −1, the first body that cannot be, with its index, or [`Error::Stopped`]. Every
+/// [`BodyFault::Label`] for a number below −1, the first body that cannot be, with its index, or [`Error::Stopped`]. Every
 /// label from zero to the largest must own some mass.
 ///
 /// # Panics
@@ -67,7 +67,7 @@ pub fn labelled_particles(
 fn ends_of_bodies(labels: &[i64]) -> Result<Vec<usize>, Error> {
     if let Some(index) = labels.iter().position(|&label| label < NO_BODY) {
         let label = labels[index];
-        return Err(Error::Label { index, label });
+        return Err(BodyFault::Label { index, label }.into());
     }
     // Of more bodies than particles one has none: counting as many is enough to find it.
     let largest = labels.iter().copied().max().unwrap_or(NO_BODY);

@@ -4,14 +4,16 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::about_center::{about_center, in_own_axes, is_ordinary, is_thin};
 use super::extreme::in_units;
-use super::{Watch, about_center, in_own_axes, is_ordinary, is_thin, particles_watched};
+use super::list::Particles;
+use super::particles_watched;
 use crate::error::Error;
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::Provenance;
 use crate::mass::second_moment::SecondMoment;
 use crate::numerics::eigen3::{Eigen3, eigen3_many};
-use crate::numerics::threads::{Halt, fill_blocks};
+use crate::numerics::threads::{Halt, Watch, fill_blocks};
 
 /// Bodies whose tensors are decomposed side by side.
 const BATCH: usize = 64;
@@ -21,25 +23,6 @@ const SHARE: usize = 1 << 15;
 
 /// A body of more particles than this is shared among the threads, the smaller ones are shared out to them.
 const LARGE: usize = 1 << 17;
-
-/// The particles of one body.
-#[derive(Clone, Copy, Debug)]
-pub struct Particles<'a> {
-    pub(crate) masses: &'a [f64],
-    pub(crate) positions: &'a [[f64; 3]],
-}
-
-impl<'a> Particles<'a> {
-    /// A mass for each position.
-    ///
-    /// # Panics
-    /// When the slices differ in length.
-    #[must_use]
-    pub fn new(masses: &'a [f64], positions: &'a [[f64; 3]]) -> Self {
-        assert_eq!(masses.len(), positions.len(), "one position for each mass");
-        Self { masses, positions }
-    }
-}
 
 /// The bodies `0..count`, each with the bits it has alone; `row` tells the particles of each.
 ///

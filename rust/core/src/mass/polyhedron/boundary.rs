@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use std::hash::{BuildHasher, RandomState};
 use std::sync::LazyLock;
 
-use super::fault::Count;
+use crate::error::Count;
 
 /// The three corners of a triangle.
 pub(super) type Triangle = [[f64; 3]; 3];

@@ -8,10 +8,10 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use super::fault::{Corner, Count, MeshFault};
-use super::triangles::{Index, View};
-use super::{Options, polyhedron_watched};
-use crate::error::Error;
+use super::polyhedron_watched;
+use super::solid::Options;
+use super::view::{Index, View};
+use crate::error::{Corner, Count, Error, MeshFault};
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::{Closure, Provenance};
 use crate::mass::simplex::{Solid, sums};

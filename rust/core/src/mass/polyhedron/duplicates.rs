@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::boundary::{Bits, Replay, bits, mark};
-use super::fault::{Count, MeshFault};
+use crate::error::{Count, MeshFault};
 use crate::numerics::reduce::BLOCK;
 use crate::numerics::threads::{Halt, Watch, fill_blocks};
 

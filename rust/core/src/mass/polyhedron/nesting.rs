@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use nalgebra::Vector3;
 
 use super::boundary::mark_of;
-use super::fault::MeshFault;
-use super::triangles::{Index, View};
+use super::view::{Index, View};
+use crate::error::MeshFault;
 use crate::mass::simplex::Corners;
 use crate::numerics::reduce::BLOCK;
 use crate::numerics::threads::{Halt, Watch, each_watched, fill_blocks};

@@ -6,14 +6,16 @@ use nalgebra::Vector3;
 
 use super::boundary::{Boundary, Replay, Triangle};
 use super::duplicates::{Marks, ROOM, repeated};
-use super::fault::{Corner, MeshFault};
 use super::nesting::{InsideOut, find_inside_out};
-use super::triangles::{View, widen};
-use super::{Checked, Options, Triangles, solid, solid_of_faces};
-use crate::io::{StreamError, TriangleStream};
+use super::passes::{Block, Passes};
+use super::solid::{Checked, Options, Triangles, solid};
+use super::solid_of_faces;
+use super::stream::{StreamError, TriangleStream};
+use super::view::{View, widen};
+use crate::error::{Corner, MeshFault};
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::Checks;
-use crate::mass::simplex::{Corners, Frame, Kind, Partial, Shell, Solid, Sums, block_sum, merge};
+use crate::mass::simplex::{Frame, Partial, Shell, Solid, Sums, block_sum, merge};
 use crate::mass::solids::Amount;
 use crate::numerics::threads::{Halt, Watch};
 
@@ -49,10 +51,7 @@ pub fn streamed(
     watch: &mut Watch<'_>,
 ) -> Result<StreamedSolid, StreamError> {
     let mut source = Stream {
-        file: stream,
-        scale,
-        watch,
-        farthest: 0.0,
+        passes: Passes::new(stream, scale, watch),
         seen: None,
         kept: None,
         is_inside_out: false,
@@ -74,11 +73,7 @@ pub fn streamed(
 
 /// A stream with what the first time through has shown.
 struct Stream<'a> {
-    file: &'a mut dyn TriangleStream,
-    scale: f64,
-    watch: &'a mut Watch<'a>,
-    /// The largest fraction that was told to `watch`.
-    farthest: f64,
+    passes: Passes<'a>,
     seen: Option<Seen>,
     /// The corners of all triangles, where they are few.
     kept: Option<Vec<[f64; 3]>>,
@@ -91,20 +86,6 @@ struct Seen {
     count: usize,
     area: f64,
     frame: Frame,
-}
-
-/// The triangles of a block.
-struct Block<'a>(&'a [Triangle]);
-
-impl Corners<3> for Block<'_> {
-    fn count(&self) -> usize {
-        self.0.len()
-    }
-
-    #[inline(always)]
-    fn corners(&self, index: usize) -> Triangle {
-        self.0[index]
-    }
 }
 
 /// What one time through came to.
@@ -131,53 +112,13 @@ impl Stream<'_> {
             orient: true,
             check: true,
         };
-        let (farthest, watch) = (self.farthest, &mut self.watch);
-        let watch = &mut |_| watch(farthest);
+        let watch = &mut |_| self.passes.ask();
         solid_of_faces(&corners, &apart(&corners), amount, options, watch).map_err(
             |halt| match halt {
                 Halt::Stopped => StreamError::Stopped,
                 Halt::Failed(error) => error.into(),
             },
         )
-    }
-
-    /// Once through, as far as `visit` goes on.
-    fn blocks(
-        &mut self,
-        visit: &mut dyn FnMut(&[Triangle]) -> ControlFlow<()>,
-    ) -> Result<(), StreamError> {
-        let (scale, farthest, watch) = (self.scale, &mut self.farthest, &mut self.watch);
-        let mut is_stopped = false;
-        let mut scaled = Vec::new();
-        self.file.blocks(&mut |block, fraction| {
-            *farthest = farthest.max(fraction);
-            if watch(*farthest).is_break() {
-                is_stopped = true;
-                return ControlFlow::Break(());
-            }
-            if scale == 1.0 {
-                return visit(block);
-            }
-            scaled.clear();
-            let triangles = block.iter();
-            scaled.extend(triangles.map(|triangle| triangle.map(|r| r.map(|x| x * scale))));
-            visit(&scaled)
-        })?;
-        if is_stopped {
-            return Err(StreamError::Stopped);
-        }
-        Ok(())
-    }
-
-    /// The sums over all triangles in a frame.
-    fn sums<K: Kind<3>>(&mut self, frame: &Frame) -> Result<Sums, StreamError> {
-        let (mut partials, mut count) = (Vec::new(), 0);
-        self.blocks(&mut |block| {
-            partials.push(block_sum::<_, K, 3>(&Block(block), 0, block.len(), frame));
-            count += block.len();
-            ControlFlow::Continue(())
-        })?;
-        Ok(Sums::new::<K, 3>(&merge(&partials), count, frame))
     }
 }
 
@@ -186,7 +127,7 @@ impl Replay for Stream<'_> {
 
     fn each(&mut self, visit: &mut dyn FnMut(usize, &Triangle)) -> Result<(), StreamError> {
         let mut face = 0;
-        self.blocks(&mut |block| {
+        self.passes.blocks(&mut |block| {
             for triangle in block {
                 visit(face, triangle);
                 face += 1;
@@ -196,8 +137,7 @@ impl Replay for Stream<'_> {
     }
 
     fn repeated(&mut self, marks: &mut [u64]) -> Result<Vec<u64>, StreamError> {
-        let (farthest, watch) = (self.farthest, &mut self.watch);
-        repeated(marks, &mut |_| watch(farthest)).map_err(|_| StreamError::Stopped)
+        repeated(marks, &mut |_| self.passes.ask()).map_err(|_| StreamError::Stopped)
     }
 }
 
@@ -205,7 +145,7 @@ impl Triangles for Stream<'_> {
     /// The box of the first block.
     fn first_frame(&mut self) -> Result<Frame, StreamError> {
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
-        self.blocks(&mut |block| {
+        self.passes.blocks(&mut |block| {
             (low, high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
             for corner in block.iter().flatten() {
                 widen(&mut low, &mut high, corner);
@@ -228,14 +168,14 @@ impl Triangles for Stream<'_> {
         check: bool,
     ) -> Result<(Sums, Option<Checked>), StreamError> {
         if self.seen.is_some() {
-            return Ok((self.sums::<Solid>(frame)?, None));
+            return Ok((self.passes.sums::<Solid>(frame)?, None));
         }
         let mut pass = Pass::default();
         let mut marks = Marks::beyond(0, ROOM);
         self.kept = None;
         let mut kept = check.then(Vec::new);
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        self.blocks(&mut |block| {
+        self.passes.blocks(&mut |block| {
             let size = block.len();
             let corners = Block(block);
             for corner in block.iter().flatten() {
@@ -274,7 +214,7 @@ impl Triangles for Stream<'_> {
     }
 
     fn shell_sums(&mut self, frame: &Frame) -> Result<Sums, StreamError> {
-        self.sums::<Shell>(frame)
+        self.passes.sums::<Shell>(frame)
     }
 
     fn find_unusable(&mut self) -> Result<Option<MeshFault>, StreamError> {
@@ -300,8 +240,7 @@ impl Triangles for Stream<'_> {
             vertices: corners,
             faces: &faces,
         };
-        let (farthest, watch) = (self.farthest, &mut self.watch);
-        let found = find_inside_out(&mesh, sign, &mut |_| watch(farthest));
+        let found = find_inside_out(&mesh, sign, &mut |_| self.passes.ask());
         let found = found.map_err(|_| StreamError::Stopped)?;
         self.is_inside_out = found.is_some();
         let fault = found.as_ref().and_then(InsideOut::fault);
@@ -309,7 +248,7 @@ impl Triangles for Stream<'_> {
     }
 
     fn corner(&self, _: usize, position: &[f64; 3]) -> Corner {
-        Corner::At(position.map(|x| x / self.scale))
+        Corner::At(position.map(|x| x / self.passes.scale))
     }
 }
 
@@ -327,7 +266,7 @@ mod tests {
             &mut self,
             visit: &mut dyn FnMut(&[Triangle], f64) -> ControlFlow<()>,
         ) -> Result<(), StreamError> {
-            for block in self.0.chunks(crate::io::BLOCK) {
+            for block in self.0.chunks(crate::mass::polyhedron::stream::BLOCK) {
                 if visit(block, 0.5).is_break() {
                     break;
                 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::dot;
+use super::vectors::dot;
 use crate::numerics::lane::{Double, Lane};
 
 /// Where coordinates are taken from: `Vᵀ (r − reference)/unit`.

@@ -5,18 +5,18 @@
 //!
 //! | what | file |
 //! |---|---|
-//! | what is told of cells that make no body | `fault` |
+//! | what nodes, cells and densities must be | `check` |
 //! | the volume of a cell, however flat | `volume` |
 //! | the integrals of all cells | `sums` |
 
-mod fault;
+mod check;
 mod sums;
 mod volume;
 
 use nalgebra::Matrix3;
 
-pub use self::fault::CellFault;
-use self::fault::check;
+pub use self::check::CellDensity;
+use self::check::check;
 use self::sums::{Cells, FAR, FAR_POWER, largest_coordinate};
 use super::body::RigidBody;
 use super::provenance::{Checks, Provenance, Source};
@@ -29,25 +29,15 @@ const THIN: f64 = 0.05;
 /// Sums about the centre of mass are repeated at most this often, where the first centre was a body's width off.
 const AGAIN: usize = 4;
 
-/// Where the densities are given.
-#[derive(Clone, Copy, Debug)]
-pub enum CellDensity<'a> {
-    /// One for all.
-    Uniform(f64),
-    /// One for each cell.
-    PerCell(&'a [f64]),
-    /// One for each node, linear between them.
-    PerNode(&'a [f64]),
-}
-
 /// The body of these cells; four nodes each, in either order.
 ///
 /// Cells are what they cover: their volumes are counted as positive, and cells that overlap count twice. `watch` is asked about
 /// every 20 ms whether to go on.
 ///
 /// # Errors
-/// [`CellFault`] names the cell, node or density that is at fault; [`Error::OutOfRange`] a mass or moment that is too large
-/// or too small for float64; [`Error::Stopped`] where `watch` said so.
+/// [`CellFault`](crate::error::CellFault) names the cell, node or density that is at fault;
+/// [`BodyFault::OutOfRange`](crate::error::BodyFault::OutOfRange) a mass or moment that is too large or too small for float64;
+/// [`Error::Stopped`] where `watch` said so.
 ///
 /// # Panics
 /// When there are not as many densities as cells or nodes.
@@ -111,6 +101,7 @@ mod tests {
     use std::ops::ControlFlow;
 
     use super::*;
+    use crate::error::CellFault;
 
     fn tetrahedra(
         nodes: &[[f64; 3]],

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::check::CellDensity;
 use super::volume::{Volume, sixfold};
-use super::{CellDensity, CellFault};
-use crate::error::Error;
+use crate::error::{CellFault, Error};
 use crate::mass::error_bound::{ErrorBound, UNIT};
 use crate::mass::second_moment::SecondMoment;
 use crate::mass::simplex::Frame;

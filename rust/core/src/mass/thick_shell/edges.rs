@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::mass::polyhedron::fault::{Corner, Count, MeshFault};
+use crate::error::{Corner, Count, MeshFault};
 use crate::numerics::threads::{Halt, Watch, each_watched};
 
 /// The number of the first vertex with the same coordinates (−0 is +0), for each vertex.

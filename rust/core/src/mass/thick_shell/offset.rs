@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::edges::{check_edges, same_corners};
+use crate::error::MeshFault;
 use crate::mass::error_bound::UNIT;
-use crate::mass::polyhedron::fault::MeshFault;
 use crate::mass::polyhedron::{Index, View};
 use crate::numerics::split_vector::{SplitVector, cross};
 use crate::numerics::threads::{Halt, Watch, each_watched};

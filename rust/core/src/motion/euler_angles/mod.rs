@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt;
 use std::str::FromStr;
 
-use crate::error::{Error, all_finite};
+use crate::error::{Error, MotionFault, all_finite};
 
 /// Where the sine (for sequences of three different axes the cosine) of the middle angle is below this, first and third
 /// angle are not defined.
@@ -28,8 +28,10 @@ impl FromStr for Sequence {
 
     /// `"ZXZ"` (= `"goldstein"`, `"landau"`), `"ZYX"` (= `"aerospace"`) and so on; lower case is extrinsic.
     fn from_str(text: &str) -> Result<Self, Error> {
-        let fault = || Error::EulerSequence {
-            got: text.to_owned(),
+        let fault = || {
+            Error::Motion(MotionFault::EulerSequence {
+                got: text.to_owned(),
+            })
         };
         let letters = match text {
             "goldstein" | "landau" => "ZXZ",
@@ -100,7 +102,7 @@ impl Sequence {
     /// e0276302): two half-angle pairs whose `atan2` are the half sum and the half difference of α and γ.
     ///
     /// # Errors
-    /// [`Error::GimbalLock`], with the middle angle, where α and γ are not defined.
+    /// [`MotionFault::GimbalLock`], with the middle angle, where α and γ are not defined.
     pub fn from_quaternion(self, q: &UnitQuaternion<f64>) -> Result<[f64; 3], Error> {
         // Intrinsic angles are the extrinsic ones of the reversed sequence, in reverse.
         let [i, j, k] = if self.intrinsic {
@@ -125,10 +127,11 @@ impl Sequence {
             third *= sign;
         }
         if 2.0 * cosine * sine < SINGULAR * (cosine * cosine + sine * sine) {
-            return Err(Error::GimbalLock {
+            return Err(MotionFault::GimbalLock {
                 sequence: self.to_string(),
                 middle,
-            });
+            }
+            .into());
         }
         if self.intrinsic {
             (first, third) = (third, first);
@@ -203,7 +206,7 @@ mod tests {
         let upright = goldstein.to_quaternion(&[0.3, 0.0, 0.2]).expect("finite");
         assert!(matches!(
             goldstein.from_quaternion(&upright),
-            Err(Error::GimbalLock { .. })
+            Err(Error::Motion(MotionFault::GimbalLock { .. }))
         ));
         assert!("ZZX".parse::<Sequence>().is_err() && "zXz".parse::<Sequence>().is_err());
     }

@@ -17,7 +17,7 @@
 use nalgebra::Vector3;
 
 use super::{SINGULAR, Sequence};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::kinematics::Frame;
 
 /// The one case: an intrinsic sequence, ω in B.
@@ -59,7 +59,7 @@ impl Sequence {
     /// Source: msl26; mln27, second step.
     ///
     /// # Errors
-    /// [`Error::SingularEulerRates`] where the sine of the middle angle (for sequences of three different axes its cosine)
+    /// [`MotionFault::SingularEulerRates`] where the sine of the middle angle (for sequences of three different axes its cosine)
     /// is below [`SINGULAR`].
     pub fn rates(
         self,
@@ -69,10 +69,11 @@ impl Sequence {
     ) -> Result<[f64; 3], Error> {
         let (turns, [first, middle, third], divisor) = self.unwound(angles, omega, frame);
         if divisor.abs() < SINGULAR {
-            return Err(Error::SingularEulerRates {
+            return Err(MotionFault::SingularEulerRates {
                 sequence: self.to_string(),
                 middle: angles[1],
-            });
+            }
+            .into());
         }
         Ok(turns.in_order([first, middle, third]))
     }
@@ -215,7 +216,10 @@ mod tests {
             let angles = [0.3, pole, 0.2];
             let omega = sequence.angular_velocity(&angles, &RATES, Frame::Body);
             let fault = sequence.rates(&angles, &omega, Frame::Body);
-            assert!(matches!(fault, Err(Error::SingularEulerRates { .. })));
+            assert!(matches!(
+                fault,
+                Err(Error::Motion(MotionFault::SingularEulerRates { .. }))
+            ));
             let middle = sequence.middle_rate(&angles, &omega, Frame::Body);
             assert!((middle - RATES[1]).abs() < 1e-15 * 4.0);
         }

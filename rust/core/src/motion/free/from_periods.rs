@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::Mode;
 use super::invariants::Invariants;
-use crate::error::{Error, all_finite};
+use crate::error::{Error, MotionFault, all_finite};
 use crate::motion::attitude::from_axes;
 use crate::numerics::elliptic::complete_first;
 use crate::numerics::jacobi::jacobi;
@@ -155,10 +155,11 @@ impl Family {
             Circled::Short => (upper, lower),
         };
         if own <= 0.0 || i1 == 0.0 {
-            return Err(Error::NoSuchMode {
+            return Err(MotionFault::NoSuchMode {
                 mode: circled.mode(),
                 moments: *moments,
-            });
+            }
+            .into());
         }
         Ok(Self {
             moments: *moments,
@@ -200,13 +201,14 @@ impl Family {
         };
         let (least, most) = (self.ratio(0.0), self.ratio(farthest));
         if !(ratio >= least && ratio <= most) {
-            return Err(Error::UnreachablePeriods {
+            return Err(MotionFault::UnreachablePeriods {
                 mode: self.circled.mode(),
                 ratio,
                 least,
                 most,
                 moments: self.moments,
-            });
+            }
+            .into());
         }
         let (mut low, mut high) = (f64::MIN_POSITIVE.ln(), farthest.ln());
         loop {

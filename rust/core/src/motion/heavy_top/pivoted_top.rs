@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::reduced::{near_one, sum_of_squares, times};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
 use crate::motion::free::RefinedPrincipal;
@@ -62,7 +62,7 @@ impl PivotedTop {
     /// than `rtol` radii of gyration. The axis of a spherical body is the line from O to C.
     ///
     /// # Errors
-    /// [`Error::NotASymmetricTop`], [`Error::PivotOffAxis`]; [`Error::OutOfDomain`] for a point at the pivot,
+    /// [`NotASymmetricTop`](crate::error::BodyFault::NotASymmetricTop), [`MotionFault::PivotOffAxis`]; [`Error::OutOfDomain`] for a point at the pivot,
     /// [`Error::NonFinite`] where C is so far from it that `m l²` is beyond float64.
     pub fn of(body: &RigidBody, rtol: f64) -> Result<Self, Error> {
         let principal = body.principal();
@@ -88,11 +88,11 @@ impl PivotedTop {
         let distance = length(&c.cross(&axis));
         let relative = distance / (transverse / m).sqrt();
         if relative > rtol {
-            return Err(Error::PivotOffAxis {
+            return Err(Error::Motion(MotionFault::PivotOffAxis {
                 distance,
                 relative,
                 allowed: rtol,
-            });
+            }));
         }
         let (axial, lateral) = if top.axial == i3 {
             (2, [0, 1])
@@ -225,7 +225,7 @@ impl PivotedTop {
     /// Source: part II; Goldstein, Classical Mechanics, §5.7.
     ///
     /// # Errors
-    /// [`Error::SpinTooSlow`].
+    /// [`MotionFault::SpinTooSlow`].
     pub fn steady_precession(
         &self,
         spin: f64,
@@ -241,11 +241,11 @@ impl PivotedTop {
         let discriminant =
             scaled * scaled - 4.0 * times_power_of_two(product, product_size - 2 * unit);
         if discriminant < 0.0 {
-            return Err(Error::SpinTooSlow {
+            return Err(Error::Motion(MotionFault::SpinTooSlow {
                 spin,
                 least: self.least_spin(inclination, gravity),
                 inclination,
-            });
+            }));
         }
         // The root that adds, and the other one by their product, so that nothing cancels.
         let sum = 0.5 * (scaled + discriminant.sqrt().copysign(scaled));
@@ -359,7 +359,10 @@ mod tests {
                 .is_ok()
         );
         let slower = top.steady_precession(least * 0.999_999, 0.3, &gravity);
-        assert!(matches!(slower, Err(Error::SpinTooSlow { .. })));
+        assert!(matches!(
+            slower,
+            Err(Error::Motion(MotionFault::SpinTooSlow { .. }))
+        ));
         assert_eq!(top.least_spin(2.0, &gravity), 0.0);
         assert_eq!(
             top.steady_precession(0.0, 0.3, &Vector3::zeros()),
@@ -374,12 +377,14 @@ mod tests {
             .expect("moved");
         assert!(matches!(
             PivotedTop::of(&off_axis, 1e-6),
-            Err(Error::PivotOffAxis { .. })
+            Err(Error::Motion(MotionFault::PivotOffAxis { .. }))
         ));
         let brick = solids::cuboid(&[1.0, 2.0, 3.0], Amount::Mass(1.0)).expect("brick");
         assert!(matches!(
             PivotedTop::of(&brick, 1e-6),
-            Err(Error::NotASymmetricTop { .. })
+            Err(Error::Body(
+                crate::error::BodyFault::NotASymmetricTop { .. }
+            ))
         ));
         let point = solids::cube(0.0, Amount::Mass(1.0)).expect("point");
         assert!(matches!(

@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use super::first_step::first_step;
 use super::system::{Compensated, System};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::numerics::double_double::fast_two_sum;
 
 /// How far an integration has come.
@@ -48,7 +48,7 @@ impl<const N: usize> Progress<N> {
         let (span, y) = (progress.span, progress.state.value);
         let slope = progress.slope(system, 0.0, &y)?;
         if !slope.iter().all(|x| x.is_finite()) {
-            return Err(Error::NotFiniteMotion { time: start }.into());
+            return Err(Error::Motion(MotionFault::NotFiniteMotion { time: start }).into());
         }
         progress.step = match step {
             Some(step) if step != 0.0 => step.abs().min(span.abs()).copysign(span),
@@ -75,7 +75,7 @@ impl<const N: usize> Progress<N> {
     /// The step to try, and whether it is the last one.
     ///
     /// # Errors
-    /// [`Error::StepTooSmall`].
+    /// [`MotionFault::StepTooSmall`].
     #[inline]
     pub(super) fn next(&self) -> Result<(f64, bool), Error> {
         let remaining = (self.span - self.elapsed.0) - self.elapsed.1;
@@ -101,7 +101,7 @@ impl<const N: usize> Progress<N> {
     /// After a step that was refused for its `error`: that the next one still advances the time.
     ///
     /// # Errors
-    /// [`Error::NotFiniteMotion`], [`Error::StepTooSmall`].
+    /// [`MotionFault::NotFiniteMotion`], [`MotionFault::StepTooSmall`].
     #[inline]
     pub(super) fn check_advances(&self, error: f64) -> Result<(), Error> {
         if self.elapsed.0 + self.step != self.elapsed.0 {
@@ -109,17 +109,17 @@ impl<const N: usize> Progress<N> {
         }
         Err(if error.is_nan() {
             let time = self.start + self.elapsed.0;
-            Error::NotFiniteMotion { time }
+            Error::Motion(MotionFault::NotFiniteMotion { time })
         } else {
             self.stuck(self.step)
         })
     }
 
     fn stuck(&self, step: f64) -> Error {
-        Error::StepTooSmall {
+        Error::Motion(MotionFault::StepTooSmall {
             time: self.start + self.elapsed.0,
             step,
-        }
+        })
     }
 }
 

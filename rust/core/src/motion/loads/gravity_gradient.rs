@@ -8,7 +8,7 @@ use super::linear::{Axes, Exact, Linear};
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::wrench::Wrench;
-use crate::error::{Error, finite};
+use crate::error::{Error, MotionFault, finite};
 use crate::motion::state::Phase;
 
 /// `N_C = 3μ/r⁵ r×(I_C r)`, r from the attractor to C, on a Kepler orbit that the body's attitude does not change.
@@ -129,7 +129,7 @@ impl Law for GravityGradient {
 
     fn check(&self, subject: &Subject, _: f64, _: f64) -> Result<(), Error> {
         if subject.pivoted {
-            return Err(Error::PivotedInOrbit);
+            return Err(Error::Motion(MotionFault::PivotedInOrbit));
         }
         Ok(())
     }

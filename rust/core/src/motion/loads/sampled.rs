@@ -8,7 +8,7 @@ use super::linear::{Axes, Exact, Linear};
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::wrench::{Wrench, in_body};
-use crate::error::{Error, all_finite, finite};
+use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::motion::kinematics::Frame;
 use crate::motion::state::Phase;
 
@@ -50,11 +50,11 @@ impl Sampled {
         finite("the span of t", times[times.len() - 1] - times[0])?;
         for (k, pair) in times.windows(2).enumerate() {
             if pair[1] <= pair[0] {
-                return Err(Error::NotMonotone {
+                return Err(Error::Motion(MotionFault::NotMonotone {
                     index: k + 1,
                     previous: pair[0],
                     next: pair[1],
-                });
+                }));
             }
         }
         let pieces = pieces(times, values);
@@ -100,13 +100,17 @@ impl Sampled {
     /// Checks that `t` is within its times.
     ///
     /// # Errors
-    /// [`Error::OutsideSamples`].
+    /// [`MotionFault::OutsideSamples`].
     pub fn check_at(&self, t: f64) -> Result<(), Error> {
         let (first, last) = (self.knots()[0], self.knots()[self.knots().len() - 1]);
         if (first..=last).contains(&t) {
             Ok(())
         } else {
-            Err(Error::OutsideSamples { t, first, last })
+            Err(Error::Motion(MotionFault::OutsideSamples {
+                t,
+                first,
+                last,
+            }))
         }
     }
 }

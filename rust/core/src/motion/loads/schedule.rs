@@ -1,6 +1,6 @@
 //! Windows of time in which a load acts.
 
-use crate::error::{Error, finite};
+use crate::error::{Error, MotionFault, finite};
 
 /// Windows of time, ascending and apart: switched on at the start of each and off at its end.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,7 +10,7 @@ impl Windows {
     /// Checked windows; an end may be +∞.
     ///
     /// # Errors
-    /// [`Error::NonFinite`], [`Error::WindowOrder`].
+    /// [`Error::NonFinite`], [`MotionFault::WindowOrder`].
     pub fn new(windows: &[(f64, f64)]) -> Result<Self, Error> {
         let mut previous = f64::NEG_INFINITY;
         for (index, &(on, off)) in windows.iter().enumerate() {
@@ -22,12 +22,13 @@ impl Windows {
                 });
             }
             if on <= previous || off <= on {
-                return Err(Error::WindowOrder {
+                return Err(MotionFault::WindowOrder {
                     index,
                     on,
                     off,
                     previous,
-                });
+                }
+                .into());
             }
             previous = off;
         }

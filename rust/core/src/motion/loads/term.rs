@@ -107,7 +107,8 @@ macro_rules! laws {
             /// Checks that the term can act on `subject` from one time to another.
             ///
             /// # Errors
-            /// [`Error::OutsideSamples`]; [`Error::PivotedInOrbit`].
+            /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples);
+            /// [`PivotedInOrbit`](crate::error::MotionFault::PivotedInOrbit).
             pub fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
                 match self {
                     $(Self::$law(law) => law.check(subject, from, to),)+

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::error::{Error, all_finite, finite};
+use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::mass::RigidBody;
 
 /// The most steps that a run takes.
@@ -15,19 +15,19 @@ const HOPELESS: f64 = 1e3;
 /// Refuses to go on with a run that has taken all its steps, or is hopelessly far from the end of its `span` of time.
 ///
 /// # Errors
-/// [`Error::TooManySteps`].
+/// [`MotionFault::TooManySteps`].
 pub(crate) fn check_steps(steps: u64, start: f64, elapsed: f64, span: f64) -> Result<(), Error> {
     let (most, ahead) = (MOST_STEPS as f64, steps as f64 * (span / elapsed).abs());
     let is_hopeless = steps >= JUDGED && ahead > HOPELESS * most;
     if steps < MOST_STEPS && !is_hopeless {
         return Ok(());
     }
-    Err(Error::TooManySteps {
+    Err(Error::Motion(MotionFault::TooManySteps {
         time: start + elapsed,
         steps,
         ahead,
         most,
-    })
+    }))
 }
 
 /// The changes of a law on one spot after which a run gives up.
@@ -50,11 +50,11 @@ pub fn check_times(times: &[f64]) -> Result<(), Error> {
             pair[1] < pair[0]
         };
         if !forward {
-            return Err(Error::NotMonotone {
+            return Err(Error::Motion(MotionFault::NotMonotone {
                 index: k + 1,
                 previous: pair[0],
                 next: pair[1],
-            });
+            }));
         }
     }
     Ok(())

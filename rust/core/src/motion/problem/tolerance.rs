@@ -25,7 +25,7 @@ impl Tolerance {
         finite("rtol", relative)?;
         finite("atol", absolute)?;
         if !(TIGHTEST_TWOFOLD..=0.1).contains(&relative) {
-            let law = "between 1e-28 and 0.1; below 2.3e-15 (ten units of rounding) method=\"taylor\" alone serves it";
+            let law = "between 1e-28 and 0.1; below 2.3e-15 (ten units of rounding) the method \"taylor\" alone serves it";
             return Err(Error::OutOfDomain {
                 what: "rtol",
                 law,

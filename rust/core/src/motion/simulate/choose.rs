@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::error::Error;
+use crate::error::{BodyFault, Error, MotionFault};
 use crate::mass::RigidBody;
 use crate::mass::validity::ROUNDING;
 use crate::motion::heavy_top::PivotedTop;
@@ -16,7 +16,7 @@ impl Method {
     /// tells, where that matters, whether every body is a [`closed_top`].
     ///
     /// # Errors
-    /// [`Error::MethodCannotServe`], which names one that can; [`Error::OutOfDomain`] where none serves the tolerance.
+    /// [`MotionFault::MethodCannotServe`], which names one that can; [`Error::OutOfDomain`] where none serves the tolerance.
     pub fn serving(
         self,
         pivoted: bool,
@@ -40,7 +40,7 @@ impl Method {
         if is_beyond_doubles && of_steps != Self::Taylor {
             return Err(Error::OutOfDomain {
                 what: "rtol",
-                law: "2.3e-15 or more (ten units of rounding) where method=\"taylor\" cannot serve the run",
+                law: "2.3e-15 or more (ten units of rounding) where the method \"taylor\" cannot serve the run",
                 value: tolerance.relative,
             });
         }
@@ -50,45 +50,45 @@ impl Method {
             }
             Self::Auto => return Ok(of_steps),
             Self::Exact if !may_be_closed => {
-                "a free body without a load, or with about=\"origin\" uniform gravity alone on a symmetric top"
+                "a free body without a load, or with its origin fixed uniform gravity alone on a symmetric top"
             }
             Self::Taylor if terms.is_none() => {
-                "the loads of polhode.loads other than callbacks and compiled functions"
+                "analytic loads, no callbacks and no compiled functions"
             }
             method if is_beyond_doubles && method != Self::Taylor => {
                 "an rtol of 2.3e-15 or more (ten units of rounding)"
             }
             method => return Ok(method),
         };
-        Err(Error::MethodCannotServe {
+        Err(Error::Motion(MotionFault::MethodCannotServe {
             method: self.name(),
             needs,
             instead: of_steps.name(),
-        })
+        }))
     }
 }
 
 /// The top that `body` is to rounding about the origin of its frame: its motion under gravity is known in closed form.
 ///
 /// # Errors
-/// [`Error::NoClosedForm`] when the moments across its axis differ, or the origin is off that axis;
+/// [`MotionFault::NoClosedForm`] when the moments across its axis differ, or the origin is off that axis;
 /// [`Error::OutOfDomain`] for a point at the origin.
 pub fn closed_top(body: &RigidBody) -> Result<PivotedTop, Error> {
     PivotedTop::of(body, ROUNDING).map_err(|error| {
         let (lack, relative) = match error {
-            Error::NotASymmetricTop { gap, .. } => {
+            Error::Body(BodyFault::NotASymmetricTop { gap, .. }) => {
                 ("no two of its principal moments are equal", gap)
             }
-            Error::PivotOffAxis { relative, .. } => {
+            Error::Motion(MotionFault::PivotOffAxis { relative, .. }) => {
                 ("the origin is off the symmetry axis", relative)
             }
             other => return other,
         };
-        Error::NoClosedForm {
+        Error::Motion(MotionFault::NoClosedForm {
             lack,
             relative,
             allowed: ROUNDING,
-        }
+        })
     })
 }
 
@@ -126,7 +126,7 @@ mod tests {
         ] {
             let refused = method.serving(false, terms, &tolerance, || true);
             assert!(
-                matches!(refused, Err(Error::MethodCannotServe { instead: named, .. }) if named == instead)
+                matches!(refused, Err(Error::Motion(MotionFault::MethodCannotServe { instead: named, .. })) if named == instead)
             );
         }
     }
@@ -146,10 +146,10 @@ mod tests {
             let refused = serving(method, Some(&[]));
             assert!(matches!(
                 refused,
-                Err(Error::MethodCannotServe {
+                Err(Error::Motion(MotionFault::MethodCannotServe {
                     instead: "taylor",
                     ..
-                })
+                }))
             ));
         }
         for method in [Method::Auto, Method::Dop853] {

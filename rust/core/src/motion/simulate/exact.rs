@@ -6,7 +6,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::choose::{closed_top, gravity_alone};
 use super::stepper::{Carry, Dense, Span, Stepper};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::free::FreeMotion;
 use crate::motion::heavy_top::HeavyTop;
 use crate::motion::loads::{Switch, Term};
@@ -120,7 +120,7 @@ impl Closed {
             return Ok(());
         }
         let time = start + elapsed;
-        Err(Error::NotFiniteMotion { time })
+        Err(Error::Motion(MotionFault::NotFiniteMotion { time }))
     }
 
     fn place(&self, elapsed: f64) -> Vector3<f64> {
@@ -194,10 +194,10 @@ impl<E: From<Error>> Stepper for Exact<E> {
         self.steps += 1;
         let next = self.steps as f64 * self.step;
         if next == self.elapsed {
-            return Err(Error::StepTooSmall {
+            return Err(Error::Motion(MotionFault::StepTooSmall {
                 time: self.elapsed,
                 step: self.step,
-            }
+            })
             .into());
         }
         self.elapsed = if next.abs() >= self.length.abs() {

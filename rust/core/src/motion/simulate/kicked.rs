@@ -1,7 +1,7 @@
 //! Splitting into kicks and free motions.
 
 use super::stepper::{Carry, Dense, Span, Stepper};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::integrate::Splitting;
 use crate::motion::loads::{Load, Switch};
 use crate::motion::problem::{Effort, Task};
@@ -17,11 +17,11 @@ pub(super) struct Kicked<'a, L> {
 impl<'a, L: Load> Kicked<'a, L> {
     pub(super) fn new(task: &Task<'_>, span: &Span, load: &'a mut L) -> Result<Self, L::Error> {
         if load.depends_on_rates() {
-            return Err(Error::MethodCannotServe {
+            return Err(Error::Motion(MotionFault::MethodCannotServe {
                 method: "splitting",
                 needs: "a load that does not depend on the angular velocity, and calls no function",
                 instead: "dop853",
-            }
+            })
             .into());
         }
         let stepper = Splitting::new(

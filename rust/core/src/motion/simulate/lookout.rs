@@ -3,7 +3,7 @@
 use super::along::{Look, View, sign};
 use super::events::Events;
 use super::stepper::Dense;
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::problem::{Crossing, Direction, Rule};
 use crate::motion::state::Phase;
 
@@ -120,7 +120,7 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
             };
             let time = start + place;
             if !phase.is_finite() {
-                return Err(Error::NotFiniteMotion { time }.into());
+                return Err(Error::Motion(MotionFault::NotFiniteMotion { time }).into());
             }
             self.crossings.push(Crossing { event, time, phase });
             self.counts[event] += 1;

@@ -7,7 +7,7 @@ use super::events::Events;
 use super::flips;
 use super::lookout::Lookout;
 use super::stepper::{Carry, Span, Stepper};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::loads::Load;
 use crate::motion::problem::limits::{HELD, check_steps, spans};
 use crate::motion::problem::{Effort, End, Method, Run, Task};
@@ -88,7 +88,11 @@ impl<E> Run<E> {
                             flips_at_once += 1;
                             if flips_at_once > HELD {
                                 let step = 0.0;
-                                return Err(Error::StepTooSmall { time, step }.into());
+                                return Err(Error::Motion(MotionFault::StepTooSmall {
+                                    time,
+                                    step,
+                                })
+                                .into());
                             }
                         } else {
                             flips_at_once = 0;
@@ -112,7 +116,7 @@ impl<E> Run<E> {
     /// Has come to this time and state, if that is one.
     fn reach(&mut self, time: f64, phase: Phase) -> Result<(), Error> {
         if !phase.is_finite() {
-            return Err(Error::NotFiniteMotion { time });
+            return Err(Error::Motion(MotionFault::NotFiniteMotion { time }));
         }
         (self.time, self.phase) = (time, phase);
         Ok(())

@@ -4,8 +4,8 @@
 //! through the nodes of the line. Where the integrand is smooth the two agree as well as the rule does; beyond a jump
 //! they differ by its height, and what the rule has missed is no more than that on all of the margin.
 
+use super::cells::{BATCH, Cell, Integrand, Leaf};
 use super::rule::Rule;
-use super::{BATCH, Cell, Integrand, Leaf};
 
 /// Where to ask, in parts of the margin between the face and the outermost node. A jump closer than the last is missed,
 /// with less than 1e-9 of the box behind it.

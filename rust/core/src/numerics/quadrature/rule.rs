@@ -1,6 +1,6 @@
 //! Gauss-Kronrod rules, each two in one.
 
-use super::{Cell, Leaf};
+use super::cells::{Cell, Leaf};
 
 /// A pair of rules on the interval from 0 to 1.
 #[derive(Clone, Debug)]

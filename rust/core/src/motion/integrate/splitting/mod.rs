@@ -14,7 +14,7 @@ mod tests;
 use self::body::{Body, Point};
 pub use self::scheme::Scheme;
 use self::step_length::{allowed, cheapest, rate};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::loads::Load;
 use crate::motion::problem::MOST_STEPS;
@@ -139,12 +139,13 @@ impl Splitting {
             .ceil()
             .max(1.0);
         if count.is_nan() || count > MOST_STEPS as f64 {
-            return Err(Error::TooManySteps {
+            return Err(MotionFault::TooManySteps {
                 time: self.start + self.from,
                 steps: self.steps,
                 ahead: count,
                 most: MOST_STEPS as f64,
-            });
+            }
+            .into());
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -222,7 +223,7 @@ impl Splitting {
         };
         if !self.body.phase(&point).is_finite() {
             let time = self.start + self.elapsed();
-            return Err(Error::NotFiniteMotion { time }.into());
+            return Err(Error::from(MotionFault::NotFiniteMotion { time }).into());
         }
         self.before = self.point;
         self.point = point;
@@ -247,7 +248,7 @@ impl Splitting {
             self.chosen = h * factor;
             if self.elapsed() + self.chosen == self.elapsed() {
                 let (time, step) = (self.start + self.elapsed(), self.chosen);
-                return Err(Error::StepTooSmall { time, step }.into());
+                return Err(Error::from(MotionFault::StepTooSmall { time, step }).into());
             }
             self.divide()?;
         }

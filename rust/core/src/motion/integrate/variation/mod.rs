@@ -35,7 +35,7 @@ use nalgebra::{Matrix6, Matrix6x3, Vector6};
 use self::numbers::{Block, WIDTH};
 use self::parameters::{ATTITUDE, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, count};
 use self::walk::Walk;
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::loads::Term;
 use crate::motion::problem::Task;
 
@@ -63,7 +63,7 @@ pub struct Variation {
 /// `watch` gets the fraction done and may stop it.
 ///
 /// # Errors
-/// When a term cannot act, the motion cannot go on, [`Error::NotFiniteDerivative`], or [`Error::Stopped`].
+/// When a term cannot act, the motion cannot go on, [`MotionFault::NotFiniteDerivative`], or [`Error::Stopped`].
 ///
 /// # Panics
 /// When there are no times; see [`check_times`](crate::motion::problem::check_times).
@@ -98,7 +98,7 @@ pub fn variations(
     let has_neighbours = !task.euler.moments().contains(&0.0);
     for (variation, &time) in found.iter_mut().zip(task.times) {
         if !variation.is_finite(has_neighbours) {
-            return Err(Error::NotFiniteDerivative { time });
+            return Err(MotionFault::NotFiniteDerivative { time }.into());
         }
         if !has_neighbours {
             variation.moments.fill(f64::NAN);

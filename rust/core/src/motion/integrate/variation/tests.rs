@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use nalgebra::{Matrix3, Matrix6, Quaternion, UnitQuaternion, Vector3};
 
 use super::{Variation, variations};
-use crate::error::Error;
+use crate::error::MotionFault;
 use crate::mass::RigidBody;
 use crate::motion::free::FreeMotion;
 use crate::motion::loads::{Feedback, Frame, GravityGradient, Term};
@@ -170,5 +170,8 @@ fn derivatives_beyond_all_numbers_are_refused() {
         tolerance,
     );
     let beyond = variations(&task, &terms, &mut |_| ControlFlow::Continue(()));
-    assert_eq!(beyond, Err(Error::NotFiniteDerivative { time: -360.0 }));
+    assert_eq!(
+        beyond,
+        Err(MotionFault::NotFiniteDerivative { time: -360.0 }.into())
+    );
 }

@@ -13,7 +13,7 @@ use super::numbers::{
 use super::orbit::Orbiting;
 use super::pace::Pace;
 use super::parameters::{ATTITUDE, LOAD, RATES, count};
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::attitude::from_axes;
 use crate::motion::loads::{GravityGradient, Term};
 use crate::motion::problem::Task;
@@ -124,7 +124,7 @@ impl<'a> Walk<'a> {
                     held = if h.abs() > least { 0 } else { held + 1 };
                     if held > HELD {
                         let (time, step) = (self.time(), h / self.units.rate);
-                        return Err(Error::StepTooSmall { time, step });
+                        return Err(MotionFault::StepTooSmall { time, step }.into());
                     }
                 } else if h == left {
                     self.now = two_sum(pair[1], -start);
@@ -309,13 +309,14 @@ impl<'a> Walk<'a> {
             within(act.limit(&self.motion, fastest));
         }
         if h.is_nan() {
-            return Err(Error::NotFiniteMotion { time: self.time() });
+            return Err(MotionFault::NotFiniteMotion { time: self.time() }.into());
         }
         if h < left && h / self.units.rate <= f64::EPSILON * self.now.0.abs() {
-            return Err(Error::StepTooSmall {
+            return Err(MotionFault::StepTooSmall {
                 time: self.time(),
                 step: h / self.units.rate,
-            });
+            }
+            .into());
         }
         h = h.min(left);
         let sense = if self.direction() { 1.0 } else { -1.0 };

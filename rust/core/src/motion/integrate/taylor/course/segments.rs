@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::loads::{Axes, Frame, Linear, Term};
@@ -172,7 +172,9 @@ impl<'a, X: Precision> Course<'a, X> {
                 }
             }
             if let Some(&(torque, _)) = parts.iter().find(|(part, all)| *part > ROUNDING * all) {
-                return Err(Error::TorqueAlongMasslessAxis { torque });
+                return Err(Error::Motion(MotionFault::TorqueAlongMasslessAxis {
+                    torque,
+                }));
             }
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use super::lanes::{Landing, Lanes, Stop, effort};
 use super::stepping::OUTGROWN;
-use crate::error::Error;
+use crate::error::{Error, MotionFault};
 use crate::motion::integrate::taylor::course::Course;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::Pack;
@@ -36,12 +36,12 @@ where
         let advances = h > f64::EPSILON * self.now[row].0.abs();
         if !advances {
             let error = if h.is_finite() {
-                Error::StepTooSmall {
+                Error::Motion(MotionFault::StepTooSmall {
                     time,
                     step: h / lead.job.course.unit(),
-                }
+                })
             } else {
-                Error::NotFiniteMotion { time }
+                Error::Motion(MotionFault::NotFiniteMotion { time })
             };
             self.end(row, End::Failed(error));
             return Meeting::End;
@@ -69,7 +69,7 @@ where
             run.time = lead.job.course.time_of(before);
             run.phase = run.samples[before];
             let time = lead.job.course.time_of(lead.next);
-            run.end = End::Failed(Error::NotFiniteMotion { time });
+            run.end = End::Failed(Error::Motion(MotionFault::NotFiniteMotion { time }));
             self.leads[row] = None;
             return;
         }

@@ -1,8 +1,10 @@
-//! Why triangles do not bound a solid.
+//! Why triangles do not bound a solid, and why cells fill none.
 
 use std::fmt;
 
 use thiserror::Error as ThisError;
+
+use super::kind::Kind;
 
 /// A corner of a triangle, by its number or, where a file does not number its corners, by its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,10 +89,10 @@ pub enum MeshFault {
         /// How many faces repeat an earlier one.
         count: Count,
     },
-    /// An edge with a face on one side only.
+    /// An edge with a face on one side only: a solid needs the mesh closed, a thin shell does not.
     #[error(
         "the mesh is not closed: the edge from {from} to {to} of faces[{face}] has no face on its other side \
-         ({count} such edges in all); close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead"
+         ({count} such edges in all)"
     )]
     Open {
         /// Start of the edge.
@@ -122,7 +124,7 @@ pub enum MeshFault {
     /// The normals point inward.
     #[error(
         "the mesh is inverted: its signed volume is {volume:?}, so the normals point inward; \
-         pass orient=True to turn them all"
+         reverse the order of the vertices of every face"
     )]
     Inverted {
         /// The signed volume.
@@ -132,7 +134,7 @@ pub enum MeshFault {
     #[error(
         "a component of the mesh is inside out: the {faces} connected faces with faces[{face}] are wound the other way \
          than the rest, signed volume {volume:?}, and are no cavity, as no other component has them inside; \
-         pass orient=True to turn them"
+         reverse the order of their vertices"
     )]
     InsideOut {
         /// Its first face.
@@ -196,4 +198,68 @@ pub enum MeshFault {
         /// How many faces.
         faces: usize,
     },
+}
+
+/// Why nodes and cells make no body.
+#[derive(Clone, Debug, PartialEq, ThisError)]
+#[non_exhaustive]
+pub enum CellFault {
+    /// No cells.
+    #[error("cells must not be empty: there is nothing to sum over")]
+    NoCells,
+    /// A cell names a node that does not exist.
+    #[error(
+        "cells[{cell}] names node {index}, but there are {nodes} nodes, numbered from 0; \
+         if the cells count from 1 subtract 1"
+    )]
+    IndexOutOfRange {
+        /// The cell.
+        cell: usize,
+        /// The index it holds.
+        index: i64,
+        /// How many nodes there are.
+        nodes: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("nodes[{node}] is not finite: {value:?}")]
+    NonFiniteNode {
+        /// The node.
+        node: usize,
+        /// The coordinate.
+        value: f64,
+    },
+    /// A density is below zero.
+    #[error("density must not be negative: density[{index}] is {value:?}")]
+    NegativeDensity {
+        /// Of which cell or node.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// Every cell is flat or without density.
+    #[error(
+        "the {count} cells have no mass: {mass:?}; check that they are not flat and their density not zero"
+    )]
+    NoMass {
+        /// How many cells.
+        count: usize,
+        /// The sum of their masses.
+        mass: f64,
+    },
+}
+
+impl MeshFault {
+    /// The kind of mistake.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        Kind::Mesh
+    }
+}
+
+impl CellFault {
+    /// The kind of mistake.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        Kind::Mesh
+    }
 }

@@ -1,56 +1,16 @@
-//! Why nodes and cells make no body.
+//! Where densities are given; what nodes, cells and densities must be.
 
-use thiserror::Error as ThisError;
+use crate::error::{CellFault, Error, finite};
 
-use super::CellDensity;
-use crate::error::{Error, finite};
-
-/// Why nodes and cells make no body.
-#[derive(Clone, Debug, PartialEq, ThisError)]
-#[non_exhaustive]
-pub enum CellFault {
-    /// No cells.
-    #[error("cells must not be empty: there is nothing to sum over")]
-    NoCells,
-    /// A cell names a node that does not exist.
-    #[error(
-        "cells[{cell}] names node {index}, but there are {nodes} nodes, numbered from 0; \
-         if the cells count from 1 subtract 1"
-    )]
-    IndexOutOfRange {
-        /// The cell.
-        cell: usize,
-        /// The index it holds.
-        index: i64,
-        /// How many nodes there are.
-        nodes: usize,
-    },
-    /// A coordinate is NaN or infinite.
-    #[error("nodes[{node}] is not finite: {value:?}")]
-    NonFiniteNode {
-        /// The node.
-        node: usize,
-        /// The coordinate.
-        value: f64,
-    },
-    /// A density is below zero.
-    #[error("density must not be negative: density[{index}] is {value:?}")]
-    NegativeDensity {
-        /// Of which cell or node.
-        index: usize,
-        /// The number.
-        value: f64,
-    },
-    /// Every cell is flat or without density.
-    #[error(
-        "the {count} cells have no mass: {mass:?}; check that they are not flat and their density not zero"
-    )]
-    NoMass {
-        /// How many cells.
-        count: usize,
-        /// The sum of their masses.
-        mass: f64,
-    },
+/// Where the densities are given.
+#[derive(Clone, Copy, Debug)]
+pub enum CellDensity<'a> {
+    /// One for all.
+    Uniform(f64),
+    /// One for each cell.
+    PerCell(&'a [f64]),
+    /// One for each node, linear between them.
+    PerNode(&'a [f64]),
 }
 
 /// Indices name nodes, numbers are finite, densities not negative.

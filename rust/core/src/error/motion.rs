@@ -1,0 +1,256 @@
+//! Why a motion cannot be told.
+
+use thiserror::Error as ThisError;
+
+use super::kind::Kind;
+
+/// Why a motion, an attitude or a load cannot be told.
+#[derive(Clone, Debug, PartialEq, ThisError)]
+#[non_exhaustive]
+pub enum MotionFault {
+    /// A torque about an axis with no moment of inertia.
+    #[error(
+        "torque has the component {torque:?} along a principal axis whose moment of inertia is zero: \
+         the angular acceleration would be infinite; give the body a thickness or remove that component"
+    )]
+    TorqueAlongMasslessAxis {
+        /// The component.
+        torque: f64,
+    },
+    /// An unknown Euler sequence.
+    #[error(
+        "sequence must be three axes such as \"ZXZ\" (intrinsic) or \"zxz\" (extrinsic), neighbours different, \
+         or \"goldstein\", \"landau\", \"aerospace\"; got {got:?}"
+    )]
+    EulerSequence {
+        /// What was given.
+        got: String,
+    },
+    /// First and third Euler angle are not defined.
+    #[error(
+        "the first and third Euler angles of \"{sequence}\" are not defined where the middle angle is {middle:?} rad: \
+         only their sum or difference is; choose another sequence"
+    )]
+    GimbalLock {
+        /// The sequence.
+        sequence: String,
+        /// The middle angle.
+        middle: f64,
+    },
+    /// The rates of the first and third Euler angle are not defined.
+    #[error(
+        "the rates of the first and third Euler angle of \"{sequence}\" are not defined where the middle angle is \
+         {middle:?} rad: their axes coincide; choose another sequence"
+    )]
+    SingularEulerRates {
+        /// The sequence.
+        sequence: String,
+        /// The middle angle.
+        middle: f64,
+    },
+    /// The centre of mass is not on the symmetry axis through the pivot.
+    #[error(
+        "the pivot, the origin of the body frame, must lie on the symmetry axis: the axis passes it at {distance:?}, \
+         {relative:.2e} of the radius of gyration about it where {allowed:.1e} is allowed"
+    )]
+    PivotOffAxis {
+        /// Of the pivot from the axis.
+        distance: f64,
+        /// That over the radius of gyration about the pivot.
+        relative: f64,
+        /// What is allowed.
+        allowed: f64,
+    },
+    /// A top that spins too slowly to precess steadily.
+    #[error(
+        "no steady precession at the inclination {inclination:?} rad: the spin {spin:?} is slower than the least, \
+         2 sqrt(I_t m g l cos(inclination))/I_s = {least:?}"
+    )]
+    SpinTooSlow {
+        /// Component of ω along the symmetry axis.
+        spin: f64,
+        /// The least that precesses steadily.
+        least: f64,
+        /// Of the symmetry axis from the upward vertical.
+        inclination: f64,
+    },
+    /// A mode that a body with these moments does not have.
+    #[error(
+        "the body has no {mode} mode: of its principal moments {:?}, {:?}, {:?} the two that ω would need apart are equal, or the \
+         least is zero",
+        moments[0], moments[1], moments[2]
+    )]
+    NoSuchMode {
+        /// Which.
+        mode: &'static str,
+        /// The principal moments.
+        moments: [f64; 3],
+    },
+    /// Two periods that no free motion of the body has.
+    #[error(
+        "no {mode} motion has rotation_period/precession_period = {ratio:?}: for the principal moments {:?}, {:?}, {:?} the ratio \
+         reaches from {least:.6} (steady spin) to {most:.6} (the separatrix, as near as float64 tells); check the mode and \
+         the moments",
+        moments[0], moments[1], moments[2]
+    )]
+    UnreachablePeriods {
+        /// In which mode.
+        mode: &'static str,
+        /// `P_ψ/P_φ`.
+        ratio: f64,
+        /// The least that is reached.
+        least: f64,
+        /// The greatest that is reached.
+        most: f64,
+        /// The principal moments.
+        moments: [f64; 3],
+    },
+    /// Output times do not run in one direction.
+    #[error("t must be strictly monotone: t[{index}] = {next:?} follows {previous:?}")]
+    NotMonotone {
+        /// The index of the later time.
+        index: usize,
+        /// The earlier time.
+        previous: f64,
+        /// The later time.
+        next: f64,
+    },
+    /// A window of time that ends before it starts, or starts before the one before it has ended.
+    #[error(
+        "windows must be ascending and apart: window {index} is from {on:?} to {off:?}, and the one before it ends at \
+         {previous:?}; join windows that touch"
+    )]
+    WindowOrder {
+        /// Which window.
+        index: usize,
+        /// Its start.
+        on: f64,
+        /// Its end.
+        off: f64,
+        /// The end of the window before it.
+        previous: f64,
+    },
+    /// A sampled torque is asked for at a time at which it is not known.
+    #[error(
+        "the sampled torque is known from t = {first:?} to t = {last:?}, and needed at t = {t:?}: give it samples there, \
+         or switch it on within its samples"
+    )]
+    OutsideSamples {
+        /// When it is needed.
+        t: f64,
+        /// The first time at which it is known.
+        first: f64,
+        /// The last one.
+        last: f64,
+    },
+    /// A method of integration that is not made for a run.
+    #[error("the method \"{method}\" needs {needs}; \"{instead}\" can serve this run")]
+    MethodCannotServe {
+        /// The method asked for.
+        method: &'static str,
+        /// What it needs.
+        needs: &'static str,
+        /// A method that can.
+        instead: &'static str,
+    },
+    /// A body whose motion about its fixed origin is not known in closed form.
+    #[error(
+        "the method \"exact\" needs a symmetric top whose axis passes through the origin: {lack}, by {relative:.2e} where \
+         {allowed:.1e} is rounding; \"taylor\" can serve this run"
+    )]
+    NoClosedForm {
+        /// What it lacks.
+        lack: &'static str,
+        /// By how much: of the largest moment, or of the radius of gyration.
+        relative: f64,
+        /// What is allowed.
+        allowed: f64,
+    },
+    /// A gravity gradient on a body whose origin is fixed.
+    #[error(
+        "the gravity gradient acts on a body in orbit, whose centre of mass is free: here its \
+         origin is fixed"
+    )]
+    PivotedInOrbit,
+    /// A time so far away that the phases of a motion in closed form are not known any more.
+    #[error(
+        "t = {t:?} is beyond the reach of this motion, |t| <= {reach:.3e}: phases are known to 2^-90 of the turns made, so \
+         after 2^88 turns nothing is left of them; ask for times within"
+    )]
+    BeyondReach {
+        /// The time.
+        t: f64,
+        /// The largest.
+        reach: f64,
+    },
+    /// The step of an integration fell below what the clock can tell apart.
+    #[error(
+        "the integration cannot go on at t = {time:?}: its step would have to be {step:.2e}, too small to advance the \
+         time; the motion or the load is singular there, or rtol is tighter than the load is smooth"
+    )]
+    StepTooSmall {
+        /// Where.
+        time: f64,
+        /// The step asked for.
+        step: f64,
+    },
+    /// A run of more steps than a run may take.
+    #[error(
+        "the integration has come to t = {time:?} in {steps} steps, and would take {ahead:.1e} in all; a run takes {most:e} at \
+         most: ask for a looser rtol, or for a shorter time and go on from its end"
+    )]
+    TooManySteps {
+        /// Where it has come to.
+        time: f64,
+        /// Steps so far.
+        steps: u64,
+        /// Steps of the whole run at this rate.
+        ahead: f64,
+        /// The limit.
+        most: f64,
+    },
+    /// The equations of motion gave a number that is not finite.
+    #[error(
+        "the equations of motion are not finite at t = {time:?}: check the load at that time and state"
+    )]
+    NotFiniteMotion {
+        /// Where.
+        time: f64,
+    },
+    /// Derivatives that leave the range of float64 where the motion itself does not.
+    #[error(
+        "the derivatives of the motion have left the range of float64 by t = {time:?}: motions that start side by side part \
+         that fast; ask for times nearer the start"
+    )]
+    NotFiniteDerivative {
+        /// The first of the times asked for at which they are beyond it.
+        time: f64,
+    },
+}
+
+impl MotionFault {
+    /// The kind of mistake.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::TorqueAlongMasslessAxis { .. } => Kind::Inertia,
+            Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
+            Self::StepTooSmall { .. }
+            | Self::TooManySteps { .. }
+            | Self::NotFiniteMotion { .. }
+            | Self::NotFiniteDerivative { .. } => Kind::Integration,
+            Self::EulerSequence { .. }
+            | Self::PivotOffAxis { .. }
+            | Self::SpinTooSlow { .. }
+            | Self::NoSuchMode { .. }
+            | Self::UnreachablePeriods { .. }
+            | Self::NotMonotone { .. }
+            | Self::WindowOrder { .. }
+            | Self::OutsideSamples { .. }
+            | Self::MethodCannotServe { .. }
+            | Self::NoClosedForm { .. }
+            | Self::PivotedInOrbit
+            | Self::BeyondReach { .. } => Kind::Argument,
+        }
+    }
+}

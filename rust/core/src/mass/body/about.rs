@@ -1,0 +1,95 @@
+//! Moments of inertia of a body about points and axes.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::possible::{RigidBody, clear_noise};
+use crate::error::{Error, all_finite, finite};
+use crate::mass::parallel_axis::from_center_of_mass;
+use crate::mass::validity::trace;
+use crate::numerics::power_of_two::{root_of_ratio, times_dot};
+use crate::principal::{PrincipalAxes, TOP_RTOL, principal_axes, rounding_rtols};
+
+impl RigidBody {
+    /// Inertia tensor `I_P` about the point P (from the origin of the body frame).
+    #[must_use]
+    pub fn inertia_about(&self, point: &Vector3<f64>) -> Matrix3<f64> {
+        from_center_of_mass(&self.inertia, self.mass, &(point - self.center_of_mass))
+    }
+
+    /// Principal moments and axes about the point P.
+    #[must_use]
+    pub fn principal_about(&self, point: &Vector3<f64>) -> PrincipalAxes {
+        if *point == self.center_of_mass {
+            return self.principal;
+        }
+        let inertia = self.inertia_about(point);
+        let mut about = principal_axes(&inertia);
+        clear_noise(&mut about, trace(&inertia));
+        about
+    }
+
+    /// How close moments of this body, about any point, must be to be equal as far as its numbers tell, relative to the
+    /// largest: for I₁ = 0, I₁ = I₂ and I₂ = I₃. [`TOP_RTOL`], and more where it is of particles whose coordinates were
+    /// rounded by as much as its provenance says.
+    #[must_use]
+    pub fn top_rtols(&self, moments: &[f64; 3]) -> [f64; 3] {
+        rounding_rtols(self.mass, moments, self.provenance.rounding).map(|rtol| rtol.max(TOP_RTOL))
+    }
+
+    /// Moment of inertia about the axis through P with direction `axis`: `n·I_P·n`, n the unit vector along `axis`.
+    ///
+    /// # Errors
+    /// When `axis` is zero or not finite, or the moment is beyond all numbers.
+    pub fn moment_about(&self, axis: &Vector3<f64>, point: &Vector3<f64>) -> Result<f64, Error> {
+        all_finite("axis", axis)?;
+        let longest = axis.amax();
+        if longest == 0.0 {
+            return Err(Error::NoDirection { what: "axis" });
+        }
+        // Divided by n·n at the end, rather than normalized first, which would round the direction.
+        let n = axis / longest;
+        let (w, lever) = (
+            self.principal.axes.tr_mul(&n),
+            n.cross(&(point - self.center_of_mass)),
+        );
+        let [i1, i2, i3] = self.principal.moments;
+        let central = i1 * w.x * w.x + i2 * w.y * w.y + i3 * w.z * w.z;
+        let moment = (central + times_dot(self.mass, &lever, &lever)) / n.dot(&n);
+        finite("the moment of inertia about the axis", moment)
+    }
+
+    /// Radii of gyration `√(I_k / m)` about the principal axes through C, ascending.
+    #[must_use]
+    pub fn radii_of_gyration(&self) -> [f64; 3] {
+        self.principal
+            .moments
+            .map(|moment| root_of_ratio(moment, self.mass))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn diagonal(x: f64, y: f64, z: f64) -> Matrix3<f64> {
+        Matrix3::from_diagonal(&Vector3::new(x, y, z))
+    }
+
+    #[test]
+    fn radii_of_what_is_very_heavy_and_light() {
+        for (mass, moment, radius) in [
+            (1e-200, 1e200, 1e200),
+            (1e200, 1e-200, 1e-200),
+            (2.0, 8.0, 2.0),
+        ] {
+            let body = RigidBody::new(
+                mass,
+                &diagonal(moment, moment, moment),
+                &Vector3::zeros(),
+                0.0,
+            );
+            let [found, ..] = body.expect("body").radii_of_gyration();
+            assert!((found / radius - 1.0).abs() < 1e-15);
+        }
+    }
+}

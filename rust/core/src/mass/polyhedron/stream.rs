@@ -1,0 +1,54 @@
+//! Triangles one after the other, without all of them ever being in memory: what a reader of files offers.
+
+use std::io;
+use std::ops::ControlFlow;
+
+use crate::error::{Error, FileFault};
+
+/// The corners of a triangle.
+pub type Triangle = [[f64; 3]; 3];
+
+/// Triangles that a stream hands over at a time, but for the last time.
+pub const BLOCK: usize = crate::numerics::reduce::BLOCK;
+
+/// The triangles of a file in order, as often as asked, without all of them ever being in memory.
+pub trait TriangleStream {
+    /// Once through: `visit` gets [`BLOCK`] triangles at a time, at the end perhaps fewer, and the fraction of the file
+    /// done; where it says [`ControlFlow::Break`] there is no more.
+    ///
+    /// # Errors
+    /// When reading fails or the file is not what its header says.
+    fn blocks(
+        &mut self,
+        visit: &mut dyn FnMut(&[Triangle], f64) -> ControlFlow<()>,
+    ) -> Result<(), StreamError>;
+}
+
+/// Why a stream ended early.
+#[derive(Debug)]
+pub enum StreamError {
+    /// The operating system says so.
+    Io(io::Error),
+    /// The contents say so.
+    Failed(Error),
+    /// Whoever watched said stop.
+    Stopped,
+}
+
+impl From<io::Error> for StreamError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl From<Error> for StreamError {
+    fn from(error: Error) -> Self {
+        Self::Failed(error)
+    }
+}
+
+impl From<FileFault> for StreamError {
+    fn from(fault: FileFault) -> Self {
+        Self::Failed(fault.into())
+    }
+}

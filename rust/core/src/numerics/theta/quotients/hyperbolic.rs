@@ -1,0 +1,120 @@
+//! The quotients by hyperbolic functions.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::series::{Values, dot};
+use crate::numerics::lane::Lane;
+use crate::numerics::theta::{HalfPeriods, hyperbolic};
+
+/// By hyperbolic functions of πu/2K′, for K ≥ K′ and K = ∞.
+///
+/// A [value](Self::values) has to be turned by a phase that grows with u: [`Hyperbolic::slopes`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hyperbolic {
+    /// `q′^{n²}` and `q′^{n²+n}` of ϑ₂.
+    below: [f64; 4],
+    below_far: [f64; 3],
+    /// `q′^{n²−n}` and `q′^{n²}` of ϑ₃, from n = 1 on.
+    beside: [f64; 3],
+    beside_far: [f64; 3],
+    /// For each function the real part's coefficients and the imaginary part's.
+    above: [[[f64; 4]; 2]; 3],
+    above_far: [[[f64; 3]; 2]; 3],
+    slopes: [f64; 3],
+}
+
+impl Hyperbolic {
+    /// With the shifts a, |a| ≤ K′.
+    #[must_use]
+    pub fn new(half: HalfPeriods, shifts: [f64; 3]) -> Self {
+        let q = (-PI * half.real / half.imaginary).exp();
+        let near = [0, 1, 4, 9].map(|n| q.powi(n));
+        let far = [0, 2, 6].map(|n| q.powi(n));
+        let angles = shifts.map(|a| FRAC_PI_2 * a / half.imaginary);
+        let above = angles.map(|p| {
+            let waves = |n: u8| {
+                let sign = if n % 2 == 1 { -1.0 } else { 1.0 };
+                let (s, c) = (f64::from(2 * n + 1) * p).sin_cos();
+                (sign * c, sign * s)
+            };
+            [0, 1, 2, 3].map(waves)
+        });
+        let times = |power: &[f64], part: fn((f64, f64)) -> f64, waves: &[(f64, f64); 4]| {
+            let mut out = [0.0; 4];
+            for ((out, power), &wave) in out.iter_mut().zip(power).zip(waves) {
+                *out = power * part(wave);
+            }
+            out
+        };
+        let first_three = |[a, b, c, _]: [f64; 4]| [a, b, c];
+        Self {
+            below: near,
+            below_far: far,
+            beside: [1.0, far[1], far[2]],
+            beside_far: [near[1], near[2], near[3]],
+            above: above
+                .map(|waves| [times(&near, |w| w.0, &waves), times(&near, |w| w.1, &waves)]),
+            above_far: above.map(|waves| {
+                [
+                    first_three(times(&far, |w| w.0, &waves)),
+                    first_three(times(&far, |w| w.1, &waves)),
+                ]
+            }),
+            slopes: angles.map(|p| -p / PI),
+        }
+    }
+
+    /// Each function times a factor.
+    #[must_use]
+    pub fn scaled(mut self, factors: [f64; 3]) -> Self {
+        for (k, factor) in factors.into_iter().enumerate() {
+            for coefficient in self.above[k].as_flattened_mut() {
+                *coefficient *= factor;
+            }
+            for coefficient in self.above_far[k].as_flattened_mut() {
+                *coefficient *= factor;
+            }
+        }
+        self
+    }
+
+    /// The phases that are still to be added, in turns for each full 2K: that of ϑ₁ times u/2K, those of ϑ₂ times
+    /// `(|u| − K)/2K` with the sign of u.
+    #[must_use]
+    pub fn slopes(&self) -> [f64; 3] {
+        self.slopes
+    }
+
+    /// The three at u but for those phases.
+    #[inline(always)]
+    #[must_use]
+    pub fn values<L: Lane>(&self, u: &hyperbolic::Argument<L>) -> Values<L> {
+        let one = L::new(1.0);
+        let (g2, y2) = (u.from_middle * u.from_middle, u.from_end * u.from_end);
+        let (g4, y4) = (g2 * g2, y2 * y2);
+        let g = [one, g2, g4, g4 * g2];
+        let y = [one, y2, y4, y4 * y2];
+        let front = |x: &[L; 4]| [x[0], x[1], x[2]];
+        let back = |x: &[L; 4]| [x[1], x[2], x[3]];
+        let reciprocal = one / g2.mul_add(dot(&self.below_far, &front(&g)), dot(&self.below, &y));
+        let beside = one / (one + dot(&self.beside, &back(&g)) + dot(&self.beside_far, &back(&y)));
+        let size = u.from_middle * beside;
+        let parts = |k: usize, near: &[L; 4], far: &[L; 4]| {
+            let scale = far[1];
+            let [real, imaginary] = &self.above[k];
+            let [real_far, imaginary_far] = &self.above_far[k];
+            [
+                (-scale).mul_add(dot(real_far, &front(far)), dot(real, near)),
+                scale.mul_add(dot(imaginary_far, &front(far)), dot(imaginary, near)),
+            ]
+        };
+        let [re, im] = parts(0, &y, &g);
+        let [re_1, im_1] = parts(1, &g, &y);
+        let [re_2, im_2] = parts(2, &g, &y);
+        [
+            [u.sign * re * reciprocal, im * reciprocal],
+            [re_1 * size, -(u.sign * im_1 * size)],
+            [re_2 * size, -(u.sign * im_2 * size)],
+        ]
+    }
+}
