@@ -6,8 +6,9 @@ mod in_time;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::RigidBody;
+use polhode::mass::refined::RefinedPrincipal;
 use polhode::motion::attitude::components;
-use polhode::motion::free::{FreeMotion, RefinedPrincipal};
+use polhode::motion::free::FreeMotion;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 

@@ -12,6 +12,7 @@
 //! | other people's forms, to and from | [`forms`] |
 //! | where the numbers come from | [`provenance`] |
 //! | second moment ∫ r rᵀ dm, from which every tensor comes | [`second_moment`] |
+//! | principal moments and axes to twice the precision | [`refined`] |
 //! | parallel-axis (Steiner, Huygens) theorem | [`parallel_axis`] |
 //! | particles, stacks of them, particles with labels | [`particles`] |
 //! | particles in chunks, more than fit into memory | [`accumulator`] |
@@ -46,6 +47,7 @@ pub mod particles;
 pub mod polyhedron;
 pub mod provenance;
 pub mod realizable;
+pub mod refined;
 pub mod regions;
 pub mod rods;
 pub mod second_moment;

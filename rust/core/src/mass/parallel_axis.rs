@@ -2,9 +2,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::error::{Error, finite};
-use crate::mass::RigidBody;
-
 /// `m (d·d 1 − d dᵀ)`: the inertia tensor about P of a particle of mass `m` at the displacement `d` from P.
 ///
 /// Each diagonal element is a sum of squares, so that nothing cancels.
@@ -38,20 +35,6 @@ pub fn to_center_of_mass(inertia: &Matrix3<f64>, mass: f64, d: &Vector3<f64>) ->
     inertia - point_inertia(mass, d)
 }
 
-impl RigidBody {
-    /// Whether float64 holds the inertia tensor about the point P (from the origin of the body frame): `m d²` may not.
-    ///
-    /// # Errors
-    /// [`Error::NonFinite`], with the moment that is not finite.
-    pub fn check_about(&self, point: &Vector3<f64>) -> Result<(), Error> {
-        if point.iter().any(|x| !x.is_finite()) {
-            return Ok(()); // it is for who takes points to say so
-        }
-        let moments = self.inertia_about(point).diagonal();
-        finite("the moment of inertia about this point", moments.max()).map(|_| ())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -66,18 +49,5 @@ mod tests {
         assert_eq!(about_end[(2, 2)], 0.0);
         let back = to_center_of_mass(&about_end, m, &Vector3::new(0.0, 0.0, -l / 2.0));
         assert!((back - about_center).abs().max() < 1e-15);
-    }
-
-    #[test]
-    fn moments_beyond_all_numbers_are_told() {
-        let at = |z: f64| {
-            let center = Vector3::new(0.0, 0.0, z);
-            RigidBody::from_principal(1.0, &[1.0, 1.0, 2.0], &Matrix3::identity(), &center, 0.0)
-                .and_then(|body| body.check_about(&Vector3::zeros()))
-        };
-        assert_eq!(at(1e154), Ok(()));
-        assert!(
-            matches!(at(1.4e154), Err(Error::NonFinite { value, .. }) if value == f64::INFINITY)
-        );
     }
 }

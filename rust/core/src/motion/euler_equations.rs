@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
+use crate::mass::refined::RefinedPrincipal;
 use crate::mass::validity::ROUNDING;
-use crate::motion::free::RefinedPrincipal;
 use crate::numerics::double_double::DoubleDouble;
 use crate::principal::PrincipalAxes;
 

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::lane::{Double, Lane};
+
 /// The exponent e of `|x| = 2^e·(1…2)`; zero for zero.
 #[must_use]
 pub fn exponent(x: f64) -> i32 {
@@ -28,6 +30,16 @@ pub fn times_power_of_two(x: f64, e: i32) -> f64 {
         rest -= stride;
     }
     x
+}
+
+/// The power of two at or below a positive number, as a unit; one of what is no positive number.
+#[must_use]
+pub fn power_below(x: f64) -> f64 {
+    if x > 0.0 && x.is_finite() {
+        Double::<false>::new(x).power_of_two_scale().1.get()
+    } else {
+        1.0
+    }
 }
 
 /// The length of a vector, whose squares may be beyond float64.

@@ -16,6 +16,18 @@ impl RigidBody {
         from_center_of_mass(&self.inertia, self.mass, &(point - self.center_of_mass))
     }
 
+    /// Whether float64 holds the inertia tensor about the point P (from the origin of the body frame): `m d²` may not.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`], with the moment that is not finite.
+    pub fn check_about(&self, point: &Vector3<f64>) -> Result<(), Error> {
+        if point.iter().any(|x| !x.is_finite()) {
+            return Ok(()); // it is for who takes points to say so
+        }
+        let moments = self.inertia_about(point).diagonal();
+        finite("the moment of inertia about this point", moments.max()).map(|_| ())
+    }
+
     /// Principal moments and axes about the point P.
     #[must_use]
     pub fn principal_about(&self, point: &Vector3<f64>) -> PrincipalAxes {
@@ -91,5 +103,18 @@ mod tests {
             let [found, ..] = body.expect("body").radii_of_gyration();
             assert!((found / radius - 1.0).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn moments_beyond_all_numbers_are_told() {
+        let at = |z: f64| {
+            let center = Vector3::new(0.0, 0.0, z);
+            RigidBody::from_principal(1.0, &[1.0, 1.0, 2.0], &Matrix3::identity(), &center, 0.0)
+                .and_then(|body| body.check_about(&Vector3::zeros()))
+        };
+        assert_eq!(at(1e154), Ok(()));
+        assert!(
+            matches!(at(1.4e154), Err(Error::NonFinite { value, .. }) if value == f64::INFINITY)
+        );
     }
 }

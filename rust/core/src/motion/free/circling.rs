@@ -2,9 +2,10 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::Secular;
 use super::propagator::{AnySeries, Circular, Clock, Propagator};
-use super::tumbling::{Vector, hypotenuse};
+use super::secular::Secular;
+use super::tumbling::hypotenuse;
+use crate::mass::refined::Vector;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::theta::circular::{Jacobi, Shifted};
 

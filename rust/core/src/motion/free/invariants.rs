@@ -15,9 +15,11 @@
 
 use nalgebra::Vector3;
 
+use super::mode::Mode;
+use super::motion::FreeMotion;
 use super::separation::Separation;
-use super::{FreeMotion, Mode, power_of_two};
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::power_below;
 
 /// Constants of a free motion, in principal axes and in units of its own in which moments and rates are near one.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +61,7 @@ impl Invariants {
         let [x, y, z] = (*omega).into();
         let moments = moments.map(DoubleDouble::from);
         let omega = [x, y, z].map(DoubleDouble::from);
-        let inertia_unit = power_of_two(moments[2].high);
+        let inertia_unit = power_below(moments[2].high);
         let scaled = moments.map(|moment| moment.scaled(1.0 / inertia_unit));
         Self::refined(&moments, &omega, &Separation::of(&scaled, &omega))
     }
@@ -79,11 +81,11 @@ impl Invariants {
         omega: &[DoubleDouble; 3],
         separation: &Separation,
     ) -> Self {
-        let inertia_unit = power_of_two(moments[2].high);
+        let inertia_unit = power_below(moments[2].high);
         let fastest = omega
             .iter()
             .fold(0.0, |size: f64, rate| size.max(rate.high.abs()));
-        let rate_unit = power_of_two(fastest);
+        let rate_unit = power_below(fastest);
         let moments = moments.map(|moment| moment.scaled(1.0 / inertia_unit));
         let omega = omega.map(|rate| rate.scaled(1.0 / rate_unit));
         let [i1, _, i3] = moments;

@@ -3,8 +3,9 @@
 use nalgebra::Vector3;
 
 use super::invariants::Invariants;
-use super::{FreeMotion, power_of_two};
+use super::motion::FreeMotion;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::power_below;
 
 /// The ellipsoid `ω·I ω = 2T`, fixed in the body with its centre in C, and the plane on which it rolls.
 ///
@@ -40,7 +41,7 @@ impl FreeMotion {
     fn scaled_momentum(&self) -> (Vector3<f64>, [f64; 2]) {
         let moments = Vector3::from(self.moments.map(DoubleDouble::rounded));
         let omega = Vector3::from(self.principal_omega.map(DoubleDouble::rounded));
-        let units = [moments.z, omega.amax()].map(power_of_two);
+        let units = [moments.z, omega.amax()].map(power_below);
         let [moments, omega] = [moments / units[0], omega / units[1]];
         let momentum = self.initial.attitude * (self.axes * moments.component_mul(&omega));
         (momentum, units)

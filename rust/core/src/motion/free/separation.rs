@@ -10,7 +10,7 @@
 
 use nalgebra::Vector3;
 
-use super::refined::{RefinedPrincipal, Vector};
+use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::Real;
 use crate::numerics::lane::{Double, Lane};

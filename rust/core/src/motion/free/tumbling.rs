@@ -13,15 +13,15 @@
 
 use nalgebra::{Matrix3, UnitQuaternion};
 
+use super::mode::Mode;
 use super::propagator::{AnySeries, Circular, Clock, Hyperbolic, Propagator};
+use super::secular::Secular;
 use super::separation::{Separation, Unit};
-use super::{Mode, Secular};
+use crate::mass::refined::Vector;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{complete_first, complete_third, incomplete_first};
 use crate::numerics::lane::{Double, Lane};
 use crate::numerics::theta::{HalfPeriods, circular, hyperbolic};
-
-pub(super) type Vector = [DoubleDouble; 3];
 
 /// Sines serve while K′ ≥ this times K: there both kinds of series converge alike.
 const CIRCULAR: f64 = std::f64::consts::FRAC_1_SQRT_2;

@@ -16,6 +16,8 @@ mod phases;
 pub mod pivoted_top;
 mod reduced;
 mod sampling;
+mod scaled;
+mod source;
 #[cfg(test)]
 mod tests;
 mod turning_points;

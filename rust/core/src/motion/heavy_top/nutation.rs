@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::phases::Phases;
-use super::reduced::{Reduced, times};
+use super::reduced::Reduced;
+use super::scaled::times;
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::times_power_of_two;

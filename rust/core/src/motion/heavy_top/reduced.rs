@@ -14,7 +14,8 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-use super::pivoted_top::Source;
+use super::scaled::{near_one, sum_of_squares, times};
+use super::source::Source;
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::Real;
@@ -220,27 +221,10 @@ impl<T: Real> Reduced<T> {
     }
 }
 
-/// `x 2^e`.
-pub(super) fn times<T: Real>(x: T, e: i32) -> T {
-    let (mut x, mut rest) = (x, e);
-    while rest != 0 && x.rounded() != 0.0 {
-        let stride = rest.clamp(-1000, 1000);
-        x = x.scaled(2.0_f64.powi(stride));
-        rest -= stride;
-    }
-    x
-}
-
 /// Length of a vector, as a number of the order of one and a power of two.
 fn norm<T: Real>(vector: &Vector3<f64>) -> (T, i32) {
     let scaled = near_one(&[vector.x, vector.y, vector.z].map(T::from));
     (sum_of_squares(&scaled).sqrt(), exponent(vector.amax()))
-}
-
-/// The vector times a power of two that makes its largest component one or somewhat more.
-pub(super) fn near_one<T: Real>(vector: &[T; 3]) -> [T; 3] {
-    let largest = (vector.iter()).fold(0.0_f64, |most, x| most.max(x.rounded().abs()));
-    vector.map(|x| times(x, -exponent(largest)))
 }
 
 /// The shortest rotation from `direction` to the third axis; from below the horizontal after half a turn about the first axis.
@@ -286,8 +270,4 @@ fn rounded<T: Real>(q: &Components<T>) -> Quaternion<f64> {
 
 fn conjugate<T: Real>(q: &Components<T>) -> Components<T> {
     [-q[0], -q[1], -q[2], q[3]]
-}
-
-pub(super) fn sum_of_squares<T: Real>(numbers: &[T]) -> T {
-    (numbers.iter()).fold(T::from(0.0), |sum, &x| sum + x * x)
 }

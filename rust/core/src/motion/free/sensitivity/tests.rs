@@ -1,5 +1,5 @@
 use super::*;
-use crate::motion::free::RefinedPrincipal;
+use crate::mass::refined::RefinedPrincipal;
 
 /// (moments, ω, t, ∂ω(t)/∂(ω, I) by rows): differences of Taylor series with mpmath 1.3 and 40 digits.
 type Case = ([f64; 3], [f64; 3], f64, [[f64; 6]; 3]);

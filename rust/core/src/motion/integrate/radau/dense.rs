@@ -2,8 +2,8 @@
 
 use nalgebra::SVector;
 
+use super::stages::{Stages, combine};
 use super::tableau::POLYNOMIAL;
-use super::{Stages, combine};
 
 /// The states during one step as a polynomial of degree 3 in time.
 #[derive(Clone, Debug)]

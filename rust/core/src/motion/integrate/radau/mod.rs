@@ -3,6 +3,7 @@
 //! dictate the steps (Hairer & Wanner, Solving ODEs II, §IV.8).
 
 mod dense;
+mod stages;
 mod tableau;
 #[cfg(test)]
 mod tests;
@@ -10,6 +11,7 @@ mod tests;
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU, SVector};
 
 use self::dense::Dense;
+use self::stages::{Stages, combine, combined};
 use self::tableau::{COMPLEX, ERROR, NODES, REAL, T, T_INVERSE};
 use super::runge_kutta::{Progress, RungeKutta};
 use super::system::System;
@@ -22,9 +24,6 @@ const SHRINK: f64 = 0.2;
 const GROW: f64 = 8.0;
 /// One over the order of the error that the estimate controls.
 const EXPONENT: f64 = 0.25;
-
-/// The increments of the three stages over the state at the start of the step.
-type Stages<const N: usize> = [SVector<f64, N>; 3];
 
 /// An integration under way.
 #[derive(Clone, Debug)]
@@ -313,12 +312,4 @@ impl<const N: usize> Radau<N> {
         let error = factors.solve_real(&(slope + weighted));
         Ok(system.error_norm(&y, &y_new, &error))
     }
-}
-
-fn combine<const N: usize>(weights: &[f64; 3], stages: &Stages<N>) -> SVector<f64, N> {
-    stages[0] * weights[0] + stages[1] * weights[1] + stages[2] * weights[2]
-}
-
-fn combined<const N: usize>(matrix: &[[f64; 3]; 3], stages: &Stages<N>) -> Stages<N> {
-    matrix.each_ref().map(|row| combine(row, stages))
 }

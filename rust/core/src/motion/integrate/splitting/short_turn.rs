@@ -96,7 +96,8 @@ pub(super) fn product(p: &[f64; 4], q: &[f64; 4]) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::free::{FreeMotion, RefinedPrincipal};
+    use crate::mass::refined::RefinedPrincipal;
+    use crate::motion::free::FreeMotion;
     use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 
     #[test]

@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix3;
 
+use crate::mass::refined::RefinedPrincipal;
 use crate::motion::attitude::{components, from_axes};
-use crate::motion::free::RefinedPrincipal;
 use crate::motion::loads::Exact;
 use crate::motion::problem::Task;
 use crate::numerics::double_double::DoubleDouble;

@@ -4,6 +4,7 @@
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
 use super::inertia::Inertia;
+use super::motion::{Motion, Units};
 use super::numbers::{
     Block, Matrix, Number, Quadruple, Row, Rows, Vector, WIDTH, ZERO, apply, at, begin, between,
     cross, cross_product, dot, extend, product, quaternion_product, seen, times,
@@ -18,27 +19,6 @@ use crate::motion::loads::{
 /// The part of the fastest ω below which quadratic damping is left out: the error of the derivatives is its square, that of ω its
 /// cube.
 const STILL: f64 = 1e-8;
-
-/// ω and the attitude (x, y, z, w) of the principal axes as series.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Motion {
-    pub(super) omega: Rows<3>,
-    pub(super) attitude: Rows<4>,
-}
-
-/// The units of torques: of moments, and of rates.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Units {
-    pub(super) inertia: f64,
-    pub(super) rate: f64,
-}
-
-impl Units {
-    /// One over the unit of torques.
-    pub(super) fn over_torque(self) -> f64 {
-        1.0 / self.inertia / self.rate / self.rate
-    }
-}
 
 /// A term at work.
 #[derive(Clone, Debug)]

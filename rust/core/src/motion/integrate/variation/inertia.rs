@@ -5,6 +5,7 @@ use nalgebra::Matrix3;
 use super::numbers::{Block, Matrix, Number, Rows, Vector, WIDTH, ZERO, product, times, turned};
 use super::parameters::{CENTER, MASS, MOMENTS, PRODUCTS};
 use crate::motion::problem::Task;
+use crate::numerics::power_of_two::power_below;
 
 /// Moments and products in principal axes, in a unit of their own; mass and centre of mass.
 #[derive(Clone, Debug)]
@@ -30,7 +31,7 @@ impl Inertia {
     pub(super) fn new(task: &Task<'_>, block: Block) -> Self {
         let (moments, axes) = (task.euler.moments(), *task.euler.axes());
         let subject = &task.subject;
-        let unit = power_of_two(moments[2]);
+        let unit = power_below(moments[2]);
         // A zero moment has no neighbours on one side: nothing about the tensor is varied.
         let is_massless = moments.contains(&0.0);
         let variable = |value: f64, column: usize| {
@@ -104,15 +105,5 @@ impl Inertia {
     /// A vector of B, components in principal axes, times a factor.
     pub(super) fn principal(&self, vector: &Vector, factor: f64) -> Vector {
         times(&turned(&self.axes.transpose(), vector), factor)
-    }
-}
-
-/// The power of two at or below a positive number, or one.
-pub(super) fn power_of_two(x: f64) -> f64 {
-    let power = f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000);
-    if power > 0.0 && power.is_finite() {
-        power
-    } else {
-        1.0
     }
 }

@@ -9,6 +9,7 @@
 //! |---|---|
 //! | `parameters` | the variables, in their order |
 //! | `numbers` | series and vectors of numbers with derivatives |
+//! | `motion` | a motion as series, and units |
 //! | `inertia` | the tensor, the mass, the centre of mass |
 //! | `acts`, `spline`, `orbit` | the recurrences of the terms of a load |
 //! | `pace` | the length of a step |
@@ -19,6 +20,7 @@
 
 mod acts;
 mod inertia;
+mod motion;
 mod numbers;
 mod orbit;
 mod pace;

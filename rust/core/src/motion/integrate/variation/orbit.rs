@@ -2,13 +2,14 @@
 
 use nalgebra::Vector3;
 
-use super::inertia::{Inertia, power_of_two};
+use super::inertia::Inertia;
 use super::numbers::{
     Block, Number, ORDER, Quadruple, Row, Rows, Vector, ZERO, at, begin, cross_product, dot,
     extend, increment, plus, product, seen, times,
 };
 use super::pace::Pace;
 use crate::motion::loads::{GravityGradient, Subject};
+use crate::numerics::power_of_two::power_below;
 
 /// Position r and velocity v of C from the attractor, components in principal axes:
 ///
@@ -48,7 +49,7 @@ impl<'a> Orbiting<'a> {
     ) -> Self {
         let epoch = gradient.epoch().unwrap_or(subject.start);
         let (r, v) = gradient.orbit_at(subject, epoch);
-        let length = power_of_two(r.norm());
+        let length = power_below(r.norm());
         let mu = block.variable(gradient.mu(), first);
         let mut orbiting = Self {
             gradient,

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::acts::{Motion, Units};
 use super::inertia::Inertia;
+use super::motion::{Motion, Units};
 use super::numbers::{
     Block, Quadruple, Rows, Vector, WIDTH, ZERO, begin, cross_product, extend, seen, turned,
 };

@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector6};
 
-use super::acts::{Act, Motion, Place, Units};
-use super::inertia::{Inertia, power_of_two};
+use super::acts::{Act, Place};
+use super::inertia::Inertia;
+use super::motion::{Motion, Units};
 use super::numbers::{
     Block, Number, ORDER, Quadruple, Vector, WIDTH, ZERO, add, apply, begin, dot, extend,
     increment, plus, quaternion_product, times, turn_product,
@@ -20,6 +21,7 @@ use crate::motion::problem::Task;
 use crate::motion::problem::limits::{HELD, check_steps, spans};
 use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
+use crate::numerics::power_of_two::power_below;
 use crate::numerics::sign_changes::sign_changes;
 
 /// Steps between two looks at the watch.
@@ -243,7 +245,7 @@ impl<'a> Walk<'a> {
             let (r, v) = gradient.orbit_at(subject, t);
             rate = rate.max(v.norm() / r.norm());
         }
-        Ok(power_of_two(if rate > 0.0 {
+        Ok(power_below(if rate > 0.0 {
             rate
         } else {
             1.0 / (span[1] - span[0]).abs()

@@ -8,6 +8,7 @@ use crate::motion::integrate::taylor::forcing::{Forcing, Orbit};
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::loads::{Frame, Parts, Term};
 use crate::numerics::number::Real;
+use crate::numerics::power_of_two::power_below;
 
 impl<X: Precision> Course<'_, X> {
     pub(in crate::motion::integrate::taylor) fn unit(&self) -> f64 {
@@ -48,12 +49,7 @@ impl<X: Precision> Course<'_, X> {
             .amax()
             .max(linear.on_omega.map(X::rounded).amax() * over_moment)
             .max(square.sqrt());
-        let power = f64::from_bits(rate.to_bits() & 0x7ff0_0000_0000_0000);
-        self.unit = if power > 0.0 && power.is_finite() {
-            power
-        } else {
-            1.0
-        };
+        self.unit = power_below(rate);
         self.unit
     }
 

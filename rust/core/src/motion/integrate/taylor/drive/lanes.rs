@@ -13,6 +13,9 @@ use crate::motion::integrate::taylor::step::Compensated;
 use crate::motion::problem::{Effort, Run};
 use crate::numerics::number::{Number, Real};
 
+/// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
+pub(super) const OUTGROWN: f64 = 65_536.0;
+
 /// A motion to be run, and its run, which is at its start.
 pub(in crate::motion::integrate::taylor) struct Job<'a, X: Precision> {
     pub(in crate::motion::integrate::taylor) course: Course<'a, X>,

@@ -1,6 +1,6 @@
 //! One step of every motion.
 
-use super::lanes::{Landing, Lanes};
+use super::lanes::{Landing, Lanes, OUTGROWN};
 use super::settings::Settings;
 use super::stops::Meeting;
 use crate::motion::integrate::taylor::directions::seen;
@@ -11,9 +11,6 @@ use crate::motion::integrate::taylor::step::{increment, longest};
 use crate::motion::problem::limits::HELD;
 use crate::numerics::double_double::{fast_two_sum, two_sum};
 use crate::numerics::number::{Number, Real};
-
-/// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
-pub(super) const OUTGROWN: f64 = 65_536.0;
 
 impl<L, S, const B: usize, const R: usize> Lanes<'_, L, S, B, R>
 where

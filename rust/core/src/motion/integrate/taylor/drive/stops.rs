@@ -1,7 +1,6 @@
 //! What a motion comes to: outputs, breaks of its load, changes of its law.
 
-use super::lanes::{Landing, Lanes, Stop, effort};
-use super::stepping::OUTGROWN;
+use super::lanes::{Landing, Lanes, OUTGROWN, Stop, effort};
 use crate::error::{Error, MotionFault};
 use crate::motion::integrate::taylor::course::Course;
 use crate::motion::integrate::taylor::frame::Precision;

@@ -1,4 +1,4 @@
-//! Principal moments and angular velocity to twice the precision.
+//! Principal moments and axes of a body to twice the precision.
 //!
 //! Over 10⁶ rotations the last bit of a moment is 10⁻⁹ rad. What defines the body is taken as exact: its moments and axes,
 //! or its tensor, whose float64 eigenvalues and eigenvectors are only where the refinement starts.
@@ -6,14 +6,11 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::finest::{Finest, Source};
-use super::power_of_two;
+use super::vectors::{Vector, dot, orthonormal, within};
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::Real;
-
-/// Three components to twice the precision.
-pub type Vector = [DoubleDouble; 3];
+use crate::numerics::power_of_two::power_below;
 
 /// The principal moments, ascending, with their axes, to twice the precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +105,7 @@ impl RefinedPrincipal {
     }
 
     /// Whether moments and axes are what they are to the last bit.
-    pub(super) fn is_exact(&self) -> bool {
+    pub(crate) fn is_exact(&self) -> bool {
         self.source == Source::Exact
     }
 
@@ -149,7 +146,7 @@ impl RefinedPrincipal {
     fn refine(&mut self, rows: &[Vector; 3]) {
         // Products of tensors near the ends of float64 stay within it.
         let largest = rows.as_flattened().iter();
-        let unit = power_of_two(largest.fold(0.0, |most, x| most.max(x.high.abs())));
+        let unit = power_below(largest.fold(0.0, |most, x| most.max(x.high.abs())));
         let rows = rows.map(|row| row.map(|x| x.scaled(1.0 / unit)));
         self.source = Source::Tensor(rows, unit);
         let mut b = within(&rows, &self.axes);
@@ -227,36 +224,6 @@ fn rotate(b: &mut [Vector; 3], axes: &mut [Vector; 3], i: usize, j: usize) {
     (b[i][k], b[j][k]) = turned(b[i][k], b[j][k]);
     (b[k][i], b[k][j]) = (b[i][k], b[j][k]);
     (b[i][j], b[j][i]) = (DoubleDouble::default(), DoubleDouble::default());
-}
-
-/// The tensor with these rows, in these axes.
-pub(super) fn within<T: Real>(rows: &[[T; 3]; 3], axes: &[[T; 3]; 3]) -> [[T; 3]; 3] {
-    axes.map(|axis| {
-        let image = [0, 1, 2].map(|i| dot(&rows[i], &axis));
-        axes.map(|other| dot(&other, &image))
-    })
-}
-
-/// `½ V (3 − VᵀV)`: one step of Newton's method toward the nearest rotation, which squares the error.
-pub(super) fn orthonormal<T: Real>(v: &[[T; 3]; 3]) -> [[T; 3]; 3] {
-    let (half, three) = (T::from(0.5), T::from(3.0));
-    let gram = v.map(|a| v.map(|b| dot(&a, &b)));
-    std::array::from_fn(|j| {
-        std::array::from_fn(|i| {
-            let weight = |k: usize| {
-                if k == j {
-                    three - gram[k][j]
-                } else {
-                    -gram[k][j]
-                }
-            };
-            half * (v[0][i] * weight(0) + v[1][i] * weight(1) + v[2][i] * weight(2))
-        })
-    })
-}
-
-pub(super) fn dot<T: Real>(a: &[T; 3], b: &[T; 3]) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

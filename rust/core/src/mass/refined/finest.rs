@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::refined::{Vector, dot, orthonormal, within};
+use super::vectors::{Vector, dot, orthonormal, within};
 use crate::numerics::quad_double::QuadDouble;
 
 type Vector4 = [QuadDouble; 3];

@@ -1,0 +1,158 @@
+//! A free motion from its start, and the states at any time.
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+use super::circling;
+use super::mode::Mode;
+use super::propagator::{At, Propagator, Sample};
+use super::secular::Secular;
+use super::separation::Separation;
+use super::tumbling::Tumbling;
+use crate::error::{Error, all_finite};
+use crate::mass::RigidBody;
+use crate::mass::refined::{RefinedPrincipal, Vector};
+use crate::motion::state::{ClosedForm, State};
+use crate::numerics::dispatch::dispatch;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::power_below;
+
+/// The motion of a body on which no torque acts about its centre of mass, from its state at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(alias = "Euler top")]
+pub struct FreeMotion {
+    /// How the body moves.
+    pub mode: Mode,
+    /// The state at t = 0.
+    pub initial: State,
+    /// Principal moments, ascending, to twice the precision.
+    pub moments: [DoubleDouble; 3],
+    /// The principal axes as columns, components in B.
+    pub axes: Matrix3<f64>,
+    /// ω at t = 0 along the principal axes.
+    pub principal_omega: [DoubleDouble; 3],
+    /// The constants of the theta functions.
+    pub secular: Secular,
+    pub(super) separation: Separation,
+    pub(super) propagator: Propagator,
+}
+
+impl FreeMotion {
+    /// From ω (of B relative to N, components in B) and attitude at t = 0, about the centre of mass.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`] when `omega` is not finite.
+    pub fn of(
+        body: &RigidBody,
+        omega: &Vector3<f64>,
+        attitude: &UnitQuaternion<f64>,
+    ) -> Result<Self, Error> {
+        Self::refined(&RefinedPrincipal::of(body), omega, attitude)
+    }
+
+    /// As [`Self::of`], for principal moments and axes already refined: many states of one body.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`] when `omega` is not finite.
+    pub fn refined(
+        principal: &RefinedPrincipal,
+        omega: &Vector3<f64>,
+        attitude: &UnitQuaternion<f64>,
+    ) -> Result<Self, Error> {
+        all_finite("omega", omega)?;
+        let initial = State {
+            attitude: *attitude,
+            omega: *omega,
+        };
+        let axes = principal.rounded_axes();
+        // Products of ratios alone: powers of two bring the largest moment and rate near one.
+        let inertia_unit = power_below(principal.moments[2].high);
+        let rate_unit = power_below(omega.amax());
+        let moments = (principal.moments).map(|moment| moment.scaled(1.0 / inertia_unit));
+        let scaled_omega = omega / rate_unit;
+        let mut w = principal.components(&scaled_omega);
+        let mut separation = Separation::of(&moments, &w);
+
+        let [i1, i2, i3] = moments;
+        let is_steady = |w: &Vector| w.iter().filter(|rate| rate.high == 0.0).count() >= 2;
+        let (mode, (propagator, secular)) = if i1 == i3 {
+            (Mode::Spherical, circling::spin(&scaled_omega, attitude))
+        } else if i1 == i2 || i2 == i3 || i1.high == 0.0 {
+            let motion = circling::symmetric(&moments, &w, &axes, attitude);
+            (Mode::Symmetric, motion)
+        } else {
+            (separation, w) = separation.kept(principal, &scaled_omega, &moments, &w);
+            if is_steady(&w) {
+                (Mode::Steady, circling::spin(&scaled_omega, attitude))
+            } else {
+                let tumbling = Tumbling::of(&moments, &w, &separation);
+                (tumbling.mode, tumbling.motion(&axes, attitude))
+            }
+        };
+        Ok(Self {
+            mode,
+            initial,
+            moments: principal.moments,
+            axes,
+            principal_omega: w.map(|rate| rate.scaled(rate_unit)),
+            secular: secular.in_units_of(rate_unit),
+            separation: separation.in_units_of(rate_unit),
+            propagator: propagator.in_units_of(rate_unit),
+        })
+    }
+
+    /// Attitude and ω at the time t; NaN for a t that is not finite, or beyond [`Self::reach`].
+    ///
+    /// The attitude is continuous in t as a quaternion, not only as a rotation.
+    #[must_use]
+    pub fn at(&self, t: f64) -> State {
+        let [x, y, z, w, p, q, r] = dispatch(At {
+            propagator: &self.propagator,
+            time: t,
+        });
+        State {
+            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
+            omega: Vector3::new(p, q, r),
+        }
+    }
+
+    /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
+    ///
+    /// # Panics
+    /// If the lengths differ.
+    pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        assert_eq!(times.len(), attitudes.len(), "an attitude for each time");
+        assert_eq!(
+            times.len(),
+            omegas.len(),
+            "an angular velocity for each time"
+        );
+        if times.len() < FEW {
+            for ((&time, attitude), omega) in times.iter().zip(attitudes).zip(omegas) {
+                let propagator = &self.propagator;
+                let [x, y, z, w, p, q, r] = dispatch(At { propagator, time });
+                *attitude = [x, y, z, w];
+                *omega = [p, q, r];
+            }
+            return;
+        }
+        dispatch(Sample {
+            propagator: &self.propagator,
+            times,
+            attitudes,
+            omegas,
+        });
+    }
+}
+
+impl ClosedForm for FreeMotion {
+    fn reach(&self) -> f64 {
+        self.propagator.reach
+    }
+
+    fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        Self::sample(self, times, attitudes, omegas);
+    }
+}
+
+/// Fewer times than this are done one by one.
+const FEW: usize = 8;
