@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::axes::{Axes, Exact, exact};
 use super::law::{Character, Kept, Law, Parts, directions_of};
-use super::linear::{Axes, Exact, Linear, exact};
+use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::wrench::{Wrench, in_body, times};

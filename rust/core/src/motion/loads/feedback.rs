@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3, Vector4};
 
+use super::axes::{Axes, Exact};
 use super::law::{Character, Kept, Law, Parts};
-use super::linear::{Axes, Exact, Linear};
+use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::switch::Switch;

@@ -2,9 +2,11 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::axes::{Axes, Exact, exact};
+use super::forcing::{Forcing, OnOrbit, Timed, When};
 use super::kepler::Orbit;
 use super::law::{Character, Kept, Law, Parts};
-use super::linear::{Axes, Exact, Linear};
+use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::wrench::Wrench;
@@ -143,6 +145,32 @@ impl Law for GravityGradient {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, _: &Axes<'_, X>, _: f64) {
-        linear.gradients.push(self);
+        linear.timed.push(self);
+    }
+}
+
+impl<X: Exact> Timed<X> for GravityGradient {
+    fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>) {
+        let (r, v) = self.orbit_at(axes.subject, when.time);
+        let (r, v) = (exact::<X>(&r), exact::<X>(&v));
+        let (distance, unit) = (r.dot(&r).root(), X::from(when.unit));
+        let cube = distance * distance * distance * unit * unit;
+        forcing.orbits.push(OnOrbit {
+            position: r / distance,
+            velocity: v / (distance * unit),
+            pull: X::from(self.mu()) / cube,
+            strength: X::from(self.coefficient()) / cube,
+        });
+    }
+
+    fn square_of_rate(&self, subject: &Subject, _: f64, _: f64) -> f64 {
+        let (r, v) = self.orbit_at(subject, subject.start);
+        let distance = r.norm();
+        let pull = self.coefficient().abs().max(self.mu()) / distance.powi(3);
+        pull.max((v.norm() / distance).powi(2))
+    }
+
+    fn torques_along(&self, _: &Vector3<f64>, _: f64) -> Vec<(f64, f64)> {
+        Vec::new() // r×I r has no component along an axis without a moment
     }
 }

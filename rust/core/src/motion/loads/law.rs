@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::linear::{Axes, Exact, Linear};
+use super::axes::{Axes, Exact};
+use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::switch::Switch;

@@ -14,10 +14,12 @@
 //! A law more is a file more here, which answers what a [`Law`] is asked, and its name in the list in `term.rs`.
 
 mod analytic;
+mod axes;
 pub mod constant_force;
 pub mod constant_torque;
 pub mod damping;
 pub mod feedback;
+mod forcing;
 pub mod gravity_gradient;
 pub mod kepler;
 mod law;
@@ -33,13 +35,15 @@ pub mod uniform_gravity;
 mod wrench;
 
 pub use self::analytic::Analytic;
+pub use self::axes::{Axes, Exact};
 pub use self::constant_force::ConstantForce;
 pub use self::constant_torque::ConstantTorque;
 pub use self::damping::Damping;
 pub use self::feedback::Feedback;
+pub use self::forcing::{Forcing, OnOrbit, Timed, When};
 pub use self::gravity_gradient::GravityGradient;
 pub use self::law::{Character, Kept, Law, Parts};
-pub use self::linear::{Axes, Exact, Linear};
+pub use self::linear::Linear;
 pub use self::load::Load;
 pub use self::parameter::Parameter;
 pub use self::sampled::Sampled;

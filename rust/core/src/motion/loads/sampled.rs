@@ -3,8 +3,10 @@
 use nalgebra::Vector3;
 use std::sync::Arc;
 
+use super::axes::{Axes, Exact, exact};
+use super::forcing::{Forcing, Timed, When};
 use super::law::{Character, Kept, Law, Parts};
-use super::linear::{Axes, Exact, Linear};
+use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::wrench::{Wrench, in_body};
@@ -173,7 +175,45 @@ impl Law for Sampled {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, _: &Axes<'_, X>, _: f64) {
-        linear.sampled.push(self);
+        linear.timed.push(self);
+    }
+}
+
+impl<X: Exact> Timed<X> for Sampled {
+    fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>) {
+        let (from, piece) = self.piece(when.middle);
+        let [c0, c1, c2, c3] = piece.each_ref().map(exact::<X>);
+        let x = when.elapsed + X::pair(when.start, -from);
+        let (two, three) = (X::from(2.0), X::from(3.0));
+        let centered = [
+            c0 + (c1 + (c2 + c3 * x) * x) * x,
+            c1 + (c2 * two + c3 * (three * x)) * x,
+            c2 + c3 * (three * x),
+            c3,
+        ];
+        let mut scale = 1.0 / when.unit / when.unit;
+        for (k, torque) in centered.iter().enumerate() {
+            let torque = torque * X::from(scale);
+            match self.frame {
+                Frame::Body => forcing.in_body[k] += axes.principal(&torque),
+                Frame::Space => forcing.in_space[k] += torque,
+            }
+            scale /= when.unit;
+        }
+    }
+
+    fn square_of_rate(&self, _: &Subject, end: f64, over_moment: f64) -> f64 {
+        self.at(end).amax() * over_moment
+    }
+
+    fn torques_along(&self, axis: &Vector3<f64>, middle: f64) -> Vec<(f64, f64)> {
+        let (_, piece) = self.piece(middle);
+        let along = |torque: &Vector3<f64>| match self.frame {
+            Frame::Body => axis.dot(torque).abs(),
+            Frame::Space => torque.norm(),
+        };
+        let both = |torque| (along(torque), torque.norm());
+        piece.iter().map(both).collect()
     }
 }
 

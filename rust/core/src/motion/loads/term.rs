@@ -2,13 +2,14 @@
 
 use nalgebra::{Vector3, Vector4};
 
+use super::axes::{Axes, Exact};
 use super::constant_force::ConstantForce;
 use super::constant_torque::ConstantTorque;
 use super::damping::Damping;
 use super::feedback::Feedback;
 use super::gravity_gradient::GravityGradient;
 use super::law::{Character, Kept, Law};
-use super::linear::{Axes, Exact, Linear};
+use super::linear::Linear;
 use super::parameter::Parameter;
 use super::sampled::Sampled;
 use super::schedule::Windows;
@@ -23,12 +24,10 @@ use crate::motion::state::Phase;
 /// The list of the laws: each is a variant of [`Term`], which passes every question on to it. A law that is not asked
 /// something does not compile.
 macro_rules! laws {
-    ($($(#[doc = $about:literal])+ $law:ident,)+) => {
-        /// One analytic term of a load.
-        #[derive(Clone, Debug, PartialEq)]
-        #[non_exhaustive]
+    ($(#[$about:meta])* pub enum Term { $($(#[$of_law:meta])+ $law:ident($same:ident),)+ }) => {
+        $(#[$about])*
         pub enum Term {
-            $($(#[doc = $about])+ $law($law),)+
+            $($(#[$of_law])+ $law($same),)+
             /// A term that acts in some windows of time only.
             Scheduled {
                 /// When.
@@ -202,22 +201,27 @@ macro_rules! laws {
     };
 }
 
-laws! {
-    /// A torque about the reference point of the motion.
-    ConstantTorque,
-    /// A force at a point of the body.
-    ConstantForce,
-    /// The weight m g at C.
-    UniformGravity,
-    /// The torque of a distant attractor's field on a body in a Kepler orbit.
-    GravityGradient,
-    /// A torque against ω.
-    Damping,
-    /// A torque known at some times.
-    Sampled,
-    /// A torque that turns the body toward an attitude.
-    Feedback,
-}
+laws!(
+    /// One analytic term of a load.
+    #[derive(Clone, Debug, PartialEq)]
+    #[non_exhaustive]
+    pub enum Term {
+        /// A torque about the reference point of the motion.
+        ConstantTorque(ConstantTorque),
+        /// A force at a point of the body.
+        ConstantForce(ConstantForce),
+        /// The weight m g at C.
+        UniformGravity(UniformGravity),
+        /// The torque of a distant attractor's field on a body in a Kepler orbit.
+        GravityGradient(GravityGradient),
+        /// A torque against ω.
+        Damping(Damping),
+        /// A torque known at some times.
+        Sampled(Sampled),
+        /// A torque that turns the body toward an attitude.
+        Feedback(Feedback),
+    }
+);
 
 impl Term {
     /// A torque constant in `frame`.

@@ -3,12 +3,11 @@
 use nalgebra::Vector3;
 
 use super::field::Field;
-use super::forcing::{Forcing, Orbit};
 use super::frame::Precision;
 use super::pack::Pack;
 use super::series::Series;
 use super::terms::{Analytic, Forced, Gradient, Quadratic, STILL};
-use crate::motion::loads::Parts;
+use crate::motion::loads::{Forcing, OnOrbit, Parts};
 use crate::numerics::number::{Number, Real};
 
 /// Those that the load has; most loads have none.
@@ -74,7 +73,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         ];
         let mut orbits = forcing.orbits.iter();
         for gradient in &mut self.gradients {
-            let orbit = orbits.next().copied().unwrap_or_else(Orbit::none);
+            let orbit = orbits.next().copied().unwrap_or_else(OnOrbit::none);
             let position = seen_by(&q, &orbit.position);
             let velocity = seen_by(&q, &orbit.velocity);
             gradient.set(row, &orbit, &position, &velocity);

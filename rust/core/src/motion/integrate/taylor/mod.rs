@@ -6,7 +6,6 @@
 //! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
 //! | `field` | the equations that are linear in the coefficients of one order |
 //! | `terms`, `extras` | the recurrences of terms that are not |
-//! | `forcing` | what depends on time alone |
 //! | `series` | the coefficients, and what is asked of the sums of their products |
 //! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
 //! | `twin` | these sums in numbers of twice the precision |
@@ -30,7 +29,6 @@ mod directions;
 mod drive;
 mod extras;
 mod field;
-mod forcing;
 mod frame;
 mod pack;
 mod push;

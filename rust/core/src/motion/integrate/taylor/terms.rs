@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::field::Field;
-use super::forcing::{Forcing, Orbit};
 use super::pack::{Pack, cross_term};
 use super::series::Series;
 use super::twin::COUNT;
+use crate::motion::loads::{Forcing, OnOrbit};
 use crate::numerics::number::{Number, Real};
 
 /// A term of a load as a series: its coefficient of order k from those of the motion up to k, asked for in order.
@@ -168,7 +168,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
     pub(super) fn set(
         &mut self,
         row: usize,
-        orbit: &Orbit<L::Real>,
+        orbit: &OnOrbit<L::Real>,
         position: &Vector3<L::Real>,
         velocity: &Vector3<L::Real>,
     ) {
@@ -197,7 +197,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
             let v = Vector3::from_fn(|i, _| velocity[i].real(row));
             let distance = r.dot(&r).root();
             let cube = distance * distance * distance;
-            let orbit = Orbit {
+            let orbit = OnOrbit {
                 position: r,
                 velocity: v,
                 pull: self.pull.real(row) / cube,

@@ -4,9 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::segments::Course;
 use crate::motion::integrate::taylor::field::Field;
-use crate::motion::integrate::taylor::forcing::{Forcing, Orbit};
 use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::loads::{Frame, Parts, Term};
+use crate::motion::loads::{Forcing, Parts, Term, When};
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
 
@@ -29,22 +28,10 @@ impl<X: Precision> Course<'_, X> {
         let on_space = on_space.map(|(vector, matrix)| {
             vector.map(X::rounded).amax() * matrix.map(X::rounded).amax() * over_moment
         });
-        let gradients = linear.gradients.iter().map(|gradient| {
-            let (r, v) = gradient.orbit_at(&self.task.subject, self.task.times[0]);
-            let distance = r.norm();
-            let pull = gradient.coefficient().abs().max(gradient.mu()) / distance.powi(3);
-            pull.max((v.norm() / distance).powi(2))
-        });
-        let sampled = linear
-            .sampled
-            .iter()
-            .map(|sampled| sampled.at(self.breaks[self.segment]).amax() * over_moment);
-        let square = (squares
-            .into_iter()
-            .chain(on_space)
-            .chain(gradients)
-            .chain(sampled))
-        .fold(0.0, f64::max);
+        let end = self.breaks[self.segment];
+        let timed = (linear.timed.iter())
+            .map(|timed| timed.square_of_rate(&self.task.subject, end, over_moment));
+        let square = (squares.into_iter().chain(on_space).chain(timed)).fold(0.0, f64::max);
         let rate = Vector3::from(*omega)
             .amax()
             .max(linear.on_omega.map(X::rounded).amax() * over_moment)
@@ -102,43 +89,19 @@ impl<X: Precision> Course<'_, X> {
 
     /// What depends on the time alone, as it is at `now`.
     pub(in crate::motion::integrate::taylor) fn forcing(&self, now: (f64, f64)) -> Forcing<X> {
-        let elapsed = X::pair(now.0, now.1) / X::from(self.unit);
-        let mut forcing = Forcing::default();
-        for sampled in &self.linear.sampled {
-            let (from, piece) = sampled.piece(self.middle());
-            let [c0, c1, c2, c3] = piece.map(|c| c.map(X::from));
-            let x = elapsed + X::pair(self.task.times[0], -from);
-            let (two, three) = (X::from(2.0), X::from(3.0));
-            let centered = [
-                c0 + (c1 + (c2 + c3 * x) * x) * x,
-                c1 + (c2 * two + c3 * (three * x)) * x,
-                c2 + c3 * (three * x),
-                c3,
-            ];
-            let mut scale = 1.0 / self.unit / self.unit;
-            for (k, torque) in centered.iter().enumerate() {
-                let torque = torque * X::from(scale);
-                match sampled.frame() {
-                    Frame::Body => forcing.in_body[k] += self.axes.tr_mul(&torque),
-                    Frame::Space => forcing.in_space[k] += torque,
-                }
-                scale /= self.unit;
-            }
+        let when = When {
+            elapsed: X::pair(now.0, now.1) / X::from(self.unit),
+            start: self.task.times[0],
+            time: self.time(now),
+            middle: self.middle(),
+            unit: self.unit,
+        };
+        let (mut forcing, axes) = (Forcing::default(), self.principal_axes());
+        for timed in &self.linear.timed {
+            timed.force(&mut forcing, &axes, &when);
         }
         for torque in &mut forcing.in_body {
             torque.component_mul_assign(&self.inverse_moments);
-        }
-        for gradient in &self.linear.gradients {
-            let (r, v) = gradient.orbit_at(&self.task.subject, self.time(now));
-            let (r, v) = (r.map(X::from), v.map(X::from));
-            let (distance, unit) = (r.dot(&r).root(), X::from(self.unit));
-            let cube = distance * distance * distance * unit * unit;
-            forcing.orbits.push(Orbit {
-                position: r / distance,
-                velocity: v / (distance * unit),
-                pull: X::from(gradient.mu()) / cube,
-                strength: X::from(gradient.coefficient()) / cube,
-            });
         }
         forcing
     }

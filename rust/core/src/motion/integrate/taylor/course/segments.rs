@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
 use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::loads::{Axes, Frame, Linear, Term};
+use crate::motion::loads::{Axes, Linear, Term};
 use crate::motion::problem::Task;
 use crate::numerics::number::Real;
 
@@ -128,7 +128,7 @@ impl<'a, X: Precision> Course<'a, X> {
         Ok(())
     }
 
-    fn principal_axes(&self) -> Axes<'_, X> {
+    pub(super) fn principal_axes(&self) -> Axes<'_, X> {
         Axes {
             subject: &self.task.subject,
             columns: &self.axes,
@@ -161,15 +161,9 @@ impl<'a, X: Precision> Course<'a, X> {
                 let (size, matrix) = (vector.map(X::rounded).norm(), matrix.map(X::rounded));
                 parts.push((matrix.row(n).norm() * size, matrix.norm() * size));
             }
-            for sampled in &linear.sampled {
-                let (_, piece) = sampled.piece(self.middle());
-                for torque in piece {
-                    let along = match sampled.frame() {
-                        Frame::Body => self.axes.column(n).map(X::rounded).dot(torque).abs(),
-                        Frame::Space => torque.norm(),
-                    };
-                    parts.push((along, torque.norm()));
-                }
+            let axis = self.axes.column(n).map(X::rounded);
+            for timed in &linear.timed {
+                parts.extend(timed.torques_along(&axis, self.middle()));
             }
             if let Some(&(torque, _)) = parts.iter().find(|(part, all)| *part > ROUNDING * all) {
                 return Err(Error::Motion(MotionFault::TorqueAlongMasslessAxis {

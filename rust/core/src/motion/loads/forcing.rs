@@ -1,0 +1,83 @@
+//! What of a load depends on the time alone.
+
+use nalgebra::Vector3;
+
+use std::fmt::Debug;
+
+use super::axes::{Axes, Exact};
+use super::subject::Subject;
+use crate::numerics::number::Real;
+
+/// The parts of a load that go with the time, around one time; times and rates in units of the unit of rates.
+#[derive(Clone, Debug)]
+pub struct Forcing<X> {
+    /// Torques in principal axes over the moments: coefficients of a cubic.
+    pub in_body: [Vector3<X>; 4],
+    /// Torques in N: coefficients of a cubic.
+    pub in_space: [Vector3<X>; 4],
+    /// One for each gravity gradient that acts.
+    pub orbits: Vec<OnOrbit<X>>,
+}
+
+/// A state on an orbit, lengths over the distance r₀ of this time.
+#[derive(Clone, Copy, Debug)]
+pub struct OnOrbit<X> {
+    /// From the attractor, in N: a unit vector.
+    pub position: Vector3<X>,
+    /// In N.
+    pub velocity: Vector3<X>,
+    /// μ/r₀³.
+    pub pull: X,
+    /// 3μ/r₀³ times the factor of the load.
+    pub strength: X,
+}
+
+impl<X: Real> Default for Forcing<X> {
+    fn default() -> Self {
+        Self {
+            in_body: [Vector3::zeros(); 4],
+            in_space: [Vector3::zeros(); 4],
+            orbits: Vec::new(),
+        }
+    }
+}
+
+impl<X: Real> OnOrbit<X> {
+    /// That of a term that does not act.
+    pub fn none() -> Self {
+        Self {
+            position: Vector3::new(X::zero(), X::zero(), X::one()),
+            velocity: Vector3::zeros(),
+            pull: X::zero(),
+            strength: X::zero(),
+        }
+    }
+}
+
+/// A time at which a step begins.
+#[derive(Clone, Copy, Debug)]
+pub struct When<X> {
+    /// Since the start of the motion, and when that was.
+    pub elapsed: X,
+    /// The start of the motion.
+    pub start: f64,
+    /// The time as a double.
+    pub time: f64,
+    /// A time within the segment, which has no breaks.
+    pub middle: f64,
+    /// The unit of rates.
+    pub unit: f64,
+}
+
+/// A law that depends on the time.
+pub trait Timed<X: Exact>: Debug {
+    /// Adds what it does in a step to `forcing`, where torques are not yet over the moments.
+    fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>);
+
+    /// About the square of the fastest rate that it makes in a segment that ends at `end`; `over_moment` is one over the least
+    /// moment of inertia.
+    fn square_of_rate(&self, subject: &Subject, end: f64, over_moment: f64) -> f64;
+
+    /// The sizes of its torques around a time along a unit vector of B, and in all; none where they cannot be along one axis.
+    fn torques_along(&self, axis: &Vector3<f64>, middle: f64) -> Vec<(f64, f64)>;
+}
