@@ -44,6 +44,7 @@ impl<X: Real> Default for Forcing<X> {
 
 impl<X: Real> OnOrbit<X> {
     /// That of a term that does not act.
+    #[must_use]
     pub fn none() -> Self {
         Self {
             position: Vector3::new(X::zero(), X::zero(), X::one()),
