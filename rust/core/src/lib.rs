@@ -1,6 +1,6 @@
 //! Rigid-body dynamics: from a mass distribution to its inertia tensor, to its principal axes, to its motion.
 //!
-//! The theory's own order is the order of the modules; nothing points back up.
+//! Motion is built on mass, mass on principal axes, these on numerics; nothing points back up.
 //!
 //! | the page says | module |
 //! |---|---|
@@ -9,6 +9,7 @@
 //! | `I ω̇ + ω × I ω = N`, `q̇ = ½ q∘ω`, `T = ½ ω·I ω`, `L = I ω` | [`motion`] |
 //! | triangles from files | [`io`] |
 //! | eigenvalues, sums, lanes, threads: the only part that is not physics | [`numerics`] |
+//! | what can be wrong, as plain data | [`error`] |
 //!
 //! # Notation
 //!
