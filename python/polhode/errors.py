@@ -33,7 +33,23 @@ class InvalidInertiaError(PolhodeError):
 
 
 class MeshError(PolhodeError):
-    """A mesh that does not bound a solid: open, inconsistently wound, inverted or degenerate."""
+    """A mesh that does not bound a solid: open, inconsistently wound, inverted or degenerate.
+
+    Attributes
+    ----------
+    law : str
+        ``"closed"`` where the mesh is open; else ``""``.
+    way_out : str
+        What the message names as the way out, at its end; ``""`` where `law` is.
+    """
+
+    law: str = ""
+    way_out: str = ""
+
+    def offer(self, way_out: str) -> None:
+        """Name another way out, before the one that the message has."""
+        fault = str(self).removesuffix(self.way_out)
+        self.args = (f"{fault}{way_out}; or {self.way_out}" if self.way_out else f"{fault} ({way_out})",)
 
 
 class FileFormatError(PolhodeError):

@@ -11,7 +11,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
-from polhode._files.writing import replacing
+from polhode.files.writing import replacing
 from polhode.plot import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
 
 if TYPE_CHECKING:

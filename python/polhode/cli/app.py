@@ -16,8 +16,6 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 from cyclopts import App, CycloptsError, Parameter
 
-from polhode._files.reading import files_read
-from polhode._files.writing import DASH, write_bytes
 from polhode.cli.options import (
     BodyOptions,
     CheckOptions,
@@ -29,6 +27,8 @@ from polhode.cli.options import (
 from polhode.cli.outputs import check_outputs
 from polhode.cli.standard_output import ReaderLeft, standard_output
 from polhode.cli.text import in_options, printable
+from polhode.files.reading import files_read
+from polhode.files.writing import DASH, write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,7 +13,7 @@ from polhode.cli.report import file_report
 from polhode.cli.t_handle import t_handle, write_stl
 from polhode.cli.text import write
 from polhode.errors import PolhodeError
-from polhode.io import read_mesh
+from polhode.files.loaded import read_mesh
 from polhode.units import metres_per
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ import os
 import stat
 from typing import TYPE_CHECKING
 
-from polhode._files.writing import DASH
 from polhode.errors import PolhodeError
+from polhode.files.writing import DASH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _core, plot
 from polhode._extras import require
-from polhode._files.picture import save_picture
+from polhode.files.picture import save_picture
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -12,10 +12,10 @@ from polhode._sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.quantities import quantities, quantity, vector
-from polhode.cli.report import top_fields
 from polhode.cli.source import shown
 from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
+from polhode.cli.tables import top_fields
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
 

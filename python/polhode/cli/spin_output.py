@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 
 from polhode._extras import require
-from polhode._files.picture import save_picture
-from polhode._files.trajectory import TRAJECTORY_SUFFIXES
 from polhode._sampling import TURN, motion_times, turns
 from polhode.animation import ANIMATION_SUFFIXES, animate_motion
 from polhode.cli.progress import progress
 from polhode.errors import PolhodeError
+from polhode.files.picture import save_picture
+from polhode.files.saved_motion import TRAJECTORY_SUFFIXES
 from polhode.plot._triangles import joined
 
 if TYPE_CHECKING:

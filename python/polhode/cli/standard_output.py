@@ -7,7 +7,7 @@ import sys
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
-from polhode._files.writing import STANDARD_OUTPUT
+from polhode.files.writing import STANDARD_OUTPUT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

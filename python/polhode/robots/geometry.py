@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
-from polhode.io import read_mesh
+from polhode.files.loaded import read_mesh
 from polhode.robots.words import quoted, shortened
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode._files.mesh import Mesh
+    from polhode.files.mesh import Mesh
     from polhode.robots.addresses import Addresses
     from polhode.robots.model import Link, Shape
 

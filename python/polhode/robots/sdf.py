@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from polhode._core import rotate
-from polhode._files.xml_source import Edit, Element, blanks_of, set_text
 from polhode.errors import FileFormatError
+from polhode.files.xml_source import Edit, Element, blanks_of, set_text
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
 from polhode.robots.sdf_include import included
 from polhode.robots.urdf import roll_pitch_yaw, tensor_text

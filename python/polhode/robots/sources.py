@@ -11,9 +11,9 @@ import stat
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
-from polhode._files.reading import note_read
-from polhode._files.xml_source import Budget, Element, parse_xml
 from polhode.errors import FileFormatError
+from polhode.files.reading import note_read
+from polhode.files.xml_source import Budget, Element, parse_xml
 from polhode.robots.words import shortened
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ import numpy as np
 
 from polhode import euler_angles
 from polhode._core import rotate
-from polhode._files.xml_source import Edit, Element, blanks_of, set_attribute
 from polhode.errors import FileFormatError
+from polhode.files.xml_source import Edit, Element, blanks_of, set_attribute
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers
 
 if TYPE_CHECKING:

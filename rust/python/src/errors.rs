@@ -2,6 +2,7 @@
 
 use polhode::Error;
 use polhode::error::Kind;
+use polhode::mass::polyhedron::MeshFault;
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -22,8 +23,19 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
         Kind::Memory => return PyMemoryError::new_err(error.to_string()),
         _ => "PolhodeError",
     };
-    new(py, name, error.to_string())
+    let exception = new(py, name, error.to_string());
+    if !matches!(error, Error::Mesh(MeshFault::Open { .. })) {
+        return exception;
+    }
+    let value = exception.value(py);
+    match (value.setattr("law", "closed")).and_then(|()| value.setattr("way_out", CLOSE)) {
+        Ok(()) => exception,
+        Err(error) => error,
+    }
 }
+
+/// With what the message about an open mesh ends: a reader of files names another way out before it.
+const CLOSE: &str = "close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead";
 
 /// An exception of `polhode.errors` by its name.
 pub(crate) fn new(py: Python<'_>, name: &str, message: String) -> PyErr {

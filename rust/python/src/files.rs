@@ -108,9 +108,12 @@ fn stream_error(py: Python<'_>, path: &Path, error: StreamError) -> PyErr {
         StreamError::Io(error) => os_error(path, &error),
         StreamError::Stopped => to_py(py, &Error::Stopped),
         StreamError::Failed(error @ (Error::Mesh(_) | Error::File(_))) => {
-            let bare = to_py(py, &error);
+            let exception = to_py(py, &error);
             let message = format!("{}: {error}", path.display());
-            PyErr::from_type(bare.get_type(py), message)
+            match exception.value(py).setattr("args", (message,)) {
+                Ok(()) => exception,
+                Err(error) => error,
+            }
         }
         StreamError::Failed(error) => to_py(py, &error),
     }

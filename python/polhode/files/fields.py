@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._files.reading import MOST_TEXT, check_ordinary, naming, read_text
-from polhode._files.writing import write_bytes
 from polhode.errors import FileFormatError
+from polhode.files.reading import MOST_TEXT, check_ordinary, naming, read_text
+from polhode.files.writing import write_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
