@@ -6,8 +6,8 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from polhode._scene.scene import Scene
 from polhode.animation.page import page
-from polhode.animation.scene import Scene
 from polhode.files.writing import write_bytes
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ import numpy as np
 
 from polhode._drift import changes
 from polhode._lengths import lengths
-from polhode.plot._style import AXIS_COLORS, AXIS_DASHES, axes_2d, tidy
+from polhode._scene.style import AXIS_COLORS, AXIS_DASHES
+from polhode.plot._style import axes_2d, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

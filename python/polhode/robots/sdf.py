@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,7 +11,7 @@ from polhode.errors import FileFormatError
 from polhode.files.xml_source import Edit, Element, blanks_of, set_text
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
 from polhode.robots.sdf_include import included
-from polhode.robots.urdf import roll_pitch_yaw, tensor_text
+from polhode.robots.urdf import LinkReader, roll_pitch_yaw, tensor_text
 from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
@@ -46,27 +45,10 @@ def _below(parent: Element, sources: Sources, folder: Path, prefix: str) -> Iter
         if element.tag != "link":
             yield from _below(element, sources, folder, prefix)
             continue
-        inertial: Inertial | None = None
-        shapes: tuple[Shape, ...] = ()
-        problem = ""
         declared = element.find("inertial")
         inferred = declared is not None and declared.attributes.get("auto", "false").lower() in ("true", "1")
-        try:
-            inertial = None if declared is None or inferred else _inertial(declared)
-            shapes = tuple(_shapes(element))
-        except FileFormatError as error:
-            problem = str(error)
-        yield Link(
-            name=sources.name(prefix, element.attributes.get("name", "(without a name)"), element),
-            line=element.line,
-            inertial=inertial,
-            problem=problem,
-            shapes=shapes,
-            inferred=inferred,
-            rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
-            file=element.file,
-            folder=folder,
-        )
+        reader = LinkReader(_inertial, _shapes, _rewrite)
+        yield reader.read(element, sources, folder, prefix, inferred=inferred)
 
 
 def _pose(element: Element | None) -> Place:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from polhode.files.xml_source import Edit, Element, blanks_of, set_attribute
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
     from typing import Literal
 
@@ -22,33 +22,57 @@ if TYPE_CHECKING:
 
     from polhode.robots.sources import Sources
 
-__all__ = ["links", "roll_pitch_yaw", "tensor_text"]
+__all__ = ["LinkReader", "links", "roll_pitch_yaw", "tensor_text"]
 
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
-def links(root: Element, sources: Sources, folder: Path | None = None, prefix: str = "") -> Iterator[Link]:
-    """Read the links of a robot, in the folder of its file if that is another one's."""
-    for element in root.all("link"):
+class LinkReader(NamedTuple):
+    """How a format says what a link has.
+
+    Attributes
+    ----------
+    inertial, shapes : callable
+        Read ``<inertial>``, and the shapes of a link.
+    rewrite : callable
+        Of ``<inertial>``, the source and other mass properties: the edits that write them.
+    """
+
+    inertial: Callable[[Element], Inertial]
+    shapes: Callable[[Element], Iterator[Shape]]
+    rewrite: Callable[[Element, bytes, Inertial], list[Edit]]
+
+    def read(
+        self, element: Element, sources: Sources, folder: Path, prefix: str, *, inferred: bool = False
+    ) -> Link:
+        """Read a link; what is wrong with its numbers is kept for the verdict."""
         inertial: Inertial | None = None
         shapes: tuple[Shape, ...] = ()
         problem = ""
         declared = element.find("inertial")
         try:
-            inertial = None if declared is None else _inertial(declared)
-            shapes = tuple(_shapes(element))
+            inertial = None if declared is None or inferred else self.inertial(declared)
+            shapes = tuple(self.shapes(element))
         except FileFormatError as error:
             problem = str(error)
-        yield Link(
+        return Link(
             name=sources.name(prefix, element.attributes.get("name", "(without a name)"), element),
             line=element.line,
             inertial=inertial,
             problem=problem,
             shapes=shapes,
-            rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
+            inferred=inferred,
+            rewrite=partial(self.rewrite, declared) if declared is not None and not declared.file else None,
             file=element.file,
-            folder=folder or sources.folder,
+            folder=folder,
         )
+
+
+def links(root: Element, sources: Sources, folder: Path | None = None, prefix: str = "") -> Iterator[Link]:
+    """Read the links of a robot, in the folder of its file if that is another one's."""
+    reader = LinkReader(_inertial, _shapes, _rewrite)
+    for element in root.all("link"):
+        yield reader.read(element, sources, folder or sources.folder, prefix)
 
 
 def roll_pitch_yaw(angles: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Which moments of a motion an animation shows, and how long it takes on the screen."""
+"""Which states of a motion an animation shows, and how long it takes on the screen."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from polhode._sampling import COARSE, MOST, TURN, fastest, motion_times, turns
+from polhode._scene.sampling import COARSE, MOST, TURN, fastest, motion_times, turns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Moments", "of_motion", "of_samples"]
+__all__ = ["Footage", "of_motion", "of_samples"]
 
 _SECONDS: Final = 10.0
 """That a motion takes on the screen at least."""
@@ -31,8 +31,8 @@ _BETWEEN: Final = 20
 
 
 @dataclass(frozen=True)
-class Moments:
-    """The moments that are shown.
+class Footage:
+    """The states that are shown.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Moments:
 
 def of_samples(
     trajectory: Trajectory, *, frames: int | None, duration: float | None, is_film: bool, time_unit: str
-) -> Moments:
+) -> Footage:
     """Choose frames evenly among the samples of a motion of which no other states are known.
 
     Parameters
@@ -89,9 +89,9 @@ def of_samples(
         notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
     if is_film:
         seconds = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
-        return Moments(trajectory, chosen, seconds, tuple(notes))
+        return Footage(trajectory, chosen, seconds, tuple(notes))
     seconds, told = _on_screen(whole, rate, duration)
-    return Moments(trajectory, chosen, seconds, (*notes, *told))
+    return Footage(trajectory, chosen, seconds, (*notes, *told))
 
 
 def of_motion(
@@ -101,7 +101,7 @@ def of_motion(
     duration: float | None,
     is_film: bool,
     time_unit: str,
-) -> Moments:
+) -> Footage:
     """Choose frames for a motion whose state is known at every time.
 
     Parameters
@@ -131,7 +131,7 @@ def of_motion(
         )
     is_enough = np.array_equal(span.t, since)
     shown = samples if is_enough else replace(motion.at(span.t), t=span.t + t[0])
-    return Moments(shown, chosen, seconds, tuple(notes))
+    return Footage(shown, chosen, seconds, tuple(notes))
 
 
 def _pictures(length: float, rate: float, duration: float | None) -> tuple[Floats, float, list[str]]:
