@@ -79,7 +79,7 @@ def quantity(text: str, unit: str, option: str) -> float:
 
 
 def quantities(texts: Sequence[str], count: int, unit: str, option: str) -> tuple[float, ...]:
-    """Read several numbers: each with a unit of its own between commas, or one unit behind them all.
+    """Read several numbers: each with its own unit, separated by commas, or with one unit after the last.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from polhode.robots.sources import Sources
 
-__all__ = ["LinkReader", "links", "roll_pitch_yaw", "tensor_text"]
+__all__ = ["LinkReader", "forms", "links", "roll_pitch_yaw", "tensor_text"]
 
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
@@ -75,6 +75,16 @@ def links(root: Element, sources: Sources, folder: Path | None = None, prefix: s
         yield reader.read(element, sources, folder or sources.folder, prefix)
 
 
+def forms(link: Element) -> Iterator[tuple[Literal["collision", "visual"], Element, Element]]:
+    """Give the shapes of a link: what each serves for, its element and that of its form, as ``<box>``."""
+    roles: tuple[Literal["collision", "visual"], ...] = ("collision", "visual")
+    for role in roles:
+        for element in link.all(role):
+            geometry = element.find("geometry")
+            if geometry is not None and geometry.children:
+                yield role, element, geometry.children[0]
+
+
 def roll_pitch_yaw(angles: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rotation matrix of turns about the fixed axes x, then y, then z."""
     quaternion = euler_angles.to_quaternion(angles, "xyz")
@@ -110,28 +120,22 @@ def _inertial(element: Element) -> Inertial:
 
 
 def _shapes(link: Element) -> Iterator[Shape]:
-    roles: tuple[Literal["collision", "visual"], ...] = ("collision", "visual")
-    for role in roles:
-        for element in link.all(role):
-            geometry = element.find("geometry")
-            if geometry is None or not geometry.children:
-                continue
-            place = _place(element.find("origin"))
-            form = geometry.children[0]
-            read = partial(_size, form)
-            if form.tag == "box":
-                yield Shape("box", read("size", 3), place, role, where=form.where)
-            elif form.tag == "sphere":
-                yield Shape("sphere", read("radius"), place, role, where=form.where)
-            elif form.tag in ("cylinder", "capsule"):
-                size = (*read("radius"), *read("length"))
-                yield Shape(form.tag, size, place, role, where=form.where)
-            elif form.tag == "mesh":
-                scale = tuple(numbers(form, form.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
-                address = form.attributes.get("filename", "")
-                yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
-            else:
-                yield Shape(form.tag, (), place, role, where=form.where)
+    for role, element, form in forms(link):
+        place = _place(element.find("origin"))
+        read = partial(_size, form)
+        if form.tag == "box":
+            yield Shape("box", read("size", 3), place, role, where=form.where)
+        elif form.tag == "sphere":
+            yield Shape("sphere", read("radius"), place, role, where=form.where)
+        elif form.tag in ("cylinder", "capsule"):
+            size = (*read("radius"), *read("length"))
+            yield Shape(form.tag, size, place, role, where=form.where)
+        elif form.tag == "mesh":
+            scale = tuple(numbers(form, form.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
+            address = form.attributes.get("filename", "")
+            yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
+        else:
+            yield Shape(form.tag, (), place, role, where=form.where)
 
 
 def _size(form: Element, name: str, count: int = 1) -> tuple[float, ...]:
