@@ -1,4 +1,4 @@
-"""How far what a motion keeps has drifted in the numbers: its changes since the start, beside its size."""
+"""Drift of conserved quantities: how far they have changed since the start, relative to their size."""
 
 from __future__ import annotations
 

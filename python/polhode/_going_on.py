@@ -1,4 +1,4 @@
-"""What begins where a motion stands: the run that goes on from its end, and how it depends on its start."""
+"""The run that goes on from the end of a motion, and the derivatives of a motion by its start."""
 
 from __future__ import annotations
 

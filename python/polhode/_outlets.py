@@ -1,4 +1,4 @@
-"""The ways out of a motion: files, tables of another library, pictures and windows."""
+"""Output of a motion: files, tables of another library, pictures and windows."""
 
 from __future__ import annotations
 

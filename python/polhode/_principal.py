@@ -93,7 +93,7 @@ class PrincipalAxes:
         return _core.ray_kappa(self.moments)
 
     def canonical(self, rtol: float = 1e-6) -> PrincipalAxes:
-        """Turn the axes that are free because moments are equal to the body axes of largest projection.
+        """Where moments are equal their axes are free: turn them to the body axes of largest projection.
 
         Parameters
         ----------

@@ -91,7 +91,7 @@ class Trajectory:
 
     @classmethod
     def _of_run(cls, known: dict[str, Any]) -> Trajectory:
-        """Make the motion of a run: what is not `known` yet, its ``_outcome`` has ready for those who ask."""
+        """Make the motion of a run; what is not in `known` is read from its ``_outcome`` when needed."""
         motion = object.__new__(cls)
         object.__setattr__(motion, "__dict__", known)
         return motion
@@ -99,7 +99,7 @@ class Trajectory:
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
-            """Get of the outcome of a run what few ask for."""
+            """Get the attributes that few ask for from the outcome of the run."""
             outcome = self.__dict__.get("_outcome")
             if outcome is None or name not in type(self).__dataclass_fields__:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
@@ -302,11 +302,11 @@ class Trajectory:
         return Trajectory(**read_motion(path))
 
     def _bodies(self) -> _core.RigidBody:
-        """Give the body or stack the axes of time, along which it broadcasts."""
+        """Give the body or stack with axes for time, along which it broadcasts."""
         return self.body[(..., *self._time_axes())]
 
     def _time_axes(self) -> tuple[None, ...]:
-        """One for a series of times; as many as the times that a free motion was asked at have."""
+        """One new axis for a series of times; for a free motion as many as its times have."""
         return (np.newaxis,) * self.t.ndim
 
     def _per_time(self, vectors: Floats) -> Floats:
@@ -337,7 +337,7 @@ class Trajectory:
         )
 
     def _kept_directions(self) -> Any:
-        """Tell along what the angular momentum is kept: all directions (True), unit vectors, or nothing."""
+        """Give the directions along which L is conserved: True for all, unit vectors, or None."""
         return True if self.load is None else self.load.keeps_momentum(self._about_word())
 
 

@@ -1,1 +1,1 @@
-"""What pictures, moving pictures and windows show, before any of them draws it."""
+"""What is drawn: states, shapes and colours that pictures, moving pictures and windows share."""

@@ -135,7 +135,7 @@ def of_motion(
 
 
 def _pictures(length: float, rate: float, duration: float | None) -> tuple[Floats, float, list[str]]:
-    """Choose the even times of a film's pictures; give also its seconds, and what is to be said of them."""
+    """Choose evenly spaced times for the pictures of a film; also give its length in seconds, and notes."""
     needed = float(np.ceil(abs(length) * rate / TURN)) + 1.0
     if duration is None:
         count = int(min(max(needed, _RATE * _SECONDS), _FILM))
@@ -153,7 +153,7 @@ def _pictures(length: float, rate: float, duration: float | None) -> tuple[Float
 
 
 def _judged(angle: float, where: str, way_out: str) -> list[str]:
-    """Say that a turn from one picture to the next is too large, or refuse what cannot be shown."""
+    """Give a note where the turn from one picture to the next is large; an error where it is too large."""
     if angle >= np.pi:
         raise ValueError(
             f"{where} the body turns by up to {np.rad2deg(angle):.4g} deg, past the half turn beyond which a "
@@ -168,7 +168,7 @@ def _judged(angle: float, where: str, way_out: str) -> list[str]:
 
 
 def _on_screen(length: float, rate: float, duration: float | None) -> tuple[float, list[str]]:
-    """Give the seconds that a page takes, no picture turning by more than `TURN`; and what is to be said."""
+    """Give the seconds that a page takes, with no turn above `TURN` between pictures; and notes."""
     turned = abs(length) * rate / _RATE
     needed = max(_SECONDS, turned / TURN)
     if duration is None:

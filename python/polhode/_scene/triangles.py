@@ -19,7 +19,7 @@ _COARSEST: Final = 4
 
 
 def cut(triangles: Floats, longest: float, *, at_most: int | None = None) -> tuple[Floats, Integers]:
-    """Halve triangles until no edge is longer than `longest`; give the pieces and whose they are.
+    """Halve triangles until no edge is longer than `longest`; tell which triangle each piece is from.
 
     What draws sorts polygons by the depth of their middles, which puts large ones in the wrong order.
 

@@ -76,7 +76,7 @@ def film(scene: Scene, file: Path, progress: Callable[[float], object] | None = 
 
 
 def _end(writer: Any, file: Path, error: BaseException | None = None) -> None:
-    """Wait for ffmpeg to end; tell what it says where it is what went wrong."""
+    """Wait for ffmpeg to end; an error with its own words where it failed."""
     try:
         writer.finish()
     except subprocess.CalledProcessError as failed:

@@ -54,6 +54,6 @@ def page(scene: Scene) -> str:
 
 
 def _rounded(numbers: np.ndarray[Any, np.dtype[np.float64]]) -> list[Any]:
-    """Give the numbers with as many decimals as a screen can show."""
+    """Round numbers to as many decimals as a screen can show."""
     rounded: list[Any] = np.round(numbers, _DIGITS).tolist()
     return rounded

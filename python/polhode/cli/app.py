@@ -1,4 +1,4 @@
-"""The commands and the way they end: an exit code, and for an error one line on stderr.
+"""The commands and how they end: with an exit code, and after an error with one line on stderr.
 
 What a command does is imported when it runs, so that the help appears without NumPy.
 """
@@ -184,7 +184,7 @@ def demo(*, output_dir: Path = Path("polhode-demo")) -> int:
 
 
 def overview() -> str:
-    """Tell the commands, each by the first line of its docstring; at once, without drawing a table."""
+    """List the commands, each with the first line of its docstring."""
     lines = ["Usage: polhode COMMAND", "", app.help, "", "Commands:"]
     for name in COMMANDS:
         document = app[name].default_command.__doc__ or ""

@@ -116,7 +116,7 @@ def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) 
 
 
 def _moments(body: RigidBody, rtol: float | None = None) -> Any:
-    """Principal moments; of a linear molecule those of its atoms' places along the axis alone.
+    """Principal moments; of a linear molecule, from the positions of its atoms along the axis alone.
 
     By the last digits of its file it may be bent. Then Ia is 0 and Ib = Ic is Paa, the sum of m a^2, which is
     what one straight line has; Ia = 0 beside the other two as they stand would be no body's.
@@ -129,7 +129,7 @@ def _moments(body: RigidBody, rtol: float | None = None) -> Any:
 
 
 def _straightened(body: RigidBody, rtol: float | None = None) -> list[str]:
-    """Say that a molecule was taken as linear that is not by all its digits."""
+    """Give a note where a molecule counts as linear although the last digits of its file bend it."""
     least = body.principal_moments[0]
     if least == 0.0 or body.principal.classify(rtol) != "linear":
         return []

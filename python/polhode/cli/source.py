@@ -1,4 +1,4 @@
-"""Files as arguments: by their path, or ``-`` for what comes on standard input."""
+"""Files as arguments: a path, or ``-`` for standard input."""
 
 from __future__ import annotations
 

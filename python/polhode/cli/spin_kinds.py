@@ -1,4 +1,4 @@
-"""What ``polhode spin`` tells of a free body and of a heavy top: each has the same four questions."""
+"""What ``polhode spin`` tells of a free body and of a heavy top, under the same four headings."""
 
 from __future__ import annotations
 

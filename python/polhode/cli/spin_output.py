@@ -45,7 +45,7 @@ def check_paths(paths: Sequence[Path]) -> None:
 
 
 def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:
-    """Give the mesh as it is drawn, if there is one, and what is to be said of it."""
+    """Give the mesh as it is drawn, if there is one, and a note where it is coarser."""
     if loaded.shape is None:
         return None, ""
     vertices, faces, side = joined(loaded.shape.vertices, loaded.shape.faces, _MOST)
@@ -94,7 +94,7 @@ def save(
 
 
 def _between(samples: Trajectory) -> tuple[str, ...]:
-    """Say that the numbers do not tell how the body moves from one time to the next."""
+    """Give a note where the body turns so far between two times that the numbers do not show how."""
     widest = float(turns(samples.t, samples.omega).max())
     if widest < np.pi:
         return ()

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 else:
 
     def __getattr__(name):
-        """Load what is asked for when it is asked for: the command line writes files without NumPy."""
+        """Import a name when it is first used: the command line writes files without NumPy."""
         from importlib import import_module
 
         home = _HOMES.get(name)

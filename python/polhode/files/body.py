@@ -104,7 +104,7 @@ def body_from_file(
 
 
 def check_molecule_options(path: str | os.PathLike[str], *, prefix: str = "", **given: bool) -> None:
-    """Refuse what is asked for of a mesh where the file is a molecule.
+    """Refuse options that only a mesh has, where the file is a molecule.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def check_molecule_options(path: str | os.PathLike[str], *, prefix: str = "", **
 def molecule_isotopes(
     path: str | os.PathLike[str], molecule: Molecule, masses: Masses = "most_common"
 ) -> list[Isotope]:
-    """Find the nuclides of a molecule's atoms, naming the file in what goes wrong.
+    """Find the nuclides of a molecule's atoms; an error names the file.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a file holds, told from its first bytes and its size rather than from its name."""
+"""The format of a file, recognised by its first bytes and its size and not by its name."""
 
 from __future__ import annotations
 

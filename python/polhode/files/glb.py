@@ -1,4 +1,4 @@
-"""GLB files held against what is read of them, before trimesh makes arrays of what they say.
+"""Checks of GLB files before trimesh reads them: that they are whole, and hold nothing that it passes over.
 
 trimesh passes over what it does not know: compressed and sparse arrays become zeros, triangle fans nothing,
 normalized integers plain ones.

@@ -17,10 +17,10 @@ import numpy as np
 from polhode import _core
 from polhode.errors import FileFormatError
 from polhode.files.ascii_stl import read_ascii_stl
+from polhode.files.by_trimesh import read_by_trimesh
 from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIX, Content, opened
 from polhode.files.mesh import Mesh, check_faces, weld, weld_within
 from polhode.files.reading import naming
-from polhode.files.scene import read_scene
 from polhode.files.xyz import Molecule, molecule_of
 
 __all__ = ["Loaded", "load", "read_mesh"]
@@ -80,7 +80,7 @@ class Loaded:
             return Mesh(*_core.read_stl(str(self.path)), self.format)
         if self.format == "PLY":
             with naming(self.path), self.path.open("rb") as stream:
-                return read_scene(stream, self.path, _MESH_SUFFIXES)
+                return read_by_trimesh(stream, self.path, _MESH_SUFFIXES)
         mesh = Mesh(*_core.read_plates(str(self.path), self.index_base), self.format)
         check_faces(mesh, str(self.path))
         return mesh
@@ -140,7 +140,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
             return Loaded(file, "v/f text", index_base=index_base)
         if _is_binary_ply(content, suffix):
             return Loaded(file, "PLY", is_stream=True)
-        mesh = read_scene(content.stream, file, _MESH_SUFFIXES)
+        mesh = read_by_trimesh(content.stream, file, _MESH_SUFFIXES)
     return Loaded(file, mesh.format, _mesh=mesh)
 
 

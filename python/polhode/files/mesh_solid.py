@@ -64,7 +64,7 @@ def solid_from_file(
     index_base: int = 1,
     progress: Callable[[float], object] | None = None,
 ) -> MeshSolid:
-    """Make the solid that the mesh in a file bounds, naming the file in what is wrong with it.
+    """Make the solid that the mesh in a file bounds; an error names the file.
 
     Binary STL and PLY go through memory block by block, whatever their size, but for the vertices of a
     PLY, which its faces name in any order; other formats, and files that are to be welded within a length
@@ -165,7 +165,7 @@ def solid_of(
 
 @contextmanager
 def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Let what is wrong with a body tell the file that it is read from."""
+    """Put the name of the file before the text of an error."""
     try:
         yield
     except PolhodeError as error:
@@ -176,7 +176,7 @@ def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def _offer_weld(error: MeshError, mesh: Mesh) -> None:
-    """Offer to weld, before all else, where corners differ by less than 32-bit coordinates resolve."""
+    """Offer to weld, as the first way out, where corners are closer than 32-bit coordinates resolve."""
     size = float(np.abs(mesh.vertices).max(initial=0.0))
     in_range = not mesh.faces.size or (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices))
     if not (np.isfinite(size) and size > 0.0 and in_range):

@@ -1,4 +1,4 @@
-"""PLY and OFF files held against what their headers promise.
+"""Checks that PLY and OFF files hold what their headers promise.
 
 trimesh takes what it finds: a text cut at the end of a line still parses, a word that is no number ends a
 row, and of lists that differ in length it looks at the first.
@@ -36,7 +36,7 @@ def check_ply_size(stream: BinaryIO) -> None:
 
 
 def check_ply_lists(scene: Any) -> None:
-    """Refuse a binary PLY whose lists are not all as long as the first, which trimesh takes for all."""
+    """Refuse a binary PLY with lists of different lengths: trimesh takes the length of the first for all."""
     for geometry in scene.geometry.values():
         for element in geometry.metadata.get("_ply_raw", {}).values():
             data = element.get("data")
@@ -52,7 +52,7 @@ def check_ply_lists(scene: Any) -> None:
 
 
 def check_ply(stream: BinaryIO, triangles: int) -> None:
-    """Hold the rows of a PLY against its header, and the triangles that were made of its faces."""
+    """Compare the rows of a PLY with its header, and the number of triangles with its faces."""
     elements, is_text = _ply_header(stream)
     faces = sum(element.rows for element in elements if element.name == b"face")
     if not is_text:
@@ -80,7 +80,7 @@ def check_ply(stream: BinaryIO, triangles: int) -> None:
 
 
 def check_off(stream: BinaryIO, triangles: int) -> None:
-    """Hold the rows of an OFF file against its counts, and the triangles that were made of its faces."""
+    """Compare the rows of an OFF file with its counts, and the number of triangles with its faces."""
     rows = [words for line in stream if (words := line.partition(b"#")[0].split())]
     # The counts may stand beside the word OFF.
     counts, rows = (rows[0][1:], rows[1:]) if rows[0][1:] else (rows[1], rows[2:])

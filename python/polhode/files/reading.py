@@ -40,7 +40,7 @@ _OTHERS: Final[tuple[tuple[Callable[[int], bool], str], ...]] = (
 
 @contextmanager
 def files_read() -> Iterator[list[Path]]:
-    """Give a list to which every file is added that is opened meanwhile, by whatever name leads to it."""
+    """Give a list to which every file is added that is read in the meantime."""
     read: list[Path] = []
     outer = _READ.get()
     token = _READ.set((*outer, read))
@@ -57,7 +57,7 @@ def note_read(path: str | os.PathLike[str]) -> None:
 
 
 def check_ordinary(path: str | os.PathLike[str]) -> None:
-    """Refuse what is no ordinary file before it is opened: a pipe would be waited for, a device never ends.
+    """Refuse a pipe, a device or a folder before it is opened: reading a pipe waits, a device never ends.
 
     Parameters
     ----------

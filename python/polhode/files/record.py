@@ -1,4 +1,4 @@
-"""Named fields as files, after a format that their first field names: JSON for people, npz for NumPy."""
+"""Files of named fields, of which ``format`` tells what they describe: JSON for people, npz for NumPy."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def record_suffix(file: Path) -> str:
 def read_record(
     file: Path, expected: str, known_in_json: Collection[str], known_in_npz: Collection[str] | None = None
 ) -> dict[str, Any]:
-    """Read the fields of a file of the expected format, which may hold these fields alone."""
+    """Read the fields of a file; an error where it has another format or a field that the format lacks."""
     fields: dict[str, Any]
     if record_suffix(file) == ".json":
         known = {*known_in_json, *WORDS}
@@ -84,7 +84,7 @@ def write_npz(file: Path, name: str, arrays: dict[str, Any]) -> None:
 
 
 def in_json(fields: dict[str, Any], file: Path) -> dict[str, Any]:
-    """Turn arrays into lists in which what is not a number is null."""
+    """Turn arrays into lists, with null in place of NaN."""
     for name, value in fields.items():
         if isinstance(value, np.ndarray) and value.dtype.kind == "f" and np.isinf(value).any():
             raise ValueError(

@@ -104,7 +104,7 @@ def body_fields(body: RigidBody) -> dict[str, Any]:
 
 
 def body_of(fields: dict[str, Any], file: Path) -> RigidBody:
-    """Make the body of the fields that a file holds."""
+    """Make the body from the fields of a file."""
     given = {name: numbers(required(fields, name, file), name, file) for name in BODY_ARRAYS}
     try:
         if "numbers" not in fields:

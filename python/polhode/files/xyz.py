@@ -112,10 +112,10 @@ def _atom(file: Path, number: int, row: str) -> tuple[str, list[Decimal]]:
 
 
 def _rounding(numbers: Sequence[Decimal]) -> float:
-    """Find half a unit of the last digit that was printed, of the coordinate for which it is the largest.
+    """Find half a unit of the last printed digit, the largest of all coordinates.
 
     Programs print a fixed number of decimals or of significant digits, and some then cut zeros off at the
-    end. Of the two the one counts by which fewer zeros are missing.
+    end. Of these two rules the one is taken by which fewer zeros were cut off.
     """
     # How many decimals each shows, and of those that are not zero the place of the first digit (0: the ones).
     decimals = [max(0, -int(number.as_tuple().exponent)) for number in numbers]

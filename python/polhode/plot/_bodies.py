@@ -79,7 +79,7 @@ def body(
     surface.set_zorder(2)
 
     def depth(z: Floats, axis: int) -> Floats:
-        """Middles of the pieces, the outline's brought nearer by half a piece to lie on the surface."""
+        """Depths of the pieces; the outline is moved half a piece nearer, to lie on the surface."""
         middle: Floats = z.mean(axis=axis)
         middle[len(pieces) :] -= 0.5 * np.ptp(z, axis=axis).max()
         return middle

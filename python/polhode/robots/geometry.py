@@ -99,7 +99,7 @@ class GeometryReader:
         return Geometry(body, role, low, high, told)
 
     def _whole(self, link: Link, folder: Path, notes: dict[str, str]) -> tuple[RigidBody | None, str]:
-        """Add the shapes of one role, that of collisions if it serves."""
+        """Add the shapes of one role: those of collisions if they have volumes, else the visual ones."""
         role = ""
         for role in ("collision", "visual"):
             shapes = [shape for shape in link.shapes if shape.role == role]

@@ -180,7 +180,7 @@ def read_source(path: Path, most: int = _MOST_BYTES) -> bytes:
 
 
 def read_stream(stream: BinaryIO, name: str, most: int = _MOST_BYTES) -> bytes:
-    """Read what comes to its end, of at most so many bytes.
+    """Read a stream to its end, at most so many bytes.
 
     Raises
     ------

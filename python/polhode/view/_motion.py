@@ -154,7 +154,7 @@ class _Player:
         self._begun = perf_counter() - abs(self._scene.t[self._index] - self._scene.t[0]) / self._rate()
 
     def tick(self, _step: int = 0) -> None:
-        """Show where the motion has got to by the clock."""
+        """Show the state that the clock has reached."""
         if not self._is_running:
             return
         gone = (perf_counter() - self._begun) * self._rate()

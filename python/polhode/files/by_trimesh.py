@@ -1,4 +1,4 @@
-"""Meshes and scenes by trimesh: PLY, OFF and GLB, each held against what it says of itself."""
+"""PLY, OFF and GLB files, read by trimesh and checked against their own headers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from polhode.files.promises import check_off, check_ply, check_ply_lists, check_
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["read_scene"]
+__all__ = ["read_by_trimesh"]
 
 _READ: Final = (".ply", ".off", ".glb")
 _PROMISING: Final = {"ply": check_ply, "off": check_off}
@@ -32,7 +32,7 @@ class _Alone:
     __getitem__ = get
 
 
-def read_scene(stream: BinaryIO, file: Path, readable: tuple[str, ...]) -> Mesh:
+def read_by_trimesh(stream: BinaryIO, file: Path, readable: tuple[str, ...]) -> Mesh:
     """Read every triangle of a file with trimesh, nodes placed by their transforms.
 
     Parameters
