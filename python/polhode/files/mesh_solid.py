@@ -169,9 +169,7 @@ def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     except PolhodeError as error:
-        name = f"{os.fspath(path)}: "
-        if not str(error).startswith(name):
-            error.args = (f"{name}{error}",)
+        error.args = (f"{os.fspath(path)}: {error}",)
         raise
 
 

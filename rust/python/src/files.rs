@@ -85,7 +85,10 @@ pub(crate) fn stream_solid(
         streamed(stream, scale, amount, options, watch)
     });
     interrupt.finish(py, outcome.is_ok())?;
-    let solid = outcome.map_err(|error| stream_error(py, &path, error))?;
+    let solid = outcome.map_err(|error| match error {
+        StreamError::Failed(error) => to_py(py, &error), // the caller names the file
+        other => stream_error(py, &path, other),
+    })?;
     let body = Stack::one(solid.body).into();
     Ok((body, solid.triangles, solid.volume, solid.area))
 }
@@ -108,12 +111,9 @@ fn stream_error(py: Python<'_>, path: &Path, error: StreamError) -> PyErr {
         StreamError::Io(error) => os_error(path, &error),
         StreamError::Stopped => to_py(py, &Error::Stopped),
         StreamError::Failed(error @ (Error::Mesh(_) | Error::File(_))) => {
-            let exception = to_py(py, &error);
+            let bare = to_py(py, &error);
             let message = format!("{}: {error}", path.display());
-            match exception.value(py).setattr("args", (message,)) {
-                Ok(()) => exception,
-                Err(error) => error,
-            }
+            PyErr::from_type(bare.get_type(py), message)
         }
         StreamError::Failed(error) => to_py(py, &error),
     }
