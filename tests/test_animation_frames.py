@@ -13,7 +13,7 @@ import pytest
 from command_line import run
 from oracles.bodies import matrix
 from polhode import RigidBody, Trajectory, euler_angles, loads, solids
-from polhode._sampling import COARSE, TURN, axis_times, drawn_times, fastest, follow, motion_times
+from polhode._scene.sampling import COARSE, TURN, axis_times, drawn_times, fastest, follow, motion_times
 from test_animation import BROWSER, browse, data
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def random_bodies(rng: np.random.Generator, count: int) -> list[FreeMotion]:
 
 
 class TestTimes:
-    """`polhode._sampling`: one place that chooses times, for pages, films, windows and pictures."""
+    """`polhode._scene.sampling`: one place that chooses times, for pages, films, windows and pictures."""
 
     def test_free_bodies_of_every_shape(self, rng: np.random.Generator) -> None:
         for motion in random_bodies(rng, 66):
@@ -321,7 +321,7 @@ class TestTrajectories:
 
 class TestFilms:
     def test_its_pictures_are_even_and_follow(self) -> None:
-        from polhode.animation.frames import of_motion
+        from polhode._scene.footage import of_motion
 
         motion = BRICK.free_motion((0.01, 6.0, 0.0))
         ends = motion.at([0.0, 30.0])
@@ -344,7 +344,7 @@ class TestFilms:
         assert (len(slow.chosen), slow.duration) == (300, 10.0)
 
     def test_what_it_cannot_show(self) -> None:
-        from polhode.animation.frames import of_motion
+        from polhode._scene.footage import of_motion
 
         motion = BRICK.free_motion((0.01, 6.0, 0.0))
         film = of_motion(motion, motion.at([0.0, 1e4]), duration=None, is_film=True, time_unit="s")

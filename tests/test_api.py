@@ -116,7 +116,7 @@ class TestNames:
 
         assert polhode.__version__ == version("polhode")
 
-    def test_the_contract_of_this_milestone(self) -> None:
+    def test_names_that_bodies_and_motions_have(self) -> None:
         names = """
             from_principal from_positive_products from_particles from_mesh from_tetrahedra from_density
             from_radial_density from_file combined stack mass center_of_mass inertia principal

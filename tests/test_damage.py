@@ -19,8 +19,8 @@ from damage import KINDS, every_damage, tally, whole_file
 from mesh_files import ascii_ply, glb, obj
 from oracles.meshes import cube
 from polhode import RigidBody, Trajectory, robots, solids
-from polhode._files.fields import MOST_COMPRESSED
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.fields import MOST_COMPRESSED
 from polhode.io import read_mesh, read_xyz
 
 BOX = solids.box((3.0, 2.0, 1.0), mass=0.7)
@@ -163,7 +163,7 @@ class TestNpz:
     def test_a_bomb(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         """Much in little: refused by what the archive says, before it is unpacked."""
         assert MOST_COMPRESSED == 1 << 30
-        monkeypatch.setattr("polhode._files.fields.MOST_COMPRESSED", 1 << 26)
+        monkeypatch.setattr("polhode.files.fields.MOST_COMPRESSED", 1 << 26)
         path = tmp_path / "body.npz"
         with (
             zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,

@@ -1,4 +1,4 @@
-"""Other people's forms of a body, against sums over particles and NumPy's own factorization."""
+"""The forms of other libraries, against sums over particles and NumPy's own factorization."""
 
 from __future__ import annotations
 

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from command_line import one_line, run
 from polhode import Event, RigidBody, euler_angles, regions, robots
-from polhode._files import xml_source
-from polhode._files.reading import MOST_TEXT
 from polhode.errors import SingularAttitudeError
+from polhode.files import xml_source
+from polhode.files.reading import MOST_TEXT
 from polhode.robots import sources
 from test_check import ROBOT
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from command_line import one_line, run
 from polhode import robots
-from polhode._files.xml_source import Edit, edited, parse_xml
 from polhode.errors import FileFormatError
+from polhode.files.xml_source import Edit, edited, parse_xml
 from polhode.robots.sources import read_source, read_stream
 
 if TYPE_CHECKING:
@@ -211,8 +211,8 @@ class TestMany:
         with pytest.raises(FileFormatError, match="r: line 2: there are more than 299 links; divide"):
             parsed(source)
         monkeypatch.undo()
-        monkeypatch.setattr("polhode._files.xml_source._MOST_ELEMENTS", 300)
-        monkeypatch.setattr("polhode._files.xml_source.Budget.__init__.__defaults__", (300,))
+        monkeypatch.setattr("polhode.files.xml_source._MOST_ELEMENTS", 300)
+        monkeypatch.setattr("polhode.files.xml_source.Budget.__init__.__defaults__", (300,))
         with pytest.raises(FileFormatError, match="r: line 2: there are more than 300 elements"):
             parsed(source)
 
@@ -225,7 +225,7 @@ class TestMany:
         links = robots.check(robots.read_robot(tmp_path / "m0.sdf"))
         lost = [verdict.reason for verdict in links if verdict.verdict == "unreadable"]
         assert "is one of more than 1000 files to be read; divide the model" in lost[0]
-        monkeypatch.setattr("polhode._files.xml_source.Budget.__init__.__defaults__", (500,))
+        monkeypatch.setattr("polhode.files.xml_source.Budget.__init__.__defaults__", (500,))
         links = robots.check(robots.read_robot(tmp_path / "m0.sdf"))
         lost = [verdict.reason for verdict in links if verdict.verdict == "unreadable"]
         assert "elements, those of included files counted" in lost[0]

@@ -18,7 +18,7 @@ import polhode
 import pytest
 from command_line import one_line, run
 from polhode import Trajectory, solids
-from polhode._files.writing import replacing, write_bytes, writing
+from polhode.files.writing import replacing, write_bytes, writing
 from writers import OLD, WRITERS
 
 PACKAGE = Path(polhode.__file__).parent
@@ -85,7 +85,7 @@ def test_killed_in_the_middle(tmp_path: Path) -> None:
     path.write_bytes(OLD)
     program = f"""
 import sys, time
-from polhode._files.writing import writing
+from polhode.files.writing import writing
 with writing({str(path)!r}) as stream:
     stream.write(bytes(1 << 20))
     print("half", flush=True)
@@ -161,7 +161,7 @@ class TestThePlace:
         """Behind what it holds already, be it a pipe or a file."""
         program = f"""
 import os
-from polhode._files.writing import write_bytes
+from polhode.files.writing import write_bytes
 os.write(1, b"before ")
 write_bytes({name!r}, b"new ")
 os.write(1, b"after")
@@ -320,7 +320,7 @@ def writes_by_path(call: ast.Call) -> bool:
 
 def test_no_other_module_opens_a_file_for_writing() -> None:
     # The last two open what they read, and the device that swallows all.
-    allowed = {"_files/writing.py", "robots/sources.py", "cli/standard_output.py"}
+    allowed = {"files/writing.py", "robots/sources.py", "cli/standard_output.py"}
     found = {
         f"{path.relative_to(PACKAGE).as_posix()}:{call.lineno}"
         for path in PACKAGE.rglob("*.py")

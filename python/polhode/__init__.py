@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 else:
 
     def __getattr__(name):
-        """Load what is asked for when it is asked for: the help of the command line needs none of it."""
+        """Import a name when it is first used, so that the help of the command line needs no NumPy."""
         from importlib import import_module
 
         if name not in __all__:

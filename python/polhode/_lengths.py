@@ -1,4 +1,4 @@
-"""Lengths of vectors whose squares may be no numbers: angular momenta of 1e200 are as good as any."""
+"""Lengths of vectors of any size: squares of 1e200 would overflow, so a power of two is taken out first."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["lengths"]
 
 
 def lengths(vectors: Any) -> NDArray[np.float64]:
-    """Give the Euclidean norms along the last axis, whatever power of two the vectors are near."""
+    """Give the Euclidean norms along the last axis, without overflow or underflow."""
     vectors = np.asarray(vectors, dtype=float)
     largest = np.abs(vectors).max(axis=-1, keepdims=True)
     power = np.frexp(np.where(np.isfinite(largest), largest, 1.0))[1]

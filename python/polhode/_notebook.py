@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from polhode._scene.ellipsoid import inertia_semi_axes
+from polhode._scene.style import AXIS_COLORS
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -19,9 +22,6 @@ __all__ = ["body_html", "ellipsoid_svg"]
 _SIZE: Final = 200
 _REACH: Final = 0.36 * _SIZE
 """Length of the longest semi-axis in the drawing."""
-_LONGEST: Final = 3.0
-"""A semi-axis without end, that of a zero moment, is cut at so many times the longest other one."""
-_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
 _DASHES: Final = ("6 4", "none", "6 3 1.5 3")
 # From which side the body is seen: rows are rightward and upward in the drawing and toward the viewer.
 _AZIMUTH, _ELEVATION = np.deg2rad(-55.0), np.deg2rad(25.0)
@@ -45,11 +45,11 @@ def body_html(body: RigidBody) -> str:
         ("center of mass", _vector(body.center_of_mass)),
         *(
             (f'<span style="color:{color}">principal moment {k + 1}</span>', f"{moment:.6g}")
-            for k, (color, moment) in enumerate(zip(_COLORS, principal.moments, strict=True))
+            for k, (color, moment) in enumerate(zip(AXIS_COLORS, principal.moments, strict=True))
         ),
         *(
             (f'<span style="color:{color}">axis {k + 1}</span>', _vector(axis))
-            for k, (color, axis) in enumerate(zip(_COLORS, principal.axes.T, strict=True))
+            for k, (color, axis) in enumerate(zip(AXIS_COLORS, principal.axes.T, strict=True))
         ),
         ("top", html.escape(str(principal.top))),
         ("source", html.escape(str(body.provenance))),
@@ -79,16 +79,14 @@ def ellipsoid_svg(body: RigidBody) -> str:
         An ``svg`` element. The axes x, y, z of the body are grey.
     """
     moments, axes = body.principal.moments, body.principal.axes
-    with np.errstate(divide="ignore"):
-        semi_axes = 1.0 / np.sqrt(moments)
-    semi_axes = np.minimum(semi_axes, _LONGEST * semi_axes[np.isfinite(semi_axes)].max())
+    semi_axes = inertia_semi_axes(moments)
     semi_axes *= _REACH / semi_axes.max()
     seen = _VIEW @ axes  # columns: the principal axes as the viewer has them
     far, near, names = [], [], []
     for name, direction in zip("xyz", _VIEW.T, strict=True):
         far.append(_line(0.44 * _SIZE * direction, color="#bbb", width=1.0))
         names.append(_name(0.44 * _SIZE * direction, name, "#999"))
-    for k, (color, dash) in enumerate(zip(_COLORS, _DASHES, strict=True)):
+    for k, (color, dash) in enumerate(zip(AXIS_COLORS, _DASHES, strict=True)):
         tip = seen[:, k] * (semi_axes[k] + 0.2 * _REACH)
         far += [_line(end, color=color, dash=dash) for end in (-tip, tip)]
         if tip[2] > 0.0:  # it comes out of the surface toward the viewer

@@ -1,4 +1,4 @@
-"""Bodies of other libraries' objects, known by what they offer and not by their class."""
+"""Bodies from objects of other libraries, recognised by their attributes and not by their class."""
 
 from __future__ import annotations
 

@@ -37,11 +37,19 @@ class MeshError(PolhodeError):
 
     Attributes
     ----------
-    is_open : bool
-        Whether the mesh has edges with a face on one side only, so that to close it is the way out.
+    law : str
+        ``"closed"`` where the mesh is open; else ``""``.
+    way_out : str
+        What the message names as the way out, at its end; ``""`` where `law` is.
     """
 
-    is_open: bool = False
+    law: str = ""
+    way_out: str = ""
+
+    def offer(self, way_out: str) -> None:
+        """Name another way out, before the one that the message has."""
+        fault = str(self).removesuffix(self.way_out)
+        self.args = (f"{fault}{way_out}; or {self.way_out}" if self.way_out else f"{fault} ({way_out})",)
 
 
 class FileFormatError(PolhodeError):

@@ -1,4 +1,6 @@
-"""Other people's forms of a rigid body, to and from: each says about which point and in which order.
+"""Mass properties in the forms of other libraries, to them and from them.
+
+Each function says about which point its numbers are, and in which order.
 
 Positive products and log-Cholesky parameters are about the centre of mass, the others about the origin of
 the body frame, where a body that stands many of its own lengths away loses digits. Positive products come

@@ -51,7 +51,7 @@ _HYDROGEN: Final = {"D": 2, "T": 3}
 
 
 class Isotope(NamedTuple):
-    """One atom's nuclide: its name such as ``"16O"``, or of an average ``"O"``, and its atomic mass in u."""
+    """A nuclide: its name as ``"16O"``, or ``"O"`` for the average of an element, and its mass in u."""
 
     name: str
     mass: float

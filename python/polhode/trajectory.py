@@ -8,20 +8,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _core
+from polhode import _acting, _core, _going_on, _outlets
+from polhode._drift import drift
 from polhode._lengths import lengths
 from polhode.events import Events
-from polhode.results import AngularMomentum, Invariants, KineticEnergy, MotionSensitivity, State
+from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
 
 if TYPE_CHECKING:
     from os import PathLike
-    from pathlib import Path
 
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
-    from pyvista import Plotter
     from scipy.spatial.transform import Rotation
-    from xarray import Dataset
 
     from polhode.errors import IntegrationError, PolhodeError
 
@@ -78,9 +75,23 @@ class Trajectory:
     failures: tuple[IntegrationError | PolhodeError, ...] = ()
     pivoted: bool = False
 
+    # Methods that stand in files of their own.
+    torque = _acting.torque
+    force = _acting.force
+    angular_acceleration = _acting.angular_acceleration
+    potential_energy = _acting.potential_energy
+    pivot_reaction = _acting.pivot_reaction
+    sensitivity = _going_on.sensitivity
+    resume = _going_on.resume
+    save = _outlets.save
+    to_xarray = _outlets.to_xarray
+    plot = _outlets.plot
+    view = _outlets.view
+    animate = _outlets.animate
+
     @classmethod
     def _of_run(cls, known: dict[str, Any]) -> Trajectory:
-        """Make the motion of a run: what is not `known` yet, its ``_outcome`` has ready for those who ask."""
+        """Make the motion of a run; what is not in `known` is read from its ``_outcome`` when needed."""
         motion = object.__new__(cls)
         object.__setattr__(motion, "__dict__", known)
         return motion
@@ -88,7 +99,7 @@ class Trajectory:
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
-            """Get of the outcome of a run what few ask for."""
+            """Get the attributes that few ask for from the outcome of the run."""
             outcome = self.__dict__.get("_outcome")
             if outcome is None or name not in type(self).__dataclass_fields__:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
@@ -226,59 +237,6 @@ class Trajectory:
         arm = place - self.about
         return self.position + _core.rotate(self.quaternion, self._per_time(arm))
 
-    def torque(self) -> Floats:
-        """Torque of the load about the point `about` at every time, components in the body frame.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-        """
-        if self.load is None:
-            return np.zeros_like(self.omega)
-        return self._over_time(self.load).torque(*self._states(), **self._subject())
-
-    def force(self) -> Floats:
-        """Sum of the forces of the load at every time, components in space.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-        """
-        if self.load is None:
-            return np.zeros_like(self.omega)
-        return self._over_time(self.load).force(*self._states(), **self._subject())
-
-    def angular_acceleration(self) -> Floats:
-        """Angular acceleration at every time by Euler's equations, components in the body frame.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-        """
-        return self._bodies().angular_acceleration(self.omega, self.torque(), about=self._reference())
-
-    def potential_energy(self) -> Floats:
-        """Energy of position in the field of the load at every time.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T)
-            ``-m g·r_C`` in uniform gravity and so on, see :meth:`polhode.loads.Load.potential`; zero without
-            a load.
-
-        Raises
-        ------
-        ValueError
-            For a load with a part that has no potential.
-        """
-        potential = self._potential()
-        if potential is None:
-            raise ValueError(
-                "potential_energy: a part of the load has no potential; weight, forces constant in space and "
-                "feedback without damping have one"
-            )
-        return potential
-
     def invariants(self) -> Invariants:
         """Tell what the motion keeps and how far the numbers have drifted from it.
 
@@ -303,52 +261,8 @@ class Trajectory:
         return Invariants(
             energy,
             along,
-            None if potential is None else _drift(kinetic + potential, kinetic + np.abs(potential)),
-            None if along is None else _drift(along, size),
-        )
-
-    def sensitivity(self) -> MotionSensitivity:
-        """Tell how the motion depends on its start, on the body and on the numbers of the load.
-
-        Returns
-        -------
-        MotionSensitivity
-            Derivatives of attitude and angular velocity at every time: by attitude and angular velocity at
-            the first, by moments, products, centre of mass and mass, and by every argument of the load.
-
-        Raises
-        ------
-        PolhodeError
-            For a load with callbacks or compiled functions.
-        IntegrationError
-            Where motion or derivatives cannot go on.
-
-        Notes
-        -----
-        The linearised equations are integrated beside the motion, by Taylor series in which every number
-        carries its derivatives, to the last digits whatever method and tolerance found this motion. Where a
-        feedback turns its torque round, half a turn from its target, they jump as they must. For free bodies
-        :meth:`FreeMotion.sensitivity` is exact at any time.
-
-        Examples
-        --------
-        How a top's spin after three seconds depends on where it pointed at the start, and on the weight:
-
-        >>> import numpy as np
-        >>> from polhode import RigidBody, loads
-        >>> top = RigidBody.from_principal(1.0, (0.2, 0.2, 0.1), center_of_mass=(0, 0, 0.3))
-        >>> weight = loads.uniform_gravity((0, 0, -9.81))
-        >>> tilted = (np.sin(0.2), 0, 0, np.cos(0.2))
-        >>> run = top.simulate([0, 3], (0, 0, 40), tilted, load=weight, about="origin")
-        >>> slopes = run.sensitivity()
-        >>> slopes.state.shape, slopes.load[0]["gravity"].shape
-        ((2, 6, 6), (2, 6, 3))
-        """
-        if self.t.ndim != 1:
-            raise ValueError("sensitivity: these are states of a FreeMotion, whose sensitivity(t) is exact")
-        start = self.state(0)
-        return _core.motion_sensitivity(
-            self.body, self.t, start.omega, start.attitude, self.load, self._about_word()
+            None if potential is None else drift(kinetic + potential, kinetic + np.abs(potential)),
+            None if along is None else drift(along, size),
         )
 
     def state(self, index: int = -1) -> State:
@@ -364,90 +278,6 @@ class Trajectory:
         State
         """
         return State(*(x[..., index, :] for x in (self.omega, self.quaternion, self.position, self.velocity)))
-
-    def resume(self, t: ArrayLike, **options: Any) -> Trajectory:
-        """Go on from the last state under the same load.
-
-        Parameters
-        ----------
-        t : array_like, shape (T,)
-            As of `simulate`; the first must be the last of this motion.
-        **options
-            Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`.
-
-        Returns
-        -------
-        Trajectory
-
-        Examples
-        --------
-        >>> from polhode import RigidBody
-        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
-        >>> first = body.simulate([0, 1], omega=(0, 0, 1))
-        >>> first.resume([1, 2]).quaternion[-1].round(6)
-        array([0.      , 0.      , 0.841471, 0.540302])
-        """
-        start = _core.real_numbers(t, "t").reshape(-1)[:1]
-        if not np.array_equal(start, self.t[-1:]):
-            raise ValueError(f"t: the motion goes on from t = {float(self.t[-1])!r}, got {start.tolist()}")
-        state = self.state()
-        if np.isnan(state.omega).any():
-            raise ValueError(
-                "resume: the last state is not known, since the run did not come to the last time"
-            )
-        options.setdefault("load", None if self.load is None else self.load.anchored(float(self.t[0])))
-        options.setdefault("about", self._about_word())
-        given = state._asdict()
-        if self.pivoted:
-            del given["velocity"]
-        return self.body.simulate(t, **given, **options)
-
-    def pivot_reaction(
-        self, gravity: ArrayLike = (0.0, 0.0, 0.0), force: ArrayLike = (0.0, 0.0, 0.0)
-    ) -> Floats:
-        """Force with which the pivot holds a body simulated with ``about="origin"``, at every time.
-
-        Parameters
-        ----------
-        gravity : array_like, shape (..., 3)
-            g in space, where the load of the simulation held its torque but not the weight itself.
-        force : array_like, shape (..., 3)
-            The sum of forces in space that act besides those of the load.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-            Force on the body, components in space: m a_C less the forces of the load, m g and `force`.
-
-        Raises
-        ------
-        ValueError
-            For a motion whose point `about` is not the origin of the body frame, or moves.
-        """
-        if not self.pivoted:
-            raise ValueError('pivot_reaction: no pivot holds this body; simulate it with about="origin"')
-        return self._bodies().pivot_reaction(
-            self.omega,
-            self.angular_acceleration(),
-            self.quaternion,
-            gravity=gravity,
-            force=self.force() + _core.real_numbers(force, "force"),
-        )
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the motion to a file, with every bit of it.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
-            (space); a stack's lines begin with the indices of the body. ``.npz``: the arrays under the names
-            of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``. ``.json``:
-            readable, after the schema in :mod:`polhode.files`. The load and the events are not kept.
-        """
-        from polhode._files.trajectory import save_trajectory
-
-        save_trajectory(self, path)
 
     @staticmethod
     def from_file(path: str | PathLike[str]) -> Trajectory:
@@ -467,114 +297,16 @@ class Trajectory:
         FileFormatError
             For a file that is not such a motion.
         """
-        from polhode.files import load_trajectory
+        from polhode.files.saved_motion import read_motion
 
-        return load_trajectory(path)
-
-    def to_xarray(self) -> Dataset:
-        """Give the motion as an :class:`xarray.Dataset`; needs xarray.
-
-        Returns
-        -------
-        xarray.Dataset
-            Over ``time``, after the axes ``body`` (or ``body_0``, ``body_1``, …) of a stack. Components are
-            named ``x y z`` and ``x y z w``; every variable says in which frame it is.
-        """
-        from polhode._extras import require
-
-        xarray = require("xarray", extra=None, purpose="Trajectory.to_xarray")
-        shape = self.omega.shape[:-2]
-        stack = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
-        vector, frames = (
-            [*stack, "time", "component"],
-            {"omega": "body", "position": "space", "velocity": "space"},
-        )
-        variables: dict[str, Any] = {
-            name: (vector, getattr(self, name), {"frame": frame}) for name, frame in frames.items()
-        }
-        variables["quaternion"] = (
-            [*stack, "time", "quaternion_component"],
-            self.quaternion,
-            {"long_name": "R_NB, scalar last"},
-        )
-        coordinates = {"time": self.t, "component": list("xyz"), "quaternion_component": list("xyzw")}
-        dataset: Dataset = xarray.Dataset(variables, coordinates, {"title": repr(self)})
-        return dataset
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the components of the angular velocity in the body over time; needs matplotlib.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; a new figure by default.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
-        from polhode.plot import angular_velocity
-
-        return angular_velocity(self, ax)
-
-    def view(self, plotter: Plotter | None = None, **options: Any) -> Plotter:
-        """Show the motion of one body in a window; needs pyvista.
-
-        Parameters
-        ----------
-        plotter : pyvista.Plotter, optional
-            Where to show it; a new one by default.
-        **options
-            `at`, `shape`, `duration`, `title` and `time_unit`, see :func:`polhode.view.motion`.
-
-        Returns
-        -------
-        pyvista.Plotter
-            Its ``show()`` opens the window.
-        """
-        from polhode.view import motion
-
-        return motion(self, plotter, **options)
-
-    def animate(self, path: str | PathLike[str], **options: Any) -> Path:
-        """Write the motion of one body as a moving picture.
-
-        Parameters
-        ----------
-        path : str or os.PathLike
-            ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib;
-            ``.mp4``: needs also the program ffmpeg, which the extra ``film`` brings.
-        **options
-            `shape`, `frames`, `duration`, `title`, `time_unit` and `progress`, see
-            :func:`polhode.animation.animate`.
-
-        Returns
-        -------
-        pathlib.Path
-            Where it was written.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from pathlib import Path
-        >>> import numpy as np
-        >>> from polhode import solids
-        >>> motion = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 10, 201), omega=(0.01, 1, 0))
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     page = motion.animate(Path(folder) / "racket.html", title="The tennis racket")
-        ...     page.read_text(encoding="utf-8")[:15]
-        '<!DOCTYPE html>'
-        """
-        from polhode.animation import animate
-
-        return animate(self, path, **options)
+        return Trajectory(**read_motion(path))
 
     def _bodies(self) -> _core.RigidBody:
-        """Give the body or stack the axes of time, along which it broadcasts."""
+        """Give the body or stack with axes for time, along which it broadcasts."""
         return self.body[(..., *self._time_axes())]
 
     def _time_axes(self) -> tuple[None, ...]:
-        """One for a series of times; as many as the times that a free motion was asked at have."""
+        """One new axis for a series of times; for a free motion as many as its times have."""
         return (np.newaxis,) * self.t.ndim
 
     def _per_time(self, vectors: Floats) -> Floats:
@@ -605,19 +337,8 @@ class Trajectory:
         )
 
     def _kept_directions(self) -> Any:
-        """Tell along what the angular momentum is kept: all directions (True), unit vectors, or nothing."""
+        """Give the directions along which L is conserved: True for all, unit vectors, or None."""
         return True if self.load is None else self.load.keeps_momentum(self._about_word())
-
-
-def _drift(values: Floats, size: Floats) -> Any:
-    """Give the largest change of numbers or vectors since the start, relative to the largest size."""
-    change = values - values[..., :1, :] if values.ndim > size.ndim else values - values[..., :1]
-    change = lengths(change) if values.ndim > size.ndim else np.abs(change)
-    largest = np.nanmax(size, axis=-1)
-    drift = np.divide(
-        np.nanmax(change, axis=-1), largest, out=np.zeros_like(largest), where=np.asarray(largest > 0)
-    )
-    return drift if drift.ndim else float(drift)
 
 
 def _unwrapped(angles: Floats) -> Floats:

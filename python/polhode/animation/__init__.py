@@ -6,9 +6,9 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from polhode._files.writing import write_bytes
+from polhode._scene.scene import Scene
 from polhode.animation.page import page
-from polhode.animation.scene import Scene
+from polhode.files.writing import write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -11,14 +11,18 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
-from polhode._files.writing import replacing
-from polhode.plot import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
+from polhode._scene.shape import longest
+from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
+from polhode._scene.triangles import unit_normals
+from polhode.files.writing import replacing
+from polhode.plot._style import show_around
+from polhode.plot._surfaces import arrow, toward_viewer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from polhode.animation.scene import Scene
+    from polhode._scene.scene import Scene
 
 __all__ = ["film"]
 
@@ -72,7 +76,7 @@ def film(scene: Scene, file: Path, progress: Callable[[float], object] | None = 
 
 
 def _end(writer: Any, file: Path, error: BaseException | None = None) -> None:
-    """Wait for ffmpeg to end; tell what it says where it is what went wrong."""
+    """Wait for ffmpeg to end; an error with its own words where it failed."""
     try:
         writer.finish()
     except subprocess.CalledProcessError as failed:
@@ -99,17 +103,12 @@ def _ffmpeg(file: Path) -> str:
 def _draw(ax: Any, scene: Scene, frame: int) -> None:
     art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="a film")
     to_space = _core.rotate(scene.quaternion[frame], np.eye(3)).T
-    elevation, azimuth = np.deg2rad([ax.elev, ax.azim])
-    level = np.cos(elevation)
-    toward = np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
     for name, direction in zip("xyz", np.eye(3), strict=True):
         ax.plot(*np.stack([np.zeros(3), 1.3 * direction], axis=-1), color="0.75", linewidth=0.8, zorder=1)
         ax.text(*(1.4 * direction), name, color="0.5", ha="center", va="center")
-    size = float(np.linalg.norm(scene.shape.vertices, axis=1).max()) or 1.0
+    size = longest(scene.shape.vertices)
     triangles = (scene.shape.vertices * (_BODY / size) @ to_space.T)[scene.shape.faces]
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
-    facing = normals @ toward
+    facing = unit_normals(triangles) @ toward_viewer(ax)
     near = facing > 0.0
     colors = (scene.shape.colors / 255.0)[near] * (0.62 + 0.38 * facing[near, np.newaxis])
     ax.add_collection3d(
@@ -118,16 +117,13 @@ def _draw(ax: Any, scene: Scene, frame: int) -> None:
     for axis, color, dash in zip(scene.axes.T, AXIS_COLORS, _AXIS_DASHES, strict=True):
         ends = np.stack([-1.05 * axis, 1.05 * axis], axis=-1)
         ax.plot(*(to_space @ ends), color=color, linestyle=dash, linewidth=1.2, zorder=3)
-    tips = scene.path[: scene.sample[frame] + 1] / (np.linalg.norm(scene.path, axis=1).max() or 1.0)
+    tips = scene.path[: scene.sample[frame] + 1] / longest(scene.path)
     ax.plot(*tips.T, color=OMEGA_COLOR, alpha=0.5, linewidth=1.0, zorder=3)
-    strongest = np.linalg.norm(scene.momentum, axis=1).max() or 1.0
-    arrows = ((1.25 * scene.momentum[frame] / strongest, MOMENTUM_COLOR, "L"), (tips[-1], OMEGA_COLOR, "ω"))
-    for tip, color, name in arrows:
-        ax.quiver(*np.zeros(3), *tip, color=color, linewidth=2.0, arrow_length_ratio=0.08, zorder=4)
-        ax.text(*(1.1 * tip), name, color=color, fontsize=13, weight="bold", zorder=5)
+    momentum = 1.25 * scene.momentum[frame] / longest(scene.momentum)
+    for tip, color, name in ((momentum, MOMENTUM_COLOR, "L"), (tips[-1], OMEGA_COLOR, "ω")):
+        arrow(ax, tip, color, name, order=4, ha="left", va="baseline", weight="bold", zorder=5)
     ax.text2D(0.03, 0.95, scene.title, transform=ax.transAxes, fontsize=11, weight="bold")
     ax.text2D(0.03, 0.03, f"t = {scene.t[frame]:.4g} {scene.time_unit}", transform=ax.transAxes)
-    for name in "xyz":
-        getattr(ax, f"set_{name}lim")(-0.95, 0.95)
+    show_around(ax, np.zeros(3), 0.95)
     ax.set_box_aspect((1.0, 1.0, 1.0))
     ax.set_axis_off()

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._scene.shape import longest
+
 if TYPE_CHECKING:
-    from polhode.animation.scene import Scene
+    from polhode._scene.scene import Scene
 
 __all__ = ["page"]
 
@@ -27,16 +29,16 @@ def page(scene: Scene) -> str:
         What is shown.
     """
     vertices = scene.shape.vertices
-    size = float(np.linalg.norm(vertices, axis=1).max()) or 1.0
+    size = longest(vertices)
     motion = {
         "title": scene.title,
         "time_unit": scene.time_unit,
         "duration": scene.duration,
         "t": scene.t.tolist(),
         "quaternion": _rounded(scene.quaternion),
-        "omega": _rounded(scene.omega / _largest(scene.omega)),
-        "momentum": _rounded(scene.momentum / _largest(scene.momentum)),
-        "ellipsoid": _rounded(scene.ellipsoid / _largest(scene.omega)),
+        "omega": _rounded(scene.omega / longest(scene.omega)),
+        "momentum": _rounded(scene.momentum / longest(scene.momentum)),
+        "ellipsoid": _rounded(scene.ellipsoid / longest(scene.omega)),
         "axes": _rounded(scene.axes.T),
         "shape": {
             "vertices": _rounded(vertices * (_BODY / size)),
@@ -51,11 +53,7 @@ def page(scene: Scene) -> str:
     return named.replace("@MOTION@", text)
 
 
-def _largest(rows: np.ndarray[Any, np.dtype[np.float64]]) -> float:
-    return float(np.linalg.norm(rows, axis=-1).max()) or 1.0
-
-
 def _rounded(numbers: np.ndarray[Any, np.dtype[np.float64]]) -> list[Any]:
-    """Give the numbers with as many decimals as a screen can show."""
+    """Round numbers to as many decimals as a screen can show."""
     rounded: list[Any] = np.round(numbers, _DIGITS).tolist()
     return rounded

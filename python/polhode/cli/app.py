@@ -1,4 +1,4 @@
-"""The commands and the way they end: an exit code, and for an error one line on stderr.
+"""The commands and how they end: with an exit code, and after an error with one line on stderr.
 
 What a command does is imported when it runs, so that the help appears without NumPy.
 """
@@ -16,8 +16,6 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 from cyclopts import App, CycloptsError, Parameter
 
-from polhode._files.reading import files_read
-from polhode._files.writing import DASH, write_bytes
 from polhode.cli.options import (
     BodyOptions,
     CheckOptions,
@@ -29,6 +27,8 @@ from polhode.cli.options import (
 from polhode.cli.outputs import check_outputs
 from polhode.cli.standard_output import ReaderLeft, standard_output
 from polhode.cli.text import in_options, printable
+from polhode.files.reading import files_read
+from polhode.files.writing import DASH, write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -184,7 +184,7 @@ def demo(*, output_dir: Path = Path("polhode-demo")) -> int:
 
 
 def overview() -> str:
-    """Tell the commands, each by the first line of its docstring; at once, without drawing a table."""
+    """List the commands, each with the first line of its docstring."""
     lines = ["Usage: polhode COMMAND", "", app.help, "", "Commands:"]
     for name in COMMANDS:
         document = app[name].default_command.__doc__ or ""

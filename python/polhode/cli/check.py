@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
-from polhode._files.reading import files_read
-from polhode._files.writing import write_bytes
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.outputs import check_outputs
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.reading import files_read
+from polhode.files.writing import write_bytes
 from polhode.robots.sources import read_stream
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._files.reading import read_text
 from polhode.cli.layout import Column, Table
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.reading import read_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,7 +13,7 @@ from polhode.cli.report import file_report
 from polhode.cli.t_handle import t_handle, write_stl
 from polhode.cli.text import write
 from polhode.errors import PolhodeError
-from polhode.io import read_mesh
+from polhode.files.loaded import read_mesh
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -150,4 +150,4 @@ def _print_comparisons(console: Console, comparisons: list[brick.Comparison]) ->
         write(console, f"  {label:<20}{cells}  deg/s")
     verdict = "good" if all(comparison.is_good for comparison in comparisons) else "BAD"
     bars = ", ".join(f"{bar:g} deg/s at rtol {rtol:g}" for rtol, bar in brick.BARS.items())
-    write(console, f"  verdict: {verdict} (to be met from the exact rates: {bars})", style="bold")
+    write(console, f"  verdict: {verdict} (may differ from the exact rates by {bars})", style="bold")

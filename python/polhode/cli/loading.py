@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,11 @@ from polhode.cli.progress import reading_progress
 from polhode.cli.quantities import has_unit, quantity
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
-from polhode.io import MOLECULE_SUFFIX, MeshSolid, molecule_isotopes, read_mesh, read_xyz, solid_from_file
+from polhode.files.body import check_molecule_options, molecule_isotopes
+from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.loaded import load
+from polhode.files.mesh import weld_within
+from polhode.files.mesh_solid import MeshSolid, solid_of
 from polhode.molecules import body_of_atoms
 from polhode.units import METRES, metres_per
 
@@ -20,7 +24,8 @@ if TYPE_CHECKING:
 
     from polhode import RigidBody
     from polhode.cli.options import BodyOptions
-    from polhode.io import Mesh
+    from polhode.files.loaded import Loaded
+    from polhode.files.mesh import Mesh
     from polhode.molecules import Isotope
 
 __all__ = ["LoadedBody", "in_file_unit", "load_body"]
@@ -79,15 +84,10 @@ def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> 
     with as_file(file) as path:
         if path.suffix.lower() == MOLECULE_SUFFIX:
             return _load_molecule(path, options)
-        loaded = _load_mesh(path, options)
-        if not with_shape:
-            return loaded
-        mesh = read_mesh(path, index_base=options.index_base, weld=_weld(options))
-        scale = 1.0 if options.length_unit is None else metres_per(options.length_unit)
-        return replace(loaded, shape=mesh._replace(vertices=mesh.vertices * scale))
+        return _load_mesh(path, options, with_shape)
 
 
-def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
+def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody:
     if options.density is not None and options.mass is not None:
         raise PolhodeError(
             "--density and --mass: give one of the two, since the other follows from the volume"
@@ -98,7 +98,8 @@ def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
     density = 1.0 if assumed else _amount(options.density, "kg/m^3", "--density", unit)
     mass = _amount(options.mass, "kg", "--mass", unit)
     weld = _weld(options)
-    solid = _solid(file, options, density, mass, scale, weld)
+    loaded = load(file, index_base=options.index_base)
+    solid = _solid(loaded, options, density, mass, scale, weld)
     provenance = solid.body.provenance
     notes = _taken(options, unit)
     if weld != 0.0:
@@ -118,22 +119,33 @@ def _load_mesh(file: Path, options: BodyOptions) -> LoadedBody:
         volume=solid.volume,
         assumed=assumed,
         notes=tuple(notes),
+        shape=_shape(loaded, weld, scale) if with_shape else None,
     )
 
 
+def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh:
+    """Give the mesh as it is drawn, in the unit of the body."""
+    mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
+    return mesh._replace(vertices=mesh.vertices * scale)
+
+
 def _solid(
-    file: Path, options: BodyOptions, density: float | None, mass: float | None, scale: float, weld: float
+    loaded: Loaded,
+    options: BodyOptions,
+    density: float | None,
+    mass: float | None,
+    scale: float,
+    weld: float,
 ) -> MeshSolid:
-    with reading_progress(file) as tell:
-        return solid_from_file(
-            file,
+    with reading_progress(loaded.path) as tell:
+        return solid_of(
+            loaded,
             density=density,
             mass=mass,
             scale=scale,
             weld=weld,
             closure=options.closure,
             orient=options.orient,
-            index_base=options.index_base,
             progress=tell,
         )
 
@@ -181,17 +193,17 @@ def _amount(text: str | None, si: str, option: str, unit: str | None) -> float |
 
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
-    for given, is_given, reason in (
-        ("--density", options.density is not None, "whose atoms have their own masses"),
-        ("--mass", options.mass is not None, "whose atoms have their own masses"),
-        ("--weld", options.weld is not None, "not a mesh"),
-        ("--closure", options.closure is not None, "not a mesh"),
-        ("--orient", options.orient, "not a mesh"),
-        ("--index-base", options.index_base != 1, "not a mesh"),
-    ):
-        if is_given:
-            raise PolhodeError(f"{given}: {file} is a molecule, {reason}; leave it out")
-    molecule = read_xyz(file)
+    check_molecule_options(
+        file,
+        prefix="--",
+        density=options.density is not None,
+        mass=options.mass is not None,
+        weld=options.weld is not None,
+        closure=options.closure is not None,
+        orient=options.orient,
+        index_base=options.index_base != 1,
+    )
+    molecule = load(file).molecule
     atoms = molecule_isotopes(file, molecule)
     in_angstrom = metres_per(options.length_unit or "angstrom") / METRES["angstrom"]
     body = body_of_atoms(

@@ -10,10 +10,12 @@ import numpy as np
 
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.loading import LoadedBody
-from polhode.cli.report import FileUnits, body_fields, tensor_fields, top_fields, trust_fields
 from polhode.cli.source import as_file, shown
+from polhode.cli.tables import FileUnits, body_fields, tensor_fields, top_fields, trust_fields
 from polhode.errors import PolhodeError
-from polhode.io import MOLECULE_SUFFIX, molecule_isotopes, read_xyz
+from polhode.files.body import molecule_isotopes
+from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.loaded import load
 from polhode.molecules import (
     Isotope,
     body_of_atoms,
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
 
     from polhode import RigidBody
     from polhode.cli.options import MoleculeOptions
-    from polhode.io import Molecule
+    from polhode.files.xyz import Molecule
 
 __all__ = ["atoms_report", "molecule_report"]
 
@@ -42,7 +44,7 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
     with as_file(file) as path:
         if path.suffix.lower() != MOLECULE_SUFFIX:
             raise PolhodeError(f"{shown(file)}: a molecule is an XYZ file; polhode report reads meshes")
-        molecule = read_xyz(path)
+        molecule = load(path).molecule
         atoms = molecule_isotopes(path, molecule, options.masses)
     to_angstrom = metres_per(options.length_unit) / METRES["angstrom"]
     molecule = molecule._replace(
@@ -114,7 +116,7 @@ def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) 
 
 
 def _moments(body: RigidBody, rtol: float | None = None) -> Any:
-    """Principal moments; of a linear molecule those of its atoms' places along the axis alone.
+    """Principal moments; of a linear molecule, from the positions of its atoms along the axis alone.
 
     By the last digits of its file it may be bent. Then Ia is 0 and Ib = Ic is Paa, the sum of m a^2, which is
     what one straight line has; Ia = 0 beside the other two as they stand would be no body's.
@@ -127,7 +129,7 @@ def _moments(body: RigidBody, rtol: float | None = None) -> Any:
 
 
 def _straightened(body: RigidBody, rtol: float | None = None) -> list[str]:
-    """Say that a molecule was taken as linear that is not by all its digits."""
+    """Give a note where a molecule counts as linear although the last digits of its file bend it."""
     least = body.principal_moments[0]
     if least == 0.0 or body.principal.classify(rtol) != "linear":
         return []

@@ -51,11 +51,11 @@ class BodyOptions:
     mass
         Mass instead of density, as in "0.3 lb"; a bare number is kg where --length-unit is given.
     length_unit
-        Unit of the file's coordinates; results are then in SI units. Without it all is in the file's own
-        unit, and numbers on the command line are bare.
+        Unit of the file's coordinates; results are then in SI units. Without it all results are in
+        the file's own unit, and numbers on the command line carry none.
     weld
-        Make corners at most this far apart one; a bare number is in the unit of the file. Without it only
-        equal ones are.
+        Join corners that are at most this far apart; a bare number is in the unit of the file. Without it
+        only equal corners are joined.
     closure
         Close an open mesh: caps closes each hole by a fan of triangles, hull takes the convex hull. The
         report says by how much that changes the volume; without it an open mesh is an error.
@@ -156,7 +156,7 @@ class SpinOptions:
     moments
         Three principal moments instead of a file, as in "1 3 3.2" or "2 4 5 g cm^2"; a bare number is kg m^2.
     center
-        Where the centre of mass stands on those axes, from the fixed point; a bare number is in m.
+        Position of the centre of mass, from the fixed point, along those axes; a bare number is in m.
     omega
         Angular velocity at the start, its components in the body, as in 0 6 0.01 or "10 20 30 deg/s"; a bare
         number is rad/s.
@@ -174,15 +174,15 @@ class SpinOptions:
         Time of the end, as in 20 or "30 d"; in s if bare. The start is 0. Without it the report tells
         what kind of motion it is, and nothing is saved.
     degrees
-        Print angular velocity in deg/s, and take it so where no unit stands with it.
+        Print angular velocity in deg/s, and read --omega without a unit in deg/s.
     axes
         Axes of the components: the file's, or the principal axes (ascending moments).
     samples
         Number of times, start and end included.
     save
         Where to write the motion: a picture (.png, .pdf, .svg), an animation (.html, .gif, .mp4) or its
-        numbers (.csv, .npz, .json). May be repeated. A mesh is drawn as it is, of more than 10 000
-        triangles a coarser one of it; what has none as the box of the same inertia.
+        numbers (.csv, .npz, .json). May be repeated. A mesh is drawn as it is, one of more than
+        10 000 triangles coarser; a body without a mesh as the box of the same inertia.
     """
 
     moments: Annotated[

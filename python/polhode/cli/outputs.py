@@ -1,4 +1,4 @@
-"""What a command writes: into folders that are there, and over nothing that it reads or writes itself."""
+"""Checks of the files that a command is to write: their folders exist, and none of them is read too."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import os
 import stat
 from typing import TYPE_CHECKING
 
-from polhode._files.writing import DASH
 from polhode.errors import PolhodeError
+from polhode.files.writing import DASH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -17,7 +17,7 @@ __all__ = ["check_outputs"]
 
 
 def check_outputs(outputs: Sequence[tuple[str, Path | None]], inputs: Iterable[Path | None]) -> None:
-    """Refuse outputs that are an input or each other, whatever links lead there.
+    """Refuse an output that is also an input, or twice the same output, even by way of links.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def check_outputs(outputs: Sequence[tuple[str, Path | None]], inputs: Iterable[P
 
 
 def _is_same(one: Path, other: Path) -> bool:
-    """Whether two names are of one ordinary file; pipes and devices may serve several."""
+    """Whether two names lead to one ordinary file; a pipe or a device may be named twice."""
     if DASH in (one, other):
         return False
     try:

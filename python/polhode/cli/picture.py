@@ -8,7 +8,8 @@ import numpy as np
 
 from polhode import _core, plot
 from polhode._extras import require
-from polhode._files.picture import save_picture
+from polhode.files.picture import save_picture
+from polhode.plot._style import show_around
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -56,7 +57,7 @@ def _draw_body(figure: Any, vertices: Floats, faces: NDArray[np.int64], trajecto
     reach = np.linalg.norm(vertices, axis=1).max()
     plot.body(vertices, faces, ax)
     plot.principal_axes(trajectory.body, ax, length=1.06 * reach, center=np.zeros(3))
-    _show_around_origin(ax, 0.74 * reach)
+    show_around(ax, np.zeros(3), 0.74 * reach)
     moments = trajectory.body.principal_moments
     ratios = " : ".join(f"{moment / moments[0]:.2f}" for moment in moments)
     figure.text(0.165, 0.075, f"$I_1 : I_2 : I_3$ = {ratios}", ha="center", va="center", fontsize=11)
@@ -92,13 +93,8 @@ def _draw_snapshots(
         ax.patch.set_alpha(0.0)
         ax.view_init(**_VIEW)
         plot.body(_core.rotate(trajectory.quaternion[row], vertices), faces, ax)
-        _show_around_origin(ax, 0.93 * reach)
+        show_around(ax, np.zeros(3), 0.93 * reach)
     middle = box.x0 + box.width / 2
     figure.text(
         middle, 0.945, "... and it flips over, again and again.", ha="center", va="center", fontsize=14
     )
-
-
-def _show_around_origin(ax: Any, half: float) -> None:
-    for name in "xyz":
-        getattr(ax, f"set_{name}lim")(-half, half)

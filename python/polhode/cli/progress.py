@@ -1,4 +1,4 @@
-"""How far long work is, on a terminal: a bar on stderr, nothing where nobody looks."""
+"""A bar on stderr that shows how far long work is, where stderr is a terminal."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LARGE_FILE: Final = 1 << 26
 
 @contextmanager
 def progress(what: str, *, is_long: bool = True) -> Iterator[Callable[[float], object] | None]:
-    """Give a function to be told the fraction done; None where no bar is to be drawn."""
+    """Give a function that takes the fraction done; None where no bar is drawn."""
     if not (is_long and sys.stderr.isatty()):
         yield None
         return

@@ -39,7 +39,7 @@ _EXAMPLES: Final = {
 
 
 def has_unit(text: str) -> bool:
-    """Tell whether a unit stands behind the number."""
+    """Tell whether the number has a unit."""
     match = _QUANTITY.fullmatch(text)
     return match is not None and match["unit"] is not None
 
@@ -79,7 +79,7 @@ def quantity(text: str, unit: str, option: str) -> float:
 
 
 def quantities(texts: Sequence[str], count: int, unit: str, option: str) -> tuple[float, ...]:
-    """Read several numbers: each with a unit of its own between commas, or one unit behind them all.
+    """Read several numbers: each with its own unit, separated by commas, or with one unit after the last.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def _example(unit: str) -> str:
 
 
 def _factor(text: str, unit: str, option: str) -> Decimal:
-    """How many of `unit` are in one of the unit that was typed."""
+    """Give the size of the unit that was typed, in `unit`."""
     if unit == "rad/s" and _FREQUENCIES.fullmatch(text):
         raise PolhodeError(
             f"{option}: {text!r} does not say what is counted; write turn/s, rad/s, deg/s or rpm"

@@ -1,4 +1,4 @@
-"""Files as arguments: by their path, or ``-`` for what comes on standard input."""
+"""Files as arguments: a path, or ``-`` for standard input."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
-from polhode._files.content import content_format
-from polhode._files.writing import DASH, writing
 from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.content import content_format
+from polhode.files.writing import DASH, writing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -84,4 +84,5 @@ def as_file(file: Path) -> Iterator[Path]:
         try:
             yield named
         except PolhodeError as error:
-            raise type(error)(str(error).replace(str(named), shown(file))) from None
+            error.args = (str(error).replace(str(named), shown(file)),)
+            raise

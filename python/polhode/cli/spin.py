@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import RigidBody
-from polhode._sampling import fastest
+from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.quantities import quantities, quantity, vector
-from polhode.cli.report import top_fields
 from polhode.cli.source import shown
 from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
+from polhode.cli.tables import top_fields
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
 
@@ -31,7 +31,7 @@ __all__ = ["spin_report"]
 
 
 def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> Report:
-    """Let a body move, save its motion as asked for and report on it."""
+    """Compute the motion of a body, save it as asked for and report on it."""
     until = _checked(file, spin)
     loaded = _body(file, spin, options)
     body = loaded.body
@@ -92,7 +92,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
 
 
 def _checked(file: Path | None, spin: SpinOptions) -> float | None:
-    """Refuse what can be refused before the work is; give the time of the end."""
+    """Refuse wrong options before anything is computed; give the time of the end."""
     if file is None and not spin.moments:
         raise PolhodeError("spin: give a file, or principal moments with --moments")
     if file is not None and spin.moments:
@@ -130,7 +130,7 @@ def _check_end(motion: FreeMotion | HeavyTop, until: float) -> None:
 
 
 def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedBody:
-    """Read the body, or make the one of the moments that were typed."""
+    """Read the body, or make it from the moments that were typed."""
     if file is not None:
         if spin.center:
             raise PolhodeError("--center: the file tells where the centre of mass is; leave it out")

@@ -1,4 +1,4 @@
-"""What ``polhode spin`` tells of a free body and of a heavy top: each has the same four questions."""
+"""What ``polhode spin`` tells of a free body and of a heavy top, under the same four headings."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._drift import drift
 from polhode._lengths import lengths
 from polhode.cli.layout import Field
 
@@ -48,7 +49,7 @@ class FreeKind:
         ]
 
     def constants(self, moment_unit: str) -> list[Field]:
-        """Give what stays: the energy and the angular momentum."""
+        """Give what is conserved: the energy and the angular momentum."""
         motion, unit = self._motion, f"{moment_unit}/s"
         momentum = motion.angular_momentum
         size = float(lengths(momentum))
@@ -59,7 +60,7 @@ class FreeKind:
         ]
 
     def stability(self) -> list[Field]:
-        """Tell whether steady spins with this angular momentum would stay."""
+        """Tell whether steady spins with this angular momentum are stable."""
         squares = self._motion.stability
         words = ["stable" if x > 0 else "unstable" if x < 0 else "neutral" for x in squares]
         words = ["undefined" if np.isnan(x) else word for x, word in zip(squares, words, strict=True)]
@@ -71,15 +72,18 @@ class FreeKind:
         ]
 
     def drifts(self, trajectory: Trajectory) -> list[Field]:
-        """Tell how well the trajectory keeps what stays."""
+        """Tell how well the trajectory keeps what is conserved."""
         energy = trajectory.kinetic_energy().total
         momentum = trajectory.angular_momentum().total
         hint = "largest, relative; the vector in space"
         return [
             Field(
-                "kinetic_energy_drift", "drift of energy", _drift(energy, energy), hint="largest, relative"
+                "kinetic_energy_drift",
+                "drift of energy",
+                drift(energy, np.abs(energy)),
+                hint="largest, relative",
             ),
-            Field("angular_momentum_drift", "drift of L", _drift(momentum, momentum), hint=hint),
+            Field("angular_momentum_drift", "drift of L", drift(momentum, lengths(momentum)), hint=hint),
         ]
 
 
@@ -108,7 +112,7 @@ class TopKind:
         ]
 
     def constants(self, moment_unit: str) -> list[Field]:
-        """Give what stays: the energy and the angular momentum about the vertical."""
+        """Give what is conserved: the energy and the angular momentum about the vertical."""
         start = self._motion.at([0.0])
         kinetic, potential = self._energies(start)
         upright = start.angular_momentum().total[0, 2]
@@ -124,11 +128,11 @@ class TopKind:
         return [Field("stability", "upright", "stable" if is_stable else "unstable")]
 
     def drifts(self, trajectory: Trajectory) -> list[Field]:
-        """Tell how well the trajectory keeps what stays."""
+        """Tell how well the trajectory keeps what is conserved."""
         kinetic, potential = self._energies(trajectory)
         momentum = trajectory.angular_momentum().total
-        energy = _drift(kinetic + potential, kinetic + np.abs(potential))
-        upright = _drift(momentum[:, 2], momentum)
+        energy = drift(kinetic + potential, kinetic + np.abs(potential))
+        upright = drift(momentum[:, 2], lengths(momentum))
         return [
             Field("energy_drift", "drift of energy", energy, hint="largest, relative"),
             Field("angular_momentum_drift", "drift of L vertical", upright, hint="largest, relative to L"),
@@ -146,14 +150,3 @@ def _period(key: str, label: str, seconds: float, hint: str) -> list[Field]:
     if np.isfinite(seconds) and seconds >= 3600.0:
         fields.append(Field(f"in_days.{key}", "", seconds / 86400.0, "d"))
     return fields
-
-
-def _drift(values: Floats, sizes: Floats) -> float:
-    """Largest distance from the value at the start, relative to the largest size."""
-    distance = values - values[0]
-    if values.ndim > 1:
-        distance = np.linalg.norm(distance, axis=-1)
-    if sizes.ndim > 1:
-        sizes = np.linalg.norm(sizes, axis=-1)
-    largest = float(np.abs(sizes).max())
-    return float(np.abs(distance).max() / largest) if largest > 0.0 else 0.0

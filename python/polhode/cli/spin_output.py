@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 
 from polhode._extras import require
-from polhode._files.picture import save_picture
-from polhode._files.trajectory import TRAJECTORY_SUFFIXES
-from polhode._sampling import TURN, motion_times, turns
+from polhode._scene.sampling import TURN, motion_times, turns
+from polhode._scene.triangles import joined
 from polhode.animation import ANIMATION_SUFFIXES, animate_motion
 from polhode.cli.progress import progress
 from polhode.errors import PolhodeError
-from polhode.plot._triangles import joined
+from polhode.files.picture import save_picture
+from polhode.files.saved_motion import TRAJECTORY_SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,7 +45,7 @@ def check_paths(paths: Sequence[Path]) -> None:
 
 
 def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:
-    """Give the mesh as it is drawn, if there is one, and what is to be said of it."""
+    """Give the mesh as it is drawn, if there is one, and a note where it is coarser."""
     if loaded.shape is None:
         return None, ""
     vertices, faces, side = joined(loaded.shape.vertices, loaded.shape.faces, _MOST)
@@ -94,7 +94,7 @@ def save(
 
 
 def _between(samples: Trajectory) -> tuple[str, ...]:
-    """Say that the numbers do not tell how the body moves from one time to the next."""
+    """Give a note where the body turns so far between two times that the numbers do not show how."""
     widest = float(turns(samples.t, samples.omega).max())
     if widest < np.pi:
         return ()
@@ -108,6 +108,7 @@ def _between(samples: Trajectory) -> tuple[str, ...]:
 def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, part: Part | None) -> None:
     figure_module = require("matplotlib.figure", extra="plot", purpose=f"--save {path}:")
     from polhode.plot import angular_velocity, body, principal_axes
+    from polhode.plot._style import show_around
 
     # A figure of its own, outside pyplot: no window system is asked for.
     figure = figure_module.Figure(figsize=(8.0 if part is None else 12.0, 4.5), layout="constrained")
@@ -118,8 +119,7 @@ def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, par
         body(vertices, part[1], picture)
         length = 1.06 * float(np.linalg.norm(vertices[part[1]], axis=-1).max())
         principal_axes(trajectory.body, picture, length=length, center=np.zeros(3))
-        for name in "xyz":
-            getattr(picture, f"set_{name}lim")(-0.9 * length, 0.9 * length)
+        show_around(picture, np.zeros(3), 0.9 * length)
     frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
     ax = angular_velocity(trajectory, place, frame=frame, degrees=spin.degrees)
     ax.set_title(title, loc="left")

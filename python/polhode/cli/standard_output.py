@@ -1,4 +1,4 @@
-"""Standard output as the commands write to it: what goes wrong there is told apart from every other file."""
+"""Standard output of the commands, with errors of its own: they are not taken for those of another file."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
-from polhode._files.writing import STANDARD_OUTPUT
+from polhode.files.writing import STANDARD_OUTPUT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,11 +16,11 @@ __all__ = ["ReaderLeft", "standard_output"]
 
 
 class ReaderLeft(Exception):  # noqa: N818 (it tells of no error)
-    """Who read standard output has gone, as ``head`` does; nothing is wrong and nobody is listening."""
+    """The reader of standard output has closed it early, as ``head`` does: nothing is wrong."""
 
 
 class _Named:
-    """A stream whose errors name it; what it does not do itself, the stream does."""
+    """A stream whose errors have its name; all else is the stream itself."""
 
     def __init__(self, stream: Any) -> None:
         self._stream = stream
@@ -74,7 +74,7 @@ def _naming() -> Iterator[None]:
 
 
 def _give_up(stream: Any) -> None:
-    """Send what is still kept for standard output nowhere, if there is a descriptor behind it."""
+    """Discard what is still buffered for standard output."""
     try:
         stream.flush()
     except OSError:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polhode._files.writing import write_bytes
+from polhode.files.writing import write_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path

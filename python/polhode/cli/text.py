@@ -25,7 +25,7 @@ _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")
 
 
 def in_options(message: str) -> str:
-    """Name the ways out that Python's arguments offer as the command line has them."""
+    """Replace the names of Python's arguments in a message by the options of the command line."""
     for argument, option in _WAYS_OUT:
         message = message.replace(argument, option)
     return _WELD.sub("--weld ", message)

@@ -6,11 +6,11 @@ their dashes too.
 
 from __future__ import annotations
 
+from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, OUTLINE_COLOR
 from polhode.plot._bodies import body, principal_axes
 from polhode.plot._cones import cones
 from polhode.plot._ellipsoid import ellipsoid, poinsot, polhodes
 from polhode.plot._motion import angular_momentum, angular_velocity, euler_angles, invariants
-from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, OUTLINE_COLOR
 from polhode.plot._top import effective_potential, nutation
 
 __all__ = [

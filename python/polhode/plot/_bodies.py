@@ -8,8 +8,10 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
-from polhode.plot._style import AXIS_COLORS, OUTLINE_COLOR, axes_3d
-from polhode.plot._triangles import cut
+from polhode._scene.style import AXIS_COLORS, OUTLINE_COLOR
+from polhode._scene.triangles import cut, unit_normals
+from polhode.plot._style import axes_3d, show_around
+from polhode.plot._surfaces import toward_viewer
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -60,7 +62,7 @@ def body(
     _core.real_numbers(faces, "faces")  # neither masked nor with a unit
     corners = np.asarray(faces, dtype=np.int64)
     size = max(float(np.ptp(points, axis=0).max()), float(np.finfo(float).tiny))
-    normals = _unit_normals(points[corners])
+    normals = unit_normals(points[corners])
     pieces, owner = cut(points[corners], size / _PIECES)
     brightness = 0.66 + 0.42 * (normals @ (_LIGHT / np.linalg.norm(_LIGHT)))
     colors = np.clip(brightness[:, np.newaxis] * _SURFACE, 0.0, 1.0)[owner]
@@ -77,7 +79,7 @@ def body(
     surface.set_zorder(2)
 
     def depth(z: Floats, axis: int) -> Floats:
-        """Middles of the pieces, the outline's brought nearer by half a piece to lie on the surface."""
+        """Depths of the pieces; the outline is moved half a piece nearer, to lie on the surface."""
         middle: Floats = z.mean(axis=axis)
         middle[len(pieces) :] -= 0.5 * np.ptp(z, axis=axis).max()
         return middle
@@ -118,31 +120,18 @@ def principal_axes(
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
     origin = _core.real_numbers(rigid_body.center_of_mass if center is None else center, "center")
-    toward_viewer = _view_direction(ax)
+    toward = toward_viewer(ax)
     for color, direction, label in zip(AXIS_COLORS, rigid_body.principal.axes.T, labels, strict=True):
         for sense in (1.0, -1.0):
             tip = origin + sense * length * direction
             # The half that points away from the viewer passes behind the body, the other one in front.
-            order = 4 if sense * (direction @ toward_viewer) > 0.0 else 1
+            order = 4 if sense * (direction @ toward) > 0.0 else 1
             half = np.stack([origin, tip], axis=-1)
             ax.plot(*half, color=color, linewidth=1.8 if sense > 0 else 1.0, zorder=order)
         name = origin + 1.14 * length * direction
         ax.text(*name, label, color=color, ha="center", va="center", fontsize=12, zorder=5)
     ax.scatter(*origin[:, np.newaxis], color="black", s=14, zorder=5, depthshade=False)
     return ax
-
-
-def _view_direction(ax: Axes3D) -> Floats:
-    """Find the unit vector from the scene toward the viewer."""
-    elevation, azimuth = np.deg2rad([ax.elev, ax.azim])
-    level = np.cos(elevation)
-    return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
-
-
-def _unit_normals(triangles: Floats) -> Floats:
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    unit: Floats = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
-    return unit
 
 
 def _outline(points: Floats, faces: NDArray[np.int64], normals: Floats, size: float) -> Floats:
@@ -165,8 +154,7 @@ def _outline(points: Floats, faces: NDArray[np.int64], normals: Floats, size: fl
 def _frame(ax: Axes3D, points: Floats, length_unit: str | None) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
     middle, half = (low + high) / 2, (high - low).max() / 2 or 1.0
-    for name, value in zip("xyz", middle, strict=True):
-        getattr(ax, f"set_{name}lim")(value - half, value + half)
+    show_around(ax, middle, half)
     ax.set_box_aspect((1.0, 1.0, 1.0))
     if length_unit is None:
         ax.set_axis_off()

@@ -8,10 +8,11 @@ import numpy as np
 
 from polhode import _core
 from polhode._lengths import lengths
-from polhode._sampling import drawn_times
-from polhode.plot._ellipsoid import _beside, _one, _upright
-from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_3d
-from polhode.plot._surfaces import arrow, fan, plain_frame
+from polhode._scene.sampling import drawn_times
+from polhode._scene.shape import check_one
+from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
+from polhode.plot._style import axes_3d
+from polhode.plot._surfaces import arrow, azimuth_beside, fan, plain_frame, to_upright
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -40,18 +41,18 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
-    _one(motion.shape, "motion")
+    check_one(motion.shape, "motion")
     momentum = motion.angular_momentum
     size = float(lengths(momentum))
     if not size > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = axes_3d(ax)
     times = drawn_times(motion, t)
-    upright = _upright(momentum / size)
+    upright = to_upright(momentum / size)
     now = motion.at(times[-1:])
     attitude = upright @ _core.rotate(now.quaternion[0], np.eye(3)).T
     omega = attitude @ (now.omega[0] / np.linalg.norm(now.omega[0]))
-    ax.view_init(elev=16.0, azim=_beside(omega))
+    ax.view_init(elev=16.0, azim=azimuth_beside(omega))
     corners = [np.zeros(3), 1.3 * np.array([0.0, 0.0, 1.0])]
     in_space = motion.herpolhode(times)
     in_body = motion.polhode(361)

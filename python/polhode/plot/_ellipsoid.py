@@ -7,10 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
-from polhode._sampling import drawn_times
+from polhode._scene.ellipsoid import inertia_semi_axes, principal_circles
+from polhode._scene.sampling import drawn_times
+from polhode._scene.shape import check_one
+from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
 from polhode.plot._bodies import principal_axes
-from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_3d
-from polhode.plot._surfaces import arrow, curve_on, inertia_semi_axes, plain_frame, solid_ellipsoid
+from polhode.plot._style import axes_3d
+from polhode.plot._surfaces import (
+    arrow,
+    azimuth_beside,
+    curve_on,
+    plain_frame,
+    solid_ellipsoid,
+    to_upright,
+)
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -51,17 +61,14 @@ def ellipsoid(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
-    _one(body.shape, "body")
+    check_one(body.shape, "body")
     new = ax is None
     ax = axes_3d(ax)
     middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
     semi_axes = inertia_semi_axes(body.principal.moments)
     semi_axes *= size / semi_axes.max()
     solid_ellipsoid(ax, semi_axes, body.principal.axes, middle, opacity)
-    around = np.linspace(0.0, 2.0 * np.pi, 181)
-    for k in range(3):
-        ring = np.zeros((181, 3))
-        ring[:, (k + 1) % 3], ring[:, (k + 2) % 3] = np.cos(around), np.sin(around)
+    for ring in principal_circles():
         points, normals = ((ring * s) @ body.principal.axes.T for s in (semi_axes, 1.0 / semi_axes))
         curve_on(ax, points + middle, normals, "#6B7486", linewidth=0.9)
     principal_axes(body, ax, length=1.2 * size, center=middle)
@@ -101,7 +108,7 @@ def polhodes(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
-    _one(body.shape, "body")
+    check_one(body.shape, "body")
     moments = body.principal.moments
     if moments[0] == 0.0:
         raise ValueError("body: its least moment is zero, so that its ellipsoid of inertia has no end")
@@ -168,7 +175,7 @@ def poinsot(
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
-    _one(motion.shape, "motion")
+    check_one(motion.shape, "motion")
     times = drawn_times(motion, t)
     found = motion.poinsot(times)
     if not np.isfinite(found.semi_axes).all():
@@ -176,9 +183,9 @@ def poinsot(
     if not np.linalg.norm(motion.angular_momentum) > 0.0:
         raise ValueError("motion: the body is at rest, and nothing rolls")
     ax = axes_3d(ax)
-    upright = _upright(found.normal)
+    upright = to_upright(found.normal)
     herpolhode = found.contact @ upright.T
-    ax.view_init(elev=17.0, azim=_beside(herpolhode[-1]))
+    ax.view_init(elev=17.0, azim=azimuth_beside(herpolhode[-1]))
     attitude = upright @ _core.rotate(motion.at(times[-1:]).quaternion[0], np.eye(3)).T
     axes = attitude @ motion.body.principal.axes
     solid_ellipsoid(ax, found.semi_axes, axes, np.zeros(3), 1.0)
@@ -207,22 +214,3 @@ def _disc(ax: Axes3D, height: float, radius: float) -> None:
     rim = np.stack([radius * np.cos(around), radius * np.sin(around), np.full(121, height)])
     ax.plot(*rim, color="0.45", linewidth=0.9, zorder=4)
     ax.plot_trisurf(*rim[:, :-1], color="0.6", alpha=0.16, linewidth=0, zorder=4)
-
-
-def _upright(normal: Floats) -> Floats:
-    """Give the rotation that takes a unit vector to the third axis by the shortest way."""
-    x, y, z = normal
-    if z < -1.0 + 1e-12:
-        return np.diag([1.0, -1.0, -1.0])
-    w = 1.0 / (1.0 + z)
-    return np.array([[1 - x * x * w, -x * y * w, -x], [-x * y * w, 1 - y * y * w, -y], [x, y, z]])
-
-
-def _beside(vector: Floats) -> float:
-    """Give the azimuth, in degrees, from which a vector leans to the right."""
-    return float(np.rad2deg(np.arctan2(vector[1], vector[0]))) - 80.0
-
-
-def _one(shape: tuple[int, ...], name: str) -> None:
-    if shape:
-        raise ValueError(f"{name}: expected one body, got a stack of shape {shape}; index it")

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from polhode._drift import changes
 from polhode._lengths import lengths
-from polhode.plot._style import AXIS_COLORS, AXIS_DASHES, axes_2d, tidy
+from polhode._scene.style import AXIS_COLORS, AXIS_DASHES
+from polhode.plot._style import axes_2d, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -167,11 +169,8 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
     for values, scale, name, number in shown:
         if values is None or scale is None:
             continue
-        vectors = values.ndim > scale.ndim
-        start = values[..., :1, :] if vectors else values[..., :1]
-        change = lengths(values - start) if vectors else np.abs(values - start)
-        largest = np.nanmax(scale, axis=-1, keepdims=True)
-        change = change / np.where(largest > 0.0, largest, 1.0)
+        change, largest = changes(values, scale)
+        change = change / np.where(largest > 0.0, largest, 1.0)[..., np.newaxis]
         curves = np.maximum(change, 0.5 * np.finfo(float).eps).reshape(-1, len(trajectory))
         for row, curve in enumerate(curves):
             ax.plot(

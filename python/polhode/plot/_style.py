@@ -1,9 +1,9 @@
-"""What all pictures share: colours, dashes and new axes."""
+"""Axes to draw in, and how they look."""
 
 from __future__ import annotations
 
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from polhode._extras import require
 
@@ -12,29 +12,14 @@ if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 __all__ = [
-    "AXIS_COLORS",
-    "AXIS_DASHES",
-    "MOMENTUM_COLOR",
-    "OMEGA_COLOR",
-    "OUTLINE_COLOR",
     "axes_2d",
     "axes_3d",
     "matplotlib",
+    "show_around",
     "tidy",
 ]
 
 _Given = TypeVar("_Given")
-
-AXIS_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
-"""Blue, vermilion and bluish green: first, second and third axis."""
-AXIS_DASHES: Final = ("--", "-", "-.")
-"""Of lines in those colours."""
-OMEGA_COLOR: Final = "#B0479A"
-"""Reddish purple: the angular velocity."""
-MOMENTUM_COLOR: Final = "#111111"
-"""Nearly black: the angular momentum."""
-OUTLINE_COLOR: Final = (0.17, 0.18, 0.22)
-"""Red, green and blue of a body's edges."""
 
 
 def matplotlib(module: str) -> Any:
@@ -74,3 +59,9 @@ def tidy(ax: Axes) -> Axes:
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
     return ax
+
+
+def show_around(ax: Axes3D, middle: Any, half: float) -> None:
+    """Show the cube around a point that reaches so far along every axis."""
+    for name, value in zip("xyz", middle, strict=True):
+        getattr(ax, f"set_{name}lim")(value - half, value + half)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode._extras import require
+from polhode.plot._style import show_around
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -14,11 +15,18 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["arrow", "curve_on", "fan", "inertia_semi_axes", "plain_frame", "solid_ellipsoid", "toward_viewer"]
+__all__ = [
+    "arrow",
+    "azimuth_beside",
+    "curve_on",
+    "fan",
+    "plain_frame",
+    "solid_ellipsoid",
+    "to_upright",
+    "toward_viewer",
+]
 
 _SURFACE: Final = np.array([0.79, 0.84, 0.91])
-_LONGEST: Final = 3.0
-"""A semi-axis without end, that of a zero moment, is cut at so many times the longest other one."""
 
 
 def toward_viewer(ax: Axes3D) -> Floats:
@@ -26,23 +34,6 @@ def toward_viewer(ax: Axes3D) -> Floats:
     elevation, azimuth = np.deg2rad([ax.elev, ax.azim])
     level = np.cos(elevation)
     return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
-
-
-def inertia_semi_axes(moments: Floats) -> Floats:
-    """Semi-axes of r·I r = 1, shape (3,); those of zero moments are cut.
-
-    Parameters
-    ----------
-    moments : numpy.ndarray, shape (3,)
-        Principal moments, not all zero.
-    """
-    if not moments.any():
-        raise ValueError("body: all its moments are zero; a point has no ellipsoid of inertia")
-    with np.errstate(divide="ignore"):
-        semi_axes: Floats = 1.0 / np.sqrt(moments)
-    longest = semi_axes[np.isfinite(semi_axes)].max()
-    cut: Floats = np.minimum(semi_axes, _LONGEST * longest)
-    return cut
 
 
 def solid_ellipsoid(ax: Axes3D, semi_axes: Floats, axes: Floats, center: Floats, opacity: float) -> None:
@@ -92,17 +83,31 @@ def fan(ax: Axes3D, directions: Floats, color: str, opacity: float) -> None:
     ax.plot(*directions.T, color=color, linewidth=1.4, zorder=3)
 
 
-def arrow(ax: Axes3D, tip: Floats, color: str, name: str, *, order: int = 6) -> None:
-    """Draw a vector from the origin, with its name."""
+def arrow(ax: Axes3D, tip: Floats, color: str, name: str, *, order: int = 6, **style: Any) -> None:
+    """Draw a vector from the origin, with its name in a style."""
     ax.quiver(*np.zeros(3), *tip, color=color, linewidth=2.0, arrow_length_ratio=0.08, zorder=order)
-    ax.text(*(1.1 * tip), name, color=color, ha="center", va="center", fontsize=13, zorder=order)
+    named = {"ha": "center", "va": "center", "zorder": order} | style
+    ax.text(*(1.1 * tip), name, color=color, fontsize=13, **named)
 
 
 def plain_frame(ax: Axes3D, low: ArrayLike, high: ArrayLike) -> None:
     """Show a cube about the box between two corners, without coordinate axes."""
     corners = np.array([low, high], dtype=np.float64)
     middle, half = corners.mean(axis=0), 0.5 * float(np.ptp(corners, axis=0).max())
-    for name, value in zip("xyz", middle, strict=True):
-        getattr(ax, f"set_{name}lim")(value - half, value + half)
+    show_around(ax, middle, half)
     ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.2)
     ax.set_axis_off()
+
+
+def to_upright(normal: Floats) -> Floats:
+    """Give the rotation that takes a unit vector to the third axis by the shortest way."""
+    x, y, z = normal
+    if z < -1.0 + 1e-12:
+        return np.diag([1.0, -1.0, -1.0])
+    w = 1.0 / (1.0 + z)
+    return np.array([[1 - x * x * w, -x * y * w, -x], [-x * y * w, 1 - y * y * w, -y], [x, y, z]])
+
+
+def azimuth_beside(vector: Floats) -> float:
+    """Give the azimuth, in degrees, from which a vector leans to the right."""
+    return float(np.rad2deg(np.arctan2(vector[1], vector[0]))) - 80.0

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polhode._sampling import axis_times, drawn_times
-from polhode.plot._ellipsoid import _one, _upright
-from polhode.plot._style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, axes_2d, axes_3d, tidy
-from polhode.plot._surfaces import arrow, curve_on, plain_frame, solid_ellipsoid
+from polhode._scene.sampling import axis_times, drawn_times
+from polhode._scene.shape import check_one
+from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
+from polhode.plot._style import axes_2d, axes_3d, tidy
+from polhode.plot._surfaces import arrow, curve_on, plain_frame, solid_ellipsoid, to_upright
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,7 +42,7 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
     -------
     matplotlib.axes.Axes
     """
-    _one(top.shape, "top")
+    check_one(top.shape, "top")
     ax = axes_2d(ax)
     low, high = top.nutation_limits
     inclination = np.linspace(0.0, np.pi, _SAMPLES + 2)[1:-1]
@@ -92,7 +93,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     -------
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
-    _one(top.shape, "top")
+    check_one(top.shape, "top")
     arm = float(np.linalg.norm(top.body.center_of_mass))
     weight = float(np.linalg.norm(top.gravity))
     if not arm > 0.0 or not weight > 0.0:
@@ -104,7 +105,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     path = (
         top.at(drawn_times(top, t, axis_times)).point("center_of_mass")
         / arm
-        @ _upright(-top.gravity / weight).T
+        @ to_upright(-top.gravity / weight).T
     )
     solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 0.35)
     around = np.linspace(0.0, 2.0 * np.pi, 181)

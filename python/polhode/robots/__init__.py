@@ -12,9 +12,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from polhode._files.content import content_format
-from polhode._files.xml_source import Edit, Element, edited, parse_xml
 from polhode.errors import FileFormatError
+from polhode.files.content import content_format
+from polhode.files.xml_source import Edit, Element, edited, parse_xml
 from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.addresses import Addresses, own_root
 from polhode.robots.geometry import GeometryReader

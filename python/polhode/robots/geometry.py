@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
-from polhode.io import read_mesh
+from polhode.files.loaded import read_mesh
 from polhode.robots.words import quoted, shortened
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode._files.mesh import Mesh
+    from polhode.files.mesh import Mesh
     from polhode.robots.addresses import Addresses
     from polhode.robots.model import Link, Shape
 
@@ -99,7 +99,7 @@ class GeometryReader:
         return Geometry(body, role, low, high, told)
 
     def _whole(self, link: Link, folder: Path, notes: dict[str, str]) -> tuple[RigidBody | None, str]:
-        """Add the shapes of one role, that of collisions if it serves."""
+        """Add the shapes of one role: those of collisions if they have volumes, else the visual ones."""
         role = ""
         for role in ("collision", "visual"):
             shapes = [shape for shape in link.shapes if shape.role == role]

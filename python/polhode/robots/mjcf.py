@@ -14,8 +14,8 @@ import numpy as np
 
 from polhode import euler_angles
 from polhode._core import rotate
-from polhode._files.xml_source import Edit, Element, remove_attribute, set_attribute
 from polhode.errors import FileFormatError
+from polhode.files.xml_source import Edit, Element, remove_attribute, set_attribute
 from polhode.robots.mjcf_parts import copies, expand_includes
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
 from polhode.robots.sources import LimitError

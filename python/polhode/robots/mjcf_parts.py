@@ -11,7 +11,7 @@ from polhode.robots.words import quoted
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from polhode._files.xml_source import Element
+    from polhode.files.xml_source import Element
     from polhode.robots.sources import Sources
 
 __all__ = ["copies", "expand_includes"]

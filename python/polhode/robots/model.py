@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode._files.xml_source import Edit, Element
+    from polhode.files.xml_source import Edit, Element
 
     Floats = NDArray[np.float64]
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from polhode._core import rotate
-from polhode._files.xml_source import Edit, Element, blanks_of, set_text
 from polhode.errors import FileFormatError
+from polhode.files.xml_source import Edit, Element, blanks_of, set_text
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
 from polhode.robots.sdf_include import included
-from polhode.robots.urdf import roll_pitch_yaw, tensor_text
+from polhode.robots.urdf import LinkReader, forms, roll_pitch_yaw, tensor_text
 from polhode.robots.words import quoted
 
 if TYPE_CHECKING:
@@ -46,27 +45,10 @@ def _below(parent: Element, sources: Sources, folder: Path, prefix: str) -> Iter
         if element.tag != "link":
             yield from _below(element, sources, folder, prefix)
             continue
-        inertial: Inertial | None = None
-        shapes: tuple[Shape, ...] = ()
-        problem = ""
         declared = element.find("inertial")
         inferred = declared is not None and declared.attributes.get("auto", "false").lower() in ("true", "1")
-        try:
-            inertial = None if declared is None or inferred else _inertial(declared)
-            shapes = tuple(_shapes(element))
-        except FileFormatError as error:
-            problem = str(error)
-        yield Link(
-            name=sources.name(prefix, element.attributes.get("name", "(without a name)"), element),
-            line=element.line,
-            inertial=inertial,
-            problem=problem,
-            shapes=shapes,
-            inferred=inferred,
-            rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
-            file=element.file,
-            folder=folder,
-        )
+        reader = LinkReader(_inertial, _shapes, _rewrite)
+        yield reader.read(element, sources, folder, prefix, inferred=inferred)
 
 
 def _pose(element: Element | None) -> Place:
@@ -115,29 +97,23 @@ def _inertial(element: Element) -> Inertial:
 
 
 def _shapes(link: Element) -> Iterator[Shape]:
-    roles: tuple[Literal["collision", "visual"], ...] = ("collision", "visual")
-    for role in roles:
-        for element in link.all(role):
-            geometry = element.find("geometry")
-            if geometry is None or not geometry.children:
-                continue
-            form = geometry.children[0]
-            pose = element.find("pose")
-            if pose is not None and pose.attributes.get("relative_to"):
-                yield Shape("pose in another frame", (), Place.here(), role, where=element.where)
-                continue
-            place = _pose(pose)
-            if form.tag in _SIZES:
-                size = tuple(x for name, count in _SIZES[form.tag] for x in _value(form, name, count))
-                yield Shape(form.tag, size, place, role, where=form.where)
-            elif form.tag == "mesh" and form.find("submesh") is None:
-                uri = form.find("uri")
-                address = uri.text.strip() if uri is not None else ""
-                scale = _value(form, "scale", 3, "1 1 1")
-                yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
-            else:
-                kind = form.tag if form.tag != "mesh" else "part of a mesh"
-                yield Shape(kind, (), place, role, where=form.where)
+    for role, element, form in forms(link):
+        pose = element.find("pose")
+        if pose is not None and pose.attributes.get("relative_to"):
+            yield Shape("pose in another frame", (), Place.here(), role, where=element.where)
+            continue
+        place = _pose(pose)
+        if form.tag in _SIZES:
+            size = tuple(x for name, count in _SIZES[form.tag] for x in _value(form, name, count))
+            yield Shape(form.tag, size, place, role, where=form.where)
+        elif form.tag == "mesh" and form.find("submesh") is None:
+            uri = form.find("uri")
+            address = uri.text.strip() if uri is not None else ""
+            scale = _value(form, "scale", 3, "1 1 1")
+            yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
+        else:
+            kind = form.tag if form.tag != "mesh" else "part of a mesh"
+            yield Shape(kind, (), place, role, where=form.where)
 
 
 def _rewrite(declared: Element, source: bytes, new: Inertial) -> list[Edit]:

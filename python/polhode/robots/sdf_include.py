@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from polhode._files.xml_source import Element
+    from polhode.files.xml_source import Element
     from polhode.robots.sources import Sources
 
     Reader = Callable[[Element, Sources, Path, str], Iterator[Link]]

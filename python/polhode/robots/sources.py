@@ -11,9 +11,9 @@ import stat
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
-from polhode._files.reading import note_read
-from polhode._files.xml_source import Budget, Element, parse_xml
 from polhode.errors import FileFormatError
+from polhode.files.reading import note_read
+from polhode.files.xml_source import Budget, Element, parse_xml
 from polhode.robots.words import shortened
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ def read_source(path: Path, most: int = _MOST_BYTES) -> bytes:
 
 
 def read_stream(stream: BinaryIO, name: str, most: int = _MOST_BYTES) -> bytes:
-    """Read what comes to its end, of at most so many bytes.
+    """Read a stream to its end, at most so many bytes.
 
     Raises
     ------

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from polhode import euler_angles
 from polhode._core import rotate
-from polhode._files.xml_source import Edit, Element, blanks_of, set_attribute
 from polhode.errors import FileFormatError
+from polhode.files.xml_source import Edit, Element, blanks_of, set_attribute
 from polhode.robots.model import Inertial, Link, Place, Shape, numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
     from typing import Literal
 
@@ -22,33 +22,67 @@ if TYPE_CHECKING:
 
     from polhode.robots.sources import Sources
 
-__all__ = ["links", "roll_pitch_yaw", "tensor_text"]
+__all__ = ["LinkReader", "forms", "links", "roll_pitch_yaw", "tensor_text"]
 
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
-def links(root: Element, sources: Sources, folder: Path | None = None, prefix: str = "") -> Iterator[Link]:
-    """Read the links of a robot, in the folder of its file if that is another one's."""
-    for element in root.all("link"):
+class LinkReader(NamedTuple):
+    """How a format says what a link has.
+
+    Attributes
+    ----------
+    inertial, shapes : callable
+        Read ``<inertial>``, and the shapes of a link.
+    rewrite : callable
+        Of ``<inertial>``, the source and other mass properties: the edits that write them.
+    """
+
+    inertial: Callable[[Element], Inertial]
+    shapes: Callable[[Element], Iterator[Shape]]
+    rewrite: Callable[[Element, bytes, Inertial], list[Edit]]
+
+    def read(
+        self, element: Element, sources: Sources, folder: Path, prefix: str, *, inferred: bool = False
+    ) -> Link:
+        """Read a link; what is wrong with its numbers is kept for the verdict."""
         inertial: Inertial | None = None
         shapes: tuple[Shape, ...] = ()
         problem = ""
         declared = element.find("inertial")
         try:
-            inertial = None if declared is None else _inertial(declared)
-            shapes = tuple(_shapes(element))
+            inertial = None if declared is None or inferred else self.inertial(declared)
+            shapes = tuple(self.shapes(element))
         except FileFormatError as error:
             problem = str(error)
-        yield Link(
+        return Link(
             name=sources.name(prefix, element.attributes.get("name", "(without a name)"), element),
             line=element.line,
             inertial=inertial,
             problem=problem,
             shapes=shapes,
-            rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
+            inferred=inferred,
+            rewrite=partial(self.rewrite, declared) if declared is not None and not declared.file else None,
             file=element.file,
-            folder=folder or sources.folder,
+            folder=folder,
         )
+
+
+def links(root: Element, sources: Sources, folder: Path | None = None, prefix: str = "") -> Iterator[Link]:
+    """Read the links of a robot, in the folder of its file if that is another one's."""
+    reader = LinkReader(_inertial, _shapes, _rewrite)
+    for element in root.all("link"):
+        yield reader.read(element, sources, folder or sources.folder, prefix)
+
+
+def forms(link: Element) -> Iterator[tuple[Literal["collision", "visual"], Element, Element]]:
+    """Give the shapes of a link: what each serves for, its element and that of its form, as ``<box>``."""
+    roles: tuple[Literal["collision", "visual"], ...] = ("collision", "visual")
+    for role in roles:
+        for element in link.all(role):
+            geometry = element.find("geometry")
+            if geometry is not None and geometry.children:
+                yield role, element, geometry.children[0]
 
 
 def roll_pitch_yaw(angles: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -86,28 +120,22 @@ def _inertial(element: Element) -> Inertial:
 
 
 def _shapes(link: Element) -> Iterator[Shape]:
-    roles: tuple[Literal["collision", "visual"], ...] = ("collision", "visual")
-    for role in roles:
-        for element in link.all(role):
-            geometry = element.find("geometry")
-            if geometry is None or not geometry.children:
-                continue
-            place = _place(element.find("origin"))
-            form = geometry.children[0]
-            read = partial(_size, form)
-            if form.tag == "box":
-                yield Shape("box", read("size", 3), place, role, where=form.where)
-            elif form.tag == "sphere":
-                yield Shape("sphere", read("radius"), place, role, where=form.where)
-            elif form.tag in ("cylinder", "capsule"):
-                size = (*read("radius"), *read("length"))
-                yield Shape(form.tag, size, place, role, where=form.where)
-            elif form.tag == "mesh":
-                scale = tuple(numbers(form, form.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
-                address = form.attributes.get("filename", "")
-                yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
-            else:
-                yield Shape(form.tag, (), place, role, where=form.where)
+    for role, element, form in forms(link):
+        place = _place(element.find("origin"))
+        read = partial(_size, form)
+        if form.tag == "box":
+            yield Shape("box", read("size", 3), place, role, where=form.where)
+        elif form.tag == "sphere":
+            yield Shape("sphere", read("radius"), place, role, where=form.where)
+        elif form.tag in ("cylinder", "capsule"):
+            size = (*read("radius"), *read("length"))
+            yield Shape(form.tag, size, place, role, where=form.where)
+        elif form.tag == "mesh":
+            scale = tuple(numbers(form, form.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
+            address = form.attributes.get("filename", "")
+            yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
+        else:
+            yield Shape(form.tag, (), place, role, where=form.where)
 
 
 def _size(form: Element, name: str, count: int = 1) -> tuple[float, ...]:

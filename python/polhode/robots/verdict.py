@@ -45,9 +45,9 @@ class Verdict(NamedTuple):
         Of the link in the file.
     verdict : str
         ``"good"``; ``"suspect"``: possible, but far from what its shape has; ``"placeholder"``: the unit
-        tensor, or one multiple of it in unlike links; ``"impossible"``: of no body, or of none of that size;
-        ``"unreadable"``: numbers are missing or none; ``"none"``: nothing declared; ``"inferred"``: nothing
-        declared, and a simulator takes it from the geometry.
+        tensor, or the same multiple of it in links of different masses; ``"impossible"``: no body has it, or
+        no body of that size; ``"unreadable"``: a number is missing or is not a number; ``"none"``: nothing is
+        declared; ``"inferred"``: nothing is declared, and a simulator computes it from the geometry.
     reason : str
         Which law fails and by how much.
     mass : float or None

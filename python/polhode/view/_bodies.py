@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
-from polhode.animation.shape import equivalent_box, given_shape
-from polhode.plot import AXIS_COLORS, OUTLINE_COLOR
-from polhode.plot._surfaces import inertia_semi_axes
+from polhode._scene.ellipsoid import inertia_semi_axes, principal_circles
+from polhode._scene.shape import check_one, equivalent_box, given_shape, longest
+from polhode._scene.style import AXIS_COLORS, OUTLINE_COLOR
 from polhode.view._style import AXIS_STYLE, add_name, line, new_plotter, pyvista, show_all, surface
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pyvista import Plotter, PolyData
 
     from polhode import RigidBody
-    from polhode.animation.shape import Shape
+    from polhode._scene.shape import Shape
 
     Floats = NDArray[np.float64]
 
@@ -105,7 +105,7 @@ def principal_axes(
     -------
     pyvista.Plotter
     """
-    _one(rigid_body)
+    check_one(rigid_body.shape, "body")
     plotter = new_plotter() if plotter is None else plotter
     origin = _core.real_numbers(rigid_body.center_of_mass if center is None else center, "center")
     for k, (color, axis) in enumerate(zip(AXIS_COLORS, rigid_body.principal.axes.T, strict=True)):
@@ -148,7 +148,7 @@ def ellipsoid(
     -------
     pyvista.Plotter
     """
-    _one(body)
+    check_one(body.shape, "body")
     plotter = new_plotter() if plotter is None else plotter
     middle = _core.real_numbers(body.center_of_mass if center is None else center, "center")
     semi_axes = inertia_semi_axes(body.principal.moments)
@@ -165,10 +165,7 @@ def ellipsoid(
         name=name,
         reset_camera=False,
     )
-    around = np.linspace(0.0, 2.0 * np.pi, 181)
-    for k in range(3):
-        ring = np.zeros((181, 3))
-        ring[:, (k + 1) % 3], ring[:, (k + 2) % 3] = np.cos(around), np.sin(around)
+    for k, ring in enumerate(principal_circles()):
         curve = pyvista().MultipleLines(1.002 * (ring * semi_axes) @ body.principal.axes.T + middle)
         plotter.add_mesh(curve, color="#4A5568", line_width=1.5, name=f"{name}-ring-{k}", **AXIS_STYLE)
     return principal_axes(body, plotter, length=1.25 * size, center=middle, name=f"{name}-axes")
@@ -198,11 +195,11 @@ def rigid_body(
     -------
     pyvista.Plotter
     """
-    _one(body)
+    check_one(body.shape, "body")
     plotter = new_plotter() if plotter is None else plotter
     drawn = equivalent_box(body, np.zeros(3)) if shape is None else given_shape(*shape, np.zeros(3))
     add_surface(plotter, drawn, "body", 1.0)
-    reach = float(np.linalg.norm(drawn.vertices - body.center_of_mass, axis=1).max()) or 1.0
+    reach = longest(drawn.vertices - body.center_of_mass)
     return ellipsoid(body, plotter, size=reach, opacity=opacity)
 
 
@@ -228,8 +225,3 @@ def add_surface(plotter: Plotter, shape: Shape, name: str, opacity: float) -> li
         style = {**AXIS_STYLE, "line_width": 2.0, "name": f"{name}-outline"}
         actors.append(plotter.add_mesh(edges, color=OUTLINE_COLOR, **style))
     return actors
-
-
-def _one(body: RigidBody) -> None:
-    if body.shape:
-        raise ValueError(f"body: expected one body, got a stack of shape {body.shape}; index it")

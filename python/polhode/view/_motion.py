@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
-from polhode.animation.scene import Scene
-from polhode.plot import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
+from polhode._scene.scene import Scene
+from polhode._scene.shape import longest
+from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
 from polhode.view._bodies import add_surface
 from polhode.view._style import AXIS_STYLE, add_name, arrow, line, new_plotter, pyvista, show_all
 
@@ -110,7 +111,7 @@ class _Player:
 
     def __init__(self, plotter: Plotter, scene: Scene, name: str) -> None:
         self._plotter, self._scene, self._name = plotter, scene, name
-        self._reach = float(np.linalg.norm(scene.shape.vertices, axis=1).max()) or 1.0
+        self._reach = longest(scene.shape.vertices)
         self._thickness = 0.012 * self._reach
         self._index, self._begun = 0, 0.0
         self._is_running = False
@@ -153,7 +154,7 @@ class _Player:
         self._begun = perf_counter() - abs(self._scene.t[self._index] - self._scene.t[0]) / self._rate()
 
     def tick(self, _step: int = 0) -> None:
-        """Show where the motion has got to by the clock."""
+        """Show the state that the clock has reached."""
         if not self._is_running:
             return
         gone = (perf_counter() - self._begun) * self._rate()
@@ -170,8 +171,7 @@ class _Player:
         return float(np.ptp(self._scene.t) or 1.0) / self._scene.duration
 
     def _scaled(self, vectors: Floats) -> Floats:
-        longest = float(np.linalg.norm(vectors, axis=1).max()) or 1.0
-        return vectors * (_ARROW * self._reach / longest)
+        return vectors * (_ARROW * self._reach / longest(vectors))
 
     def _add_space(self) -> None:
         """Add what does not move: the axes of space, and the path of ω."""
@@ -194,8 +194,8 @@ class _Player:
             actor.user_matrix = placed
         self._add_arrow("L  ", self._momenta[index], MOMENTUM_COLOR, "right")
         self._add_arrow("  omega", self._tips[index], OMEGA_COLOR, "left")  # VTK's fonts have no ω
-        moment = f"t = {self._scene.t[index]:.4g} {self._scene.time_unit}"
-        text = f"{self._scene.title}\n{moment}" if self._scene.title else moment
+        instant = f"t = {self._scene.t[index]:.4g} {self._scene.time_unit}"
+        text = f"{self._scene.title}\n{instant}" if self._scene.title else instant
         self._plotter.add_text(
             text, position="upper_left", font_size=11, color="#333333", name=f"{self._name}-time"
         )

@@ -34,7 +34,7 @@ def new_plotter() -> Plotter:
 
 
 def show_all(plotter: Plotter) -> None:
-    """Move the camera to where all is seen; pyvista leaves room for twice as much."""
+    """Move the camera to where all is seen, nearer than pyvista puts it."""
     plotter.reset_camera()
     plotter.camera.zoom(1.1)
 

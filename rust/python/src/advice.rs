@@ -6,6 +6,10 @@
 use polhode::Error;
 use polhode::error::{BodyFault, FileFault, MeshFault, MotionFault};
 
+/// The way out of an open mesh, with which its message ends: a reader of files names another one before it.
+pub(crate) const CLOSE: &str =
+    "close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead";
+
 /// The message for a user of Python.
 pub(crate) fn in_words(error: &Error) -> String {
     format!("{error}{}", advice(error))
@@ -15,6 +19,7 @@ pub(crate) fn in_words(error: &Error) -> String {
 fn advice(error: &Error) -> String {
     match error {
         Error::Body(fault) => of_body(fault).to_owned(),
+        Error::Mesh(MeshFault::Open { .. }) => format!("; {CLOSE}"),
         Error::Mesh(fault) => of_mesh(fault).to_owned(),
         Error::File(FileFault::IndexZero { .. }) => ": index_base=0".to_owned(),
         Error::Motion(MotionFault::MethodCannotServe { instead, .. }) => {
@@ -45,9 +50,6 @@ fn of_body(fault: &BodyFault) -> &'static str {
 
 fn of_mesh(fault: &MeshFault) -> &'static str {
     match fault {
-        MeshFault::Open { .. } => {
-            "; close the mesh (closure=\"caps\" or \"hull\"), or model a thin shell instead"
-        }
         MeshFault::Inverted { .. } => ", or pass orient=True to turn them all",
         MeshFault::InsideOut { .. } => ", or pass orient=True to turn them",
         _ => "",

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
-use crate::advice::in_words;
+use crate::advice::{CLOSE, in_words};
 use crate::hints;
 use crate::shape::tuple;
 
@@ -23,28 +23,30 @@ pub(crate) fn to_py(py: Python<'_>, error: &Error) -> PyErr {
         Kind::Memory => return PyMemoryError::new_err(in_words(error)),
         _ => "PolhodeError",
     };
-    let raised = new(py, name, in_words(error));
-    match error {
-        Error::Mesh(fault) => told(py, raised, matches!(fault, MeshFault::Open { .. })),
-        _ => raised,
+    let exception = new(py, name, in_words(error));
+    if !matches!(error, Error::Mesh(MeshFault::Open { .. })) {
+        return exception;
     }
-}
-
-/// The exception for a mesh, which says whether to close the mesh is what it needs.
-fn told(py: Python<'_>, raised: PyErr, is_open: bool) -> PyErr {
-    match raised.value(py).setattr("is_open", is_open) {
-        Ok(()) => raised,
+    let value = exception.value(py);
+    match (value.setattr("law", "closed")).and_then(|()| value.setattr("way_out", CLOSE)) {
+        Ok(()) => exception,
         Err(error) => error,
     }
 }
 
 /// The same exception with words in front.
 pub(crate) fn with_prefix(py: Python<'_>, prefix: &str, error: &PyErr) -> PyErr {
-    let raised = PyErr::from_type(error.get_type(py), format!("{prefix}: {}", error.value(py)));
-    match error.value(py).getattr("is_open") {
-        Ok(is_open) => told(py, raised, is_open.is_truthy().unwrap_or(false)),
-        Err(_) => raised,
+    let value = error.value(py);
+    let raised = PyErr::from_type(error.get_type(py), format!("{prefix}: {value}"));
+    for name in ["law", "way_out"] {
+        // Meshes alone have them.
+        if let Ok(told) = value.getattr(name)
+            && let Err(error) = raised.value(py).setattr(name, told)
+        {
+            return error;
+        }
     }
+    raised
 }
 
 /// An exception of `polhode.errors` by its name.

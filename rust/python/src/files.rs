@@ -86,7 +86,10 @@ pub(crate) fn stream_solid(
         streamed(stream, scale, amount, options, watch)
     });
     interrupt.finish(py, outcome.is_ok())?;
-    let solid = outcome.map_err(|error| stream_error(py, &path, error))?;
+    let solid = outcome.map_err(|error| match error {
+        StreamError::Failed(error) => to_py(py, &error), // the caller names the file
+        other => stream_error(py, &path, other),
+    })?;
     let body = Stack::one(solid.body).into();
     Ok((body, solid.triangles, solid.volume, solid.area))
 }

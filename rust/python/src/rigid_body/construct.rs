@@ -172,7 +172,7 @@ impl PyRigidBody {
     ///
     /// See Also
     /// --------
-    /// polhode.io : the reader, which also returns vertices and faces.
+    /// polhode.files : the readers, which also return vertices and faces.
     #[staticmethod]
     #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, index_base=1, masses="most_common", progress=None))]
     #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
@@ -199,7 +199,7 @@ impl PyRigidBody {
         options.set_item("index_base", index_base)?;
         options.set_item("masses", masses)?;
         options.set_item("progress", progress)?;
-        py.import("polhode.io")?
+        py.import("polhode.files")?
             .call_method("body_from_file", (path,), Some(&options))
     }
 

@@ -91,7 +91,7 @@ impl PyRigidBody {
             }),
             Some("hull") => {
                 let hull = py
-                    .import("polhode._files.hull")?
+                    .import("polhode.files.hull")?
                     .call_method1("hull", (vertices, faces))?
                     .cast_into::<PyArrayDyn<i64>>()?;
                 let hull = hull.readonly();

@@ -1,4 +1,4 @@
-"""GLB files held against what is read of them, before trimesh makes arrays of what they say.
+"""Checks of GLB files before trimesh reads them: that they are whole, and hold nothing that it passes over.
 
 trimesh passes over what it does not know: compressed and sparse arrays become zeros, triangle fans nothing,
 normalized integers plain ones.
@@ -7,11 +7,9 @@ normalized integers plain ones.
 from __future__ import annotations
 
 import json
+import os
 import struct
-from typing import TYPE_CHECKING, Any, Final
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from typing import Any, BinaryIO, Final
 
 __all__ = ["check_glb"]
 
@@ -30,26 +28,26 @@ _HARMLESS: Final = (
 """Extensions by the beginnings of their names: what they change is not geometry."""
 
 
-def check_glb(file: Path) -> None:
+def check_glb(stream: BinaryIO) -> None:
     """Refuse a GLB file that is not whole, or whose triangles are stored in a way that is not read.
 
     Parameters
     ----------
-    file : pathlib.Path
+    stream : binary stream
+        The file, at its beginning.
 
     Raises
     ------
     ValueError
         Or whatever the damaged description of a scene can raise, from KeyError to TypeError.
     """
-    size = file.stat().st_size
-    with file.open("rb") as stream:
-        _, _, length, json_length, kind = struct.unpack("<5I", stream.read(_HEAD))
-        if length != size:
-            raise ValueError(f"it says that it is {length} bytes long, and is {size}")
-        if kind != 0x4E4F534A or _HEAD + json_length > size:
-            raise ValueError("it does not begin with a whole description of its scene")
-        scene = json.loads(stream.read(json_length))
+    size = os.fstat(stream.fileno()).st_size
+    _, _, length, json_length, kind = struct.unpack("<5I", stream.read(_HEAD))
+    if length != size:
+        raise ValueError(f"it says that it is {length} bytes long, and is {size}")
+    if kind != 0x4E4F534A or _HEAD + json_length > size:
+        raise ValueError("it does not begin with a whole description of its scene")
+    scene = json.loads(stream.read(json_length))
     for name in scene.get("extensionsRequired", []):
         if not name.startswith(_HARMLESS):
             raise ValueError(f"it needs the extension {name}, which is not read; export it without")

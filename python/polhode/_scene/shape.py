@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
-from polhode.plot._triangles import cut
+from polhode._scene.triangles import cut
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Shape", "equivalent_box", "given_shape"]
+__all__ = ["Shape", "check_one", "equivalent_box", "given_shape", "longest"]
 
 _LIGHT_TINTS = ((158, 197, 224), (240, 190, 150), (158, 214, 196))
 _DARK_TINTS = ((110, 160, 200), (222, 150, 96), (98, 178, 150))
@@ -47,6 +47,17 @@ class Shape:
     vertices: Floats
     faces: NDArray[np.int64]
     colors: NDArray[np.int64]
+
+
+def check_one(shape: tuple[int, ...], name: str) -> None:
+    """Refuse a stack where one body, or the motion of one, is drawn."""
+    if shape:
+        raise ValueError(f"{name}: expected one body, got a stack of shape {shape}; index it")
+
+
+def longest(vectors: Floats) -> float:
+    """Give the length of the longest of vectors (n, 3), to draw them by; 1 where all are zero."""
+    return float(np.linalg.norm(vectors, axis=-1).max()) or 1.0
 
 
 def equivalent_box(body: RigidBody, about: Floats) -> Shape:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
 import numpy as np
 
-from polhode._files.content import checked_format
-from polhode._files.reading import read_text
 from polhode.errors import FileFormatError
+from polhode.files.content import opened
+from polhode.files.reading import text_of
 
 if TYPE_CHECKING:
     import os
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Molecule", "read_xyz"]
+__all__ = ["Molecule", "molecule_of", "read_xyz"]
 
 _MOST_DIGITS: Final = 4000
 
@@ -65,8 +65,13 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
         If the file cannot be read.
     """
     file = Path(path)
-    checked_format(file)
-    lines = read_text(file, "an XYZ file").splitlines()
+    with opened(file) as content:
+        return molecule_of(content.stream, file)
+
+
+def molecule_of(stream: BinaryIO, file: Path) -> Molecule:
+    """Read a molecule from a file that is open; see :func:`read_xyz`."""
+    lines = text_of(stream, file, "an XYZ file").splitlines()
     count_text = lines[0].strip()
     if not (count_text.isdecimal() and len(count_text) <= _MOST_DIGITS) or int(count_text) == 0:
         raise FileFormatError(
@@ -107,10 +112,10 @@ def _atom(file: Path, number: int, row: str) -> tuple[str, list[Decimal]]:
 
 
 def _rounding(numbers: Sequence[Decimal]) -> float:
-    """Find half a unit of the last digit that was printed, of the coordinate for which it is the largest.
+    """Find half a unit of the last printed digit, the largest of all coordinates.
 
     Programs print a fixed number of decimals or of significant digits, and some then cut zeros off at the
-    end. Of the two the one counts by which fewer zeros are missing.
+    end. Of these two rules the one is taken by which fewer zeros were cut off.
     """
     # How many decimals each shows, and of those that are not zero the place of the first digit (0: the ones).
     decimals = [max(0, -int(number.as_tuple().exponent)) for number in numbers]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from polhode._files.writing import writing
+from polhode.files.writing import writing
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,22 +1,21 @@
-"""Meshes and scenes by trimesh: PLY, OFF and GLB, each held against what it says of itself."""
+"""PLY, OFF and GLB files, read by trimesh and checked against their own headers."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NoReturn
+from typing import TYPE_CHECKING, Any, BinaryIO, Final, NoReturn
 
 import numpy as np
 
 from polhode._extras import require
-from polhode._files.glb import check_glb
-from polhode._files.mesh import Mesh, weld
-from polhode._files.promises import check_off, check_ply, check_ply_lists, check_ply_size
-from polhode._files.reading import naming
 from polhode.errors import FileFormatError
+from polhode.files.glb import check_glb
+from polhode.files.mesh import Mesh, weld
+from polhode.files.promises import check_off, check_ply, check_ply_lists, check_ply_size
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["read_scene"]
+__all__ = ["read_by_trimesh"]
 
 _READ: Final = (".ply", ".off", ".glb")
 _PROMISING: Final = {"ply": check_ply, "off": check_off}
@@ -33,13 +32,15 @@ class _Alone:
     __getitem__ = get
 
 
-def read_scene(file: Path, readable: tuple[str, ...]) -> Mesh:
+def read_by_trimesh(stream: BinaryIO, file: Path, readable: tuple[str, ...]) -> Mesh:
     """Read every triangle of a file with trimesh, nodes placed by their transforms.
 
     Parameters
     ----------
+    stream : binary stream
+        The file, at its beginning.
     file : pathlib.Path
-        The file.
+        Its name.
     readable : tuple of str
         Suffixes to name where this file's is none that is read.
 
@@ -55,8 +56,7 @@ def read_scene(file: Path, readable: tuple[str, ...]) -> Mesh:
     kind = suffix.removeprefix(".")
     try:
         # Its own processing would merge, drop and reorder; only the stored triangles are wanted.
-        with naming(file):
-            scene = _loaded(trimesh, file, kind)
+        scene = _loaded(trimesh, stream, kind)
     except (MemoryError, OSError, FileFormatError):
         raise
     except Exception as error:  # a damaged file can raise anything in there, from KeyError to struct.error
@@ -96,22 +96,21 @@ def read_scene(file: Path, readable: tuple[str, ...]) -> Mesh:
         raise FileFormatError(f"{file}: holds no triangles")
     if kind in _PROMISING:
         try:
-            _PROMISING[kind](file, len(mesh.faces))
+            stream.seek(0)
+            _PROMISING[kind](stream, len(mesh.faces))
         except (ValueError, IndexError) as error:
             raise FileFormatError(f"{file}: not a whole {kind.upper()} file: {error}") from None
     return mesh
 
 
-def _loaded(trimesh: Any, file: Path, kind: str) -> Any:
+def _loaded(trimesh: Any, stream: BinaryIO, kind: str) -> Any:
     """Give trimesh's scene of a file that can be what it says."""
     if kind == "glb":
-        check_glb(file)
+        check_glb(stream)
     elif kind == "ply":
-        check_ply_size(file)
-    with file.open("rb") as stream:
-        scene = trimesh.load_scene(
-            stream, file_type=kind, resolver=_Alone(), process=False, skip_materials=True
-        )
+        check_ply_size(stream)
+    stream.seek(0)
+    scene = trimesh.load_scene(stream, file_type=kind, resolver=_Alone(), process=False, skip_materials=True)
     if kind == "ply":
         check_ply_lists(scene)
     return scene

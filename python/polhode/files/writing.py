@@ -104,7 +104,7 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
 
 
 def _old(path: str | os.PathLike[str]) -> os.stat_result | None:
-    """Look at what stands under the name; an error where nothing can be written."""
+    """Give the status of the old file, if any; an error where nothing can be written."""
     try:
         old = Path(path).stat()
     except FileNotFoundError:

@@ -7,14 +7,23 @@ import stat
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-__all__ = ["MOST_TEXT", "check_ordinary", "files_read", "naming", "note_read", "read_bytes", "read_text"]
+__all__ = [
+    "MOST_TEXT",
+    "check_ordinary",
+    "files_read",
+    "naming",
+    "note_read",
+    "read_bytes",
+    "read_text",
+    "text_of",
+]
 
 MOST_TEXT: Final = 1 << 30
 """Bytes of the largest text that is read whole."""
@@ -31,7 +40,7 @@ _OTHERS: Final[tuple[tuple[Callable[[int], bool], str], ...]] = (
 
 @contextmanager
 def files_read() -> Iterator[list[Path]]:
-    """Give a list to which every file is added that is opened meanwhile, by whatever name leads to it."""
+    """Give a list to which every file is added that is read in the meantime."""
     read: list[Path] = []
     outer = _READ.get()
     token = _READ.set((*outer, read))
@@ -48,7 +57,7 @@ def note_read(path: str | os.PathLike[str]) -> None:
 
 
 def check_ordinary(path: str | os.PathLike[str]) -> None:
-    """Refuse what is no ordinary file before it is opened: a pipe would be waited for, a device never ends.
+    """Refuse a pipe, a device or a folder before it is opened: reading a pipe waits, a device never ends.
 
     Parameters
     ----------
@@ -97,13 +106,7 @@ def read_bytes(path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:
     """
     check_ordinary(path)
     with naming(path), Path(path).open("rb") as stream:
-        if os.fstat(stream.fileno()).st_size <= most:
-            data = stream.read(most + 1)
-            if len(data) <= most:
-                return data
-    raise FileFormatError(
-        f"{os.fspath(path)}: is larger than {most} bytes, the most that is read of such files"
-    )
+        return _whole(stream, path, most)
 
 
 def read_text(path: str | os.PathLike[str], kind: str, most: int = MOST_TEXT) -> str:
@@ -117,8 +120,27 @@ def read_text(path: str | os.PathLike[str], kind: str, most: int = MOST_TEXT) ->
     most : int
         In bytes.
     """
+    return _decoded(read_bytes(path, most), path, kind)
+
+
+def text_of(stream: BinaryIO, path: str | os.PathLike[str], kind: str, most: int = MOST_TEXT) -> str:
+    """Read a whole text in UTF-8 from a file that is open; see :func:`read_text`."""
+    return _decoded(_whole(stream, path, most), path, kind)
+
+
+def _whole(stream: BinaryIO, path: str | os.PathLike[str], most: int) -> bytes:
+    if os.fstat(stream.fileno()).st_size <= most:
+        data = stream.read(most + 1)
+        if len(data) <= most:
+            return data
+    raise FileFormatError(
+        f"{os.fspath(path)}: is larger than {most} bytes, the most that is read of such files"
+    )
+
+
+def _decoded(data: bytes, path: str | os.PathLike[str], kind: str) -> str:
     try:
-        return read_bytes(path, most).decode()
+        return data.decode()
     except UnicodeDecodeError as error:
         raise FileFormatError(
             f"{os.fspath(path)}: not a text file, so not {kind}: byte {error.start} is not UTF-8"

@@ -1,4 +1,4 @@
-"""At which times a motion is looked at, so that what is drawn is what happens.
+"""The times at which a motion is drawn: so close that the picture shows what happens.
 
 From one picture to the next a body seems to turn the shorter way: by more than half a turn it seems to turn
 backward. And a curve through too few points cuts through the surface on which it lies. So pictures follow the
@@ -65,7 +65,7 @@ class Span(NamedTuple):
 
 
 def turns(t: Floats, omega: Floats) -> Floats:
-    """By how much a body turns from each time to the next, by the greater rate of the two; shape (T - 1,).
+    """Angles by which a body turns from each time to the next, at the greater of both rates, shape (T - 1,).
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def _divided(t: Floats, step: float, most: int) -> Span:
 
 
 def motion_times(motion: FreeMotion | HeavyTop, t: Floats, *, most: int = MOST) -> Span:
-    """Put times between those given, by how one body turns and by ω's path on its ellipsoid and in space."""
+    """Put times between those given, so that the turns of one body and the paths of its ω are followed."""
     size = fastest(motion)
     if size == 0.0:
         return Span(t, is_whole=True)

@@ -1,4 +1,4 @@
-"""Which moments of a motion an animation shows, and how long it takes on the screen."""
+"""Which states of a motion an animation shows, and how long it takes on the screen."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from polhode._sampling import COARSE, MOST, TURN, fastest, motion_times, turns
+from polhode._scene.sampling import COARSE, MOST, TURN, fastest, motion_times, turns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Moments", "of_motion", "of_samples"]
+__all__ = ["Footage", "of_motion", "of_samples"]
 
 _SECONDS: Final = 10.0
 """That a motion takes on the screen at least."""
@@ -31,8 +31,8 @@ _BETWEEN: Final = 20
 
 
 @dataclass(frozen=True)
-class Moments:
-    """The moments that are shown.
+class Footage:
+    """The states that are shown.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Moments:
 
 def of_samples(
     trajectory: Trajectory, *, frames: int | None, duration: float | None, is_film: bool, time_unit: str
-) -> Moments:
+) -> Footage:
     """Choose frames evenly among the samples of a motion of which no other states are known.
 
     Parameters
@@ -89,9 +89,9 @@ def of_samples(
         notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
     if is_film:
         seconds = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
-        return Moments(trajectory, chosen, seconds, tuple(notes))
+        return Footage(trajectory, chosen, seconds, tuple(notes))
     seconds, told = _on_screen(whole, rate, duration)
-    return Moments(trajectory, chosen, seconds, (*notes, *told))
+    return Footage(trajectory, chosen, seconds, (*notes, *told))
 
 
 def of_motion(
@@ -101,7 +101,7 @@ def of_motion(
     duration: float | None,
     is_film: bool,
     time_unit: str,
-) -> Moments:
+) -> Footage:
     """Choose frames for a motion whose state is known at every time.
 
     Parameters
@@ -131,11 +131,11 @@ def of_motion(
         )
     is_enough = np.array_equal(span.t, since)
     shown = samples if is_enough else replace(motion.at(span.t), t=span.t + t[0])
-    return Moments(shown, chosen, seconds, tuple(notes))
+    return Footage(shown, chosen, seconds, tuple(notes))
 
 
 def _pictures(length: float, rate: float, duration: float | None) -> tuple[Floats, float, list[str]]:
-    """Choose the even times of a film's pictures; give also its seconds, and what is to be said of them."""
+    """Choose evenly spaced times for the pictures of a film; also give its length in seconds, and notes."""
     needed = float(np.ceil(abs(length) * rate / TURN)) + 1.0
     if duration is None:
         count = int(min(max(needed, _RATE * _SECONDS), _FILM))
@@ -153,7 +153,7 @@ def _pictures(length: float, rate: float, duration: float | None) -> tuple[Float
 
 
 def _judged(angle: float, where: str, way_out: str) -> list[str]:
-    """Say that a turn from one picture to the next is too large, or refuse what cannot be shown."""
+    """Give a note where the turn from one picture to the next is large; an error where it is too large."""
     if angle >= np.pi:
         raise ValueError(
             f"{where} the body turns by up to {np.rad2deg(angle):.4g} deg, past the half turn beyond which a "
@@ -168,7 +168,7 @@ def _judged(angle: float, where: str, way_out: str) -> list[str]:
 
 
 def _on_screen(length: float, rate: float, duration: float | None) -> tuple[float, list[str]]:
-    """Give the seconds that a page takes, no picture turning by more than `TURN`; and what is to be said."""
+    """Give the seconds that a page takes, with no turn above `TURN` between pictures; and notes."""
     turned = abs(length) * rate / _RATE
     needed = max(_SECONDS, turned / TURN)
     if duration is None:

@@ -1,19 +1,21 @@
-"""What a file holds, told from its first bytes and its size rather than from its name."""
+"""The format of a file, recognised by its first bytes and its size and not by its name."""
 
 from __future__ import annotations
 
 import codecs
 import os
 import struct
-from typing import TYPE_CHECKING, Final
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
-from polhode._files.reading import check_ordinary, naming
 from polhode.errors import FileFormatError
+from polhode.files.reading import check_ordinary, naming
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["EXPECTED_CONTENT", "MOLECULE_SUFFIX", "checked_format", "content_format"]
+__all__ = ["EXPECTED_CONTENT", "MOLECULE_SUFFIX", "Content", "content_format", "opened"]
 
 MOLECULE_SUFFIX: Final = ".xyz"
 EXPECTED_CONTENT: Final = {
@@ -32,6 +34,24 @@ _STL_TRIANGLE = 50
 _PLATE_KEYWORDS = frozenset({"v", "vn", "vt", "vp", "f", "o", "g", "s", "l", "mtllib", "usemtl"})
 _ROBOT_ROOTS = ((b"<robot", "URDF"), (b"<sdf", "SDF"), (b"<mujoco", "MJCF"))
 _CONTROL = bytes(set(range(32)) - set(b"\t\n\v\f\r\x1a"))
+
+
+class Content(NamedTuple):
+    """A file that is open to be read, and what it holds.
+
+    Attributes
+    ----------
+    stream : binary stream
+        At the beginning of the file.
+    format : str or None
+        See :func:`content_format`.
+    head : bytes
+        The file's first few thousand bytes.
+    """
+
+    stream: BinaryIO
+    format: str | None
+    head: bytes
 
 
 def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
@@ -69,12 +89,26 @@ def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
     return _text_format(text), True
 
 
-def checked_format(file: Path) -> str | None:
-    """Tell the format of the content where that can be; an error where it is not the suffix's."""
+@contextmanager
+def opened(file: Path) -> Iterator[Content]:
+    """Open a file and tell the format of its content where that can be told.
+
+    Raises
+    ------
+    FileFormatError
+        If the file is empty, or its content is not what its suffix says.
+    OSError
+        With the name of the file.
+    """
     check_ordinary(file)
     with naming(file), file.open("rb") as stream:
         head = stream.read(4096)
-        size = os.fstat(stream.fileno()).st_size
+        found = _checked_format(file, head, os.fstat(stream.fileno()).st_size)
+        stream.seek(0)
+        yield Content(stream, found, head)
+
+
+def _checked_format(file: Path, head: bytes, size: int) -> str | None:
     if not head:
         raise FileFormatError(f"{file}: the file is empty")
     robot = next((name for root, name in _ROBOT_ROOTS if root in head), None)

@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
-__all__ = ["cut", "joined"]
+__all__ = ["cut", "joined", "unit_normals"]
 
 _COARSEST: Final = 4
 """Cells along the largest extent of a mesh whose corners are joined, at the least."""
 
 
 def cut(triangles: Floats, longest: float, *, at_most: int | None = None) -> tuple[Floats, Integers]:
-    """Halve triangles until no edge is longer than `longest`; give the pieces and whose they are.
+    """Halve triangles until no edge is longer than `longest`; tell which triangle each piece is from.
 
     What draws sorts polygons by the depth of their middles, which puts large ones in the wrong order.
 
@@ -98,3 +98,10 @@ def _in_cells(vertices: Floats, faces: Integers, low: Floats, side: float) -> tu
     # Sheets that fell together leave the same triangle twice.
     _, first = np.unique(np.sort(kept, axis=1), axis=0, return_index=True)
     return middles, kept[np.sort(first)]
+
+
+def unit_normals(triangles: Floats) -> Floats:
+    """Give unit normals of triangles (m, 3, 3), on the side from which they run counterclockwise."""
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    unit: Floats = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+    return unit

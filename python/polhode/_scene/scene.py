@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
-from polhode.animation.frames import of_motion, of_samples
-from polhode.animation.shape import Shape, equivalent_box, given_shape
+from polhode._scene.footage import of_motion, of_samples
+from polhode._scene.shape import Shape, equivalent_box, given_shape
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from polhode import FreeMotion, HeavyTop, Trajectory
-    from polhode.animation.frames import Moments
+    from polhode._scene.footage import Footage
 
     Floats = NDArray[np.float64]
 
@@ -95,12 +95,12 @@ class Scene:
         _check_duration(duration)
         if frames is None and trajectory.load is None and not trajectory.pivoted:
             motion = trajectory.body.free_motion(trajectory.omega[0], trajectory.quaternion[0])
-            moments = of_motion(motion, trajectory, duration=duration, is_film=is_film, time_unit=time_unit)
+            footage = of_motion(motion, trajectory, duration=duration, is_film=is_film, time_unit=time_unit)
         else:
-            moments = of_samples(
+            footage = of_samples(
                 trajectory, frames=frames, duration=duration, is_film=is_film, time_unit=time_unit
             )
-        return cls._of_moments(moments, shape, title, time_unit)
+        return cls._of_footage(footage, shape, title, time_unit)
 
     @classmethod
     def of_motion(
@@ -114,14 +114,14 @@ class Scene:
     ) -> Scene:
         """Choose the frames of a motion in closed form from 0 s to its end."""
         ends = motion.at([0.0, end])
-        moments = of_motion(motion, ends, duration=None, is_film=is_film, time_unit="s")
-        return cls._of_moments(moments, shape, title, "s")
+        footage = of_motion(motion, ends, duration=None, is_film=is_film, time_unit="s")
+        return cls._of_footage(footage, shape, title, "s")
 
     @classmethod
-    def _of_moments(
-        cls, moments: Moments, shape: tuple[ArrayLike, ArrayLike] | None, title: str, time_unit: str
+    def _of_footage(
+        cls, footage: Footage, shape: tuple[ArrayLike, ArrayLike] | None, title: str, time_unit: str
     ) -> Scene:
-        trajectory, chosen = moments.trajectory, moments.chosen
+        trajectory, chosen = footage.trajectory, footage.chosen
         about = trajectory.about
         principal = trajectory.body.principal_about(about)
         in_axes = trajectory.omega[chosen] @ principal.axes
@@ -144,8 +144,8 @@ class Scene:
             shape=equivalent_box(trajectory.body, about) if shape is None else given_shape(*shape, about),
             title=title,
             time_unit=time_unit,
-            duration=moments.duration,
-            notes=moments.notes,
+            duration=footage.duration,
+            notes=footage.notes,
         )
 
 

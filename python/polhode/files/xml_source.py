@@ -230,14 +230,14 @@ def remove_attribute(source: bytes, element: Element, name: str) -> Edit | None:
 
 
 def set_text(element: Element, value: str) -> Edit:
-    """Edit what stands between the tags."""
+    """Edit the text between the tags."""
     if element.outside == element.inside == element.end:
         return Edit(element.start, element.end, f"<{element.tag}>{value}</{element.tag}>")
     return Edit(element.inside, element.outside, value)
 
 
 def blanks_of(between: bytes) -> str:
-    """Give what stands before an element if it is blanks alone, so that one put there stands alike."""
+    """Give the blanks before an element, so that another one can be inserted with the same indentation."""
     return between.decode() if between.isspace() else ""
 
 

@@ -1,4 +1,4 @@
-"""Named fields as JSON and npz files hold them, read strictly: what is there is whole and is what it says."""
+"""Named fields in JSON and npz files, read strictly: a damaged file is an error."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode._files.reading import MOST_TEXT, check_ordinary, naming, read_text
-from polhode._files.writing import write_bytes
 from polhode.errors import FileFormatError
+from polhode.files.reading import MOST_TEXT, check_ordinary, naming, read_text
+from polhode.files.writing import write_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,7 +61,7 @@ def write_json(file: Path, fields: dict[str, Any]) -> None:
 
 
 def read_npz(file: Path) -> dict[str, NDArray[Any]]:
-    """Read the arrays of an npz file, each held against its checksum before anything is made of it.
+    """Read the arrays of an npz file; the checksum of each is verified first.
 
     Parameters
     ----------

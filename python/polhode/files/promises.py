@@ -1,4 +1,4 @@
-"""PLY and OFF files held against what their headers promise.
+"""Checks that PLY and OFF files hold what their headers promise.
 
 trimesh takes what it finds: a text cut at the end of a line still parses, a word that is no number ends a
 row, and of lists that differ in length it looks at the first.
@@ -6,13 +6,13 @@ row, and of lists that differ in length it looks at the first.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+import os
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
 
 __all__ = ["check_off", "check_ply", "check_ply_lists", "check_ply_size"]
 
@@ -28,16 +28,15 @@ class _Element(NamedTuple):
     """Of each property."""
 
 
-def check_ply_size(file: Path) -> None:
+def check_ply_size(stream: BinaryIO) -> None:
     """Refuse a header that promises more rows than the file has bytes, before anything is made of them."""
-    with file.open("rb") as lines:
-        rows = sum(element.rows for element in _ply_header(lines)[0])
-    if rows > file.stat().st_size:
+    rows = sum(element.rows for element in _ply_header(stream)[0])
+    if rows > os.fstat(stream.fileno()).st_size:
         raise ValueError(f"the header promises {rows} rows, more than the file has bytes")
 
 
 def check_ply_lists(scene: Any) -> None:
-    """Refuse a binary PLY whose lists are not all as long as the first, which trimesh takes for all."""
+    """Refuse a binary PLY with lists of different lengths: trimesh takes the length of the first for all."""
     for geometry in scene.geometry.values():
         for element in geometry.metadata.get("_ply_raw", {}).values():
             data = element.get("data")
@@ -52,16 +51,15 @@ def check_ply_lists(scene: Any) -> None:
                         )
 
 
-def check_ply(file: Path, triangles: int) -> None:
-    """Hold the rows of a PLY against its header, and the triangles that were made of its faces."""
-    with file.open("rb") as lines:
-        elements, is_text = _ply_header(lines)
-        faces = sum(element.rows for element in elements if element.name == b"face")
-        if not is_text:
-            if triangles < faces:
-                raise _cut_short(faces)
-            return
-        rows = [words for line in lines if (words := line.split())]
+def check_ply(stream: BinaryIO, triangles: int) -> None:
+    """Compare the rows of a PLY with its header, and the number of triangles with its faces."""
+    elements, is_text = _ply_header(stream)
+    faces = sum(element.rows for element in elements if element.name == b"face")
+    if not is_text:
+        if triangles < faces:
+            raise _cut_short(faces)
+        return
+    rows = [words for line in stream if (words := line.split())]
     if len(rows) < sum(element.rows for element in elements):
         raise _cut_short(faces)
     expected = at = 0
@@ -81,10 +79,9 @@ def check_ply(file: Path, triangles: int) -> None:
         raise _cut_short(faces)
 
 
-def check_off(file: Path, triangles: int) -> None:
-    """Hold the rows of an OFF file against its counts, and the triangles that were made of its faces."""
-    with file.open("rb") as lines:
-        rows = [words for line in lines if (words := line.partition(b"#")[0].split())]
+def check_off(stream: BinaryIO, triangles: int) -> None:
+    """Compare the rows of an OFF file with its counts, and the number of triangles with its faces."""
+    rows = [words for line in stream if (words := line.partition(b"#")[0].split())]
     # The counts may stand beside the word OFF.
     counts, rows = (rows[0][1:], rows[1:]) if rows[0][1:] else (rows[1], rows[2:])
     vertices, faces = int(counts[0]), int(counts[1])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import io
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 import numpy as np
 
@@ -30,13 +31,15 @@ _FACETS_PER_BLOCK: Final = 4096
 _LONGEST_LINE: Final = 1 << 20
 
 
-def read_ascii_stl(file: Path) -> NDArray[np.float64]:
+def read_ascii_stl(stream: BinaryIO, file: Path) -> NDArray[np.float64]:
     """Read the corners of every triangle of every solid in an ASCII STL file.
 
     Parameters
     ----------
+    stream : binary stream
+        The file's content; normals in it are not used.
     file : pathlib.Path
-        The file; normals in it are not used.
+        Its name, for what is wrong with it.
 
     Returns
     -------
@@ -53,7 +56,8 @@ def read_ascii_stl(file: Path) -> NDArray[np.float64]:
     name = None
     number = 0
     try:
-        with file.open(encoding="utf-8", errors="surrogateescape") as lines:  # names may be in any encoding
+        # Names of solids may be in any encoding.
+        with io.TextIOWrapper(stream, encoding="utf-8", errors="surrogateescape") as lines:
             for line in iter(partial(lines.readline, _LONGEST_LINE), ""):
                 number += 1
                 if len(line) == _LONGEST_LINE:

@@ -1,0 +1,135 @@
+"""Output of a motion: files, tables of another library, pictures and windows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+    from pyvista import Plotter
+    from xarray import Dataset
+
+    from polhode.trajectory import Trajectory
+
+__all__ = ["animate", "plot", "save", "to_xarray", "view"]
+
+
+def save(self: Trajectory, path: str | PathLike[str]) -> None:
+    """Write the motion to a file, with every bit of it.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
+        (space); a stack's lines begin with the indices of the body. ``.npz``: the arrays under the names
+        of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``. ``.json``:
+        readable, after the schema in :mod:`polhode.files`. The load and the events are not kept.
+    """
+    from polhode.files.saved_motion import save_trajectory
+
+    save_trajectory(self, path)
+
+
+def to_xarray(self: Trajectory) -> Dataset:
+    """Give the motion as an :class:`xarray.Dataset`; needs xarray.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time``, after the axes ``body`` (or ``body_0``, ``body_1``, …) of a stack. Components are
+        named ``x y z`` and ``x y z w``; every variable says in which frame it is.
+    """
+    from polhode._extras import require
+
+    xarray = require("xarray", extra=None, purpose="Trajectory.to_xarray")
+    shape = self.omega.shape[:-2]
+    stack = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
+    vector, frames = (
+        [*stack, "time", "component"],
+        {"omega": "body", "position": "space", "velocity": "space"},
+    )
+    variables: dict[str, Any] = {
+        name: (vector, getattr(self, name), {"frame": frame}) for name, frame in frames.items()
+    }
+    variables["quaternion"] = (
+        [*stack, "time", "quaternion_component"],
+        self.quaternion,
+        {"long_name": "R_NB, scalar last"},
+    )
+    coordinates = {"time": self.t, "component": list("xyz"), "quaternion_component": list("xyzw")}
+    dataset: Dataset = xarray.Dataset(variables, coordinates, {"title": repr(self)})
+    return dataset
+
+
+def plot(self: Trajectory, ax: Axes | None = None) -> Axes:
+    """Draw the components of the angular velocity in the body over time; needs matplotlib.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    from polhode.plot import angular_velocity
+
+    return angular_velocity(self, ax)
+
+
+def view(self: Trajectory, plotter: Plotter | None = None, **options: Any) -> Plotter:
+    """Show the motion of one body in a window; needs pyvista.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter, optional
+        Where to show it; a new one by default.
+    **options
+        `at`, `shape`, `duration`, `title` and `time_unit`, see :func:`polhode.view.motion`.
+
+    Returns
+    -------
+    pyvista.Plotter
+        Its ``show()`` opens the window.
+    """
+    from polhode.view import motion
+
+    return motion(self, plotter, **options)
+
+
+def animate(self: Trajectory, path: str | PathLike[str], **options: Any) -> Path:
+    """Write the motion of one body as a moving picture.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib;
+        ``.mp4``: needs also the program ffmpeg, which the extra ``film`` brings.
+    **options
+        `shape`, `frames`, `duration`, `title`, `time_unit` and `progress`, see
+        :func:`polhode.animation.animate`.
+
+    Returns
+    -------
+    pathlib.Path
+        Where it was written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> from polhode import solids
+    >>> motion = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 10, 201), omega=(0.01, 1, 0))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     page = motion.animate(Path(folder) / "racket.html", title="The tennis racket")
+    ...     page.read_text(encoding="utf-8")[:15]
+    '<!DOCTYPE html>'
+    """
+    from polhode.animation import animate
+
+    return animate(self, path, **options)

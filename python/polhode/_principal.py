@@ -1,0 +1,169 @@
+"""Principal moments and axes, and how they change with the tensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from polhode import _core
+from polhode._repr import one_line, short
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["TOP_RTOL", "PrincipalAxes", "PrincipalDerivative"]
+
+TOP_RTOL: Final = 1e-6
+"""Moments closer than this, relative to the largest, count as equal unless more is known of them."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PrincipalAxes:
+    """Principal moments and axes of one tensor or of a stack.
+
+    Attributes
+    ----------
+    moments : numpy.ndarray, shape (..., 3)
+        Ascending.
+    axes : numpy.ndarray, shape (..., 3, 3)
+        The axes are the **columns**, right-handed: ``inertia = axes @ diag(moments) @ axes.T`` and
+        ``v_body = axes @ v_principal``.
+    top_rtol : float or numpy.ndarray, shape (..., 3)
+        At which `top` is decided, relative to the largest moment: 1e-6, or for a molecule from a file of few
+        digits one each for I1 = 0, I1 = I2 and I2 = I3, as much as the rounding of its coordinates can make
+        and at least 1e-6.
+    """
+
+    moments: Floats
+    axes: Floats
+    top_rtol: Any = TOP_RTOL
+
+    def __repr__(self) -> str:
+        shape = self.moments.shape[:-1]
+        if shape:
+            return f"<PrincipalAxes stack of shape {shape}>"
+        return one_line(self, {"moments": self.moments, "axes": self.axes, "top": self.top})
+
+    @cached_property
+    def quaternion(self) -> Floats:
+        """The rotation `axes` as unit quaternions (x, y, z, w), shape (..., 4)."""
+        return _core.quaternion_from_matrix(self.axes)
+
+    @cached_property
+    def gaps(self) -> Floats:
+        """Relative gaps (I2 - I1)/I3 and (I3 - I2)/I3, shape (..., 2); zero for a point."""
+        return _core.principal_gaps(self.moments)
+
+    @cached_property
+    def top(self) -> Any:
+        """Class of the top, decided on `gaps` at the relative tolerance `top_rtol`.
+
+        ``"spherical"`` (I1 = I2 = I3), ``"oblate"`` (I1 = I2 < I3), ``"prolate"`` (I1 < I2 = I3),
+        ``"asymmetric"``, ``"linear"`` (0 = I1 < I2 = I3), ``"point"`` (all zero), ``"none"`` where the
+        moments belong to no body. One string, or an array of them for a stack. Another tolerance:
+        :meth:`classify`.
+        """
+        return self.classify()
+
+    def classify(self, rtol: ArrayLike | None = None) -> Any:
+        """Class of the top with moments closer than ``rtol`` times the largest taken as equal.
+
+        Parameters
+        ----------
+        rtol : float or array_like, shape (..., 3), optional
+            One number, or one each for I1 = 0, I1 = I2 and I2 = I3; `top_rtol` by default.
+
+        Returns
+        -------
+        str or numpy.ndarray of str, shape (...)
+            As `top`.
+        """
+        return _core.classify_tops(self.moments, self.top_rtol if rtol is None else rtol)
+
+    @cached_property
+    def kappa(self) -> Any:
+        """Ray's asymmetry parameter κ = (2B − A − C)/(A − C) of the rotational constants A ≥ B ≥ C.
+
+        −1 for a prolate top, +1 for an oblate one, NaN for a spherical one. A float, or an array for a stack.
+        """
+        return _core.ray_kappa(self.moments)
+
+    def canonical(self, rtol: float = 1e-6) -> PrincipalAxes:
+        """Where moments are equal their axes are free: turn them to the body axes of largest projection.
+
+        Parameters
+        ----------
+        rtol : float, optional
+            Moments closer than this times the largest count as equal.
+
+        Returns
+        -------
+        PrincipalAxes
+            With the same moments; a spherical top gets the body axes themselves.
+
+        Examples
+        --------
+        >>> from polhode import principal_axes
+        >>> principal_axes([(2.0, 0, 0), (0, 1.0, 0), (0, 0, 2.0)]).canonical().axes
+        array([[ 0.,  1.,  0.],
+               [ 1.,  0.,  0.],
+               [ 0.,  0., -1.]])
+        """
+        axes = _core.canonical_axes(self.moments, self.axes, rtol)
+        return PrincipalAxes(self.moments, axes, self.top_rtol)
+
+    def derivative(self, tangent: ArrayLike, rtol: float = 1e-12) -> PrincipalDerivative:
+        """Change of moments and axes for a change of the tensor.
+
+        Parameters
+        ----------
+        tangent : array_like, shape (..., 3, 3)
+            dI, symmetric.
+        rtol : float, optional
+            Moments closer than this times the largest count as equal.
+
+        Returns
+        -------
+        PrincipalDerivative
+
+        Examples
+        --------
+        >>> from polhode import principal_axes
+        >>> found = principal_axes([(1.0, 0, 0), (0, 2.0, 0), (0, 0, 4.0)])
+        >>> change = found.derivative([(0.5, 1, 0), (1, 0, 0), (0, 0, 0)])
+        >>> change.moments
+        array([0.5, 0. , 0. ])
+        >>> change.axes
+        array([[ 0.,  1.,  0.],
+               [-1.,  0.,  0.],
+               [ 0.,  0.,  0.]])
+        """
+        found = _core.principal_derivative(self.moments, self.axes, tangent, rtol)
+        return PrincipalDerivative(*found)
+
+
+class PrincipalDerivative(NamedTuple):
+    """Derivatives of principal moments and axes in the direction of a tangent dI.
+
+    Attributes
+    ----------
+    moments : numpy.ndarray, shape (..., 3)
+        dI_k = (Vᵀ dI V)_kk.
+    axes : numpy.ndarray, shape (..., 3, 3)
+        dV = V Ω, Ω_ij = (Vᵀ dI V)_ij / (I_j − I_i): the axes turn.
+    degenerate : numpy.ndarray of bool, shape (..., 3)
+        Which of the pairs (1, 2), (1, 3), (2, 3) have equal moments. Within such a pair neither the axes nor
+        the single moments have a derivative: `axes` leaves out the rotation in the plane of the pair, and
+        of the two `moments` only the sum has a meaning that does not depend on the choice of axes.
+    """
+
+    moments: Floats
+    axes: Floats
+    degenerate: NDArray[np.bool_]
+
+    def __repr__(self) -> str:
+        return short(self)

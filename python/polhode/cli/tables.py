@@ -1,0 +1,135 @@
+"""What several reports tell: tensors, principal axes, class of the top, and where numbers come from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode.cli.layout import Field
+from polhode.cli.quantities import quantity
+from polhode.files.mesh_solid import MeshSolid
+from polhode.results import TOP_RTOL
+from polhode.units import metres_per
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from polhode.cli.loading import LoadedBody
+
+__all__ = ["FileUnits", "body_fields", "tensor_fields", "top_fields", "trust_fields"]
+
+
+@dataclass(frozen=True)
+class FileUnits:
+    """The units that results are also given in: the file's length, and the mass that was asked for."""
+
+    length: str | None = None
+    mass: str | None = None
+
+    def fields(
+        self,
+        key: str,
+        label: str,
+        value: ArrayLike,
+        unit: str,
+        *,
+        length: int = 0,
+        mass: int = 0,
+        scale: float = 0.0,
+    ) -> list[Field]:
+        """Give powers of length and mass, and where the file has other units also in those.
+
+        Parameters
+        ----------
+        key, label, value, unit, scale
+            See `Field`; the value in kg and m.
+        length, mass : int
+            The powers.
+        """
+        fields = [Field(key, label, value, unit, scale=scale)]
+        if self.length is None or (self.mass is None if mass else self.length == "m"):
+            return fields
+        one = metres_per(self.length) ** length
+        name = self.length + (f"^{length}" if length > 1 else "") if length else ""
+        if mass and self.mass is not None:
+            one *= quantity(f"1 {self.mass}", "kg", "--mass-unit") ** mass
+            name = f"{self.mass} {name}".strip()
+        fields.append(Field(f"in_file_unit.{key}", "", np.divide(value, one), name, scale=scale / one))
+        return fields
+
+
+def tensor_fields(
+    loaded: LoadedBody, units: FileUnits, about: tuple[float, float, float] | None
+) -> list[Field]:
+    """Inertia tensors about C, about O and about a point that was asked for."""
+    body = loaded.body
+    tensors = [
+        ("center_of_mass", "about C", body.inertia),
+        ("origin", "about O", body.inertia_about("origin")),
+    ]
+    if about is not None:
+        tensors.append(("point", "about the point", body.inertia_about(about)))
+    fields = [
+        field
+        for name, label, tensor in tensors
+        for field in units.fields(
+            f"inertia_about_{name}", label, tensor, loaded.moment_unit, length=2, mass=1, scale=tensor.max()
+        )
+    ]
+    if about is not None:
+        point = np.array(about)
+        fields += units.fields("point", "  the point", point, loaded.length, length=1, scale=loaded.extent)
+    return fields
+
+
+def body_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
+    """Principal moments, axes and class of a body."""
+    body = loaded.body
+    principal = body.principal
+    per_mass = principal.moments / body.mass
+    square, radius = f"{loaded.length}^2", np.sqrt(per_mass)
+    return [
+        *units.fields(
+            "principal_moments", "I1 I2 I3", principal.moments, loaded.moment_unit, length=2, mass=1
+        ),
+        *units.fields("moments_per_mass", "I1 I2 I3 / mass", per_mass, square, length=2),
+        *units.fields("radii_of_gyration", "radii of gyration", radius, loaded.length, length=1),
+        Field("axes", "e1 e2 e3", principal.axes, hint="columns", scale=1.0),
+        Field("gaps", "gaps 2-1, 3-2", principal.gaps, hint="of I3"),
+        *top_fields(loaded),
+    ]
+
+
+def top_fields(loaded: LoadedBody, rtol: float | None = None) -> list[Field]:
+    """Class of the top, and of a molecule the tolerance at which it is decided, and why."""
+    principal, rounding = loaded.body.principal, float(loaded.body.provenance.rounding)
+    top = Field("top", "top", str(principal.classify(rtol)))
+    if isinstance(loaded.source, MeshSolid) or not loaded.source:
+        return [top]
+    rtols = np.broadcast_to(principal.top_rtol if rtol is None else rtol, (3,))
+    if rtol is not None:
+        why = "as --rtol says"
+    elif rounding == 0.0:
+        why = "the default: the file prints no digits behind the point, by which to tell more"
+    elif rtols.max() <= TOP_RTOL:
+        why = "the default: the digits of the file tell more"
+    else:
+        why = f"what rounding of the coordinates by {rounding:.2g} {loaded.length}, by their digits, can make"
+    return [
+        top,
+        Field("top_rtol", "equal within", rtols, hint="of the largest moment: I1 = 0, I1 = I2, I2 = I3"),
+        Field("top_rtol_from", "", why),
+    ]
+
+
+def trust_fields(loaded: LoadedBody) -> list[Field]:
+    """Where the numbers come from and what rounding can have done to them."""
+    provenance, bound = loaded.body.provenance, loaded.body.error_bound
+    return [
+        Field("provenance", "made of", str(provenance)),
+        Field("error_bound.mass", "bound on mass", bound.mass, loaded.mass_unit),
+        Field("error_bound.center_of_mass", "  on centre", bound.center_of_mass, loaded.length),
+        Field("error_bound.inertia", "  on inertia", bound.inertia, loaded.moment_unit),
+    ]

@@ -1,0 +1,88 @@
+"""Reading and writing: bodies from meshes and molecules, and bodies and motions that keep every bit.
+
+:func:`load` opens a mesh or a molecule; ``RigidBody.from_file`` makes a body of it. ``RigidBody.save`` and
+``Trajectory.save`` write JSON after a schema and NumPy's npz, ``RigidBody.load`` and ``Trajectory.from_file``
+read them. :data:`BODY_SCHEMA` and :data:`TRAJECTORY_SCHEMA` say what the JSON files hold, as JSON Schema.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from polhode.files.body import body_from_file
+    from polhode.files.loaded import Loaded, load, read_mesh
+    from polhode.files.mesh import Mesh
+    from polhode.files.mesh_solid import MeshSolid, solid_from_file
+    from polhode.files.saved_body import BODY_SCHEMA, load_body, save_body
+    from polhode.files.saved_motion import TRAJECTORY_SCHEMA, save_trajectory_json, save_trajectory_npz
+    from polhode.files.xyz import Molecule, read_xyz
+    from polhode.trajectory import Trajectory
+else:
+
+    def __getattr__(name):
+        """Import a name when it is first used: the command line writes files without NumPy."""
+        from importlib import import_module
+
+        home = _HOMES.get(name)
+        if home is None:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = globals()[name] = getattr(import_module(f"{__name__}.{home}"), name)
+        return value
+
+    def __dir__():
+        return __all__
+
+
+_HOMES = {
+    "BODY_SCHEMA": "saved_body",
+    "Loaded": "loaded",
+    "Mesh": "mesh",
+    "MeshSolid": "mesh_solid",
+    "Molecule": "xyz",
+    "TRAJECTORY_SCHEMA": "saved_motion",
+    "body_from_file": "body",
+    "load": "loaded",
+    "load_body": "saved_body",
+    "read_mesh": "loaded",
+    "read_xyz": "xyz",
+    "save_body": "saved_body",
+    "save_trajectory_json": "saved_motion",
+    "save_trajectory_npz": "saved_motion",
+    "solid_from_file": "mesh_solid",
+}
+"""In which file of this room each public name stands."""
+
+__all__ = [
+    "BODY_SCHEMA",
+    "TRAJECTORY_SCHEMA",
+    "Loaded",
+    "Mesh",
+    "MeshSolid",
+    "Molecule",
+    "body_from_file",
+    "load",
+    "load_body",
+    "load_trajectory",
+    "read_mesh",
+    "read_xyz",
+    "save_body",
+    "save_trajectory_json",
+    "save_trajectory_npz",
+    "solid_from_file",
+]
+
+
+def load_trajectory(path: str | PathLike[str]) -> Trajectory:
+    """Read a motion: what ``Trajectory.from_file`` does.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Ends in ``.json`` or ``.npz``.
+    """
+    from polhode.trajectory import Trajectory
+
+    return Trajectory.from_file(path)

@@ -1,0 +1,156 @@
+"""The body that a file of matter describes, a solid or a molecule."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.loaded import load
+from polhode.files.mesh_solid import naming_file, solid_of
+from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, body_of_atoms, isotopes
+from polhode.units import metres_per
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from polhode._core import RigidBody
+    from polhode.files.xyz import Molecule
+    from polhode.molecules import Masses
+
+__all__ = ["body_from_file", "check_molecule_options", "molecule_isotopes"]
+
+
+def body_from_file(
+    path: str | os.PathLike[str],
+    *,
+    density: float | None = None,
+    mass: float | None = None,
+    length_unit: str | None = None,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    index_base: int = 1,
+    masses: Masses = "most_common",
+    progress: Callable[[float], object] | None = None,
+) -> RigidBody:
+    """Read the body a file describes: what ``RigidBody.from_file`` does.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        A mesh (STL, OBJ and ``v``/``f`` plate files, PLY, OFF, GLB; see :func:`read_mesh`) or a molecule
+        (XYZ; see :func:`read_xyz`).
+    density, mass : float, optional
+        Exactly one of them for a mesh, neither for a molecule.
+    length_unit : str, optional
+        Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's
+        masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
+    weld, closure, orient, index_base
+        Of a mesh; see :func:`solid_from_file`.
+    masses : {"most_common", "average"}
+        Of a molecule; see :func:`polhode.molecules.isotopes`.
+    progress : callable, optional
+        Is told the fraction of a large mesh file done, now and then; an exception it raises ends the reading.
+
+    Returns
+    -------
+    RigidBody
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, damaged or empty.
+    MeshError
+        If the mesh does not bound a solid.
+    OSError
+        If the file cannot be read.
+    """
+    for name, value in (("density", density), ("mass", mass)):
+        _check_amount(name, value, path)
+    scale = 1.0 if length_unit is None else metres_per(length_unit)
+    if Path(path).suffix.lower() != MOLECULE_SUFFIX:
+        if masses != "most_common":
+            raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
+        return solid_of(
+            load(path, index_base=index_base),
+            density=density,
+            mass=mass,
+            scale=scale,
+            weld=weld,
+            closure=closure,
+            orient=orient,
+            progress=progress,
+        ).body
+    check_molecule_options(
+        path,
+        density=density is not None,
+        mass=mass is not None,
+        weld=weld != 0.0,
+        closure=closure is not None,
+        orient=orient,
+        index_base=index_base != 1,
+    )
+    molecule = load(path).molecule
+    unit = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
+    found = [isotope.mass * unit for isotope in molecule_isotopes(path, molecule, masses)]
+    with naming_file(path), np.errstate(over="ignore"):
+        rounding = molecule.rounding * scale
+        return body_of_atoms(found, molecule.positions * scale, source=masses, rounding=rounding)
+
+
+def check_molecule_options(path: str | os.PathLike[str], *, prefix: str = "", **given: bool) -> None:
+    """Refuse options that only a mesh has, where the file is a molecule.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        The molecule.
+    prefix : str
+        What stands before the name of an option where it is typed; its words are then joined by hyphens.
+    **given : bool
+        For each option of a mesh, whether it is given.
+    """
+    name = next((name for name, is_given in given.items() if is_given), None)
+    if name is None:
+        return
+    reason = "whose atoms have their own masses" if name in ("density", "mass") else "not a mesh"
+    shown = f"{prefix}{name.replace('_', '-')}" if prefix else name
+    raise PolhodeError(f"{shown}: {os.fspath(path)} is a molecule, {reason}; leave it out")
+
+
+def molecule_isotopes(
+    path: str | os.PathLike[str], molecule: Molecule, masses: Masses = "most_common"
+) -> list[Isotope]:
+    """Find the nuclides of a molecule's atoms; an error names the file.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Where the molecule comes from.
+    molecule : Molecule
+        What was read.
+    masses : {"most_common", "average"}
+        See :func:`polhode.molecules.isotopes`.
+
+    Returns
+    -------
+    list of Isotope
+        In the order of the atoms.
+    """
+    try:
+        return isotopes(molecule.labels, masses)
+    except PolhodeError as error:
+        raise FileFormatError(f"{os.fspath(path)}: {error}") from None
+
+
+def _check_amount(name: str, value: object, path: str | os.PathLike[str]) -> None:
+    if isinstance(value, str):
+        raise TypeError(
+            f"{name}: expected a number, got {value!r}; units are read on the command line: "
+            f'polhode report {os.fspath(path)} --{name} "{value}"'
+        )

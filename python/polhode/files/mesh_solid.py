@@ -1,0 +1,190 @@
+"""The solid that the mesh in a file bounds."""
+
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
+
+import numpy as np
+
+from polhode import _core
+from polhode.errors import MeshError, PolhodeError
+from polhode.files.loaded import Loaded, load
+from polhode.files.mesh import weld_within
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from polhode.files.mesh import Mesh
+
+__all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of"]
+
+_SMALL_FILE: Final = 1 << 28
+"""Bytes of a file that is read whole for a hint in an error."""
+
+
+class MeshSolid(NamedTuple):
+    """A solid from a mesh file, and what the file holds.
+
+    Attributes
+    ----------
+    body : RigidBody
+        The solid.
+    format : str
+        As in :class:`Mesh`.
+    vertices : int or None
+        How many vertices; None in a format that stores the corners of each triangle anew.
+    faces : int
+        How many triangles.
+    volume, area : float
+        In units of the result; the area is that of the file's triangles, without what closed them.
+    welded : int
+        Corners that were joined to others within the length asked for.
+    """
+
+    body: _core.RigidBody
+    format: str
+    vertices: int | None
+    faces: int
+    volume: float
+    area: float
+    welded: int
+
+
+def solid_from_file(
+    path: str | os.PathLike[str],
+    *,
+    density: float | None = None,
+    mass: float | None = None,
+    scale: float = 1.0,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    index_base: int = 1,
+    progress: Callable[[float], object] | None = None,
+) -> MeshSolid:
+    """Make the solid that the mesh in a file bounds; an error names the file.
+
+    Binary STL and PLY go through memory block by block, whatever their size, but for the vertices of a
+    PLY, which its faces name in any order; other formats, and files that are to be welded within a length
+    or closed, are read whole. A stream is gone through again for every eight million triangles, to look for
+    faces that stand twice; that components wound inward are cavities, inside others, is checked of a
+    quarter of a million triangles at most. `provenance` lists what was checked.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        See :func:`read_mesh`.
+    density, mass : float, optional
+        Exactly one of them.
+    scale : float
+        Unit of the coordinates, in the unit of the result.
+    weld, index_base
+        See :func:`read_mesh`.
+    closure : {"caps", "hull"}, optional
+        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`; without it, it is an error.
+    orient : bool
+        Turn triangles that face inward; without it they are an error.
+    progress : callable, optional
+        Is told the fraction of the file done, now and then.
+
+    Returns
+    -------
+    MeshSolid
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, damaged or empty.
+    MeshError
+        If the mesh does not bound a solid.
+    OSError
+        If the file cannot be read.
+    """
+    return solid_of(
+        load(path, index_base=index_base),
+        density=density,
+        mass=mass,
+        scale=scale,
+        weld=weld,
+        closure=closure,
+        orient=orient,
+        progress=progress,
+    )
+
+
+def solid_of(
+    loaded: Loaded,
+    *,
+    density: float | None = None,
+    mass: float | None = None,
+    scale: float = 1.0,
+    weld: float = 0.0,
+    closure: Literal["caps", "hull"] | None = None,
+    orient: bool = False,
+    progress: Callable[[float], object] | None = None,
+) -> MeshSolid:
+    """Make the solid that the mesh of a loaded file bounds; see :func:`solid_from_file`."""
+    file = loaded.path
+    if loaded.is_stream and weld == 0.0 and closure is None:
+        try:
+            with naming_file(file):
+                body, faces, volume, area = _core.stream_solid(
+                    str(file), scale=scale, density=density, mass=mass, orient=orient, progress=progress
+                )
+        except MeshError as error:
+            if error.law == "closed" and loaded.format == "binary STL" and file.stat().st_size <= _SMALL_FILE:
+                _offer_weld(error, loaded.mesh)
+            raise
+        return MeshSolid(body, loaded.format, None, faces, volume, area, 0)
+    mesh = loaded.mesh
+    corners = len(mesh.vertices)
+    if weld != 0.0:
+        mesh = weld_within(mesh, weld)
+    with np.errstate(over="ignore"):  # what is beyond float64 is refused as infinite, with its number
+        vertices = mesh.vertices * scale
+
+    def solid(density: float | None, mass: float | None = None) -> _core.RigidBody:
+        return _core.RigidBody.from_mesh(
+            vertices, mesh.faces, density=density, mass=mass, closure=closure, orient=orient
+        )
+
+    try:
+        with naming_file(file):
+            body = solid(density, mass)
+            volume = float(body.mass) / density if density is not None else float(solid(1.0).mass)
+            area = _core.surface_area(vertices, mesh.faces)
+    except MeshError as error:
+        _offer_weld(error, mesh)
+        raise
+    welded = corners - len(mesh.vertices)
+    count = len(mesh.vertices)
+    return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
+
+
+@contextmanager
+def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Put the name of the file before the text of an error."""
+    try:
+        yield
+    except PolhodeError as error:
+        error.args = (f"{os.fspath(path)}: {error}",)
+        raise
+
+
+def _offer_weld(error: MeshError, mesh: Mesh) -> None:
+    """Offer to weld, as the first way out, where corners are closer than 32-bit coordinates resolve."""
+    size = float(np.abs(mesh.vertices).max(initial=0.0))
+    in_range = not mesh.faces.size or (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices))
+    if not (np.isfinite(size) and size > 0.0 and in_range):
+        return
+    resolution = float(f"{size * 2.0**-23:.0e}")
+    try:
+        near = len(mesh.vertices) - len(weld_within(mesh, resolution).vertices)
+    except ValueError:
+        return
+    if near == 0:
+        return
+    lie, them = ("corner lies", "it") if near == 1 else ("corners lie", "them")
+    error.offer(f"{near} {lie} within {resolution:g} of another, weld={resolution:g} joins {them}")

@@ -1,0 +1,214 @@
+"""Motions as files: what ``Trajectory.save`` writes and ``Trajectory.from_file`` reads, to the last bit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode.errors import FileFormatError
+from polhode.files.fields import counts, numbers, write_json
+from polhode.files.record import WORDS, array_schema, check_names, in_json, read_record, required, write_npz
+from polhode.files.saved_body import (
+    BODY_ARRAYS,
+    BODY_FIELDS,
+    BODY_SCHEMA,
+    body_fields,
+    body_of,
+    check_has_bodies,
+)
+from polhode.files.writing import writing
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from polhode.trajectory import Trajectory
+
+__all__ = [
+    "TRAJECTORY_SCHEMA",
+    "TRAJECTORY_SUFFIXES",
+    "read_motion",
+    "save_trajectory",
+    "save_trajectory_json",
+    "save_trajectory_npz",
+]
+
+TRAJECTORY_SUFFIXES: Final = (".csv", ".json", ".npz")
+
+_FORMAT: Final = "polhode.Trajectory/1"
+_STATES: Final = {"t": 0, "omega": 3, "quaternion": 4, "position": 3, "velocity": 3}
+_COLUMNS: Final = {"omega": "xyz", "quaternion": "xyzw", "position": "xyz", "velocity": "xyz"}
+_COUNTS: Final = ("steps", "evaluations")
+_ENDS: Final = ("complete", "stopped", "failed")
+_OFF_UNITY: Final = 1e-6
+_FIELDS: Final = ("about", *_STATES, *_COUNTS, "status", "pivoted")
+_ARRAYS: Final = (*_FIELDS, *BODY_ARRAYS, *(f"body_{name}" for name in BODY_FIELDS))
+
+TRAJECTORY_SCHEMA: dict[str, object] = {
+    "$schema": "https://json-schema.org/draft/2020-12/schema",
+    "title": "The motion of a rigid body, or of a stack of bodies",
+    "type": "object",
+    "required": ["format", "body", "about", *_STATES],
+    "properties": {
+        "format": {"const": _FORMAT},
+        "body": BODY_SCHEMA,
+        "about": array_schema("the point of reference in the body, shape (..., 3)"),
+        "pivoted": {"description": "whether that point is fixed in space", "type": "boolean"},
+        "t": array_schema(
+            "times, shape (T,); of a closed form any shape, which stands for (T,) in those below"
+        ),
+        "omega": array_schema("angular velocity in the body, shape (..., T, 3)"),
+        "quaternion": array_schema("attitude R_NB as x, y, z, w, shape (..., T, 4)"),
+        "position": array_schema("of the point of reference in space, shape (..., T, 3)"),
+        "velocity": array_schema("of the point of reference in space, shape (..., T, 3)"),
+        "status": {"description": "how each run ended, shape (...)", "type": ["string", "array"]},
+        "steps": array_schema("accepted steps, shape (...)"),
+        "evaluations": array_schema("of the equations of motion, shape (...)"),
+    },
+    "patternProperties": {"^comment$": {"description": "for the reader of the file"}},
+    "additionalProperties": False,
+}
+"""What a motion's JSON file holds, as JSON Schema; a state that is not a number is null."""
+
+
+def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
+    """Write a trajectory to ``.csv``, ``.json`` or ``.npz``: what ``Trajectory.save`` does.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    path : str or os.PathLike
+        Its suffix chooses the format.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    if suffix == ".csv":
+        _save_csv(trajectory, file)
+    elif suffix == ".json":
+        save_trajectory_json(trajectory, file)
+    elif suffix == ".npz":
+        save_trajectory_npz(trajectory, file)
+    else:
+        raise ValueError(f"path: {file} does not end in .csv, .json or .npz")
+
+
+def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
+    """Write a motion as JSON.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    path : pathlib.Path
+    """
+    check_has_bodies(trajectory.body, path)
+    fields: dict[str, Any] = {"format": _FORMAT}
+    fields["body"] = in_json(body_fields(trajectory.body), path)
+    fields |= {name: getattr(trajectory, name) for name in _FIELDS}
+    write_json(path, in_json(fields, path))
+
+
+def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
+    """Write a motion as NumPy's arrays, those of the body beside the body's own under plain names.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    path : pathlib.Path
+    """
+    arrays = {name: getattr(trajectory, name) for name in _FIELDS}
+    arrays |= {name: getattr(trajectory.body, name) for name in BODY_ARRAYS}
+    arrays |= {f"body_{name}": value for name, value in body_fields(trajectory.body).items()}
+    write_npz(path, _FORMAT, arrays)
+
+
+def read_motion(path: str | PathLike[str]) -> dict[str, Any]:
+    """Read the fields of a motion, under the names of the attributes of :class:`polhode.Trajectory`.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Ends in ``.json`` or ``.npz``.
+    """
+    file = Path(path)
+    fields = read_record(file, _FORMAT, (*_FIELDS, "body"), _ARRAYS)
+    if file.suffix.lower() == ".npz":
+        fields["body"] = {
+            name.removeprefix("body_"): value for name, value in fields.items() if name.startswith("body_")
+        }
+    elif not isinstance(fields.get("body"), dict):
+        raise FileFormatError(f"{file}: body is not an object with the fields of a body")
+    else:
+        check_names(fields["body"], (*BODY_FIELDS, *WORDS), f"{file}: body")
+    body = body_of(fields["body"], file)
+    t = numbers(required(fields, "t", file), "t", file)
+    states = {"t": t, "about": numbers(required(fields, "about", file), "about", file)}
+    expected: dict[str, tuple[int, ...]] = {"about": (*body.shape, 3)}
+    for name, width in _STATES.items():
+        if width:
+            states[name] = numbers(required(fields, name, file), name, file, with_holes=True)
+            expected[name] = (*body.shape, *t.shape, width)
+    for name, shape in expected.items():
+        if states[name].shape != shape:
+            raise FileFormatError(f"{file}: {name} has shape {states[name].shape}, expected {shape}")
+    _check_unit(states["quaternion"], file)
+    none = np.zeros(body.shape, dtype=np.int64)
+    given = {name: counts(fields.get(name, none), name, file, body.shape) for name in _COUNTS}
+    ended = {"status": _status(fields, file, body.shape), "pivoted": _pivoted(fields, file)}
+    return {"body": body, **states, **given, **ended}
+
+
+def _status(fields: dict[str, Any], file: Path, shape: tuple[int, ...]) -> Any:
+    held = fields.get("status", "complete")
+    status = np.array(held, dtype=object)
+    others = [word for word in status.reshape(-1).tolist() if word not in _ENDS]
+    if others:
+        raise FileFormatError(
+            f"{file}: status holds {repr(others[0])[:60]}, expected one of {', '.join(_ENDS)}"
+        )
+    if status.shape not in ((), shape):
+        raise FileFormatError(f"{file}: status has shape {status.shape}, expected {shape}")
+    return status.astype(str) if status.ndim else str(held)
+
+
+def _pivoted(fields: dict[str, Any], file: Path) -> bool:
+    held = fields.get("pivoted", False)
+    if isinstance(held, np.ndarray) and held.dtype == np.bool_ and held.ndim == 0:
+        return bool(held)
+    if not isinstance(held, bool):
+        found = f"{held.dtype} of shape {held.shape}" if isinstance(held, np.ndarray) else repr(held)[:60]
+        raise FileFormatError(f"{file}: pivoted is {found}, expected true or false")
+    return held
+
+
+def _check_unit(quaternion: NDArray[np.float64], file: Path) -> None:
+    with np.errstate(over="ignore"):
+        squares = np.square(quaternion).sum(axis=-1)
+    off = squares[np.abs(squares - 1.0) > _OFF_UNITY]
+    if off.size:
+        raise FileFormatError(f"{file}: a quaternion has the norm {np.sqrt(off[0]):.9g}, expected 1")
+
+
+def _save_csv(trajectory: Trajectory, file: Path) -> None:
+    if trajectory.t.ndim != 1:
+        raise ValueError(
+            f"path: {file}: a table has one row for each time, and these are of shape {trajectory.t.shape}; "
+            "give times in one row, or save as .npz"
+        )
+    shape = trajectory.omega.shape[:-2]
+    names = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
+    names.append("t")
+    times = (*shape, len(trajectory))
+    columns: list[NDArray[Any]] = list(np.indices(times)[:-1])
+    columns.append(np.broadcast_to(trajectory.t, times))
+    for array, components in _COLUMNS.items():
+        names += [f"{array}_{component}" for component in components]
+        columns += list(np.moveaxis(getattr(trajectory, array), -1, 0))
+    rows = np.stack([np.asarray(column, dtype=np.float64).reshape(-1) for column in columns], axis=-1)
+    # 17 significant digits give the same float64 back.
+    formats = ["%d"] * len(shape) + ["%.17g"] * (len(names) - len(shape))
+    with writing(file) as stream:
+        np.savetxt(stream, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")
