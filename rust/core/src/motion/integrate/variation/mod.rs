@@ -13,12 +13,14 @@
 //! | `inertia` | the tensor, the mass, the centre of mass |
 //! | `acts`, `spline`, `orbit` | the recurrences of the terms of a load |
 //! | `pace` | the length of a step |
+//! | `columns` | state and derivatives at a time |
 //! | `walk` | steps, outputs, breaks |
 //!
 //! Source: Hairer, Nørsett & Wanner, Solving ODEs I, §I.14; where a law changes its torque with the state, Filippov's rule for
 //! derivatives ("saltation"), di Bernardo et al., Piecewise-smooth Dynamical Systems, §2.5.
 
 mod acts;
+mod columns;
 mod inertia;
 mod motion;
 mod numbers;
@@ -90,7 +92,7 @@ pub fn variations(
             first: index * WIDTH,
         };
         let mut watch = |part| watch((index as f64 + part) / blocks as f64);
-        let mut give = |k: usize, columns: &walk::Columns| {
+        let mut give = |k: usize, columns: &numbers::Columns| {
             for (column, slopes) in (block.first..LOAD + numbers).zip(columns) {
                 found[k].set(column, slopes);
             }

@@ -1,6 +1,6 @@
 //! Series and vectors of numbers that carry their derivatives with them.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 use crate::numerics::double_double::two_sum;
 use crate::numerics::jet::Jet;
@@ -20,6 +20,9 @@ pub(super) type Quadruple = [Number; 4];
 /// The coefficients of a power series in time, as far as they are known.
 pub(super) type Row = Vec<Number>;
 pub(super) type Rows<const N: usize> = [Row; N];
+
+/// The derivatives of (δ, ω) by the variables of a block.
+pub(super) type Columns = [Vector6<f64>; WIDTH];
 
 pub(super) const ZERO: Number = Number::constant(0.0);
 

@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector6};
+use nalgebra::Vector3;
 
 use super::acts::{Act, Place};
 use super::inertia::Inertia;
 use super::motion::{Motion, Units};
 use super::numbers::{
-    Block, Number, ORDER, Quadruple, Vector, WIDTH, ZERO, add, apply, begin, dot, extend,
+    Block, Columns, Number, ORDER, Quadruple, Vector, ZERO, add, apply, begin, dot, extend,
     increment, plus, quaternion_product, times, turn_product,
 };
 use super::orbit::Orbiting;
@@ -19,7 +19,6 @@ use crate::motion::attitude::from_axes;
 use crate::motion::loads::{GravityGradient, Term};
 use crate::motion::problem::Task;
 use crate::motion::problem::limits::{HELD, check_steps, spans};
-use crate::motion::state::Phase;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::power_of_two::power_below;
 use crate::numerics::sign_changes::sign_changes;
@@ -29,24 +28,21 @@ const PATIENCE: u32 = 16;
 /// How far ω may outgrow the unit of rates before another is taken.
 const OUTGROWN: f64 = 65_536.0;
 
-/// The derivatives of (δ, ω) by the variables of a block.
-pub(super) type Columns = [Vector6<f64>; WIDTH];
-
 /// A motion between two breaks of its load. Times are since the start.
 pub(super) struct Walk<'a> {
-    task: &'a Task<'a>,
+    pub(super) task: &'a Task<'a>,
     terms: &'a [Term],
-    block: Block,
-    inertia: Inertia,
-    units: Units,
+    pub(super) block: Block,
+    pub(super) inertia: Inertia,
+    pub(super) units: Units,
     /// What rounding has left out of a number stands beside it.
-    omega: [Vector; 2],
-    attitude: [Quadruple; 2],
+    pub(super) omega: [Vector; 2],
+    pub(super) attitude: [Quadruple; 2],
     now: (f64, f64),
     /// The terms that act, but for the gradients, which all go along: by the number of the term, and whether it acts.
     acts: Vec<Act>,
     orbits: Vec<(usize, bool, Orbiting<'a>)>,
-    motion: Motion,
+    pub(super) motion: Motion,
     paces: [Pace; 2],
     fastest: f64,
 }
@@ -156,18 +152,6 @@ impl<'a> Walk<'a> {
 
     fn time(&self) -> f64 {
         self.task.times[0] + (self.now.0 + self.now.1)
-    }
-
-    /// The state now, in body axes and real units.
-    fn phase(&self) -> Phase {
-        let [x, y, z, w] = self.attitude[0].map(|x| x.value);
-        let q_pb = from_axes(&self.inertia.axes).conjugate();
-        let omega = Vector3::from(self.omega[0].map(|x| x.value)) * self.units.rate;
-        Phase {
-            attitude: UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)) * q_pb,
-            omega: self.inertia.axes * omega,
-            ..self.task.initial
-        }
     }
 
     /// Takes a unit of rates and the terms that act in a span.
@@ -379,23 +363,6 @@ impl<'a> Walk<'a> {
                 }
             }
         }
-    }
-
-    /// The derivatives at the time `h` of the step.
-    fn columns(&self, h: f64) -> Columns {
-        let moved = |x: &Number, row| *x + increment(row, h);
-        let q = [0, 1, 2, 3].map(|i| moved(&self.attitude[0][i], &self.motion.attitude[i]));
-        let omega = [0, 1, 2].map(|i| moved(&self.omega[0][i], &self.motion.omega[i]));
-        let at = Quaternion::new(q[3].value, q[0].value, q[1].value, q[2].value);
-        let twice = 2.0 / at.norm_squared();
-        std::array::from_fn(|n| {
-            let [x, y, z, w] = q.map(|x| x.slopes[n]);
-            let tilt = (at.conjugate() * Quaternion::new(w, x, y, z)).imag() * twice;
-            let tilt = self.inertia.axes * tilt;
-            let own = Vector3::from(omega.map(|x| x.slopes[n])) * self.units.rate;
-            let own = self.inertia.axes * own;
-            Vector6::new(tilt.x, tilt.y, tilt.z, own.x, own.y, own.z)
-        })
     }
 }
 
