@@ -1,8 +1,9 @@
 """Two builds of polhode, our side of every row, in turn: ``python benchmarks/builds.py OLD NEW [NAME ...]``.
 
-OLD and NEW are folders that hold a built package ``polhode`` (``python`` of a checkout after ``make build``). Each
-build has a process of its own; a round times a row in one and then in the other, so that what the machine does meanwhile
-meets both. The ratios are times of OLD over times of NEW: above one, NEW is faster.
+OLD and NEW are folders that hold a built package ``polhode`` (``python`` of a checkout after ``make
+build``). Each build has a process of its own; a round times a row in one and then in the other, so that
+what the machine does meanwhile meets both. The ratios are times of OLD over times of NEW: above one, NEW
+is faster.
 """
 
 from __future__ import annotations
