@@ -29,9 +29,14 @@ where
         }
         Method::Radau => Box::new(Solved::<L, Radau<TURNING>, TURNING>::new(task, span, load)?),
         Method::Splitting => Box::new(Kicked::new(task, span, load)?),
-        _ if moves => Box::new(Solved::<L, Dop853<MOVING>, MOVING>::new(task, span, load)?),
-        _ => Box::new(Solved::<L, Dop853<TURNING>, TURNING>::new(
-            task, span, load,
-        )?),
+        // Auto was settled, and a series has a driver of its own.
+        Method::Auto | Method::Taylor | Method::Dop853 if moves => {
+            Box::new(Solved::<L, Dop853<MOVING>, MOVING>::new(task, span, load)?)
+        }
+        Method::Auto | Method::Taylor | Method::Dop853 => {
+            Box::new(Solved::<L, Dop853<TURNING>, TURNING>::new(
+                task, span, load,
+            )?)
+        }
     })
 }
