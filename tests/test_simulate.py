@@ -263,9 +263,9 @@ class TestOutput:
     def test_a_method_that_cannot_says_which_can(self) -> None:
         call = loads.torque_callback(lambda _t, w, _q: -w)
         refused: tuple[tuple[Any, ...], ...] = (
-            ("exact", loads.damping(1.0), 'method="taylor" can'),
-            ("exact", call, 'method="dop853" can'),
-            ("taylor", call, 'method="dop853" can'),
+            ("exact", loads.damping(1.0), '"taylor" can serve this run: method="taylor"'),
+            ("exact", call, '"dop853" can serve this run: method="dop853"'),
+            ("taylor", call, '"dop853" can serve this run: method="dop853"'),
         )
         for method, load, word in refused:
             with pytest.raises(PolhodeError, match=word):
