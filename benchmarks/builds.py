@@ -46,26 +46,29 @@ class Build:
 
 
 def serve(names: list[str]) -> None:
-    """Answer questions: which rows there are, how often a row fits the clock, how long it takes."""
+    """Answer questions about one row after the other: its name, how many calls fit the clock, their time."""
     from importlib import import_module
 
     from harness import repeats, seconds
 
     answers, sys.stdout = sys.stdout, sys.stderr
-    rows = {f"{name}: {row.name}": row for name in names for row in import_module(name).rows()}
+    # One at a time: what a row reads may be there only until the next one is asked for.
+    rows = ((name, row) for name in names for row in import_module(name).rows())
+    row: Any = None
     for line in sys.stdin:
         what, *rest = json.loads(line)
-        if what == "rows":
-            answer: Any = list(rows)
+        if what == "next":
+            name, row = next(rows, (None, None))
+            answer: Any = row and f"{name}: {row.name}"
         elif what == "repeats":
-            answer = repeats(rows[rest[0]].ours, 0.02)
+            answer = repeats(row.ours, 0.02)
         else:
-            answer = seconds(rows[rest[0]].ours, rest[1])
+            answer = seconds(row.ours, *rest)
         print(json.dumps(answer), file=answers, flush=True)
 
 
 def main() -> None:
-    """Time all rows that both builds have."""
+    """Time all rows."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("old", type=Path, metavar="OLD")
     parser.add_argument("new", type=Path, metavar="NEW")
@@ -74,18 +77,16 @@ def main() -> None:
     options = parser.parse_args()
     names = options.names or list(FILES_OF_ROWS)
     old, new = Build(options.old, names), Build(options.new, names)
-    known = old.ask("rows")
     ratios = []
     print(f"{'what':80} {'old/new':>8}   least to most of {options.rounds} rounds")
-    for row in dict.fromkeys(new.ask("rows")):
-        if row not in known:
-            print(f"{row:80} only in the new build")
-            continue
-        count = min(build.ask("repeats", row) for build in (old, new))
+    while row := new.ask("next"):
+        if old.ask("next") != row:
+            raise RuntimeError(f"the builds have other rows from {row!r} on")
+        count = min(build.ask("repeats") for build in (old, new))
         found = []
         for turn in range(options.rounds):
             # Who goes first changes from round to round.
-            pair = [(build, build.ask("seconds", row, count)) for build in ((old, new), (new, old))[turn % 2]]
+            pair = [(build, build.ask("seconds", count)) for build in ((old, new), (new, old))[turn % 2]]
             times = dict(pair)
             found.append(times[old] / times[new])
         ratio = statistics.median(found)
