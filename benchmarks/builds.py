@@ -3,7 +3,8 @@
 OLD and NEW are folders that hold a built package ``polhode`` (``python`` of a checkout after ``make
 build``). Each build has a process of its own; a round times a row in one and then in the other, so that
 what the machine does meanwhile meets both. The ratios are times of OLD over times of NEW: above one, NEW
-is faster.
+is faster. How memory lies differs from process to process by more than most changes of the code: the
+median is that of several pairs of processes.
 """
 
 from __future__ import annotations
@@ -67,32 +68,40 @@ def serve(names: list[str]) -> None:
         print(json.dumps(answer), file=answers, flush=True)
 
 
+def compare(folders: list[Path], name: str, rounds: int) -> dict[str, list[float]]:
+    """Ratios of the rows of one file, in two new processes."""
+    old, new = (Build(folder, [name]) for folder in folders)
+    ratios: dict[str, list[float]] = {}
+    while row := new.ask("next"):
+        if old.ask("next") != row:
+            raise RuntimeError(f"the builds have other rows from {row!r} on")
+        count = min(build.ask("repeats") for build in (old, new))
+        for turn in range(rounds):
+            # Who goes first changes from round to round.
+            pair = [(build, build.ask("seconds", count)) for build in ((old, new), (new, old))[turn % 2]]
+            times = dict(pair)
+            ratios.setdefault(row, []).append(times[old] / times[new])
+    return ratios
+
+
 def main() -> None:
     """Time all rows."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("old", type=Path, metavar="OLD")
     parser.add_argument("new", type=Path, metavar="NEW")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(FILES_OF_ROWS)}")
-    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--rounds", type=int, default=5, help="in each pair of processes")
+    parser.add_argument("--pairs", type=int, default=5, help="of processes")
     options = parser.parse_args()
-    names = options.names or list(FILES_OF_ROWS)
-    old, new = Build(options.old, names), Build(options.new, names)
-    ratios = []
-    print(f"{'what':80} {'old/new':>8}   least to most of {options.rounds} rounds")
-    while row := new.ask("next"):
-        if old.ask("next") != row:
-            raise RuntimeError(f"the builds have other rows from {row!r} on")
-        count = min(build.ask("repeats") for build in (old, new))
-        found = []
-        for turn in range(options.rounds):
-            # Who goes first changes from round to round.
-            pair = [(build, build.ask("seconds", count)) for build in ((old, new), (new, old))[turn % 2]]
-            times = dict(pair)
-            found.append(times[old] / times[new])
-        ratio = statistics.median(found)
-        ratios.append(ratio)
-        print(f"{row:80} {ratio:8.3f}   {min(found):.3f} to {max(found):.3f}", flush=True)
-    print(f"{'geometric mean':80} {statistics.geometric_mean(ratios):8.3f}")
+    medians = []
+    print(f"{'what':80} {'old/new':>8}   least to most of {options.pairs} pairs of processes")
+    for name in options.names or FILES_OF_ROWS:
+        pairs = [compare([options.old, options.new], name, options.rounds) for _ in range(options.pairs)]
+        for row in pairs[0]:
+            found = [statistics.median(pair[row]) for pair in pairs]
+            medians.append(statistics.median(found))
+            print(f"{row:80} {medians[-1]:8.3f}   {min(found):.3f} to {max(found):.3f}", flush=True)
+    print(f"{'geometric mean':80} {statistics.geometric_mean(medians):8.3f}")
 
 
 if __name__ == "__main__":
