@@ -48,7 +48,7 @@ pub struct Task<'a> {
     pub euler: EulerEquations,
     /// The state at the first time.
     pub initial: Phase,
-    /// When the state is asked for, the start first; see [`check_times`].
+    /// When the state is asked for, the start first; see [`check_times`](super::limits::check_times).
     pub times: &'a [f64],
     /// How.
     pub method: Method,

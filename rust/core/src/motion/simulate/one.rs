@@ -15,7 +15,7 @@ use crate::motion::problem::{End, Method, Run, Task, check_scales};
 /// is called with the fraction done after each step and may stop the run.
 ///
 /// # Panics
-/// When there are no times; see [`check_times`].
+/// When there are no times; see [`check_times`](crate::motion::problem::check_times).
 pub fn simulate<L: Load>(
     task: &Task<'_>,
     load: &mut L,
