@@ -103,7 +103,7 @@ class TestTheChecker:
         [
             "use crate::b::B; pub struct A;",
             "use super::b::{self, B as Other}; pub struct A;",
-            "pub struct A; fn f() -> crate::b::B { todo!() }",
+            "pub struct A; fn f() -> crate::b::B { loop {} }",
             "pub struct A; fn f() { use super::b::B; }",
             "use crate::b; pub struct A; fn f() { b::B::new() }",
             "use crate::b::*; pub struct A; fn f(_: B) {}",

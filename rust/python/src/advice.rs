@@ -40,6 +40,7 @@ fn of_body(fault: &BodyFault) -> &'static str {
             is_from_origin: true,
             ..
         } => ": if it is about the centre of mass pass it as inertia=",
+        BodyFault::Degenerate { .. } => "; pass mass=",
         BodyFault::NotASpatialInertia { .. } => " (order= says which half comes first)",
         BodyFault::NotASymmetricTop { .. } => {
             "; pass rtol= to take them as equal, or integrate with simulate()"

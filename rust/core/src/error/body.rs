@@ -187,6 +187,16 @@ pub enum BodyFault {
         /// The number.
         value: f64,
     },
+    /// A shape without extent that is given a density.
+    #[error(
+        "{what} must be positive where a density is given (a degenerate shape takes a mass), got {value:?}"
+    )]
+    Degenerate {
+        /// Its length, area or volume.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
     /// A density that is zero wherever it was looked at.
     #[error(
         "density gives no mass: {mass:?} from {count} points; draw the bounds closely around the matter, so that it is found"
@@ -283,6 +293,7 @@ impl BodyFault {
             Self::NotASymmetricTop { .. }
             | Self::NegativeCentralMass { .. }
             | Self::ImpossibleDensity { .. }
+            | Self::Degenerate { .. }
             | Self::NoMassFound { .. }
             | Self::TooFewEvaluations { .. }
             | Self::Overlap { .. }

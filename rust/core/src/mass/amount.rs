@@ -7,7 +7,7 @@ use super::error_bound::ErrorBound;
 use super::provenance::{Checks, Provenance, Source};
 use super::second_moment::SecondMoment;
 use super::units::Units;
-use crate::error::{Error, finite, finite_of_body};
+use crate::error::{BodyFault, Error, finite, finite_of_body};
 use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
 use crate::numerics::split_vector::SplitVector;
 
@@ -85,9 +85,8 @@ impl Measure {
         let (lengths, value) = self.parts();
         let (own, power) = amount.mass_in_units(value)?;
         if own == 0.0 {
-            let law = "positive where a density is given (a degenerate shape takes a mass)";
             let what = self.name();
-            return Err(Error::OutOfDomain { what, law, value });
+            return Err(BodyFault::Degenerate { what, value }.into());
         }
         let power = match amount {
             Amount::Mass(_) => power,

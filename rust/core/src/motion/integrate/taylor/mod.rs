@@ -76,25 +76,39 @@ pub fn solve_one(
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<Error> {
     let mut run = Run::at_start(task, End::Stopped);
+    go(task, terms, &mut run, watch, None);
+    run
+}
+
+/// One motion, in the numbers that its tolerance needs.
+fn go(
+    task: &Task<'_>,
+    terms: &[Term],
+    run: &mut Run<Error>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    see: Option<See>,
+) {
     let settings = settings(task, parts(terms, task.subject.pivoted));
+    // How the run ended stands in it.
     if task.tolerance.is_beyond_doubles() {
-        let jobs = &mut job(task, terms, &mut run).into_iter();
-        let _ = dispatch(Precisely {
+        let jobs = &mut job(task, terms, run).into_iter();
+        let see = see.map(|see| see as See);
+        let _flow = dispatch(Precisely {
             settings,
             jobs,
             watch,
-            see: None,
+            see,
         });
     } else {
-        let jobs = &mut job(task, terms, &mut run).into_iter();
-        let _ = dispatch(OneByOne {
+        let jobs = &mut job(task, terms, run).into_iter();
+        let see = see.map(|see| see as See);
+        let _flow = dispatch(OneByOne {
             settings,
             jobs,
             watch,
-            see: None,
+            see,
         });
     }
-    run
 }
 
 /// Motions that a thread takes at a time: many, since lanes idle at the end of a block, but some for every thread.
@@ -110,7 +124,6 @@ pub(crate) fn solve_seen(
     see: &mut dyn FnMut(&Step) -> ControlFlow<()>,
 ) -> Run<Error> {
     let mut run = Run::at_start(task, End::Stopped);
-    let settings = settings(task, parts(terms, task.subject.pivoted));
     let watch = &mut |_| ControlFlow::Continue(());
     let mut last = None;
     let mut each = |step: Step, is_last| {
@@ -120,24 +133,7 @@ pub(crate) fn solve_seen(
         }
         see(&step)
     };
-    let each: Option<See> = Some(&mut each);
-    if task.tolerance.is_beyond_doubles() {
-        let jobs = &mut job(task, terms, &mut run).into_iter();
-        let _ = dispatch(Precisely {
-            settings,
-            jobs,
-            watch,
-            see: each,
-        });
-    } else {
-        let jobs = &mut job(task, terms, &mut run).into_iter();
-        let _ = dispatch(OneByOne {
-            settings,
-            jobs,
-            watch,
-            see: each,
-        });
-    }
+    go(task, terms, &mut run, watch, Some(&mut each));
     if let Some(last) = last
         && run.end == End::Complete
     {
