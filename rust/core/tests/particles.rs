@@ -6,13 +6,14 @@
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use polhode::error::BodyFault;
 use polhode::mass::particles::{Particles, particle_stack, particles, particles_watched};
 use polhode::mass::voxels::{Grid, voxels};
 use polhode::mass::{MassAccumulator, RigidBody};
 use polhode::numerics::dispatch::{Level, level, set_level};
-use polhode::numerics::threads::set_thread_limit;
+use polhode::numerics::threads::{set_thread_limit, set_watch_interval};
 use polhode::{Error, PrincipalAxes};
 use proptest::prelude::*;
 
@@ -127,9 +128,9 @@ fn fused_levels_have_the_same_bits_and_the_baseline_agrees() {
 #[test]
 fn whoever_watches_may_stop_the_work() {
     let _turn = take_turn();
-    // A rod, on one thread: its second pass lasts longer than `watch` is left alone.
     set_thread_limit(NonZeroUsize::new(1));
-    let (masses, positions) = cloud(12_000_000, 1e-7, 3);
+    set_watch_interval(Duration::ZERO);
+    let (masses, positions) = cloud(100_000, 1e-7, 3);
     let mut sums = MassAccumulator::new();
     let stop = &mut |_: f64| ControlFlow::Break(());
     let stopped = particles_watched(&masses, &positions, stop);
@@ -139,6 +140,7 @@ fn whoever_watches_may_stop_the_work() {
         Err(Error::Stopped)
     );
     assert_eq!(sums, MassAccumulator::new());
+    set_watch_interval(Duration::from_millis(20));
     set_thread_limit(None);
 }
 

@@ -8,15 +8,13 @@
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::error::Error;
 
-/// How often the calling thread looks up from waiting.
-const WATCH_INTERVAL: Duration = Duration::from_millis(20);
 /// Work shorter than this is not worth the start of a thread.
 const ALONE: Duration = Duration::from_millis(1);
 
@@ -76,6 +74,22 @@ pub fn thread_count() -> usize {
     }
 }
 
+/// How often the calling thread looks up from its work, in nanoseconds: every 20 ms.
+static INTERVAL: AtomicU64 = AtomicU64::new(20_000_000);
+
+/// Every later job of this process asks its `watch` this often; before the first call of this, every 20 ms.
+///
+/// With an interval of zero a job on one thread asks before each block, so that a test of what happens then does not
+/// depend on how fast the machine is.
+pub fn set_watch_interval(interval: Duration) {
+    let nanoseconds = u64::try_from(interval.as_nanos()).unwrap_or(u64::MAX);
+    INTERVAL.store(nanoseconds, Ordering::Relaxed);
+}
+
+fn watch_interval() -> Duration {
+    Duration::from_nanos(INTERVAL.load(Ordering::Relaxed))
+}
+
 /// Fills `out` block by block: `work` gets the index of a block's first element and the block.
 ///
 /// Blocks are `block` elements long, the last one perhaps shorter. About every 20 ms `watch` gets the
@@ -97,7 +111,7 @@ pub fn fill_blocks<T: Send, E: Send>(
     let total = out.len();
     let mut blocks = out.chunks_mut(block).enumerate();
     let mut done = 0;
-    let start = Instant::now();
+    let (start, interval) = (Instant::now(), watch_interval());
     let mut looked_up = start;
     let mut may_share = true;
     loop {
@@ -109,7 +123,7 @@ pub fn fill_blocks<T: Send, E: Send>(
             }
             may_share = false;
         }
-        if now - looked_up >= WATCH_INTERVAL {
+        if now - looked_up >= interval {
             looked_up = now;
             if watch(fraction(done, total)).is_break() {
                 return Err(Halt::Stopped);
@@ -222,7 +236,7 @@ impl<B, I: Iterator<Item = (usize, B)>, E> Queue<I, E> {
         while state.running > 0 {
             let (woken, timeout) = self
                 .someone_left
-                .wait_timeout(state, WATCH_INTERVAL)
+                .wait_timeout(state, watch_interval())
                 .unwrap_or_else(PoisonError::into_inner);
             state = woken;
             if timeout.timed_out() && state.running > 0 && flow.is_continue() {
