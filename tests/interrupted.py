@@ -167,7 +167,9 @@ def calls() -> dict[str, Callable[[], object]]:
         "thin surface": lambda: RigidBody.from_surface(vertices, faces, mass=1.0),
         "from_tetrahedra": lambda: RigidBody.from_tetrahedra(nodes, cells, density=1.0),
         "region": lambda: regions.mesh(vertices, faces),
-        "from_density": lambda: RigidBody.from_density(waves, regions.ball(1.0), rtol=1e-12),
+        "from_density": lambda: RigidBody.from_density(
+            waves, regions.ball(1.0), rtol=1e-12, max_evaluations=10**10
+        ),
         "a list of numbers": lambda: solids.sphere(rows * 5, mass=1.0),
         "a list of rows": lambda: _core.transport(columns * 2, (0, 0, 0), (0, 0, 0)),
         "another order": lambda: _core.transport(turned, (0, 0, 0), (0, 0, 0)),
