@@ -1,10 +1,11 @@
 //! Motions in closed form at the times asked for, as a `Trajectory`.
 
 use nalgebra::Vector3;
-use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArrayMethods, PyUntypedArrayMethods, dtype};
 use polhode::motion::state::{ClosedForm, sample_many};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyType};
 
 use crate::arrays::{floats, numpy, write, zeros};
 use crate::body::PyRigidBody;
@@ -67,7 +68,7 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
     }
     let np = numpy(py)?;
     let still = array(3)?;
-    let none = np.call_method1("zeros", (motions.shape.clone(), "int64"))?;
+    let none = np.call_method1("zeros", (motions.shape.clone(), dtype::<i64>(py)))?;
     fields.set_item("body", body)?;
     fields.set_item("t", np.call_method1("array", (&*times,))?)?;
     fields.set_item("omega", omega)?;
@@ -77,7 +78,11 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
     fields.set_item("about", write(py, about)?)?;
     fields.set_item("steps", &none)?;
     fields.set_item("evaluations", &none)?;
-    py.import("polhode.trajectory")?
-        .getattr("Trajectory")?
-        .call((), Some(&fields))
+    class(py)?.call((), Some(&fields))
+}
+
+/// The class `polhode.trajectory.Trajectory`.
+fn class(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    CLASS.import(py, "polhode.trajectory", "Trajectory")
 }

@@ -59,13 +59,20 @@ impl PyFreeMotion {
         attitude: &Stack<UnitQuaternion<f64>>,
     ) -> PyResult<Self> {
         let bodies = &body.get().bodies;
-        let refined = Broadcast::of(["body"], [&bodies.shape])?
-            .try_map(py, |[b]| Ok(RefinedPrincipal::of(&bodies[b])))?;
         let shapes = [&bodies.shape[..], &omega.shape, &attitude.shape];
-        let motions = Broadcast::of(["body", "omega", "attitude"], shapes)?
-            .try_map(py, |[b, w, q]| {
+        let starts = Broadcast::of(["body", "omega", "attitude"], shapes)?;
+        let motions = if starts.len() == bodies.rows.len() {
+            starts.try_map(py, |[b, w, q]| {
+                FreeMotion::of(&bodies[b], &omega[w], &attitude[q])
+            })?
+        } else {
+            // Several starts of a body: it is refined once.
+            let refined = Broadcast::of(["body"], [&bodies.shape])?
+                .try_map(py, |[b]| Ok(RefinedPrincipal::of(&bodies[b])))?;
+            starts.try_map(py, |[b, w, q]| {
                 FreeMotion::refined(&refined[b], &omega[w], &attitude[q])
-            })?;
+            })?
+        };
         Ok(Self { body, motions })
     }
 

@@ -82,11 +82,6 @@ pub(crate) fn vector<T>(what: impl Display, shape: &[usize], copies: usize) -> P
     Ok(vector)
 }
 
-/// An exception for a block of memory that the system refused in the middle of a computation.
-pub(crate) fn refused(what: impl Display, shape: &[usize], bytes: usize) -> PyErr {
-    refusal(what, shape, bytes, NOT_GIVEN)
-}
-
 fn refusal(what: impl Display, shape: &[usize], bytes: usize, law: &str) -> PyErr {
     let needed = shape
         .iter()

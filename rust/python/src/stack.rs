@@ -135,7 +135,7 @@ impl<'a, const K: usize> Broadcast<'a, K> {
     }
 
     /// `f` of every row, on all cores when there are many; the error of the first failing row, which it names.
-    pub(crate) fn try_map<R: Send>(
+    pub(crate) fn try_map<R: Clone + Send>(
         &self,
         py: Python<'_>,
         f: impl Fn([usize; K]) -> Result<R, Error> + Sync,
@@ -159,7 +159,7 @@ impl<'a, const K: usize> Broadcast<'a, K> {
     }
 
     /// As [`try_map`](Self::try_map) where a single row may take long: each asks now and then whether to go on.
-    pub(crate) fn try_map_watched<R: Send>(
+    pub(crate) fn try_map_watched<R: Clone + Send>(
         &self,
         py: Python<'_>,
         f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
@@ -167,50 +167,39 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         self.on_all_cores(py, if self.len() > BLOCK { BLOCK } else { 1 }, f)
     }
 
-    fn on_all_cores<R: Send>(
+    fn on_all_cores<R: Clone + Send>(
         &self,
         py: Python<'_>,
         size: usize,
         f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
     ) -> PyResult<Stack<R>> {
         let count = self.len();
-        // First what all blocks go into in the end, so that it is known to be there.
-        let mut rows = memory::vector(Names(&self.names), &self.shape, 1)?;
-        let mut blocks: Vec<Vec<R>> = Vec::new();
-        blocks.resize_with(count.div_ceil(size), Vec::new);
+        let mut rows = memory::vector(Names(&self.names), &self.shape, 0)?;
         let interrupt = Interrupt::new(None);
+        let watch = &mut |_| interrupt.poll(None);
         let outcome = py.detach(|| {
-            fill_blocks(
-                &mut blocks,
-                1,
-                &mut |_| interrupt.poll(None),
-                |block, out| {
-                    let end = count.min((block + 1) * size);
-                    (out[0].try_reserve_exact(size)).map_err(|_| Fault::NoMemory)?;
-                    let watch = &mut |_| interrupt.poll(None);
-                    for row in block * size..end {
-                        let value = f(self.operands(row), watch);
-                        out[0].push(value.map_err(|error| Fault::Row(row, error))?);
-                    }
-                    Ok(())
-                },
-            )
+            if count == 0 {
+                return Ok(());
+            }
+            // The first row stands in each place until it is filled: no row is written twice over as many pages.
+            let first = f(self.operands(0), watch).map_err(|error| Halt::Failed((0, error)))?;
+            while rows.len() < count {
+                rows.resize(count.min(rows.len() + BLOCK), first.clone());
+                if watch(0.0).is_break() {
+                    return Err(Halt::Stopped);
+                }
+            }
+            fill_blocks(&mut rows[1..], size, watch, |start, out| {
+                let watch = &mut |_| interrupt.poll(None);
+                for (row, value) in (start + 1..).zip(out) {
+                    *value = f(self.operands(row), watch).map_err(|error| (row, error))?;
+                }
+                Ok(())
+            })
         });
         interrupt.finish(py, outcome.is_ok())?;
-        match outcome {
-            Err(Halt::Failed(Fault::Row(row, error))) => {
-                return Err(at_row(&self.shape, row, &to_py(py, &error), py));
-            }
-            Err(Halt::Failed(Fault::NoMemory)) => {
-                let what = Names(&self.names);
-                return Err(memory::refused(what, &self.shape, 2 * size_of::<R>()));
-            }
-            Err(Halt::Stopped) | Ok(()) => (),
-        }
-        let mut beat = Beat::new(py);
-        for block in blocks {
-            beat.mark()?;
-            rows.extend(block);
+        if let Err(Halt::Failed((row, error))) = outcome {
+            return Err(at_row(&self.shape, row, &to_py(py, &error), py));
         }
         Ok(Stack {
             shape: self.shape.clone(),
@@ -222,12 +211,6 @@ impl<'a, const K: usize> Broadcast<'a, K> {
     pub(crate) fn rows(&self) -> impl Iterator<Item = [usize; K]> + '_ {
         (0..self.len()).map(|row| self.operands(row))
     }
-}
-
-/// Why a block of a large map was left.
-enum Fault {
-    Row(usize, Error),
-    NoMemory,
 }
 
 fn mismatch<const K: usize>(names: [&str; K], shapes: [&[usize]; K]) -> PyErr {

@@ -54,7 +54,8 @@ pub fn sum_terms<const K: usize>(n: usize, term: impl Fn(usize) -> [f64; K]) -> 
 #[must_use]
 pub fn depth(n: usize) -> f64 {
     let within = n.min(BLOCK).div_ceil(LANES) + 3;
-    (within as f64) + (n.div_ceil(BLOCK).max(1) as f64).log2().ceil()
+    let levels = n.div_ceil(BLOCK).max(1).next_power_of_two().ilog2();
+    within as f64 + f64::from(levels)
 }
 
 /// The blocks `from..to` merged pairwise, split at the largest power of two, so that the tree depends on `to` alone.

@@ -15,7 +15,7 @@ use crate::stack::{Broadcast, Stack};
 
 impl PyFreeMotion {
     /// `f` of every motion at every time, under the shape of the stack and then that of the times.
-    fn each_time<R: Send>(
+    fn each_time<R: Clone + Send>(
         &self,
         py: Python<'_>,
         t: &Bound<'_, PyAny>,
@@ -31,7 +31,7 @@ impl PyFreeMotion {
     }
 
     /// As [`Self::each_time`], for what is known within the reach of the motion alone.
-    fn each_time_within<R: Send>(
+    fn each_time_within<R: Clone + Send>(
         &self,
         py: Python<'_>,
         t: &Bound<'_, PyAny>,

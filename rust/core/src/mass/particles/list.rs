@@ -1,5 +1,7 @@
 //! The particles of one body: what they must be, and a point near them all.
 
+use std::hint::select_unpredictable;
+
 use nalgebra::Vector3;
 
 use crate::error::{BodyFault, Error, finite, finite_of_body};
@@ -54,22 +56,18 @@ pub(in crate::mass) fn check(Particles { masses, positions }: Particles<'_>) -> 
 pub(in crate::mass) fn sample_center(
     Particles { masses, positions }: Particles<'_>,
 ) -> Vector3<f64> {
-    let count = masses.len();
-    let stride = count.div_ceil(SAMPLE).max(1);
-    let sample = || (0..count).step_by(stride);
+    let (count, stride) = (masses.len(), masses.len().div_ceil(SAMPLE).max(1));
     // From the heaviest of them, so that nothing cancels where another one is far away.
-    let heaviest = sample().max_by(|&i, &j| masses[i].total_cmp(&masses[j]));
-    let Some(base) = heaviest
-        .filter(|&i| masses[i] > 0.0)
-        .or_else(|| (0..count).max_by(|&i, &j| masses[i].total_cmp(&masses[j])))
-    else {
+    let Some(base) = heaviest(masses, stride).or_else(|| heaviest(masses, 1)) else {
         return Vector3::zeros();
     };
     let base = Vector3::from(positions[base]);
     let (mut mass, mut first) = (0.0, Vector3::zeros());
-    for i in sample() {
+    let mut i = 0;
+    while i < count {
         mass += masses[i];
         first += (Vector3::from(positions[i]) - base) * masses[i];
+        i += stride;
     }
     let center = base + first / mass;
     if center.iter().all(|x| x.is_finite()) {
@@ -77,4 +75,17 @@ pub(in crate::mass) fn sample_center(
     } else {
         base
     }
+}
+
+/// Which of every `stride`-th mass is the largest, the last one of several; `None` where none is positive.
+fn heaviest(masses: &[f64], stride: usize) -> Option<usize> {
+    let (mut most, mut place) = (0.0, 0);
+    let mut i = 0;
+    while i < masses.len() {
+        // Nobody can predict which one is heavier: a choice without a branch.
+        place = select_unpredictable(masses[i] >= most, i, place);
+        most = if masses[i] > most { masses[i] } else { most };
+        i += stride;
+    }
+    (most > 0.0).then_some(place)
 }

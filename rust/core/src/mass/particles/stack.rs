@@ -78,20 +78,27 @@ fn batch<'a>(
     bodies: &mut [RigidBody],
 ) -> Result<(), (usize, Error)> {
     let watch = &mut |_: f64| ControlFlow::Continue(());
-    let (mut particles, mut moments) = (Vec::new(), Vec::new());
+    let count = which.len();
+    let (mut particles, mut moments) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for &k in which {
         let row = row(k);
-        let matter = about_center(row, watch).map_err(|error| (k, error))?;
-        if is_ordinary(&matter, row) {
+        moments.push(about_center(row, watch).map_err(|error| (k, error))?);
+        if moments
+            .last()
+            .is_some_and(|matter| is_ordinary(matter, row))
+        {
             particles.push((k, row));
-            moments.push(matter);
         } else {
+            moments.pop();
             bodies[k] = in_units(row, watch).map_err(|error| (k, error))?;
         }
     }
     decompose(&particles, &moments, |provenance| provenance, bodies)?;
     let is_thin = |&(k, _): &(usize, Particles<'_>)| is_thin(&bodies[k]);
     let thin: Vec<_> = particles.into_iter().filter(is_thin).collect();
+    if thin.is_empty() {
+        return Ok(());
+    }
     moments.clear();
     for &(k, row) in &thin {
         moments.push(in_own_axes(row, &bodies[k], watch).map_err(|error| (k, error))?);
