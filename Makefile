@@ -24,8 +24,9 @@ test: build ## every test, Rust and Python, with lints and type checks
 test-rust: ## the tests of the core
 	cargo test --locked
 
-test-python: build ## the tests of the package
-	$(BIN)/python -m pytest
+test-python: build ## the tests of the package, on all cores; then those that measure time, by themselves
+	$(BIN)/python -m pytest -m "not long and not alone" --numprocesses auto --dist loadfile
+	$(BIN)/python -m pytest -m "alone and not long"
 
 test-long: build ## the tests that take minutes: more random cases than `make test` draws
 	$(BIN)/python -m pytest -m long

@@ -13,13 +13,16 @@ import platform
 import statistics
 import time
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-    from pathlib import Path
 
-__all__ = ["Result", "Row", "measure", "repeats", "report", "seconds"]
+__all__ = ["Result", "Row", "keep", "kept", "measure", "repeats", "report", "seconds"]
+
+RATIOS = Path(__file__).with_name("ratios.json")
+"""The ratios of each release, by the names of row and peer."""
 
 
 @dataclass(frozen=True)
@@ -91,21 +94,48 @@ def measure(row: Row, rounds: int = 9, least_seconds: float = 0.02) -> Result:
     return Result(row.name, row.peer, rounds, _spread(ours), _spread(theirs), speedup, bar, met)
 
 
-def report(results: Iterable[Result], path: Path | None = None) -> None:
-    """Print a table of ratios, and write everything as JSON if a path is given."""
+def report(results: Iterable[Result], path: Path | None = None, ratios: Path = RATIOS) -> None:
+    """Print a table of ratios beside those of the last release, and write all as JSON if a path is given."""
     results = list(results)
-    print(f"{'what':66} {'peer':28} {'ours':>10} {'peer':>10} {'times faster':>26}  bar")
+    release, before = kept(ratios)
+    print(f"{'what':66} {'peer':28} {'ours':>10} {'peer':>10} {'times faster':>26} {release:>8}  bar")
     for result in results:
         ratio = "{:.3g} ({:.3g} to {:.3g})".format(*result.speedup)
         verdict = {True: "met", False: "NOT MET", None: ""}[result.met]
+        then = before.get(_key(result))
+        change = "new" if then is None else f"x{result.speedup[0] / then:.2f}"
         print(
             f"{result.name:66} {result.peer:28} {_human(result.ours[0]):>10} {_human(result.theirs[0]):>10}"
-            f" {ratio:>26}  {result.bar} {verdict}"
+            f" {ratio:>26} {change:>8}  {result.bar} {verdict}"
         )
     if path is not None:
-        machine = {"cpu": _cpu(), "cores": os.cpu_count(), "python": platform.python_version()}
-        document = {"machine": machine, "results": [asdict(result) for result in results]}
+        document = {"machine": _machine(), "results": [asdict(result) for result in results]}
         path.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+
+
+def kept(path: Path = RATIOS) -> tuple[str, dict[str, float]]:
+    """The last release whose ratios are kept, and these; nothing where there is none."""
+    if not path.exists():
+        return "", {}
+    releases = json.loads(path.read_text(encoding="utf-8"))
+    release = max(releases, key=lambda name: [int(part) for part in name.split(".")])
+    return release, releases[release]["ratios"]
+
+
+def keep(release: str, results: Iterable[Result], path: Path = RATIOS) -> None:
+    """Keep the ratios of a release beside those of the earlier ones."""
+    releases = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    ratios = {_key(result): float(f"{result.speedup[0]:.3g}") for result in results}
+    releases[release] = {"machine": _machine(), "ratios": ratios}
+    path.write_text(json.dumps(releases, indent=2) + "\n", encoding="utf-8")
+
+
+def _key(result: Result) -> str:
+    return f"{result.name}, beside {result.peer}"
+
+
+def _machine() -> dict[str, Any]:
+    return {"cpu": _cpu(), "cores": os.cpu_count(), "python": platform.python_version()}
 
 
 def repeats(call: Callable[[], Any], least_seconds: float) -> int:

@@ -14,9 +14,12 @@ import pytest
 #: What Ctrl-C may take, in seconds.
 BAR = 0.2
 
-pytestmark = pytest.mark.skipif(
-    not hasattr(signal, "setitimer"), reason="this system has no timers of processor time"
-)
+pytestmark = [
+    pytest.mark.alone,
+    pytest.mark.skipif(
+        not hasattr(signal, "setitimer"), reason="this system has no timers of processor time"
+    ),
+]
 
 
 def struck(delays: list[float], threads: int, *names: str) -> dict[str, float | None]:

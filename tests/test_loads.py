@@ -274,6 +274,7 @@ LONG_RUNS = {
 }
 
 
+@pytest.mark.alone
 @pytest.mark.parametrize("name", LONG_RUNS)
 def test_ctrl_c_ends_a_long_run_within_a_fifth_of_a_second(name: str) -> None:
     """In a process of its own; the timer's thread also shows that the run leaves others alive."""

@@ -272,6 +272,7 @@ class TestChoice:
             BRICK.simulate([0.0, 1.0], (1.0, 0.0, 0.0), load=callback, method="taylor")
 
 
+@pytest.mark.alone
 @pytest.mark.parametrize("count", [1, 3000])
 def test_ctrl_c_ends_a_long_run_soon(count: int) -> None:
     starts = np.ones((count, 3)) if count > 1 else np.ones(3)
