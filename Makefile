@@ -6,7 +6,7 @@ export CARGO_TERM_COLOR ?= auto
 
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
 
-.PHONY: help setup build demo test test-rust test-python test-long fuzz coverage lint format docs figures package bench clean
+.PHONY: help setup build demo quick test test-rust test-python test-long fuzz coverage lint format docs figures package bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -20,6 +20,9 @@ test: build ## every test, Rust and Python, with lints and type checks
 		$(MAKE) --no-print-directory $$stage || exit 1; \
 		echo "== $$stage: $$(($$(date +%s) - start)) s"; \
 	done
+
+quick: setup ## lints and tests of what differs from the last commit
+	$(BIN)/python tests/quick.py
 
 test-rust: ## the tests of the core
 	cargo test --locked

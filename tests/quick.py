@@ -1,0 +1,116 @@
+"""The lints and tests of what differs from a commit: ``python tests/quick.py [COMMIT]``, of HEAD by default.
+
+Rust tests are those of the rooms with a changed file. Python tests are those that bear the name of a changed
+file or of its room, against an extension that is compiled anew, quickly and not for speed. It says which
+changed files no test is named after; `make test` runs everything.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+
+#: Folders that are no rooms.
+ROOTS = ("rust", "core", "src", "python", "polhode")
+
+#: Rooms whose tests have other names than they.
+NAMED = {
+    "integrate": ["simulate", "taylor", "sensitivity", "load_terms"],
+    "simulate": ["simulate", "events", "exact_runs"],
+    "problem": ["simulate", "bad_inputs"],
+    "numerics": ["principal_axes", "free_motion_cases", "heavy_top_cases", "taylor"],
+    "principal": ["principal_axes", "canonical_axes"],
+    "simplex": ["tetrahedra", "polyhedron"],
+    "refined": ["free_motion_cases", "near_separatrix"],
+    "error": ["errors", "bad_inputs"],
+    "io": ["streams", "io"],
+    "arrays": ["foreign_arrays", "masks_and_units"],
+    "free": ["free_motion"],
+}
+
+
+def changed(commit: str) -> list[Path]:
+    """The files that differ from the commit, new ones among them."""
+    commands = (["diff", "--name-only", commit], ["ls-files", "--others", "--exclude-standard"])
+    told = [subprocess.check_output(["git", *words], cwd=ROOT, text=True) for words in commands]
+    return [Path(name) for text in told for name in text.split("\n") if name and (ROOT / name).exists()]
+
+
+def room(file: Path) -> str:
+    """The module of the core that a file lies in: two folders deep, as ``motion::integrate``."""
+    parts = file.relative_to("rust/core/src").with_suffix("").parts
+    return "::".join(parts[:2])
+
+
+def tests_of(file: Path) -> list[Path]:
+    """The tests that bear the name of a file, or else of the nearest room around it."""
+    if file.parts[0] == "tests":
+        return [file] if file.name.startswith("test_") else []
+    rooms = [part for part in file.parts[:-1] if part not in ROOTS]
+    for word in (file.stem, *reversed(rooms)):
+        names = NAMED.get(word, [word.strip("_").removesuffix("s")])
+        found = [path for name in names for path in sorted(Path("tests").glob(f"test_*{name}*.py"))]
+        if found and len(word.strip("_")) > 1:
+            return found
+    return []
+
+
+def run(*command: str | Path, **environment: str) -> bool:
+    """Run a command, and say how long it took."""
+    start = time.monotonic()
+    words = [str(word) for word in command]
+    done = subprocess.run(words, cwd=ROOT, env={**os.environ, **environment}, check=False).returncode == 0
+    print(
+        f"== {' '.join(words[:4])}: {time.monotonic() - start:.0f} s{'' if done else ', FAILED'}", flush=True
+    )
+    return done
+
+
+def extension() -> Path | None:
+    """The package with an extension of the present sources; its folder."""
+    words = ["cargo", "build", "--locked", "--package", "polhode-python", "--profile", "quick"]
+    if not run(*words, "--target-dir", TARGET, PYO3_PYTHON=sys.executable):
+        return None
+    package = TARGET / "quick" / "python"
+    shutil.rmtree(package, ignore_errors=True)
+    shutil.copytree(ROOT / "python", package, ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+    shutil.copy(TARGET / "quick" / "lib_core.so", package / "polhode" / "_core.abi3.so")
+    return package
+
+
+def main() -> None:
+    """Run what belongs to the change."""
+    files = changed(*sys.argv[1:] or ["HEAD"])
+    rust = [file for file in files if file.suffix == ".rs"]
+    python = [file for file in files if file.suffix in (".py", ".pyi")]
+    done = True
+    if rust:
+        done &= run("cargo", "fmt", "--all", "--check")
+        rooms = sorted({room(file) for file in rust if file.is_relative_to("rust/core/src")})
+        if rooms:
+            done &= run("cargo", "test", "--locked", "--quiet", "--package", "polhode", "--lib", "--", *rooms)
+    if python:
+        done &= run(sys.executable, "-m", "ruff", "check", *python)
+        done &= run(sys.executable, "-m", "ruff", "format", "--check", *python)
+    tests = list(dict.fromkeys(test for file in rust + python for test in tests_of(file)))
+    for file in rust + python:
+        if not tests_of(file):
+            print(f"no test has the name of {file}: make test runs all of them")
+    if tests:
+        package = extension() if rust else ROOT / "python"
+        done &= package is not None
+        if package:
+            options = ["-q", "-m", "not long and not alone", "--numprocesses", "auto"]
+            done &= run(sys.executable, "-m", "pytest", *options, *tests, PYTHONPATH=str(package))
+    sys.exit(not done)
+
+
+if __name__ == "__main__":
+    main()
