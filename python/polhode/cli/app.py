@@ -24,11 +24,7 @@ from polhode.cli.options import (
     ReportOptions,
     SpinOptions,
 )
-from polhode.cli.outputs import check_outputs
 from polhode.cli.standard_output import ReaderLeft, standard_output
-from polhode.cli.text import in_options, printable
-from polhode.files.reading import files_read
-from polhode.files.writing import DASH, write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -84,6 +80,7 @@ def report(
     file
         A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file), a molecule (XYZ), or - for standard input.
     """
+    from polhode.cli.outputs import check_outputs
     from polhode.cli.report import file_report
 
     check_outputs([("--output", output.output)], [file, extra.expect])
@@ -113,6 +110,8 @@ def check(
         A robot or model (URDF, SDF, MJCF), or - for standard input.
     """
     from polhode.cli.check import check_report
+    from polhode.cli.outputs import check_outputs
+    from polhode.files.reading import files_read
 
     check_outputs([("--fix", check.fix), ("--output", output.output)], [file])
     with files_read() as read:
@@ -138,6 +137,7 @@ def molecule(
         A molecule (XYZ), or - for standard input.
     """
     from polhode.cli.molecule import molecule_report
+    from polhode.cli.outputs import check_outputs
 
     check_outputs([("--output", output.output)], [file])
     _show(molecule_report(file, molecule), output)
@@ -160,6 +160,7 @@ def spin(
     file
         A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file), a molecule (XYZ), or - for standard input.
     """
+    from polhode.cli.outputs import check_outputs
     from polhode.cli.spin import spin_report
 
     check_outputs([*(("--save", path) for path in spin.save), ("--output", output.output)], [file])
@@ -230,6 +231,8 @@ def _as_value(argument: str) -> str:
 
 
 def _fail(message: str, code: int = BAD_INPUT) -> int:
+    from polhode.cli.text import in_options, printable
+
     if sys.stderr is not None:
         with suppress(OSError):  # nobody reads it: the exit code remains
             print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
@@ -238,6 +241,8 @@ def _fail(message: str, code: int = BAD_INPUT) -> int:
 
 def _show(report: Report, options: OutputOptions) -> None:
     from rich.console import Console
+
+    from polhode.files.writing import DASH, write_bytes
 
     path = options.output if options.output != DASH else None
     by_name = "json" if path is not None and path.suffix.lower() == ".json" else "table"

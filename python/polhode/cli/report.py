@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import in_file_unit, load_body
-from polhode.cli.molecule import atoms_report
 from polhode.cli.options import ReportOptions
 from polhode.cli.quantities import quantity, split_vector
 from polhode.cli.source import shown
@@ -40,6 +39,8 @@ def file_report(file: Path, options: BodyOptions, extra: ReportOptions = PLAIN) 
         return _mesh_report(file, loaded, loaded.source, units, about)
     if extra.mass_unit is not None:
         raise PolhodeError(f"--mass-unit: {shown(file)} is a molecule, in u and angstrom; leave it out")
+    from polhode.cli.molecule import atoms_report
+
     return atoms_report(file, loaded, loaded.source, about)
 
 

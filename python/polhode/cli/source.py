@@ -8,7 +8,6 @@ import stat
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from polhode.errors import FileFormatError, PolhodeError
@@ -66,6 +65,8 @@ def as_file(file: Path) -> Iterator[Path]:
     if file != STDIN:
         yield file
         return
+    from tempfile import TemporaryDirectory
+
     with TemporaryDirectory() as folder:
         raw = Path(folder, "stdin")
         with writing(raw) as copy:

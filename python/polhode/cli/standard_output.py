@@ -7,8 +7,6 @@ import sys
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
-from polhode.files.writing import STANDARD_OUTPUT
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -69,6 +67,8 @@ def _naming() -> Iterator[None]:
     except BrokenPipeError:
         raise ReaderLeft from None
     except OSError as error:
+        from polhode.files.writing import STANDARD_OUTPUT
+
         error.filename = STANDARD_OUTPUT
         raise
 

@@ -10,14 +10,13 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
 import numpy as np
 
 from polhode import _core
 from polhode.errors import FileFormatError
 from polhode.files.ascii_stl import read_ascii_stl
-from polhode.files.by_trimesh import read_by_trimesh
 from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIX, Content, opened
 from polhode.files.mesh import Mesh, check_faces, weld, weld_within
 from polhode.files.reading import naming
@@ -80,7 +79,7 @@ class Loaded:
             return Mesh(*_core.read_stl(str(self.path)), self.format)
         if self.format == "PLY":
             with naming(self.path), self.path.open("rb") as stream:
-                return read_by_trimesh(stream, self.path, _MESH_SUFFIXES)
+                return _by_trimesh(stream, self.path)
         mesh = Mesh(*_core.read_plates(str(self.path), self.index_base), self.format)
         check_faces(mesh, str(self.path))
         return mesh
@@ -140,8 +139,15 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
             return Loaded(file, "v/f text", index_base=index_base)
         if _is_binary_ply(content, suffix):
             return Loaded(file, "PLY", is_stream=True)
-        mesh = read_by_trimesh(content.stream, file, _MESH_SUFFIXES)
+        mesh = _by_trimesh(content.stream, file)
     return Loaded(file, mesh.format, _mesh=mesh)
+
+
+def _by_trimesh(stream: BinaryIO, path: Path) -> Mesh:
+    # Imported when a file needs it: the formats of our own readers are opened sooner.
+    from polhode.files.by_trimesh import read_by_trimesh
+
+    return read_by_trimesh(stream, path, _MESH_SUFFIXES)
 
 
 def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float = 0.0) -> Mesh:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import errno
 import os
-import secrets
 import stat
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -84,7 +83,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         return
     target = Path(os.path.realpath(path))
     suffix = target.suffix if len(target.suffix) <= _LONGEST_SUFFIX else ""
-    new = target.with_name(f".polhode-{secrets.token_hex(8)}{suffix}")
+    new = target.with_name(f".polhode-{os.urandom(8).hex()}{suffix}")
     with _naming(path, new):
         _create(new)
         try:
