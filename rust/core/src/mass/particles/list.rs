@@ -1,7 +1,5 @@
 //! The particles of one body: what they must be, and a point near them all.
 
-use std::hint::select_unpredictable;
-
 use nalgebra::Vector3;
 
 use crate::error::{BodyFault, Error, finite, finite_of_body};
@@ -53,39 +51,83 @@ pub(in crate::mass) fn check(Particles { masses, positions }: Particles<'_>) -> 
 
 /// The centre of mass of a few particles spread over the list, of all when they are few: a point within or near the body,
 /// so that nothing cancels wherever the body stands.
-pub(in crate::mass) fn sample_center(
-    Particles { masses, positions }: Particles<'_>,
-) -> Vector3<f64> {
-    let (count, stride) = (masses.len(), masses.len().div_ceil(SAMPLE).max(1));
-    // From the heaviest of them, so that nothing cancels where another one is far away.
-    let Some(base) = heaviest(masses, stride).or_else(|| heaviest(masses, 1)) else {
-        return Vector3::zeros();
+pub(in crate::mass) fn sample_center(particles: Particles<'_>) -> Vector3<f64> {
+    let masses = particles.masses;
+    let stride = masses.len().div_ceil(SAMPLE).max(1);
+    let sample = || (0..masses.len()).step_by(stride);
+    let heaviest = |among: &mut dyn Iterator<Item = usize>| {
+        among.max_by(|&i, &j| masses[i].total_cmp(&masses[j]))
     };
+    let Some(first) = sample().find(|&i| masses[i] > 0.0) else {
+        let base = heaviest(&mut (0..masses.len()));
+        return base.map_or_else(Vector3::zeros, |base| {
+            center_from(particles, base, stride).1
+        });
+    };
+    let (mass, center) = center_from(particles, first, stride);
+    if masses[first] * LIGHT >= mass || mass.is_nan() {
+        return center;
+    }
+    // A light one may be so far away that its distances from the others blur them.
+    let base = heaviest(&mut sample()).unwrap_or(first);
+    center_from(particles, base, stride).1
+}
+
+/// A particle that is so many times lighter than all that are asked stands apart: one that is not makes the body
+/// larger than a sixteenth of its distance from the others.
+const LIGHT: f64 = 256.0;
+
+/// Mass and centre of mass of every `stride`-th particle, by distances from the one with the index `base`; its own place
+/// where they are beyond all numbers.
+fn center_from(
+    Particles { masses, positions }: Particles<'_>,
+    base: usize,
+    stride: usize,
+) -> (f64, Vector3<f64>) {
     let base = Vector3::from(positions[base]);
     let (mut mass, mut first) = (0.0, Vector3::zeros());
-    let mut i = 0;
-    while i < count {
+    for i in (0..masses.len()).step_by(stride) {
         mass += masses[i];
         first += (Vector3::from(positions[i]) - base) * masses[i];
-        i += stride;
     }
     let center = base + first / mass;
     if center.iter().all(|x| x.is_finite()) {
-        center
+        (mass, center)
     } else {
-        base
+        (mass, base)
     }
 }
 
-/// Which of every `stride`-th mass is the largest, the last one of several; `None` where none is positive.
-fn heaviest(masses: &[f64], stride: usize) -> Option<usize> {
-    let (mut most, mut place) = (0.0, 0);
-    let mut i = 0;
-    while i < masses.len() {
-        // Nobody can predict which one is heavier: a choice without a branch.
-        place = select_unpredictable(masses[i] >= most, i, place);
-        most = if masses[i] > most { masses[i] } else { most };
-        i += stride;
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_particles_far_away_are_no_point_to_start_from() {
+        // Beside 15 of unit mass; the place is on neither side of the limit blurred by more than the body is large.
+        for (mass, distance) in [
+            (0.9, 1e17),
+            (1.0 / 16.0, 1e17),
+            (1.0 / 18.0, 1e17),
+            (1e-30, 1e25),
+        ] {
+            let mut masses = vec![1.0; 16];
+            let mut positions = vec![[1.0, 2.0, 3.0]; 16];
+            (masses[0], positions[0]) = (mass, [distance, 0.0, 0.0]);
+            let center = sample_center(Particles::new(&masses, &positions));
+            let total = 15.0 + mass;
+            let exact = [
+                1.0 + mass * (distance - 1.0) / total,
+                2.0 * 15.0 / total,
+                3.0 * 15.0 / total,
+            ];
+            let gyration = distance * (15.0 * mass).sqrt() / total;
+            for (x, exact) in center.iter().zip(exact) {
+                assert!(
+                    (x - exact).abs() <= 1e-14 * gyration.max(1.0),
+                    "{mass:e}: {center:?}"
+                );
+            }
+        }
     }
-    (most > 0.0).then_some(place)
 }
