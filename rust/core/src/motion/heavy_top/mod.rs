@@ -5,6 +5,7 @@
 //! | `top` | a motion, from its state to its states |
 //! | [`pivoted_top`] | which bodies are such tops; steady precession and the sleeping limit |
 //! | `reduced` | the state in its own units and axes |
+//! | `source`, `scaled` | the data of a top, sizes in a unit of their own; numbers of any precision and powers of two |
 //! | `turning_points` | the cubic of `cos θ` and the distances between what is singular |
 //! | `phases` | the steady rates of the phases and the shifts of the theta functions |
 //! | `course` | all of these as numbers ready for vector lanes |
