@@ -14,7 +14,7 @@ from fnmatch import fnmatchcase as fnmatch
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Crate", "circles", "out_of_order", "strings", "upward"]
+__all__ = ["Crate", "circles", "first_item", "out_of_order", "strings", "upward"]
 
 _IGNORED = re.compile(
     r"""//[^\n]*                              # comment to the end of the line
@@ -33,6 +33,8 @@ _ITEM = re.compile(
     r"(?:mut\s+)?([A-Za-z_]\w*)"
 )
 _USE = re.compile(r"(\bpub\s+)?\buse\s+([^;]+);")
+_DECLARATION = re.compile(r"(?:\bpub\b\s*(?:\([^()]*\)\s*)?)?\b(?:mod\s+(?:r#)?\w+|use\s[^;]+)\s*;")
+_ATTRIBUTE = re.compile(r"#\s*!?\s*\[")
 _INLINE_MODULE = re.compile(r"\bmod\s+(\w+)\s*\{")
 _PATH = re.compile(r"(?<![\w:.])[A-Za-z_]\w*(?:\s*::\s*[A-Za-z_]\w*)+")
 
@@ -84,6 +86,25 @@ def strings(text: str) -> list[str]:
     text = _without_tests(text, _bare(text))
     found = (match.group() for match in _IGNORED.finditer(text))
     return [re.sub(r"\\\n\s*", "", word) for word in found if re.match(r"b?r?#*\"", word)]
+
+
+def first_item(text: str) -> tuple[int, str] | None:
+    """The first thing in a file that is more than a declaration: its line, from one on, and its text.
+
+    Declarations are ``mod x;`` and ``use x;``, with attributes and scopes. None where there are only such.
+    """
+    bare = _bare(text)
+    place = 0
+    while place < len(bare):
+        if bare[place].isspace():
+            place += 1
+        elif found := _ATTRIBUTE.match(bare, place):
+            place = _closing(bare, found.end() - 1)
+        elif found := _DECLARATION.match(bare, place):
+            place = found.end()
+        else:
+            return text.count("\n", 0, place) + 1, text[place:].partition("\n")[0].strip()
+    return None
 
 
 def imports(tree: str) -> Iterator[tuple[str, list[str]]]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from rust_layers import Crate, circles, out_of_order, strings, upward
+from rust_layers import Crate, circles, first_item, out_of_order, strings, upward
 
 ROOT = Path(__file__).resolve().parents[1]
 LAYERS: dict[str, Any] = tomllib.loads((ROOT / "tests" / "layers.toml").read_text("utf-8"))
@@ -42,6 +42,13 @@ class TestThisHouse:
 
     def test_rooms_stand_above_those_they_use(self, house: tuple[Crate, Any]) -> None:
         assert upward(house[1]["rooms"]) == []
+
+    def test_rooms_only_declare(self, house: tuple[Crate, Any]) -> None:
+        doors = sorted(house[0].source.rglob("mod.rs"))
+        found = {path.relative_to(ROOT).as_posix(): first_item(path.read_text("utf-8")) for path in doors}
+        told = [f"{file}:{item[0]}: {item[1]}" for file, item in found.items() if item is not None]
+        assert told == [], "items stand in files of the room; its mod.rs declares and hands on"
+        assert doors
 
 
 class TestWords:
@@ -177,6 +184,43 @@ class TestTheChecker:
     def test_a_name_that_nothing_defines(self, tmp_path: Path) -> None:
         found = crate(tmp_path, lib="mod a;", a="use crate::nowhere::X;")
         assert found.unknown == ["a.rs: crate::nowhere::X"]
+
+    @pytest.mark.parametrize(
+        "item",
+        [
+            "fn f() {}",
+            "pub(super) const fn f() {}",
+            "pub struct A;",
+            "pub(crate) enum A { B }",
+            "impl A {}",
+            "unsafe impl Send for A {}",
+            "pub trait T {}",
+            "const A: u8 = 1;",
+            "static A: u8 = 1;",
+            "type A = u8;",
+            "macro_rules! m { () => {} }",
+            "m! { a }",
+            "mod tests { use super::*; }",
+            "extern crate a;",
+        ],
+    )
+    @pytest.mark.parametrize("attribute", ["", "#[cfg(test)] ", '#[doc = "]; mod a;"] '])
+    def test_an_item_of_a_room(self, item: str, attribute: str) -> None:
+        before = "//! A room.\n\n/* fn g() {}\n*/ mod a;\npub use a::A;\n\n/// What it is.\n"
+        assert first_item(f"{before}{attribute}{item}\nmod b;\n") == (8, item)
+
+    @pytest.mark.parametrize(
+        "room",
+        [
+            "",
+            "//! A room: `fn f() {}`.\n\nmod a;\npub mod b;\npub(crate) mod r#c;\npub(in crate::a) mod d;",
+            "mod a;\npub use self::a::{self, B as C,\n    d::*};\nuse std::fmt;\npub(super) use a::D;",
+            '#![allow(dead_code)]\n#[cfg(test)]\nmod tests;\n#[expect(\n    lint, reason = "]"\n)]\nmod a;',
+            "/// struct A;\nmod a; // fn f() {}\n/* impl A {} */ use a::modulus;",
+        ],
+    )
+    def test_declarations_alone(self, room: str) -> None:
+        assert first_item(room) is None
 
     def test_rooms(self, tmp_path: Path) -> None:
         found = crate(

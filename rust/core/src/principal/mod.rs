@@ -1,4 +1,12 @@
 //! Principal axes and tops: the frame in which a body's inertia tensor is diagonal, and what kind of top the body is.
+//!
+//! | what | file |
+//! |---|---|
+//! | I = V diag(I₁, I₂, I₃) Vᵀ | [`axes`] |
+//! | the axes nearest to the body frame, where a body leaves them free | [`canonical`](mod@canonical) |
+//! | what a small change of the tensor does | [`derivative`](mod@derivative) |
+//! | which moments are equal | [`tops`] |
+//! | the symmetric top | [`symmetric_top`] |
 
 pub mod axes;
 pub mod canonical;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::moments::Moments;
-use super::{MassAccumulator, Matter, Piece, WHOLE, check_loose};
+use super::pieces::{Matter, Piece, WHOLE, check_loose};
+use super::sums::MassAccumulator;
 use crate::error::{BodyFault, Error};
 use crate::mass::particles::Particles;
 use crate::numerics::double_double::DoubleDouble;

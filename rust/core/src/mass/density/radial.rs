@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
-use super::effort::{Effort, Estimate};
-use super::{JUMP, Scaled};
+use super::effort::{Effort, Estimate, JUMP};
+use super::scaled::Scaled;
 use crate::error::{BodyFault, Error, finite};
 use crate::mass::amount;
 use crate::mass::body::RigidBody;

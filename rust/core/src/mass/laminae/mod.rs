@@ -1,76 +1,16 @@
 //! Homogeneous laminae: sheets without thickness in the x-y plane.
 //!
 //! Those known by lengths have their centre of mass at the origin; triangles and polygons stay where their corners are.
+//!
+//! | what | file |
+//! |---|---|
+//! | disk, annulus, ellipse, rectangle | `by_lengths` |
+//! | triangles and polygons | `polygon` |
+//! | whether a boundary passes through itself | `simple` |
 
+mod by_lengths;
 mod polygon;
 mod simple;
 
-use std::f64::consts::PI;
-
-use super::amount::{Amount, Measure, Unit, diagonal, length, ordered};
-use super::body::RigidBody;
-use crate::error::Error;
-
+pub use by_lengths::{annulus, disk, ellipse, rectangle};
 pub use polygon::{polygon, triangle};
-
-/// Disk of radius R: `I_z = ½ m R²`, `I_x = I_y = ¼ m R²`.
-///
-/// # Errors
-/// When the radius is negative or not finite, or the amount is not positive.
-pub fn disk(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
-    length("radius", radius)?;
-    ellipse(&[radius; 2], amount)
-}
-
-/// Disk with a concentric hole, between the radii r and R: `I_z = ½ m (R² + r²)`; for r = R a ring.
-///
-/// # Errors
-/// When a radius is negative or not finite, the inner one is the larger, or the amount is not positive.
-pub fn annulus(inner_radius: f64, outer_radius: f64, amount: Amount) -> Result<RigidBody, Error> {
-    ordered(
-        ("inner_radius", inner_radius),
-        ("outer_radius", outer_radius),
-    )?;
-    let (unit, [r, R]) = Unit::of([inner_radius, outer_radius]);
-    let across = (R * R + r * r) / 4.0;
-    diagonal(
-        unit,
-        Measure::Area(PI * (R - r) * (R + r)),
-        amount,
-        [across, across, 0.0],
-    )
-}
-
-/// Ellipse with semi-axes a along x and b along y: `I_x = ¼ m b²`, `I_y = ¼ m a²`.
-///
-/// # Errors
-/// When a length is negative or not finite, or the amount is not positive.
-pub fn ellipse(semi_axes: &[f64; 2], amount: Amount) -> Result<RigidBody, Error> {
-    for &semi_axis in semi_axes {
-        length("semi_axes", semi_axis)?;
-    }
-    let (unit, [a, b]) = Unit::of(*semi_axes);
-    diagonal(
-        unit,
-        Measure::Area(PI * a * b),
-        amount,
-        [a * a / 4.0, b * b / 4.0, 0.0],
-    )
-}
-
-/// Rectangle with full edge lengths x and y: `I_x = m y²/12`, `I_y = m x²/12`.
-///
-/// # Errors
-/// When a length is negative or not finite, or the amount is not positive.
-pub fn rectangle(size: &[f64; 2], amount: Amount) -> Result<RigidBody, Error> {
-    for &edge in size {
-        length("size", edge)?;
-    }
-    let (unit, [x, y]) = Unit::of(*size);
-    diagonal(
-        unit,
-        Measure::Area(x * y),
-        amount,
-        [x * x / 12.0, y * y / 12.0, 0.0],
-    )
-}

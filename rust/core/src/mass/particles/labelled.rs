@@ -1,8 +1,10 @@
 //! Particles that say which body they belong to: haloes, fragments, residues.
 
-use super::{Particles, Watch, particle_stack};
+use super::list::Particles;
+use super::stack::particle_stack;
 use crate::error::{BodyFault, Error};
 use crate::mass::body::RigidBody;
+use crate::numerics::threads::Watch;
 
 /// The label of a particle that belongs to no body.
 const NO_BODY: i64 = -1;

@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use nalgebra::{Matrix3, Vector3};
 
 use super::about_center::{about_center, in_own_axes, is_ordinary, is_thin};
+use super::alone::particles_watched;
 use super::extreme::in_units;
 use super::list::Particles;
-use super::particles_watched;
 use crate::error::Error;
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::Provenance;

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use super::polyhedron_watched;
+use super::in_memory::polyhedron_watched;
 use super::solid::Options;
 use super::view::{Index, View};
 use crate::error::{Corner, Count, Error, MeshFault};

@@ -11,7 +11,7 @@
 //! | which components lie in which | `nesting` |
 //! | the solid inside triangles, wherever they come from | `solid` |
 //! | the body of what was summed | `matter` |
-//! | meshes in memory | `view`, `faces` |
+//! | meshes in memory | `in_memory`, `view`, `faces` |
 //! | meshes larger than memory | [`stream`], `passes`, [`streamed`] |
 //! | open meshes closed on request | [`closure`] |
 
@@ -19,6 +19,7 @@ mod boundary;
 pub mod closure;
 mod duplicates;
 mod faces;
+mod in_memory;
 mod matter;
 mod nesting;
 mod passes;
@@ -27,151 +28,9 @@ pub mod stream;
 pub mod streamed;
 mod view;
 
-use std::ops::ControlFlow;
-
-use super::amount::Amount;
-use super::body::RigidBody;
-use crate::error::Error;
-use crate::numerics::threads::{Halt, Watch};
-use faces::Faces;
+pub use in_memory::{polyhedron, polyhedron_watched};
 pub(super) use matter::{in_units, is_settled, matter};
 pub(super) use nesting::find_components;
 pub use solid::Options;
-use solid::solid;
 pub use view::Index;
 pub(super) use view::{View, widen};
-
-/// A solid of uniform density bounded by a closed, consistently wound triangle mesh.
-///
-/// `faces` count vertices from zero, counter-clockwise seen from outside. Vertices with the same coordinates are one
-/// vertex. With `orient` an inverted mesh is turned, and so is a component that is wound like a cavity but lies in no other;
-/// else it is an error. Several components and cavities (inner surfaces wound inward) are counted as they are.
-///
-/// # Errors
-/// [`MeshFault`](crate::error::MeshFault) names the face, edge or vertex that keeps the mesh from bounding a solid.
-pub fn polyhedron<I: Index>(
-    vertices: &[[f64; 3]],
-    faces: &[[I; 3]],
-    amount: Amount,
-    orient: bool,
-) -> Result<RigidBody, Error> {
-    let options = Options {
-        orient,
-        ..Options::default()
-    };
-    let go_on = &mut |_| ControlFlow::Continue(());
-    Ok(polyhedron_watched(vertices, faces, amount, options, go_on)?)
-}
-
-/// The same on several threads when the mesh is large, with `watch` asked about every 20 ms whether to go on.
-///
-/// # Errors
-/// As [`polyhedron`], and [`Halt::Stopped`] where `watch` said so.
-pub fn polyhedron_watched<I: Index>(
-    vertices: &[[f64; 3]],
-    faces: &[[I; 3]],
-    amount: Amount,
-    options: Options,
-    watch: &mut Watch<'_>,
-) -> Result<RigidBody, Halt<Error>> {
-    solid_of_faces(vertices, faces, amount, options, watch).map(|(body, _)| body)
-}
-
-/// The solid inside triangles in memory, components turned where that is asked for, and its volume.
-fn solid_of_faces<I: Index>(
-    vertices: &[[f64; 3]],
-    faces: &[[I; 3]],
-    amount: Amount,
-    options: Options,
-    watch: &mut Watch<'_>,
-) -> Result<(RigidBody, f64), Halt<Error>> {
-    let mut mesh = Faces::new(vertices, faces, watch);
-    let outcome = solid(&mut mesh, amount, options);
-    match mesh.inside_out {
-        Some(found) if options.orient => {
-            let faces = found.turned(faces);
-            solid(&mut Faces::new(vertices, &faces, watch), amount, options)
-        }
-        _ => outcome,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::Vector3;
-
-    use super::*;
-    use crate::error::{Count, MeshFault};
-
-    const TETRAHEDRON: ([[f64; 3]; 4], [[usize; 3]; 4]) = (
-        [
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0],
-            [0.0, 0.0, 1.0],
-        ],
-        [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
-    );
-
-    #[test]
-    fn unit_tetrahedron() {
-        let (vertices, faces) = TETRAHEDRON;
-        let body = polyhedron(&vertices, &faces, Amount::Density(6.0), false).expect("closed");
-        assert!((body.mass() - 1.0).abs() < 1e-15);
-        assert!((body.center_of_mass() - Vector3::repeat(0.25)).norm() < 1e-15);
-        // ∫x² = 1/10 and ∫xy = 1/20 of the mass about the corner.
-        let corner = body.inertia_about(&Vector3::zeros());
-        assert!((corner[(0, 0)] - 0.2).abs() < 1e-15);
-        assert!((corner[(0, 1)] + 0.05).abs() < 1e-15);
-    }
-
-    #[test]
-    fn faults_are_told_apart() {
-        let (vertices, faces) = TETRAHEDRON;
-        let fault =
-            |faces: &[[usize; 3]]| match polyhedron(&vertices, faces, Amount::Mass(1.0), false) {
-                Err(Error::Mesh(fault)) => fault,
-                other => panic!("expected a mesh fault, got {other:?}"),
-            };
-        assert!(matches!(
-            fault(&faces[..3]),
-            MeshFault::Open {
-                count: Count { seen: 3, .. },
-                ..
-            }
-        ));
-        let mut flipped = faces;
-        flipped[3].swap(0, 1);
-        assert!(matches!(
-            fault(&flipped),
-            MeshFault::InconsistentWinding {
-                count: Count { seen: 3, .. },
-                ..
-            }
-        ));
-        let inverted = faces.map(|[a, b, c]| [b, a, c]);
-        assert!(matches!(fault(&inverted), MeshFault::Inverted { .. }));
-        assert!(polyhedron(&vertices, &inverted, Amount::Mass(1.0), true).is_ok());
-        assert!(matches!(
-            fault(&[[0, 1, 4]]),
-            MeshFault::IndexOutOfRange {
-                face: 0,
-                index: 4,
-                ..
-            }
-        ));
-        assert!(matches!(
-            fault(&[[0, 1, 2], [0, 2, 1]]),
-            MeshFault::NoVolume { .. }
-        ));
-    }
-
-    #[test]
-    fn triangle_soup_is_welded_by_equal_coordinates() {
-        let (vertices, faces) = TETRAHEDRON;
-        let soup: Vec<[f64; 3]> = faces.iter().flatten().map(|&k| vertices[k]).collect();
-        let corners: Vec<[usize; 3]> = (0..4).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let body = polyhedron(&soup, &corners, Amount::Density(6.0), false).expect("closed");
-        assert!((body.mass() - 1.0).abs() < 1e-15);
-    }
-}

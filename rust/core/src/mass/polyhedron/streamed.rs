@@ -6,10 +6,10 @@ use nalgebra::Vector3;
 
 use super::boundary::{Boundary, Replay, Triangle};
 use super::duplicates::{Marks, ROOM, repeated};
+use super::in_memory::solid_of_faces;
 use super::nesting::{InsideOut, find_inside_out};
 use super::passes::{Block, Passes};
 use super::solid::{Checked, Options, Triangles, solid};
-use super::solid_of_faces;
 use super::stream::{StreamError, TriangleStream};
 use super::view::{View, widen};
 use crate::error::{Corner, MeshFault};

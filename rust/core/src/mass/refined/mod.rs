@@ -1,4 +1,10 @@
 //! Principal moments and axes to twice the precision, and to four times.
+//!
+//! | what | file |
+//! |---|---|
+//! | to twice the precision | `principal` |
+//! | to four times | `finest` |
+//! | vectors and matrices of such numbers | `vectors` |
 
 mod finest;
 mod principal;

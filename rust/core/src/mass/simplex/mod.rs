@@ -7,6 +7,14 @@
 //! Coordinates are taken from a reference within the body, so that nothing cancels wherever the body stands. Simplex i
 //! goes to lane `i mod 8` of block `i / 4096`; lanes and blocks are merged in a fixed tree (see
 //! [`reduce`](crate::numerics::reduce)), so the bits depend neither on threads nor on how a stream is cut.
+//!
+//! | what | file |
+//! |---|---|
+//! | what the sums come to in a frame | `sums` |
+//! | where coordinates are taken from, and how exactly | `frame` |
+//! | lengths, areas, volumes | `kinds` |
+//! | the sums over a block, and how blocks are merged | `block` |
+//! | differences and products in lanes | `vectors` |
 
 mod block;
 mod frame;

@@ -16,7 +16,8 @@
 
 use nalgebra::Vector3;
 
-use super::{SINGULAR, Sequence};
+use super::angles::SINGULAR;
+use super::sequence::Sequence;
 use crate::error::{Error, MotionFault};
 use crate::motion::kinematics::Frame;
 

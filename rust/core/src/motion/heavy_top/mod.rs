@@ -2,8 +2,10 @@
 //!
 //! | file | what it holds |
 //! |---|---|
+//! | `top` | a motion, from its state to its states |
 //! | [`pivoted_top`] | which bodies are such tops; steady precession and the sleeping limit |
 //! | `reduced` | the state in its own units and axes |
+//! | `source`, `scaled` | the data of a top, sizes in a unit of their own; numbers of any precision and powers of two |
 //! | `turning_points` | the cubic of `cos θ` and the distances between what is singular |
 //! | `phases` | the steady rates of the phases and the shifts of the theta functions |
 //! | `course` | all of these as numbers ready for vector lanes |
@@ -20,82 +22,9 @@ mod scaled;
 mod source;
 #[cfg(test)]
 mod tests;
+mod top;
 mod turning_points;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-
-use crate::error::{Error, all_finite};
-use crate::motion::state::{ClosedForm, State};
 pub use nutation::{Nutation, Path};
 pub use pivoted_top::PivotedTop;
-use sampling::Course;
-
-/// The motion of a heavy symmetric top about a fixed point O on its axis, exact at any time.
-///
-/// Times count from the state it was made of. What grows with time, three phases and the number of periods, is known to
-/// twice the precision, so that a state after 10¹² turns costs as much and is as good as one after the first.
-/// Source: part II; F. Klein and A. Sommerfeld, Über die Theorie des Kreisels, chapters IV and VI; E. T. Whittaker,
-/// A Treatise on the Analytical Dynamics, §71 to §73.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[doc(alias = "Lagrange top")]
-#[doc(alias = "spherical pendulum")]
-pub struct HeavyTop {
-    course: Course,
-    nutation: Nutation,
-}
-
-impl HeavyTop {
-    /// The top with this state at time zero. `omega`: of B relative to N, components in B. `attitude`: `R_NB`. `gravity`: g, in N.
-    ///
-    /// The quaternion counts as it is, to its last bit, and is made a unit one in double-double.
-    ///
-    /// # Errors
-    /// When a number is not finite.
-    pub fn of(
-        top: &PivotedTop,
-        omega: &Vector3<f64>,
-        attitude: &UnitQuaternion<f64>,
-        gravity: &Vector3<f64>,
-    ) -> Result<Self, Error> {
-        all_finite("omega", omega)?;
-        all_finite("gravity", gravity)?;
-        all_finite("attitude", attitude.coords.iter())?;
-        let (course, nutation) = Course::of(top, omega, attitude, gravity);
-        Ok(Self { course, nutation })
-    }
-
-    /// The state at time `t`; NaN at a time that is not finite, or beyond [`ClosedForm::reach`].
-    #[must_use]
-    pub fn at(&self, t: f64) -> State {
-        let (mut attitude, mut omega) = ([[0.0; 4]], [[0.0; 3]]);
-        self.sample(&[t], &mut attitude, &mut omega);
-        let [[x, y, z, w]] = attitude;
-        State {
-            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
-            omega: Vector3::from(omega[0]),
-        }
-    }
-
-    /// Attitudes as (x, y, z, w) and ω at many times, several side by side; each with the bits of [`HeavyTop::at`].
-    ///
-    /// Of slices of different lengths the shortest counts.
-    pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        self.course.sample(times, attitudes, omegas);
-    }
-
-    /// How the axis moves.
-    #[must_use]
-    pub fn nutation(&self) -> &Nutation {
-        &self.nutation
-    }
-}
-
-impl ClosedForm for HeavyTop {
-    fn reach(&self) -> f64 {
-        self.course.reach
-    }
-
-    fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        Self::sample(self, times, attitudes, omegas);
-    }
-}
+pub use top::HeavyTop;

@@ -1,4 +1,13 @@
 //! What is asked of a method, and what it gives: plain data that steppers and runs share.
+//!
+//! | what | file |
+//! |---|---|
+//! | what is to be simulated, and how | `task` |
+//! | the methods by name | `method` |
+//! | how accurate it is to be | `tolerance` |
+//! | which runs are refused | `limits` |
+//! | passages through zero | `crossing` |
+//! | what a run gives | `outcome` |
 
 mod crossing;
 pub(in crate::motion) mod limits;

@@ -1,9 +1,17 @@
 //! The motion of a body under a load, sampled at the times asked for.
 //!
-//! A [`Task`] says what is wanted, a [`Run`] what was found; `choose` says which method serves. Methods of steps go through
-//! spans of time in which the load is smooth (`steps`): `stepper` is what a run needs of a method, `begin` makes one, and
-//! `equations` is what Runge-Kutta methods see of the mechanics. [`events`] says what is looked for, `lookout` looks through a
-//! step with `along`, and `flips` finds where a load changes its law with the state.
+//! A [`Task`] says what is wanted, a [`Run`] what was found.
+//!
+//! | what | file |
+//! |---|---|
+//! | one motion, by the method that serves | `one`, `choose` |
+//! | bodies and tops in closed form | `exact` |
+//! | methods of steps, through spans of time in which the load is smooth | `steps` |
+//! | what a run needs of such a method; the one place that makes it | `stepper`, `begin` |
+//! | the methods: Runge-Kutta, splitting, Taylor series looked through as they are summed | `solved`, `kicked`, `summed` |
+//! | what Runge-Kutta methods see of the mechanics | `equations` |
+//! | what is looked for, and the look through a step | [`events`], `lookout`, `along` |
+//! | where a load changes its law with the state | `flips` |
 
 mod along;
 mod begin;

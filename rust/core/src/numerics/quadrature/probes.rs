@@ -153,7 +153,7 @@ fn lagrange(nodes: &[f64], x: f64) -> Vec<f64> {
 mod tests {
     use std::convert::Infallible;
 
-    use super::super::integrate;
+    use super::super::adaptive::integrate;
     use super::*;
 
     /// One up to some place, two beyond.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::HalfPeriods;
+use super::half_periods::HalfPeriods;
 use crate::numerics::lane::Lane;
 
 /// Cosines and sines of z = πu/2K and its multiples up to 8 z.

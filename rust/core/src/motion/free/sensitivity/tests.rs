@@ -1,5 +1,7 @@
-use super::*;
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
 use crate::mass::refined::RefinedPrincipal;
+use crate::motion::free::FreeMotion;
 
 /// (moments, ω, t, ∂ω(t)/∂(ω, I) by rows): differences of Taylor series with mpmath 1.3 and 40 digits.
 type Case = ([f64; 3], [f64; 3], f64, [[f64; 6]; 3]);

@@ -1,7 +1,8 @@
-use super::*;
+use nalgebra::{SVector, Vector2};
+
+use super::Radau;
 use crate::error::Error;
-use crate::motion::integrate::Compensated;
-use nalgebra::Vector2;
+use crate::motion::integrate::{Compensated, RungeKutta, System};
 
 /// ẏ = −λ (y − cos t) − sin t beside ẍ = −x: the solution from y(0) = 1 + departure is cos t + departure e^(−λ t).
 struct Stiff {
@@ -43,7 +44,7 @@ fn run(rate: f64, tolerance: f64, departure: f64, end: f64) -> (f64, f64, u64) {
     (
         (stepper.state() - exact).norm(),
         between,
-        stepper.progress.steps,
+        stepper.progress().steps,
     )
 }
 

@@ -1,8 +1,10 @@
-use super::*;
-use crate::mass::RigidBody;
-use crate::motion::loads::{Analytic, Subject, Term};
-use crate::motion::state::State;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use super::Splitting;
+use crate::mass::RigidBody;
+use crate::motion::euler_equations::EulerEquations;
+use crate::motion::loads::{Analytic, Subject, Term};
+use crate::motion::state::{Phase, State};
 
 fn top(moments: [f64; 3]) -> RigidBody {
     let center = Vector3::new(0.0, 0.0, 0.6);

@@ -1,0 +1,69 @@
+//! Laminae known by lengths, about the origin.
+
+use std::f64::consts::PI;
+
+use crate::error::Error;
+use crate::mass::amount::{Amount, Measure, Unit, diagonal, length, ordered};
+use crate::mass::body::RigidBody;
+
+/// Disk of radius R: `I_z = ½ m R²`, `I_x = I_y = ¼ m R²`.
+///
+/// # Errors
+/// When the radius is negative or not finite, or the amount is not positive.
+pub fn disk(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+    length("radius", radius)?;
+    ellipse(&[radius; 2], amount)
+}
+
+/// Disk with a concentric hole, between the radii r and R: `I_z = ½ m (R² + r²)`; for r = R a ring.
+///
+/// # Errors
+/// When a radius is negative or not finite, the inner one is the larger, or the amount is not positive.
+pub fn annulus(inner_radius: f64, outer_radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+    ordered(
+        ("inner_radius", inner_radius),
+        ("outer_radius", outer_radius),
+    )?;
+    let (unit, [r, R]) = Unit::of([inner_radius, outer_radius]);
+    let across = (R * R + r * r) / 4.0;
+    diagonal(
+        unit,
+        Measure::Area(PI * (R - r) * (R + r)),
+        amount,
+        [across, across, 0.0],
+    )
+}
+
+/// Ellipse with semi-axes a along x and b along y: `I_x = ¼ m b²`, `I_y = ¼ m a²`.
+///
+/// # Errors
+/// When a length is negative or not finite, or the amount is not positive.
+pub fn ellipse(semi_axes: &[f64; 2], amount: Amount) -> Result<RigidBody, Error> {
+    for &semi_axis in semi_axes {
+        length("semi_axes", semi_axis)?;
+    }
+    let (unit, [a, b]) = Unit::of(*semi_axes);
+    diagonal(
+        unit,
+        Measure::Area(PI * a * b),
+        amount,
+        [a * a / 4.0, b * b / 4.0, 0.0],
+    )
+}
+
+/// Rectangle with full edge lengths x and y: `I_x = m y²/12`, `I_y = m x²/12`.
+///
+/// # Errors
+/// When a length is negative or not finite, or the amount is not positive.
+pub fn rectangle(size: &[f64; 2], amount: Amount) -> Result<RigidBody, Error> {
+    for &edge in size {
+        length("size", edge)?;
+    }
+    let (unit, [x, y]) = Unit::of(*size);
+    diagonal(
+        unit,
+        Measure::Area(x * y),
+        amount,
+        [x * x / 12.0, y * y / 12.0, 0.0],
+    )
+}

@@ -1,0 +1,94 @@
+//! Motions in the lanes that serve them: one after the other or side by side, in doubles or in numbers of twice the precision.
+
+use std::ops::ControlFlow;
+
+use super::abreast::Abreast;
+use super::alone::Alone;
+use super::drive::{Job, See, Settings, drive};
+use super::twin::Twin;
+use crate::numerics::dispatch::Kernel;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::lane::Lane;
+use crate::numerics::twofold::Twofold;
+
+/// Motions side by side: a register of the widest machines.
+pub(super) const ROWS: usize = 8;
+
+/// Motions one after the other in numbers of twice the precision.
+pub(super) struct Precisely<'a, 'b> {
+    pub(super) settings: Settings,
+    pub(super) jobs: &'b mut dyn Iterator<Item = Job<'a, DoubleDouble>>,
+    pub(super) watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+    pub(super) see: Option<See<'b>>,
+}
+
+impl Kernel for Precisely<'_, '_> {
+    type Output = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> ControlFlow<()> {
+        let Self {
+            settings,
+            jobs,
+            watch,
+            see,
+        } = self;
+        match settings.parts.directions {
+            0 => drive::<Twofold<L>, Twin<L, 0, 4>, 0, 1>(settings, jobs, watch, see),
+            1 => drive::<Twofold<L>, Twin<L, 1, 8>, 1, 1>(settings, jobs, watch, see),
+            _ => drive::<Twofold<L>, Twin<L, 3, 16>, 3, 1>(settings, jobs, watch, see),
+        }
+    }
+}
+
+/// Motions one after the other, the lanes over the components of each.
+pub(super) struct OneByOne<'a, 'b> {
+    pub(super) settings: Settings,
+    pub(super) jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
+    pub(super) watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+    pub(super) see: Option<See<'b>>,
+}
+
+impl Kernel for OneByOne<'_, '_> {
+    type Output = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> ControlFlow<()> {
+        let Self {
+            settings,
+            jobs,
+            watch,
+            see,
+        } = self;
+        match settings.parts.directions {
+            0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch, see),
+            1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch, see),
+            _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch, see),
+        }
+    }
+}
+
+/// Motions side by side, the lanes over the motions.
+pub(super) struct SideBySide<'a, 'b> {
+    pub(super) settings: Settings,
+    pub(super) jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
+    pub(super) watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+}
+
+impl Kernel for SideBySide<'_, '_> {
+    type Output = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> ControlFlow<()> {
+        let Self {
+            settings,
+            jobs,
+            watch,
+        } = self;
+        match settings.parts.directions {
+            0 => drive::<L, Abreast<L, 0, ROWS>, 0, ROWS>(settings, jobs, watch, None),
+            1 => drive::<L, Abreast<L, 1, ROWS>, 1, ROWS>(settings, jobs, watch, None),
+            _ => drive::<L, Abreast<L, 3, ROWS>, 3, ROWS>(settings, jobs, watch, None),
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The motions of many tasks, on all cores.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use super::course::parts;
+use super::job::{rows, settings};
+use super::kernels::{OneByOne, Precisely, ROWS, SideBySide};
+use crate::error::Error;
+use crate::motion::loads::{Parts, Term};
+use crate::motion::problem::{Run, Task};
+use crate::numerics::dispatch::dispatch;
+use crate::numerics::threads::{fill_blocks, thread_count};
+
+/// The most motions that a thread takes at a time.
+const MOST: usize = 1024;
+/// Fewer motions than this are sooner done one by one.
+const FEW: usize = 4;
+
+/// The motions of many tasks, each under its own terms, into `runs`; on all cores, eight side by side in the lanes of each,
+/// or one by one where doubles do not serve the tolerance. Every motion has the bits of [`solve_one`](super::solve_one).
+///
+/// `task` gives the tasks and `terms` what acts in each. They may differ in body, state and numbers; times, tolerance,
+/// whether the body is pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
+/// motions that were begun; it may stop the run.
+///
+/// # Panics
+/// As [`solve_one`](super::solve_one).
+pub fn solve_many<'a>(
+    task: &(dyn Fn(usize) -> Task<'a> + Sync),
+    terms: &(dyn Fn(usize) -> &'a [Term] + Sync),
+    runs: &mut [Option<Run<Error>>],
+    watch: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
+) {
+    let all = runs.len() as f64;
+    let begun = AtomicUsize::new(0);
+    let stopped = AtomicBool::new(false);
+    let ask = || {
+        if stopped.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            watch(begun.load(Ordering::Relaxed) as f64 / all)
+        }
+    };
+    let is_precise = !runs.is_empty() && task(0).tolerance.is_beyond_doubles();
+    let block = if is_precise { 1 } else { block(runs.len()) };
+    // Where a run is stopped, what was done by then is kept.
+    let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, runs| {
+        let (count, example) = (runs.len(), task(first));
+        let mut common = Parts::default();
+        for row in first..first + count {
+            common = common.with(&parts(terms(row), example.subject.pivoted));
+        }
+        let settings = settings(&example, common);
+        let begin = |row: usize| {
+            begun.fetch_add(1, Ordering::Relaxed);
+            (task(row), terms(row))
+        };
+        let watch = &mut |_| ask();
+        let flow = if is_precise {
+            let jobs = &mut rows(first, runs, &begin);
+            dispatch(Precisely {
+                settings,
+                jobs,
+                watch,
+                see: None,
+            })
+        } else {
+            let jobs = &mut rows(first, runs, &begin);
+            if count < FEW {
+                dispatch(OneByOne {
+                    settings,
+                    jobs,
+                    watch,
+                    see: None,
+                })
+            } else {
+                dispatch(SideBySide {
+                    settings,
+                    jobs,
+                    watch,
+                })
+            }
+        };
+        if flow.is_break() {
+            stopped.store(true, Ordering::Relaxed);
+            return Err(());
+        }
+        Ok(())
+    });
+}
+
+/// Motions that a thread takes at a time: many, since lanes idle at the end of a block, but some for every thread.
+fn block(count: usize) -> usize {
+    let share = count.div_ceil(4 * thread_count());
+    share.next_multiple_of(ROWS).clamp(2 * ROWS, MOST)
+}

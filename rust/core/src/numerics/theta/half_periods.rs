@@ -1,0 +1,10 @@
+//! The two periods of Jacobi's functions.
+
+/// The half periods: K along the real axis, K′ along the imaginary one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfPeriods {
+    /// K.
+    pub real: f64,
+    /// K′.
+    pub imaginary: f64,
+}
