@@ -119,9 +119,14 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         let mut operands = [0; K];
         let mut rest = row;
         for axis in (0..self.shape.len()).rev() {
-            let length = self.shape[axis];
-            let step = rest % length;
-            rest /= length;
+            // What is left at the first axis is the step along it: most stacks have one axis, and divisions are slow.
+            let step = if axis == 0 {
+                rest
+            } else {
+                let step = rest % self.shape[axis];
+                rest /= self.shape[axis];
+                step
+            };
             for (operand, strides) in operands.iter_mut().zip(&self.strides) {
                 *operand += step * strides[axis];
             }

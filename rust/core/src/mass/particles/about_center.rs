@@ -24,18 +24,26 @@ pub(in crate::mass) fn is_thin(body: &RigidBody) -> bool {
 pub(in crate::mass) const ORDINARY: std::ops::Range<f64> =
     f64::from_bits((1023 - 800) << 52)..f64::from_bits((1023 + 1000) << 52);
 
+/// From 2⁻⁴⁰⁰ to 2⁴⁰⁰: quotients of two such numbers are ordinary.
+const TAME: std::ops::Range<f64> =
+    f64::from_bits((1023 - 400) << 52)..f64::from_bits((1023 + 400) << 52);
+
 /// Whether nothing can have under- or overflowed on the way to these moments.
 ///
 /// A product m d below the normal numbers is off by 2⁻¹⁰⁷⁵ at most, and so is m d·d by d times as much. A particle that
 /// has any mass has 2⁻¹⁰⁷⁴ at least, so d is at most √(2¹⁰⁷⁴ tr S): all such errors together are below
 /// n·2⁻⁵³⁸ √(tr S), which is nothing beside the roundings of a trace of 2⁻⁸⁰⁰. What overflowed is not finite.
 pub(super) fn is_ordinary(matter: &SecondMoment, particles: Particles<'_>) -> bool {
-    let (spread, center) = (matter.central.trace(), matter.center_of_mass);
+    let (spread, mass) = (matter.central.trace(), matter.mass);
+    if !matter.center_of_mass.iter().all(|x| x.is_finite()) {
+        return false;
+    }
+    if TAME.contains(&spread) && TAME.contains(&mass) {
+        return true;
+    }
     let is_point = spread == 0.0 && particles.masses.len() == 1;
-    let is_matter = ORDINARY.contains(&spread) && ORDINARY.contains(&(spread / matter.mass));
-    ORDINARY.contains(&matter.mass)
-        && (is_matter || is_point)
-        && center.iter().all(|x| x.is_finite())
+    let is_matter = ORDINARY.contains(&spread) && ORDINARY.contains(&(spread / mass));
+    ORDINARY.contains(&mass) && (is_matter || is_point)
 }
 
 /// Second moment about the centre of mass in body axes.
