@@ -77,7 +77,7 @@ def public_objects() -> Iterator[tuple[str, Any]]:
 
 
 def _members(path: str, cls: type) -> Iterator[tuple[str, Any]]:
-    for name, member in vars(cls).items():
+    for name, member in sorted(vars(cls).items()):  # two processes that share the tests name them alike
         if name.startswith("_"):
             continue
         is_data = not (callable(member) or isinstance(member, property | staticmethod | classmethod))
