@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -205,7 +204,7 @@ assert grown < 30_000, grown  # kilobytes: eight bytes a triangle, a block and s
         def interrupt(fraction: float) -> None:
             seen.append(fraction)
             if len(seen) == 1:
-                os.kill(os.getpid(), signal.SIGINT)
+                signal.raise_signal(signal.SIGINT)
 
         assert threading.current_thread() is threading.main_thread()
         with pytest.raises(KeyboardInterrupt):
