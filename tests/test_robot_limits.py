@@ -76,6 +76,7 @@ TEXTS: dict[str, Callable[[int], str]] = {
 }
 
 
+@pytest.mark.alone
 @pytest.mark.parametrize("name", TEXTS)
 def test_time_is_in_proportion_to_length(name: str) -> None:
     """Eight times the text takes eight times the time; a quadratic path would take 64 times."""
