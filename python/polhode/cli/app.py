@@ -25,6 +25,7 @@ from polhode.cli.options import (
     SpinOptions,
 )
 from polhode.cli.standard_output import ReaderLeft, standard_output
+from polhode.cli.text import in_options, printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -231,8 +232,6 @@ def _as_value(argument: str) -> str:
 
 
 def _fail(message: str, code: int = BAD_INPUT) -> int:
-    from polhode.cli.text import in_options, printable
-
     if sys.stderr is not None:
         with suppress(OSError):  # nobody reads it: the exit code remains
             print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
