@@ -271,35 +271,76 @@ struct Slab<'a, T> {
     reference: [f64; 2],
 }
 
-/// Sums along y for one z: ρ, ρ y, ρ y², densities below zero.
-type Column<L> = [L; 4];
+/// Sums along y for each z.
+struct Columns<L> {
+    /// ρ.
+    sum: Vec<L>,
+    /// ρ y.
+    first: Vec<L>,
+    /// ρ y².
+    second: Vec<L>,
+    /// Densities below zero.
+    below: Vec<L>,
+}
+
+/// Rows that are added to the columns at once: so the columns are read and written once for four rows, in the same order
+/// of additions as one by one.
+const AT_ONCE: usize = 4;
+
+impl<L: Lane> Columns<L> {
+    #[inline(always)]
+    fn new(length: usize) -> Self {
+        let zero = || vec![L::new(0.0); length];
+        Self {
+            sum: zero(),
+            first: zero(),
+            second: zero(),
+            below: zero(),
+        }
+    }
+
+    /// Adds rows of cells at these y.
+    #[inline(always)]
+    fn add<T: Voxel, const N: usize>(&mut self, rows: &[T], y: [L; N]) {
+        let length = self.sum.len();
+        let rows: [&[T]; N] = std::array::from_fn(|n| &rows[n * length..(n + 1) * length]);
+        let first = &mut self.first[..length];
+        let second = &mut self.second[..length];
+        let below = &mut self.below[..length];
+        for k in 0..length {
+            for n in 0..N {
+                let density = L::new(rows[n][k].into());
+                self.sum[k] = self.sum[k] + density;
+                first[k] = density.mul_add(y[n], first[k]);
+                second[k] = density.mul_add(y[n] * y[n], second[k]);
+                below[k] = below[k] + density.min(L::new(0.0));
+            }
+        }
+    }
+}
 
 impl<T: Voxel> Kernel for Slab<'_, T> {
     type Output = [f64; SLAB];
 
     #[inline(always)]
     fn run<L: Lane>(self) -> [f64; SLAB] {
-        let zero = || vec![L::new(0.0); self.length];
-        let (mut sum, mut first, mut second, mut below) = (zero(), zero(), zero(), zero());
-        for (j, row) in self.density.chunks_exact(self.length).enumerate() {
-            let y = L::new(j as f64 - self.reference[0]);
-            let y_squared = y * y;
-            let columns = sum.iter_mut().zip(&mut first).zip(&mut second);
-            for ((&density, ((sum, first), second)), below) in
-                row.iter().zip(columns).zip(&mut below)
-            {
-                let density = L::new(density.into());
-                *sum = *sum + density;
-                *first = density.mul_add(y, *first);
-                *second = density.mul_add(y_squared, *second);
-                *below = *below + density.min(L::new(0.0));
-            }
+        let y = |j: usize| L::new(j as f64 - self.reference[0]);
+        let mut columns = Columns::new(self.length);
+        let mut rows = self.density.chunks_exact(AT_ONCE * self.length);
+        let mut j = 0;
+        for four in &mut rows {
+            columns.add::<T, AT_ONCE>(four, std::array::from_fn(|n| y(j + n)));
+            j += AT_ONCE;
         }
-        let column = |k: usize| -> Column<L> { [sum[k], first[k], second[k], below[k]] };
+        for row in rows.remainder().chunks_exact(self.length) {
+            columns.add(row, [y(j)]);
+            j += 1;
+        }
         sum_terms(self.length, |k| {
-            let [s, y, yy, below] = column(k).map(L::get);
+            let of = |column: &[L]| column[k].get();
+            let (s, y, yy) = (of(&columns.sum), of(&columns.first), of(&columns.second));
             let z = k as f64 - self.reference[1];
-            [s, y, s * z, yy, y * z, s * z * z, below]
+            [s, y, s * z, yy, y * z, s * z * z, of(&columns.below)]
         })
     }
 }
