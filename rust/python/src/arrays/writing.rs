@@ -1,7 +1,7 @@
 //! C-ordered float64 arrays out.
 
-use numpy::ndarray::ArrayViewD;
-use numpy::{Element, IntoPyArray, PyArray1, PyArrayDyn, PyArrayMethods};
+use numpy::ndarray::{ArrayView2, ArrayViewD};
+use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
 
@@ -19,6 +19,9 @@ pub(crate) fn write<'py, T: Item>(
     py: Python<'py>,
     stack: &Stack<T>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    if stack.is_one() {
+        return single(py, &stack[0]);
+    }
     let mut numbers = Numbers::of::<T>(py, "result", &stack.shape)?;
     numbers.put(&stack.rows, T::write)?;
     numbers.finish::<T>(&stack.shape)
@@ -30,9 +33,27 @@ pub(crate) fn write_of<'py, R, T: Item>(
     stack: &Stack<R>,
     item: impl Fn(&R) -> T,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    if stack.is_one() {
+        return single(py, &item(&stack[0]));
+    }
     let mut numbers = Numbers::of::<T>(py, "result", &stack.shape)?;
     numbers.put(&stack.rows, |row, out| item(row).write(out))?;
     numbers.finish::<T>(&stack.shape)
+}
+
+/// The array of one item. Its few numbers of axes are known when this is compiled, which NumPy is told sooner.
+fn single<'py, T: Item>(py: Python<'py>, item: &T) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let mut numbers = Vec::with_capacity(size::<T>());
+    item.write(&mut numbers);
+    if let [_] = T::TAIL {
+        return Ok(PyArray1::from_slice(py, &numbers).to_dyn().clone());
+    }
+    if let [rows, columns] = *T::TAIL
+        && let Ok(view) = ArrayView2::from_shape([rows, columns], &numbers)
+    {
+        return Ok(PyArray2::from_array(py, &view).to_dyn().clone());
+    }
+    shaped::<T>(py, numbers, &[])
 }
 
 /// The numbers of an array that is being made: room for all of them was found before the first was computed.
