@@ -11,12 +11,10 @@ from polhode.cli.progress import reading_progress
 from polhode.cli.quantities import has_unit, quantity
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
-from polhode.files.body import check_molecule_options, molecule_isotopes
 from polhode.files.content import MOLECULE_SUFFIX
 from polhode.files.loaded import load
 from polhode.files.mesh import weld_within
 from polhode.files.mesh_solid import MeshSolid, solid_of
-from polhode.molecules import body_of_atoms
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
@@ -193,6 +191,9 @@ def _amount(text: str | None, si: str, option: str, unit: str | None) -> float |
 
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
+    from polhode.files.body import check_molecule_options, molecule_isotopes
+    from polhode.molecules import body_of_atoms
+
     check_molecule_options(
         file,
         prefix="--",

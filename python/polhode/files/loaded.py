@@ -10,17 +10,18 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 import numpy as np
 
 from polhode import _core
 from polhode.errors import FileFormatError
-from polhode.files.ascii_stl import read_ascii_stl
 from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIX, Content, opened
 from polhode.files.mesh import Mesh, check_faces, weld, weld_within
 from polhode.files.reading import naming
-from polhode.files.xyz import Molecule, molecule_of
+
+if TYPE_CHECKING:
+    from polhode.files.xyz import Molecule
 
 __all__ = ["Loaded", "load", "read_mesh"]
 
@@ -127,8 +128,12 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
         raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
     with opened(file) as content:
         if suffix == MOLECULE_SUFFIX:
+            from polhode.files.xyz import molecule_of
+
             return Loaded(file, "XYZ", _molecule=molecule_of(content.stream, file))
         if content.format == "ASCII STL":
+            from polhode.files.ascii_stl import read_ascii_stl
+
             corners = read_ascii_stl(content.stream, file)
             faces = np.arange(corners.size // 3).reshape(-1, 3)
             return Loaded(file, "ASCII STL", _mesh=weld(corners.reshape(-1, 3), faces, "ASCII STL"))
