@@ -82,7 +82,7 @@ fn of_every_source() -> Vec<RigidBody> {
         let range = 20 * k..20 * (k + 1);
         Particles::new(&masses[range.clone()], &positions[range])
     };
-    bodies.extend(particle_stack(30_000, row, &mut go_on).expect("stack"));
+    bodies.extend(particle_stack(30_000, |_| 20, row, &mut go_on).expect("stack"));
     bodies
 }
 
@@ -217,7 +217,7 @@ proptest! {
             let range = size * k..size * (k + 1);
             Particles::new(&masses[range.clone()], &positions[range])
         };
-        let stack = particle_stack(70, row, &mut go_on).expect("stack");
+        let stack = particle_stack(70, |_| size, row, &mut go_on).expect("stack");
         for (k, body) in stack.iter().enumerate() {
             let range = size * k..size * (k + 1);
             prop_assert!(*body == particles(&masses[range.clone()], &positions[range]).expect("body"));

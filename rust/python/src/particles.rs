@@ -65,7 +65,8 @@ impl<'py> ParticleArrays<'py> {
 pub(crate) struct Rows<'a> {
     pub(crate) masses: &'a [f64],
     pub(crate) positions: &'a [[f64; 3]],
-    count: usize,
+    /// Particles in each row.
+    pub(crate) count: usize,
 }
 
 impl<'a> Rows<'a> {

@@ -73,7 +73,12 @@ impl PyRigidBody {
                 let body = particles_watched(rows.masses, rows.positions, watch);
                 body.map(|body| vec![body]).map_err(|error| (0, error))
             } else {
-                particle_stack(grid.len(), |row| rows.row(grid.operands(row)), watch)
+                particle_stack(
+                    grid.len(),
+                    |_| rows.count,
+                    |row| rows.row(grid.operands(row)),
+                    watch,
+                )
             }
         })?;
         stack(py, grid.shape, bodies)

@@ -33,6 +33,7 @@ pub fn labelled_particles(
     assert_eq!(masses.len(), labels.len(), "one label for each mass");
     let ends = ends_of_bodies(labels).map_err(|error| (None, error))?;
     let bodies = ends.len().saturating_sub(1);
+    let size = |k: usize| ends[k + 1] - ends[k];
     let named = |(index, error)| (Some(index), error);
     if labels.is_sorted() {
         let skipped = labels.partition_point(|&label| label == NO_BODY);
@@ -40,7 +41,7 @@ pub fn labelled_particles(
             let range = skipped + ends[k]..skipped + ends[k + 1];
             Particles::new(&masses[range.clone()], &positions[range])
         };
-        return particle_stack(bodies, row, watch).map_err(named);
+        return particle_stack(bodies, size, row, watch).map_err(named);
     }
     let owned = ends.last().copied().unwrap_or(0);
     let (mut own_masses, mut own_positions) = (vec![0.0; owned], vec![[0.0; 3]; owned]);
@@ -62,7 +63,7 @@ pub fn labelled_particles(
         let range = ends[k]..ends[k + 1];
         Particles::new(&own_masses[range.clone()], &own_positions[range])
     };
-    particle_stack(bodies, row, watch).map_err(named)
+    particle_stack(bodies, size, row, watch).map_err(named)
 }
 
 /// Where the particles of each body begin when they are brought together, and after the last body where they end.

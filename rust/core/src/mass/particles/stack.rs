@@ -24,7 +24,7 @@ const SHARE: usize = 1 << 15;
 /// A body of more particles than this is shared among the threads, the smaller ones are shared out to them.
 const LARGE: usize = 1 << 17;
 
-/// The bodies `0..count`, each with the bits it has alone; `row` tells the particles of each.
+/// The bodies `0..count`, each with the bits it has alone; `size` tells how many particles each has, `row` which.
 ///
 /// About every 20 ms `watch` gets the fraction done and may end the work.
 ///
@@ -32,6 +32,7 @@ const LARGE: usize = 1 << 17;
 /// The first body that cannot be, with its index, [`Error::NoMemory`], or [`Error::Stopped`].
 pub fn particle_stack<'a>(
     count: usize,
+    size: impl Fn(usize) -> usize + Sync,
     row: impl Fn(usize) -> Particles<'a> + Sync,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<RigidBody>, (usize, Error)> {
@@ -47,11 +48,10 @@ pub fn particle_stack<'a>(
     (bodies.try_reserve_exact(count)).map_err(|error| (0, refused(error)))?;
     bodies.resize(count, point.map_err(|error| (0, error))?);
     let (mut largest, mut total) = (0, 0);
-    for index in 0..count {
-        let size = row(index).masses.len();
+    for size in (0..count).map(&size) {
         (largest, total) = (size.max(largest), size + total);
     }
-    let is_small = |index: usize| largest <= LARGE || row(index).masses.len() <= LARGE;
+    let is_small = |index: usize| largest <= LARGE || size(index) <= LARGE;
     let rows = (count.saturating_mul(SHARE) / total.max(1)).clamp(1, BATCH);
     let outcome = fill_blocks(&mut bodies, rows, watch, |start, bodies| {
         let small: Vec<usize> = (0..bodies.len()).filter(|k| is_small(start + k)).collect();
@@ -145,7 +145,7 @@ mod tests {
     fn more_bodies_than_memory_are_refused_before_any_is_made() {
         let go_on = &mut |_| ControlFlow::Continue(());
         let row = |_| Particles::new(&[1.0], &[[0.0; 3]]);
-        match particle_stack(1 << 50, row, go_on) {
+        match particle_stack(1 << 50, |_| 1, row, go_on) {
             Err((0, Error::NoMemory { count, bytes, .. })) => {
                 assert_eq!(count, 1 << 50);
                 assert!(bytes > 1e17);
@@ -155,6 +155,9 @@ mod tests {
                 other.map(|bodies| bodies.len())
             ),
         }
-        assert_eq!(particle_stack(3, row, go_on).expect("bodies").len(), 3);
+        assert_eq!(
+            particle_stack(3, |_| 1, row, go_on).expect("bodies").len(),
+            3
+        );
     }
 }
