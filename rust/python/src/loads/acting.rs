@@ -25,46 +25,23 @@ impl From<Error> for Fault {
     }
 }
 
-/// Why a run failed.
-pub(crate) trait Cause {
+impl Fault {
     /// As an exception.
-    fn to_exception(&self, py: Python<'_>) -> PyErr;
-
-    /// Whether a function of the user's raised it.
-    fn is_of_the_user(&self) -> bool;
-
-    /// Whether it is the integration itself that failed.
-    fn is_of_integration(&self) -> bool;
-}
-
-impl Cause for Error {
-    fn to_exception(&self, py: Python<'_>) -> PyErr {
-        to_py(py, self)
-    }
-
-    fn is_of_the_user(&self) -> bool {
-        false
-    }
-
-    fn is_of_integration(&self) -> bool {
-        self.kind() == Kind::Integration
-    }
-}
-
-impl Cause for Fault {
-    fn to_exception(&self, py: Python<'_>) -> PyErr {
+    pub(crate) fn to_exception(&self, py: Python<'_>) -> PyErr {
         match self {
-            Self::Core(error) => error.to_exception(py),
+            Self::Core(error) => to_py(py, error),
             Self::Python(error) => error.clone_ref(py),
         }
     }
 
-    fn is_of_the_user(&self) -> bool {
+    /// Whether a function of the user's raised it.
+    pub(crate) fn is_of_the_user(&self) -> bool {
         matches!(self, Self::Python(_))
     }
 
-    fn is_of_integration(&self) -> bool {
-        matches!(self, Self::Core(error) if error.is_of_integration())
+    /// Whether it is the integration itself that failed.
+    pub(crate) fn is_of_integration(&self) -> bool {
+        matches!(self, Self::Core(error) if error.kind() == Kind::Integration)
     }
 }
 

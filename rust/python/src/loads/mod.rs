@@ -23,7 +23,7 @@ mod part;
 mod recipe;
 mod terms;
 
-pub(crate) use acting::{Acting, Cause, Fault};
+pub(crate) use acting::{Acting, Fault};
 pub(crate) use functions::{callback, compiled, torque_callback};
 pub(crate) use load::PyLoad;
 pub(crate) use terms::{

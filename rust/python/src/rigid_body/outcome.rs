@@ -16,7 +16,7 @@ use crate::arrays::{Item, Numbers, write, write_of};
 use crate::body::PyRigidBody;
 use crate::errors::at_row;
 use crate::interrupt::Interrupt;
-use crate::loads::Cause;
+use crate::loads::Fault;
 use crate::memory;
 use crate::stack::Stack;
 
@@ -124,12 +124,12 @@ impl Outcome {
 
 impl Ensemble<'_> {
     /// The results as a `polhode.Trajectory`, and whether a row failed.
-    pub(super) fn trajectory<'py, E: Cause>(
+    pub(super) fn trajectory<'py>(
         &self,
         py: Python<'py>,
         body: &Bound<'py, PyRigidBody>,
         load: Option<&Bound<'py, PyAny>>,
-        runs: Runs<E>,
+        runs: Runs,
         interrupt: &Interrupt,
     ) -> Results<'py> {
         let failures = self.failures(py, &runs)?;
@@ -138,8 +138,8 @@ impl Ensemble<'_> {
         fields.set_item(intern!(py, "status"), self.status(py, &runs)?)?;
         fields.set_item(intern!(py, "failures"), &failures)?;
         fields.set_item(intern!(py, "load"), load)?;
-        fields.set_item(intern!(py, "pivoted"), self.pivoted)?;
-        let shape = [&self.grid.shape[..], &[self.times.len()]].concat();
+        fields.set_item(intern!(py, "pivoted"), self.plan.pivoted())?;
+        let shape = [&self.grid.shape[..], &[self.plan.times().len()]].concat();
         if !interrupt.is_stopped()
             && let Err(error) = put_states(py, &fields, &shape, &runs)
         {
@@ -161,9 +161,9 @@ impl Ensemble<'_> {
             }
         }
         let outcome = Outcome {
-            times: self.times.to_vec(),
+            times: self.plan.times().to_vec(),
             shape: self.grid.shape.clone(),
-            about: if self.pivoted {
+            about: if self.plan.pivoted() {
                 Stack::one(Vector3::zeros())
             } else {
                 (self.start.bodies).map(py, polhode::RigidBody::center_of_mass)?
@@ -178,8 +178,8 @@ impl Ensemble<'_> {
     }
 
     /// A word for each row: how its run ended.
-    fn status<'py, E>(&self, py: Python<'py>, runs: &Runs<E>) -> PyResult<Bound<'py, PyAny>> {
-        let word = |run: &Option<Run<E>>| match run.as_ref().map(|run| &run.end) {
+    fn status<'py>(&self, py: Python<'py>, runs: &Runs) -> PyResult<Bound<'py, PyAny>> {
+        let word = |run: &Option<Run<Fault>>| match run.as_ref().map(|run| &run.end) {
             None => "not run",
             Some(End::Complete) => "complete",
             Some(End::Event) => "event",
@@ -195,31 +195,27 @@ impl Ensemble<'_> {
     }
 
     /// An exception, not raised, for each row that failed.
-    fn failures<'py>(
-        &self,
-        py: Python<'py>,
-        runs: &Runs<impl Cause>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
+    fn failures<'py>(&self, py: Python<'py>, runs: &Runs) -> PyResult<Bound<'py, PyTuple>> {
         let mut failures = Vec::new();
         for (row, run) in runs.iter().enumerate() {
             if let Some(run) = run
-                && let End::Failed(cause) = &run.end
+                && let End::Failed(fault) = &run.end
             {
-                failures.push(self.exception(py, row, run, cause)?.value(py).clone());
+                failures.push(self.exception(py, row, run, fault)?.value(py).clone());
             }
         }
         PyTuple::new(py, failures)
     }
 
     /// The exception of a row that failed, with its number, the time and the state.
-    fn exception<E: Cause>(
+    fn exception(
         &self,
         py: Python<'_>,
         row: usize,
-        run: &Run<E>,
-        cause: &E,
+        run: &Run<Fault>,
+        fault: &Fault,
     ) -> PyResult<PyErr> {
-        let error = at_row(&self.grid.shape, row, &cause.to_exception(py), py);
+        let error = at_row(&self.grid.shape, row, &fault.to_exception(py), py);
         let value = error.value(py);
         value.setattr("row", row)?;
         value.setattr("time", run.time)?;
@@ -233,11 +229,11 @@ impl Ensemble<'_> {
 }
 
 /// The states of all rows as the arrays of a trajectory.
-fn put_states<E>(
+fn put_states(
     py: Python<'_>,
     fields: &Bound<'_, PyDict>,
     shape: &[usize],
-    runs: &Runs<E>,
+    runs: &Runs,
 ) -> PyResult<()> {
     let rows = || (runs.iter()).map(|run| run.as_ref().map(|run| &run.samples[..]));
     let omega = array(py, shape, rows(), |phase| phase.omega)?;

@@ -1,12 +1,12 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
-use polhode::motion::simulate::{Method, Tolerance, check_scales, closed_top};
+use polhode::motion::simulate::{Method, Plan, Refusal, Tolerance};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::ensemble::{Ensemble, Start, footing};
+use super::ensemble::{Ensemble, Start};
 use crate::about::is_pivot;
 use crate::arrays::read;
 use crate::attitudes::read_attitude_exactly;
@@ -172,35 +172,26 @@ impl PyRigidBody {
         let events = Functions::read(events)?;
         let of_first = start.terms.rows.first().map_or(&[][..], Vec::as_slice);
         let interrupt = Interrupt::new(progress);
-        let are_tops = || {
-            (start.bodies.rows.iter())
-                .all(|body| interrupt.poll(None).is_continue() && closed_top(body).is_ok())
-        };
-        let method = parse_method(method)?
-            .serving(
-                pivoted,
-                acts.is_analytic().then_some(of_first),
-                &tolerance,
-                are_tops,
-            )
-            .map_err(|error| to_py(py, &error))?;
-        if method != Method::Exact {
-            for (row, body) in start.bodies.rows.iter().enumerate() {
-                check_scales(body, pivoted, &times)
-                    .map_err(|error| at_row(&start.bodies.shape, row, &to_py(py, &error), py))?;
+        let plan = Plan::new(
+            &start.bodies.rows,
+            pivoted,
+            &times,
+            parse_method(method)?,
+            tolerance,
+            acts.is_analytic().then_some(of_first),
+            &|done| interrupt.poll(done),
+        )
+        .map_err(|Refusal { body, error }| {
+            let error = to_py(py, &error);
+            match body {
+                Some(row) => at_row(&start.bodies.shape, row, &error, py),
+                None => error,
             }
-        }
+        })?;
         let ensemble = Ensemble {
             start: &start,
             grid: start.grid()?,
-            footing: match &start.bodies.rows[..] {
-                [body] => Some(footing(body, &times, pivoted)),
-                _ => None,
-            },
-            times: &times,
-            pivoted,
-            method,
-            tolerance,
+            plan,
             load: acts,
             events: &events,
             raises,

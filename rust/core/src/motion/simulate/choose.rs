@@ -17,7 +17,7 @@ impl Method {
     ///
     /// # Errors
     /// [`MotionFault::MethodCannotServe`], which names one that can; [`Error::OutOfDomain`] where none serves the tolerance.
-    pub fn serving(
+    pub(super) fn serving(
         self,
         pivoted: bool,
         terms: Option<&[Term]>,
@@ -73,7 +73,7 @@ impl Method {
 /// # Errors
 /// [`MotionFault::NoClosedForm`] when the moments across its axis differ, or the origin is off that axis;
 /// [`Error::OutOfDomain`] for a point at the origin.
-pub fn closed_top(body: &RigidBody) -> Result<PivotedTop, Error> {
+pub(super) fn closed_top(body: &RigidBody) -> Result<PivotedTop, Error> {
     PivotedTop::of(body, ROUNDING).map_err(|error| {
         let (lack, relative) = match error {
             Error::Body(BodyFault::NotASymmetricTop { gap, .. }) => {

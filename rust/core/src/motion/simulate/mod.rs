@@ -4,7 +4,8 @@
 //!
 //! | what | file |
 //! |---|---|
-//! | one motion, by the method that serves | `one`, `choose` |
+//! | which method serves; what all motions of a stack have in common | `choose`, `plan` |
+//! | one motion; many, on as many cores as may take part | `one`, `many` |
 //! | bodies and tops in closed form | `exact` |
 //! | methods of steps, through spans of time in which the load is smooth | `steps` |
 //! | what a run needs of such a method; the one place that makes it | `stepper`, `begin` |
@@ -22,15 +23,18 @@ mod exact;
 mod flips;
 mod kicked;
 mod lookout;
+mod many;
 mod one;
+mod plan;
 mod solved;
 mod stepper;
 mod steps;
 mod summed;
 
-pub use self::choose::closed_top;
 pub use self::events::{Events, NoEvents};
+pub use self::many::{Calls, Row, Rows, simulate_many};
 pub use self::one::simulate;
+pub use self::plan::{Ask, Plan, Refusal};
 pub use super::problem::{
     Crossing, Direction, Effort, End, Footing, MOST_STEPS, Method, Rule, Run, TIGHTEST,
     TIGHTEST_TWOFOLD, Task, Tolerance, check_scales, check_times,

@@ -1,13 +1,14 @@
 //! One motion.
 
 use std::ops::ControlFlow;
+use std::slice;
 
-use super::choose::closed_top;
 use super::events::Events;
+use super::plan::Plan;
 use super::{exact, summed};
 use crate::motion::integrate::taylor;
 use crate::motion::loads::Load;
-use crate::motion::problem::{End, Method, Run, Task, check_scales};
+use crate::motion::problem::{End, Method, Run, Task};
 
 /// The motion of `task` under `load`: `q̇ = ½ q∘ω`, `I_P ω̇ + ω×I_P ω = N_P`, and for a free body `m v̇ = F`.
 ///
@@ -22,31 +23,45 @@ pub fn simulate<L: Load>(
     events: &mut dyn Events<Error = L::Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<L::Error> {
+    let plan = Plan::new(
+        slice::from_ref(task.body),
+        task.subject.pivoted,
+        task.times,
+        task.method,
+        task.tolerance,
+        load.analytic(),
+        &|_| ControlFlow::Continue(()),
+    );
+    match plan {
+        Ok(plan) => {
+            let method = plan.method();
+            by_method(&Task { method, ..*task }, load, events, watch)
+        }
+        Err(refusal) => Run::at_start(task, End::Failed(refusal.error.into())),
+    }
+}
+
+/// The motion of `task` by its method, which is known to serve.
+pub(super) fn by_method<L: Load>(
+    task: &Task<'_>,
+    load: &mut L,
+    events: &mut dyn Events<Error = L::Error>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Run<L::Error> {
+    let has_events = !events.rules().is_empty();
+    if let (Method::Taylor, Some(terms)) = (task.method, load.analytic()) {
+        return if has_events {
+            summed::solve(task, terms, events, watch)
+        } else {
+            taylor::solve_one(task, terms, watch).with_error(L::Error::from)
+        };
+    }
     let mut run = Run::at_start(task, End::Complete);
-    let (terms, has_events) = (load.analytic(), !events.rules().is_empty());
-    let is_top = || closed_top(task.body).is_ok();
-    let method = (task.method).serving(task.subject.pivoted, terms, &task.tolerance, is_top);
-    let method = method.and_then(|method| {
-        if method != Method::Exact {
-            check_scales(task.body, task.subject.pivoted, task.times)?;
-        }
-        Ok(method)
-    });
-    run.end = match (method, terms) {
-        (Err(error), _) => End::Failed(error.into()),
-        (Ok(Method::Exact), Some(terms)) if !has_events => {
-            exact::solve(task, terms, &mut run, watch).unwrap_or_else(End::Failed)
-        }
-        (Ok(Method::Taylor), Some(terms)) if has_events => {
-            return summed::solve(task, terms, events, watch);
-        }
-        (Ok(Method::Taylor), Some(terms)) => {
-            return taylor::solve_one(task, terms, watch).with_error(L::Error::from);
-        }
-        (Ok(method), _) => run
-            .through(method, task, load, events, watch)
-            .unwrap_or_else(End::Failed),
+    let end = match (task.method, load.analytic()) {
+        (Method::Exact, Some(terms)) if !has_events => exact::solve(task, terms, &mut run, watch),
+        (method, _) => run.through(method, task, load, events, watch),
     };
+    run.end = end.unwrap_or_else(End::Failed);
     run
 }
 

@@ -26,10 +26,10 @@ const FEW: usize = 4;
 ///
 /// # Panics
 /// As [`solve_one`](super::solve_one).
-pub fn solve_many<'a>(
+pub fn solve_many<'a, E: From<Error> + Send>(
     task: &(dyn Fn(usize) -> Task<'a> + Sync),
     terms: &(dyn Fn(usize) -> &'a [Term] + Sync),
-    runs: &mut [Option<Run<Error>>],
+    runs: &mut [Option<Run<E>>],
     watch: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
 ) {
     let all = runs.len() as f64;
@@ -45,8 +45,9 @@ pub fn solve_many<'a>(
     let is_precise = !runs.is_empty() && task(0).tolerance.is_beyond_doubles();
     let block = if is_precise { 1 } else { block(runs.len()) };
     // Where a run is stopped, what was done by then is kept.
-    let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, runs| {
-        let (count, example) = (runs.len(), task(first));
+    let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, slots| {
+        let (count, example) = (slots.len(), task(first));
+        let mut runs = vec![None; count];
         let mut common = Parts::default();
         for row in first..first + count {
             common = common.with(&parts(terms(row), example.subject.pivoted));
@@ -58,7 +59,7 @@ pub fn solve_many<'a>(
         };
         let watch = &mut |_| ask();
         let flow = if is_precise {
-            let jobs = &mut rows(first, runs, &begin);
+            let jobs = &mut rows(first, &mut runs, &begin);
             dispatch(Precisely {
                 settings,
                 jobs,
@@ -66,7 +67,7 @@ pub fn solve_many<'a>(
                 see: None,
             })
         } else {
-            let jobs = &mut rows(first, runs, &begin);
+            let jobs = &mut rows(first, &mut runs, &begin);
             if count < FEW {
                 dispatch(OneByOne {
                     settings,
@@ -82,6 +83,9 @@ pub fn solve_many<'a>(
                 })
             }
         };
+        for (slot, run) in slots.iter_mut().zip(runs) {
+            *slot = run.map(|run: Run<Error>| run.with_error(E::from));
+        }
         if flow.is_break() {
             stopped.store(true, Ordering::Relaxed);
             return Err(());
