@@ -70,7 +70,8 @@ impl Row<'_> {
     }
 }
 
-/// The motions of `rows` as `plan` says, into `runs`; every one has the bits of its [`simulate`](super::simulate).
+/// The motions of `rows` as `plan` says, into `runs`; every one has the bits of its [`simulate`](super::simulate), in lanes of a
+/// machine without fused multiply-add to rounding.
 ///
 /// Rows that call on this thread go one after the other, all others to all cores, and Taylor series that call nothing side by side
 /// in the lanes of each core. `watch` gets the fraction done, but from within rows on several cores none, and may stop all.
@@ -121,5 +122,231 @@ pub fn simulate_many<R: Rows>(
         let _ended = fill_blocks(runs, 1, look, |row, slot| {
             fill(row, &mut slot[0], &|_| None)
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mass::RigidBody;
+    use crate::motion::loads::{Analytic, Frame, Wrench};
+    use crate::motion::problem::Tolerance;
+    use crate::motion::simulate::{NoEvents, simulate};
+    use crate::numerics::dispatch::{Level, level};
+    use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+    use std::sync::Mutex;
+
+    /// Every row another motion of one of two bodies, under terms and what may fail.
+    struct Stack {
+        calls: Calls,
+        terms: Vec<Term>,
+        /// The row that fails, and whether it ends all.
+        fails: Option<(usize, bool)>,
+    }
+
+    impl Rows for Stack {
+        type Error = Error;
+
+        fn calls(&self) -> Calls {
+            self.calls
+        }
+
+        fn start(&self, row: usize) -> (usize, Phase) {
+            let number = row as f64;
+            let mut phase = Phase::nan();
+            phase.attitude = UnitQuaternion::from_euler_angles(0.3, -0.4, number);
+            phase.omega = Vector3::new(0.7, -0.9, 1.1) * (0.3 + 0.1 * number);
+            (phase.position, phase.velocity) = (Vector3::zeros(), Vector3::x() * number);
+            (row % 2, phase)
+        }
+
+        fn terms(&self, _: usize) -> &[Term] {
+            &self.terms
+        }
+
+        fn run(&self, row: Row<'_>) -> Run<Error> {
+            if self.fails.is_some_and(|(number, _)| number == row.number) {
+                return row.under(&mut Failing, &mut NoEvents::new());
+            }
+            let mut load = Analytic::new(&self.terms, row.subject());
+            row.under(&mut load, &mut NoEvents::new())
+        }
+
+        fn ends_all(&self, _: &Error) -> bool {
+            self.fails.is_some_and(|(_, ends_all)| ends_all)
+        }
+    }
+
+    /// A load that fails wherever it is asked.
+    struct Failing;
+
+    impl Load for Failing {
+        type Error = Error;
+
+        fn exerts_force(&self) -> bool {
+            false
+        }
+
+        fn depends_on_rates(&self) -> bool {
+            true
+        }
+
+        fn breaks(&self) -> Vec<f64> {
+            Vec::new()
+        }
+
+        fn enter(&mut self, _: f64, _: f64) -> Result<(), Error> {
+            Ok(())
+        }
+
+        fn wrench(&mut self, _: f64, _: &Phase) -> Result<Wrench, Error> {
+            Err(Error::Empty { what: "load" })
+        }
+    }
+
+    const TIMES: [f64; 3] = [0.0, 1.0, 4.5];
+
+    fn bodies() -> [RigidBody; 2] {
+        [[1.0, 2.0, 2.5], [2.0, 2.0, 1.2]].map(|moments| {
+            let centre = Vector3::new(0.1, -0.2, 0.3);
+            RigidBody::from_principal(1.0, &moments, &Matrix3::identity(), &centre, 0.0)
+                .expect("a body")
+        })
+    }
+
+    fn weight_and_twist() -> Vec<Term> {
+        let twist = Term::constant_torque(&Vector3::new(0.2, 0.1, -0.3), Frame::Space);
+        let weight = Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.8));
+        vec![weight.expect("finite"), twist.expect("finite")]
+    }
+
+    fn plan<'a>(
+        bodies: &'a [RigidBody],
+        times: &'a [f64],
+        method: Method,
+        terms: &[Term],
+    ) -> Plan<'a> {
+        let tolerance = Tolerance::new(1e-9, 0.0).expect("a tolerance");
+        let go_on = |_| ControlFlow::Continue(());
+        Plan::new(bodies, false, times, method, tolerance, Some(terms), &go_on).expect("a plan")
+    }
+
+    /// The runs of `count` rows, and the fractions that were told; stopped once more than `enough` is done, where no
+    /// fraction is told all of it.
+    fn go(
+        plan: &Plan<'_>,
+        rows: &Stack,
+        count: usize,
+        enough: f64,
+    ) -> (Vec<Option<Run<Error>>>, Vec<f64>) {
+        let (mut runs, told) = (vec![None; count], Mutex::new(Vec::new()));
+        simulate_many(plan, rows, &mut runs, &|done| {
+            told.lock().expect("no panic").extend(done);
+            if done.unwrap_or(1.0) > enough {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        (runs, told.into_inner().expect("no panic"))
+    }
+
+    fn never(calls: Calls, terms: Vec<Term>) -> Stack {
+        let fails = None;
+        Stack {
+            calls,
+            terms,
+            fails,
+        }
+    }
+
+    #[test]
+    fn rows_have_the_same_bits_in_lanes_on_all_cores_in_turn_and_alone() {
+        let (bodies, all) = (bodies(), 21);
+        for (method, terms) in [
+            (Method::Taylor, weight_and_twist()),
+            (Method::Dop853, weight_and_twist()),
+            (Method::Auto, Vec::new()),
+        ] {
+            let plan = plan(&bodies, &TIMES, method, &terms);
+            for calls in [Calls::Nothing, Calls::OnAnyThread, Calls::OnThisThread] {
+                let stack = never(calls, terms.clone());
+                for count in [0, 1, 2, all] {
+                    let (runs, _) = go(&plan, &stack, count, 1.0);
+                    for (row, run) in runs.iter().enumerate() {
+                        let run = run.as_ref().expect("begun");
+                        let (body, phase) = stack.start(row);
+                        let mut task = plan.task(None, body, phase);
+                        task.method = method;
+                        let mut load = Analytic::new(&terms, task.subject);
+                        let watch = &mut |_| ControlFlow::Continue(());
+                        let alone = simulate(&task, &mut load, &mut NoEvents::new(), watch);
+                        assert_eq!(run.end, End::Complete);
+                        if calls == Calls::Nothing && level() == Level::Baseline {
+                            let error = (run.phase.omega - alone.phase.omega).norm();
+                            assert!(error < 1e-12, "{method:?} {row}: {error:e}");
+                        } else {
+                            assert_eq!(*run, alone, "{method:?} {calls:?} {row}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_was_done_is_kept_where_all_is_stopped() {
+        let (bodies, terms) = (bodies(), weight_and_twist());
+        let by_steps = plan(&bodies, &TIMES, Method::Dop853, &terms);
+        let in_turn = never(Calls::OnThisThread, terms.clone());
+        let (runs, told) = go(&by_steps, &in_turn, 8, 0.45);
+        assert!(told.is_sorted() && told.last().is_some_and(|done| *done > 0.45));
+        for (row, run) in runs.iter().enumerate() {
+            let end = run.as_ref().map(|run| &run.end);
+            let complete = (row < 3).then_some(&End::Complete);
+            let expected = if row == 3 {
+                Some(&End::Stopped)
+            } else {
+                complete
+            };
+            assert_eq!(end, expected, "{row}");
+        }
+        // On several cores rows tell no fraction; lanes ask about every 64 steps.
+        let apart = never(Calls::OnAnyThread, terms.clone());
+        let quick = never(Calls::Nothing, terms[..1].to_vec());
+        let lanes = plan(&bodies, &[0.0, 1e6], Method::Taylor, &quick.terms);
+        for (plan, stack) in [(&by_steps, &apart), (&lanes, &quick)] {
+            let (runs, _) = go(plan, stack, 300, -1.0);
+            let ends: Vec<_> = runs.iter().flatten().map(|run| &run.end).collect();
+            assert!(!ends.is_empty() && ends.iter().all(|end| **end == End::Stopped));
+            assert!(runs.is_sorted_by_key(Option::is_none));
+        }
+    }
+
+    #[test]
+    fn the_first_that_fails_ends_all_where_it_is_to() {
+        let (bodies, terms) = (bodies(), weight_and_twist());
+        let plan = plan(&bodies, &TIMES, Method::Dop853, &terms);
+        for calls in [Calls::OnAnyThread, Calls::OnThisThread] {
+            for (failing, ends_all) in [(0, true), (3, true), (3, false), (7, true)] {
+                let stack = Stack {
+                    calls,
+                    terms: terms.clone(),
+                    fails: Some((failing, ends_all)),
+                };
+                let (runs, _) = go(&plan, &stack, 8, 1.0);
+                for (row, run) in runs.iter().enumerate() {
+                    let end = run.as_ref().map(|run| &run.end);
+                    if row == failing {
+                        let error = Error::Empty { what: "load" };
+                        assert_eq!(end, Some(&End::Failed(error)));
+                    } else if row < failing || !ends_all {
+                        assert_eq!(end, Some(&End::Complete));
+                    } else if calls == Calls::OnThisThread {
+                        assert_eq!(end, None);
+                    }
+                }
+            }
+        }
     }
 }

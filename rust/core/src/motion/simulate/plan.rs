@@ -135,3 +135,87 @@ impl<'a> Plan<'a> {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Quaternion, Vector3};
+
+    fn body(scale: f64) -> RigidBody {
+        let (moments, centre) = (Vector3::new(2.0, 2.0, 1.2) * scale, Vector3::z());
+        RigidBody::from_principal(1.0, &moments.into(), &Matrix3::identity(), &centre, 0.0)
+            .expect("a body")
+    }
+
+    fn plan(
+        bodies: &[RigidBody],
+        method: Method,
+        pivoted: bool,
+        rtol: f64,
+    ) -> Result<Plan<'_>, Refusal> {
+        let tolerance = Tolerance::new(rtol, 0.0).expect("a tolerance");
+        let go_on = |_| ControlFlow::Continue(());
+        Plan::new(
+            bodies,
+            pivoted,
+            &[0.0, 1.0],
+            method,
+            tolerance,
+            Some(&[]),
+            &go_on,
+        )
+    }
+
+    #[test]
+    fn a_refusal_names_the_body_where_it_is_one() {
+        let bodies = [body(1.0), body(1e-260)];
+        let at_fault = |method, rtol| {
+            plan(&bodies, method, false, rtol)
+                .map_err(|refusal| refusal.body)
+                .err()
+        };
+        assert_eq!(at_fault(Method::Dop853, 1e-9), Some(Some(1)));
+        assert_eq!(at_fault(Method::Dop853, 1e-20), Some(None));
+        assert_eq!(at_fault(Method::Exact, 1e-9), None);
+    }
+
+    #[test]
+    fn what_is_stopped_while_it_looks_for_tops_goes_in_steps() {
+        let (bodies, times) = ([body(1.0)], [0.0, 1.0]);
+        let tolerance = Tolerance::new(1e-9, 0.0).expect("a tolerance");
+        let method = |flow| {
+            let ask = move |_| flow;
+            Plan::new(
+                &bodies,
+                true,
+                &times,
+                Method::Auto,
+                tolerance,
+                Some(&[]),
+                &ask,
+            )
+            .map(|plan| plan.method())
+        };
+        assert_eq!(method(ControlFlow::Continue(())), Ok(Method::Exact));
+        assert_eq!(method(ControlFlow::Break(())), Ok(Method::Taylor));
+    }
+
+    #[test]
+    fn the_exact_top_alone_takes_the_attitude_as_given() {
+        let bodies = [body(1.0)];
+        let given = UnitQuaternion::new_unchecked(Quaternion::new(0.6, 0.0, 0.8 + 1e-13, 0.0));
+        for (method, pivoted, keeps) in [
+            (Method::Exact, true, true),
+            (Method::Exact, false, false),
+            (Method::Taylor, true, false),
+        ] {
+            let plan = plan(&bodies, method, pivoted, 1e-9).expect("a plan");
+            let phase = Phase {
+                attitude: given,
+                ..Phase::nan()
+            };
+            let taken = plan.task(None, 0, phase).initial.attitude;
+            assert_eq!(taken.coords == given.coords, keeps, "{method:?}");
+        }
+    }
+}
