@@ -319,7 +319,7 @@ fn runs_stop_when_told() {
     });
     assert_eq!(stopped.end, End::Stopped);
     assert!(stopped.time > 0.0 && stopped.effort.steps == 192);
-    let mut runs = vec![None; 300];
+    let mut runs: Vec<Option<Run<polhode::Error>>> = vec![None; 300];
     solve_many(&|_| task, &|_| &[], &mut runs, &|_| ControlFlow::Break(()));
     let ends: Vec<_> = runs.iter().flatten().map(|run| &run.end).collect();
     assert!(!ends.is_empty() && ends.iter().all(|end| **end == End::Stopped));
