@@ -32,6 +32,7 @@ mod subject;
 mod switch;
 mod term;
 pub mod uniform_gravity;
+pub(in crate::motion) mod variables;
 mod wrench;
 
 pub use self::analytic::Analytic;

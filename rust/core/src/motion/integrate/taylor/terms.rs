@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use super::field::Field;
-use super::pack::{Pack, cross_term};
+use super::frame::Precision;
+use super::pack::{Pack, cross_term, plus};
 use super::series::Series;
 use super::twin::COUNT;
 use crate::motion::loads::{Forcing, OnOrbit};
@@ -25,7 +26,7 @@ type Vectors<T> = [[T; 3]; COUNT];
 ///
 /// Rounding in s grows as `1/s(t)` does, so a step does not go as far as ω would take to zero at its present rate. Where ω
 /// passes through zero all the same the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below
-/// [`STILL`] of the fastest ω the term counts as zero, in steps over which what it does stays below rounding.
+/// [`STILL`](Precision::STILL) of the fastest ω the term counts as zero, in steps over which what it does stays below rounding.
 #[derive(Clone, Debug)]
 pub(super) struct Quadratic<T> {
     squares: [T; COUNT],
@@ -35,11 +36,7 @@ pub(super) struct Quadratic<T> {
     half_over_speed: T,
 }
 
-/// The part of the fastest ω below which quadratic damping is left out: with it the error of ω, relative to the fastest, is
-/// its cube.
-pub(super) const STILL: f64 = 2e-6;
-
-impl<L: Number, const R: usize> Quadratic<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> Quadratic<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         let zero = Pack::new(0.0);
@@ -71,7 +68,9 @@ impl<L: Number, const R: usize> Quadratic<Pack<L, R>> {
     }
 }
 
-impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quadratic<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize, const B: usize> Analytic<Pack<L, R>, B>
+    for Quadratic<Pack<L, R>>
+{
     #[inline(always)]
     fn coefficient(
         &mut self,
@@ -91,7 +90,7 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quad
         if k == 0 {
             for row in 0..R {
                 let speed = square.real(row).root();
-                let moves = speed.rounded() > STILL * self.fastest.get(row);
+                let moves = speed.rounded() > L::Real::STILL * self.fastest.get(row);
                 self.speeds[0].set(row, 0.0);
                 self.half_over_speed.set(row, 0.0);
                 if moves {
@@ -144,6 +143,8 @@ pub(super) struct Gradient<T> {
     cubes: [T; COUNT],
     fifths: [T; COUNT],
     products: Vectors<T>,
+    /// What the elements off the diagonal of the tensor make of them.
+    tilts: Vectors<T>,
     pull: T,
     strength: T,
 }
@@ -159,6 +160,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
             cubes: [zero; COUNT],
             fifths: [zero; COUNT],
             products: [[zero; 3]; COUNT],
+            tilts: [[zero; 3]; COUNT],
             pull: zero,
             strength: zero,
         }
@@ -217,6 +219,24 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         (self.strength).put(row, self.strength.real(row) * twice);
     }
 
+    /// What the elements off the diagonal of the tensor add to the coefficient of order `k`.
+    #[inline(never)]
+    fn tilt<const B: usize>(&mut self, k: usize, field: &Field<Pack<L, R>, B>) -> [Pack<L, R>; 3] {
+        let mut squares = [Pack::new(0.0); 3];
+        for (a, b) in self.position[..=k]
+            .iter()
+            .zip(self.position[..=k].iter().rev())
+        {
+            squares = [0, 1, 2].map(|i| a[i].mul_add(b[i], squares[i]));
+        }
+        self.tilts[k] = field.tilt(&self.products[k], &squares);
+        let mut sum = [Pack::new(0.0); 3];
+        for (fifth, tilt) in self.fifths[..=k].iter().rev().zip(&self.tilts) {
+            sum = [0, 1, 2].map(|i| fifth.mul_add(tilt[i], sum[i]));
+        }
+        sum.map(|x| -(self.strength * x))
+    }
+
     /// The next coefficient of the power `a` of the squares, of which the first is one.
     #[inline(always)]
     fn power(&self, a: f64, powers: &[Pack<L, R>; COUNT], k: usize) -> Pack<L, R> {
@@ -271,6 +291,9 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Grad
             self.position[k + 1][i] = (turned[i] + self.velocity[k][i]) * reciprocal;
             self.velocity[k + 1][i] = (-self.pull).mul_add(pulled[i], moved[i]) * reciprocal;
             torque[i] = -(field.kappa[i] * self.strength * torque[i]);
+        }
+        if L::VARIES {
+            torque = plus(torque, self.tilt(k, field));
         }
         torque
     }
