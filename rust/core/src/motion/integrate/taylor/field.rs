@@ -131,6 +131,12 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
 }
 
 impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
+    /// Whether elements off the diagonal of the tensor are varied.
+    pub(super) fn is_tilted(&self) -> bool {
+        let is_zero = |x: &Pack<L, R>| (0..R).all(|row| x.real(row) == L::Real::default());
+        !self.products.iter().all(is_zero)
+    }
+
     /// What the elements off the diagonal of the tensor add to `−x×I x`, over the moments, with the coefficients of (x₂x₃, x₃x₁, x₁x₂)
     /// and of (x₁², x₂², x₃²); cyclic in i, j, k:
     ///

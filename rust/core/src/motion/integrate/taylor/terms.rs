@@ -263,10 +263,15 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Grad
         let zero = Pack::new(0.0);
         let (mut square, mut products) = (zero, [zero; 3]);
         for j in 0..=k {
-            let (a, b) = (self.position[j], self.position[k - j]);
+            let (a, b) = (&self.position[j], &self.position[k - j]);
             for i in 0..3 {
                 square = a[i].mul_add(b[i], square);
-                let (next, last) = ((i + 1) % 3, (i + 2) % 3);
+            }
+        }
+        for i in 0..3 {
+            let (next, last) = ((i + 1) % 3, (i + 2) % 3);
+            for j in 0..=k {
+                let (a, b) = (&self.position[j], &self.position[k - j]);
                 products[i] = a[next].mul_add(b[last], products[i]);
             }
         }
@@ -277,12 +282,18 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Grad
         self.fifths[k] = self.power(-2.5, &self.fifths, k);
         let (mut turned, mut moved, mut pulled) = ([zero; 3], [zero; 3], [zero; 3]);
         let mut torque = [zero; 3];
+        // Loops of their own, since numbers with derivatives fill the registers.
         for j in 0..=k {
-            let w = series.get(k - j).w;
-            turned = cross_term(&self.position[j], &w, turned);
-            moved = cross_term(&self.velocity[j], &w, moved);
-            for i in 0..3 {
+            turned = cross_term(&self.position[j], &series.get(k - j).w, turned);
+        }
+        for j in 0..=k {
+            moved = cross_term(&self.velocity[j], &series.get(k - j).w, moved);
+        }
+        for i in 0..3 {
+            for j in 0..=k {
                 pulled[i] = self.cubes[k - j].mul_add(self.position[j][i], pulled[i]);
+            }
+            for j in 0..=k {
                 torque[i] = self.fifths[k - j].mul_add(self.products[j][i], torque[i]);
             }
         }
@@ -292,7 +303,7 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Grad
             self.velocity[k + 1][i] = (-self.pull).mul_add(pulled[i], moved[i]) * reciprocal;
             torque[i] = -(field.kappa[i] * self.strength * torque[i]);
         }
-        if L::VARIES {
+        if L::VARIES && field.is_tilted() {
             torque = plus(torque, self.tilt(k, field));
         }
         torque

@@ -132,7 +132,7 @@ where
         let acceleration = self
             .extras
             .plus_coefficients(k, series, field, acceleration);
-        let acceleration = if L::VARIES {
+        let acceleration = if L::VARIES && self.field.is_tilted() {
             self.tilted(k, &spins, acceleration)
         } else {
             acceleration
@@ -149,10 +149,6 @@ where
         acceleration: [Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
         let field = &self.field;
-        let is_upright = |products: &Pack<L, R>| products.real(0) == L::Real::default();
-        if field.products.iter().all(is_upright) {
-            return acceleration;
-        }
         let mut squares = [Pack::new(0.0); 3];
         for j in 0..=k {
             let (a, b) = (self.series.get(j).w, self.series.get(k - j).w);
