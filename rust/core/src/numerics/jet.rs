@@ -8,12 +8,15 @@ use super::lane::Double;
 use super::number::{Number, Real};
 
 /// A value and its derivatives with respect to N variables, to first order.
+///
+/// The derivatives stand first in memory, so that the compiler finds a register of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Jet<const N: usize> {
-    /// The value.
-    pub value: f64,
     /// Its derivatives.
     pub slopes: [f64; N],
+    /// The value.
+    pub value: f64,
 }
 
 impl<const N: usize> Jet<N> {

@@ -8,6 +8,8 @@ use super::pack::{Pack, cross_term, plus};
 use super::series::Series;
 use super::twin::COUNT;
 use crate::motion::loads::{Forcing, OnOrbit};
+use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::lane::Lane;
 use crate::numerics::number::{Number, Real};
 
 /// A term of a load as a series: its coefficient of order k from those of the motion up to k, asked for in order.
@@ -260,10 +262,52 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Grad
         series: &impl Series<Pack<L, R>, B>,
         field: &Field<Pack<L, R>, B>,
     ) -> [Pack<L, R>; 3] {
+        let next = Next {
+            gradient: self,
+            k,
+            series,
+            field,
+        };
+        if L::VARIES {
+            dispatch(next) // whose caller is not compiled for the widest lanes
+        } else {
+            next.coefficient()
+        }
+    }
+}
+
+/// The next coefficient of a gradient.
+struct Next<'a, S, L, const R: usize, const B: usize> {
+    gradient: &'a mut Gradient<Pack<L, R>>,
+    k: usize,
+    series: &'a S,
+    field: &'a Field<Pack<L, R>, B>,
+}
+
+impl<S: Series<Pack<N, R>, B>, N: Number, const R: usize, const B: usize> Kernel
+    for Next<'_, S, N, R, B>
+{
+    type Output = [Pack<N, R>; 3];
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> [Pack<N, R>; 3] {
+        self.coefficient()
+    }
+}
+
+impl<S: Series<Pack<L, R>, B>, L: Number, const R: usize, const B: usize> Next<'_, S, L, R, B> {
+    #[inline(always)]
+    fn coefficient(self) -> [Pack<L, R>; 3] {
+        let Self {
+            gradient: it,
+            k,
+            series,
+            field,
+        } = self;
         let zero = Pack::new(0.0);
         let (mut square, mut products) = (zero, [zero; 3]);
         for j in 0..=k {
-            let (a, b) = (&self.position[j], &self.position[k - j]);
+            let (a, b) = (&it.position[j], &it.position[k - j]);
             for i in 0..3 {
                 square = a[i].mul_add(b[i], square);
             }
@@ -271,40 +315,40 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Grad
         for i in 0..3 {
             let (next, last) = ((i + 1) % 3, (i + 2) % 3);
             for j in 0..=k {
-                let (a, b) = (&self.position[j], &self.position[k - j]);
+                let (a, b) = (&it.position[j], &it.position[k - j]);
                 products[i] = a[next].mul_add(b[last], products[i]);
             }
         }
         // u₀ is one but for rounding: lengths are over the distance at the start of the step.
-        self.squares[k] = square;
-        self.products[k] = products;
-        self.cubes[k] = self.power(-1.5, &self.cubes, k);
-        self.fifths[k] = self.power(-2.5, &self.fifths, k);
+        it.squares[k] = square;
+        it.products[k] = products;
+        it.cubes[k] = it.power(-1.5, &it.cubes, k);
+        it.fifths[k] = it.power(-2.5, &it.fifths, k);
         let (mut turned, mut moved, mut pulled) = ([zero; 3], [zero; 3], [zero; 3]);
         let mut torque = [zero; 3];
         // Loops of their own, since numbers with derivatives fill the registers.
         for j in 0..=k {
-            turned = cross_term(&self.position[j], &series.get(k - j).w, turned);
+            turned = cross_term(&it.position[j], &series.get(k - j).w, turned);
         }
         for j in 0..=k {
-            moved = cross_term(&self.velocity[j], &series.get(k - j).w, moved);
+            moved = cross_term(&it.velocity[j], &series.get(k - j).w, moved);
         }
         for i in 0..3 {
             for j in 0..=k {
-                pulled[i] = self.cubes[k - j].mul_add(self.position[j][i], pulled[i]);
+                pulled[i] = it.cubes[k - j].mul_add(it.position[j][i], pulled[i]);
             }
             for j in 0..=k {
-                torque[i] = self.fifths[k - j].mul_add(self.products[j][i], torque[i]);
+                torque[i] = it.fifths[k - j].mul_add(it.products[j][i], torque[i]);
             }
         }
         let reciprocal = Pack::over(k + 1);
         for i in 0..3 {
-            self.position[k + 1][i] = (turned[i] + self.velocity[k][i]) * reciprocal;
-            self.velocity[k + 1][i] = (-self.pull).mul_add(pulled[i], moved[i]) * reciprocal;
-            torque[i] = -(field.kappa[i] * self.strength * torque[i]);
+            it.position[k + 1][i] = (turned[i] + it.velocity[k][i]) * reciprocal;
+            it.velocity[k + 1][i] = (-it.pull).mul_add(pulled[i], moved[i]) * reciprocal;
+            torque[i] = -(field.kappa[i] * it.strength * torque[i]);
         }
         if L::VARIES && field.is_tilted() {
-            torque = plus(torque, self.tilt(k, field));
+            torque = plus(torque, it.tilt(k, field));
         }
         torque
     }
