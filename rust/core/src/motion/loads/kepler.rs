@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::stumpff::{functions, further};
 use crate::error::{Error, all_finite, finite};
 use crate::numerics::double_double::{DoubleDouble, two_product};
 use crate::numerics::jet::Jet;
@@ -252,46 +253,6 @@ impl Orbit {
     }
 }
 
-/// Below this β s² the closed forms cancel, and eleven terms of the series are exact.
-const SERIES: f64 = 2.5;
-
-/// `Σ_{0≤j<11} (−x)^j k!/(2j + k)!`, from which c_k follows for k = 2 and 3.
-fn series(x: f64, k: f64) -> f64 {
-    (0..11).rev().fold(0.0, |sum, j| {
-        let n = 2.0 * f64::from(j) + k;
-        (1.0 - x * sum) / (n * (n - 1.0))
-    })
-}
-
-/// `G_4` and `G_5`, by `c_{k+2}(x) = (1/k! − c_k(x))/x`.
-fn further(beta: f64, s: f64) -> [f64; 2] {
-    let x = beta * s * s;
-    let [c4, c5] = if x.abs() < SERIES {
-        [series(x, 4.0) / 2.0, series(x, 5.0) / 6.0]
-    } else {
-        let [_, _, g2, g3] = functions(beta, s);
-        [(0.5 - g2 / (s * s)) / x, (1.0 / 6.0 - g3 / (s * s * s)) / x]
-    };
-    [c4 * s.powi(4), c5 * s.powi(5)]
-}
-
-/// `G_k(s) = s^k c_k(β s²)` for k = 0..3.
-fn functions(beta: f64, s: f64) -> [f64; 4] {
-    let x = beta * s * s;
-    let (c2, c3) = if x.abs() < SERIES {
-        (series(x, 2.0), series(x, 3.0))
-    } else if x > 0.0 {
-        let root = x.sqrt();
-        let half = (0.5 * root).sin();
-        (2.0 * half * half / x, (root - root.sin()) / (x * root))
-    } else {
-        let root = (-x).sqrt();
-        let half = (0.5 * root).sinh();
-        (2.0 * half * half / -x, (root.sinh() - root) / (-x * root))
-    };
-    [1.0 - x * c2, s * (1.0 - x * c3), s * s * c2, s * s * s * c3]
-}
-
 /// √x, by one correction of the rounded root.
 fn root(x: DoubleDouble) -> DoubleDouble {
     let s = x.high.sqrt();
@@ -389,5 +350,47 @@ mod tests {
         assert!(Orbit::new(1.0, &Vector3::x(), &Vector3::x()).is_err());
         assert!(Orbit::new(0.0, &Vector3::x(), &Vector3::y()).is_err());
         assert!(Orbit::new(1.0, &Vector3::zeros(), &Vector3::y()).is_err());
+    }
+
+    #[test]
+    fn derivatives_are_those_of_neighbours() {
+        let cases = [
+            // An ellipse at either side of where the series of G₄ and G₅ end, and revolutions later; a hyperbola; a parabola.
+            ([1.0, 0.2, -0.1], [0.1, 0.9, 0.3], [0.4, 2.5, -1.5, 60.0]),
+            ([1.0, 0.2, -0.1], [0.5, 1.6, 0.3], [0.4, 2.5, -9.0, 60.0]),
+            ([0.5, 0.0, 0.0], [0.0, 2.0, 0.0], [0.4, 2.5, -9.0, 60.0]),
+        ];
+        for (position, velocity, times) in cases {
+            let numbers = |shift: f64, column: usize| {
+                let mut x = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+                x[1..4].copy_from_slice(&position);
+                x[4..].copy_from_slice(&velocity);
+                x[column] += shift;
+                x
+            };
+            let orbit = |[mu, a, b, c, u, v, w]: [f64; 7]| {
+                Orbit::new(mu, &Vector3::new(a, b, c), &Vector3::new(u, v, w)).expect("orbit")
+            };
+            for t in times {
+                let (r, v) = orbit(numbers(0.0, 0)).varied::<7>(t, Jet::variable);
+                let (r0, v0) = orbit(numbers(0.0, 0)).at(t);
+                assert!((r.map(|x| x.value) - r0).norm() < 1e-13 * r0.norm());
+                assert!((v.map(|x| x.value) - v0).norm() < 1e-13 * v0.norm());
+                for column in 0..7 {
+                    // Differences of fourth order.
+                    let h = 2e-3 / (1.0 + t.abs());
+                    let at = |shift| orbit(numbers(shift, column)).at(t);
+                    let ends = [at(h), at(-h), at(2.0 * h), at(-2.0 * h)];
+                    let slope = |pick: fn(&(Vector3<f64>, Vector3<f64>)) -> Vector3<f64>| {
+                        let [a, b, c, d] = ends.each_ref().map(pick);
+                        ((a - b) * 8.0 - (c - d)) / (12.0 * h)
+                    };
+                    for (own, slope) in [(r, slope(|state| state.0)), (v, slope(|state| state.1))] {
+                        let error = (own.map(|x| x.slopes[column]) - slope).norm();
+                        assert!(error < 1e-5 * (1.0 + slope.norm()), "{t} {column}");
+                    }
+                }
+            }
+        }
     }
 }

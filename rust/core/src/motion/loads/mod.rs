@@ -28,6 +28,7 @@ mod load;
 mod parameter;
 pub mod sampled;
 pub mod schedule;
+mod stumpff;
 mod subject;
 mod switch;
 mod term;

@@ -4,9 +4,10 @@ use nalgebra::Vector3;
 
 use super::field::Field;
 use super::frame::Precision;
+use super::gradient::Gradient;
 use super::pack::{Pack, plus};
 use super::series::Series;
-use super::terms::{Analytic, Forced, Gradient, Quadratic};
+use super::terms::{Analytic, Forced, Quadratic};
 use crate::motion::loads::{Forcing, OnOrbit, Parts};
 use crate::numerics::number::{Number, Real};
 

@@ -5,7 +5,7 @@
 //! | `frame` | the principal axes, in doubles or in numbers of twice the precision |
 //! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
 //! | `field` | the equations that are linear in the coefficients of one order |
-//! | `terms`, `extras` | the recurrences of terms that are not |
+//! | `terms`, `gradient`, `extras` | the recurrences of terms that are not |
 //! | `series` | the coefficients, and what is asked of the sums of their products |
 //! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
 //! | `twin` | these sums in numbers of twice the precision |
@@ -36,6 +36,7 @@ mod drive;
 mod extras;
 mod field;
 mod frame;
+mod gradient;
 mod job;
 mod kernels;
 mod many;
