@@ -1,14 +1,22 @@
 //! Numbers that carry their first derivatives with them.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use num_traits::{One, Zero};
+
+use super::lane::Double;
+use super::number::{Number, Real};
 
 /// A value and its derivatives with respect to N variables, to first order.
+///
+/// The derivatives stand first in memory, so that the compiler finds a register of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Jet<const N: usize> {
-    /// The value.
-    pub value: f64,
     /// Its derivatives.
     pub slopes: [f64; N],
+    /// The value.
+    pub value: f64,
 }
 
 impl<const N: usize> Jet<N> {
@@ -31,6 +39,7 @@ impl<const N: usize> Jet<N> {
     }
 
     /// A function of two jets: its value, and its derivatives with respect to each.
+    #[inline(always)]
     #[must_use]
     pub fn chain(value: f64, [(by_p, p), (by_q, q)]: [(f64, &Self); 2]) -> Self {
         Self {
@@ -43,6 +52,7 @@ impl<const N: usize> Jet<N> {
 impl<const N: usize> Add for Jet<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self::chain(self.value + other.value, [(1.0, &self), (1.0, &other)])
     }
@@ -51,6 +61,7 @@ impl<const N: usize> Add for Jet<N> {
 impl<const N: usize> Sub for Jet<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self::chain(self.value - other.value, [(1.0, &self), (-1.0, &other)])
     }
@@ -59,17 +70,21 @@ impl<const N: usize> Sub for Jet<N> {
 impl<const N: usize> Neg for Jet<N> {
     type Output = Self;
 
-    fn neg(self) -> Self {
-        Self {
-            value: -self.value,
-            slopes: self.slopes.map(|slope| -slope),
+    #[inline(always)]
+    fn neg(mut self) -> Self {
+        // No `map`: its closure would be compiled without the instructions of the level.
+        for slope in &mut self.slopes {
+            *slope = -*slope;
         }
+        self.value = -self.value;
+        self
     }
 }
 
 impl<const N: usize> Mul for Jet<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let (x, y) = (self.value, other.value);
         Self::chain(x * y, [(y, &self), (x, &other)])
@@ -79,7 +94,7 @@ impl<const N: usize> Mul for Jet<N> {
 impl<const N: usize> Mul<f64> for Jet<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
         Self {
             value: self.value * factor,
@@ -91,9 +106,106 @@ impl<const N: usize> Mul<f64> for Jet<N> {
 impl<const N: usize> Div for Jet<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         let (x, y) = (self.value, other.value);
         Self::chain(x / y, [(1.0 / y, &self), (-(x / y) / y, &other)])
+    }
+}
+
+macro_rules! assign {
+    ($operator:ident, $method:ident, $symbol:tt) => {
+        impl<const N: usize> $operator for Jet<N> {
+            #[inline(always)]
+            fn $method(&mut self, other: Self) {
+                *self = *self $symbol other;
+            }
+        }
+    };
+}
+assign!(AddAssign, add_assign, +);
+assign!(SubAssign, sub_assign, -);
+assign!(MulAssign, mul_assign, *);
+assign!(DivAssign, div_assign, /);
+
+impl<const N: usize> Default for Jet<N> {
+    fn default() -> Self {
+        Self::constant(0.0)
+    }
+}
+
+impl<const N: usize> Zero for Jet<N> {
+    fn zero() -> Self {
+        Self::constant(0.0)
+    }
+
+    fn is_zero(&self) -> bool {
+        *self == Self::zero()
+    }
+}
+
+impl<const N: usize> One for Jet<N> {
+    fn one() -> Self {
+        Self::constant(1.0)
+    }
+}
+
+impl<const N: usize> From<f64> for Jet<N> {
+    fn from(value: f64) -> Self {
+        Self::constant(value)
+    }
+}
+
+impl<const N: usize> Real for Jet<N> {
+    fn pair(high: f64, low: f64) -> Self {
+        Self::constant(high + low)
+    }
+
+    fn rounded(self) -> f64 {
+        self.value
+    }
+
+    fn root(self) -> Self {
+        let root = self.value.sqrt();
+        Self {
+            value: root,
+            slopes: self.slopes.map(|slope| slope * (0.5 / root)),
+        }
+    }
+}
+
+impl<const N: usize> Number for Jet<N> {
+    type Real = Self;
+
+    const VARIES: bool = true;
+
+    fn new(x: f64) -> Self {
+        Self::constant(x)
+    }
+
+    fn get(self) -> f64 {
+        self.value
+    }
+
+    fn of(x: Self) -> Self {
+        x
+    }
+
+    fn real(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn mul_add(mut self, b: Self, c: Self) -> Self {
+        for n in 0..N {
+            self.slopes[n] = (self.value * b.slopes[n] + self.slopes[n] * b.value) + c.slopes[n];
+        }
+        self.value = self.value * b.value + c.value;
+        self
+    }
+
+    fn over(n: usize) -> Self {
+        Self::constant(<Double<false> as Number>::over(n).get())
     }
 }
 

@@ -77,6 +77,8 @@ pub trait Number:
 {
     /// What comes in and goes out without loss.
     type Real: Real;
+    /// Whether it carries derivatives.
+    const VARIES: bool = false;
     /// The number `x`.
     fn new(x: f64) -> Self;
     /// The nearest double.

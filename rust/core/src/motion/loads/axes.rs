@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::subject::Subject;
+use super::variables::{Block, CENTER, Fixed, MASS, Variables, Varied};
 use crate::motion::attitude::components;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;
@@ -10,31 +11,69 @@ use crate::numerics::quaternion::normalized;
 
 /// A number in which laws can be stated.
 pub trait Exact: Real {
+    /// What tells which of the numbers of a problem are varied.
+    type Variables: Variables<Self>;
+
     /// (x, y, z, w) of a rotation, whose direction alone counts.
     fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4];
+
+    /// What a change of a rate comes to, in neighbours that meet it later: by the derivatives of the function `switch` of the
+    /// state that is zero there, whose rate is `rate`. Nothing without derivatives.
+    fn until_later(self, switch: Self, rate: f64) -> Self;
 }
 
 impl Exact for f64 {
+    type Variables = Fixed;
+
     fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
         components(rotation)
+    }
+
+    fn until_later(self, _: Self, _: f64) -> Self {
+        0.0
     }
 }
 
 impl Exact for DoubleDouble {
+    type Variables = Fixed;
+
     fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
         normalized(components(rotation).map(Self::from))
+    }
+
+    fn until_later(self, _: Self, _: f64) -> Self {
+        Self::default()
+    }
+}
+
+impl Exact for Varied {
+    type Variables = Block;
+
+    fn quaternion(rotation: &UnitQuaternion<f64>) -> [Self; 4] {
+        components(rotation).map(Self::constant)
+    }
+
+    fn until_later(self, switch: Self, rate: f64) -> Self {
+        Self {
+            value: 0.0,
+            slopes: switch.slopes.map(|slope| -slope / rate * self.value),
+        }
     }
 }
 
 /// The principal axes of what a load acts on.
 #[derive(Clone, Copy, Debug)]
-pub struct Axes<'s, X> {
+pub struct Axes<'s, X: Exact> {
     /// What it acts on.
     pub subject: &'s Subject,
     /// Columns, in B.
     pub columns: &'s Matrix3<X>,
     /// (x, y, z, w) of the rotation from principal axes to B.
     pub q_bp: &'s [X; 4],
+    /// Which numbers are varied.
+    pub variables: X::Variables,
+    /// The column of the first number of the term that is asked.
+    pub first: usize,
 }
 
 impl<X: Exact> Axes<'_, X> {
@@ -44,8 +83,44 @@ impl<X: Exact> Axes<'_, X> {
     }
 
     /// A tensor of B, components in principal axes.
-    pub(super) fn tensor(&self, matrix: &Matrix3<f64>) -> Matrix3<X> {
-        self.columns.tr_mul(&matrix.map(X::from)) * self.columns
+    pub(super) fn tensor(&self, matrix: &Matrix3<X>) -> Matrix3<X> {
+        self.columns.tr_mul(matrix) * self.columns
+    }
+
+    /// Numbers of the term: a number, a vector, a matrix that it has, of which the first is its number `index`.
+    pub(super) fn number(&self, value: f64, index: usize) -> X {
+        self.variables.number(value, self.first + index)
+    }
+
+    pub(super) fn vector(&self, value: &Vector3<f64>, index: usize) -> Vector3<X> {
+        self.variables.vector(value, self.first + index)
+    }
+
+    pub(super) fn matrix(&self, value: &Matrix3<f64>, index: usize) -> Matrix3<X> {
+        self.variables.matrix(value, self.first + index)
+    }
+
+    /// m.
+    pub(super) fn mass(&self) -> X {
+        self.variables.number(self.subject.mass, MASS)
+    }
+
+    /// P from the origin of B: C where the body is free.
+    pub(super) fn point(&self) -> Vector3<X> {
+        if self.subject.pivoted {
+            exact(&self.subject.point)
+        } else {
+            self.variables.vector(&self.subject.point, CENTER)
+        }
+    }
+
+    /// C from P.
+    pub(super) fn center(&self) -> Vector3<X> {
+        if self.subject.pivoted {
+            self.variables.vector(&self.subject.center, CENTER)
+        } else {
+            exact(&self.subject.center)
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::axes::{Axes, Exact, exact};
+use super::axes::{Axes, Exact};
 use super::law::{Character, Kept, Law, Parts, directions_of};
 use super::linear::Linear;
 use super::parameter::Parameter;
@@ -69,6 +69,9 @@ impl Law for ConstantForce {
             parts: Parts {
                 directions: match self.frame {
                     Frame::Space if self.turns(pivoted) => directions_of(&self.vector),
+                    _ => 0,
+                },
+                directions_of_path: match self.frame {
                     Frame::Body if !pivoted => 3,
                     _ => 0,
                 },
@@ -123,18 +126,15 @@ impl Law for ConstantForce {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        let subject = axes.subject;
-        let arm = self.point.map_or(exact(&subject.center), |point| {
-            exact::<X>(&point) - exact(&subject.point)
-        });
-        let vector = exact(&self.vector);
+        let arm = (self.point).map_or(axes.center(), |point| axes.vector(&point, 3) - axes.point());
+        let vector = axes.vector(&self.vector, 0);
         match self.frame {
             Frame::Body => {
                 linear.constant += axes.principal(&arm.cross(&vector));
                 linear.thrust += axes.principal(&vector);
             }
             Frame::Space => {
-                if self.turns(subject.pivoted) {
+                if self.turns(axes.subject.pivoted) {
                     let lever = cross_matrix(&axes.principal(&arm));
                     linear.on_space.push((vector, lever));
                 }

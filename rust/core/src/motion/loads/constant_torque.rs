@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::axes::{Axes, Exact, exact};
+use super::axes::{Axes, Exact};
 use super::law::{Character, Kept, Law, Parts, directions_of};
 use super::linear::Linear;
 use super::parameter::Parameter;
@@ -85,7 +85,7 @@ impl Law for ConstantTorque {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        let vector = exact(&self.vector);
+        let vector = axes.vector(&self.vector, 0);
         match self.frame {
             Frame::Body => linear.constant += axes.principal(&vector),
             Frame::Space => linear.on_space.push((vector, Matrix3::identity())),

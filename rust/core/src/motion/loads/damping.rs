@@ -55,6 +55,7 @@ impl Law for Damping {
             parts: Parts {
                 on_omega: true,
                 quadratic: self.quadratic != Matrix3::zeros(),
+                may_be_quadratic: true,
                 ..Parts::default()
             },
         }
@@ -92,8 +93,8 @@ impl Law for Damping {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        linear.on_omega -= axes.tensor(&self.linear);
-        linear.quadratic += axes.tensor(&self.quadratic);
+        linear.on_omega -= axes.tensor(&axes.matrix(&self.linear, 0));
+        linear.quadratic += axes.tensor(&axes.matrix(&self.quadratic, 9));
     }
 }
 

@@ -8,6 +8,7 @@ use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::switch::Switch;
+use super::variables::Variables;
 use super::wrench::Wrench;
 use crate::error::{Error, all_finite};
 use crate::motion::state::Phase;
@@ -84,7 +85,7 @@ impl Feedback {
 
     /// `q_target⁻¹ ∘ q_NP ∘ q_PB` is linear in (x, y, z, w) of `q_NP`: its column for each of them.
     fn error_columns<X: Exact>(&self, axes: &Axes<'_, X>) -> [[X; 4]; 4] {
-        let left = X::quaternion(&self.target);
+        let left = (axes.variables).turned(X::quaternion(&self.target), axes.first + 18);
         let [o, l] = [X::zero(), X::one()];
         let units = [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, l]];
         units.map(|unit| product(product(conjugate(left), unit), conjugate(*axes.q_bp)))
@@ -146,8 +147,8 @@ impl Law for Feedback {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
-        linear.on_omega -= axes.tensor(&self.damping);
-        let stiffness = axes.columns.tr_mul(&self.stiffness.map(X::from));
+        linear.on_omega -= axes.tensor(&axes.matrix(&self.damping, 9));
+        let stiffness = (axes.columns).tr_mul(&axes.matrix(&self.stiffness, 0));
         let columns = self.error_columns(axes);
         let vector = Matrix3x4::from_columns(&columns.map(|[x, y, z, _]| Vector3::new(x, y, z)));
         linear.on_attitude -= stiffness * vector * X::from(side);

@@ -2,13 +2,14 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::axes::{Axes, Exact, exact};
+use super::axes::{Axes, Exact};
 use super::forcing::{Forcing, OnOrbit, Timed, When};
 use super::kepler::Orbit;
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
+use super::variables::Variables;
 use super::wrench::Wrench;
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::state::Phase;
@@ -144,22 +145,24 @@ impl Law for GravityGradient {
         None
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, _: &Axes<'_, X>, _: f64) {
-        linear.timed.push(self);
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        linear.timed.push((axes.first, self));
     }
 }
 
 impl<X: Exact> Timed<X> for GravityGradient {
     fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>) {
-        let (r, v) = self.orbit_at(axes.subject, when.time);
-        let (r, v) = (exact::<X>(&r), exact::<X>(&v));
+        let elapsed = when.time - self.epoch.unwrap_or(axes.subject.start);
+        let (r, v) = (axes.variables).on_orbit(&self.orbit, elapsed, axes.first);
         let (distance, unit) = (r.dot(&r).root(), X::from(when.unit));
         let cube = distance * distance * distance * unit * unit;
+        let mu = axes.number(self.mu(), 0);
+        let more = (mu - X::from(self.mu())) * X::from(3.0 * self.strength); // zero, but its derivatives are not
         forcing.orbits.push(OnOrbit {
             position: r / distance,
             velocity: v / (distance * unit),
-            pull: X::from(self.mu()) / cube,
-            strength: X::from(self.coefficient()) / cube,
+            pull: mu / cube,
+            strength: (X::from(self.coefficient()) + more) / cube,
         });
     }
 

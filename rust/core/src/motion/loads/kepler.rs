@@ -2,8 +2,11 @@
 
 use nalgebra::Vector3;
 
+use super::stumpff::{functions, further};
 use crate::error::{Error, all_finite, finite};
 use crate::numerics::double_double::{DoubleDouble, two_product};
+use crate::numerics::jet::Jet;
+use crate::numerics::number::Real;
 
 /// 2π and what it leaves out.
 const TURN: DoubleDouble = DoubleDouble {
@@ -115,6 +118,68 @@ impl Orbit {
         )
     }
 
+    /// As [`Self::at`], with the derivatives by μ and the state at its epoch, which `variable` makes numbers of: μ, then the
+    /// components of position and velocity.
+    ///
+    /// Kepler's equation gives those of s; with `∂G_k/∂s = G_{k−1}` and `∂G_k/∂β = ½ (k G_{k+2} − s G_{k+1})` follow the others.
+    /// Source: Goodyear, Astronomical Journal 70 (1965) 189.
+    pub(super) fn varied<const N: usize>(
+        &self,
+        elapsed: f64,
+        variable: impl Fn(f64, usize) -> Jet<N>,
+    ) -> (Vector3<Jet<N>>, Vector3<Jet<N>>) {
+        let number = |x: f64| Jet::<N>::constant(x);
+        let with = |value: f64, jet: Jet<N>| Jet { value, ..jet };
+        let (length, speed) = (self.length, self.length / self.time);
+        let of = |own: &Vector3<f64>, unit: f64, first: usize| {
+            Vector3::from_fn(|i, _| {
+                let jet = variable(own[i] * unit, first + i) / number(unit);
+                with(own[i], jet)
+            })
+        };
+        let (r0, v0) = (of(&self.position, length, 1), of(&self.velocity, speed, 4));
+        let mu = variable(self.mu, 0) * number(self.scaled_mu / self.mu);
+        let mu = with(self.scaled_mu, mu);
+        let distance = with(self.distance, r0.dot(&r0).root());
+        let sigma = with(self.sigma, r0.dot(&v0));
+        let beta = with(self.beta, (mu + mu) / distance - v0.dot(&v0));
+
+        let whole = elapsed / self.time;
+        let t = self.reduced(whole);
+        let mut time = number(t);
+        if self.frequency.high > 0.0 {
+            let revolutions = ((whole - t) * self.frequency.high).round();
+            let period = mu * number(TURN.high) / (beta * beta.root());
+            time = with(t, -(period * number(revolutions)));
+        }
+        let s = self.solve(t);
+        let g = functions(self.beta, s);
+        let [g4, g5] = further(self.beta, s);
+        let next = [g[2], g[3], g4, g5];
+        let by_beta = [0, 1, 2, 3].map(|k| {
+            let last = if k < 3 { g[k + 1] } else { g4 };
+            0.5 * (k as f64 * next[k] - s * last)
+        });
+        let at = |s: Jet<N>| {
+            [0, 1, 2, 3].map(|k| {
+                let by_s = if k == 0 { -self.beta * g[1] } else { g[k - 1] };
+                Jet::chain(g[k], [(by_s, &s), (by_beta[k], &beta)])
+            })
+        };
+        let [_, g1, g2, g3] = at(number(s));
+        let excess = distance * g1 + sigma * g2 + mu * g3 - time;
+        let there = number(self.distance_at(&g));
+        let [g0, g1, g2, _] = at(with(s, -(excess / there)));
+        let r = distance * g0 + sigma * g1 + mu * g2;
+        let one = number(1.0);
+        let (f, f_rate) = (one - mu * g2 / distance, -(mu * g1 / (r * distance)));
+        let (g, g_rate) = (distance * g1 + sigma * g2, one - mu * g2 / r);
+        (
+            (r0 * f + v0 * g) * number(length),
+            (r0 * f_rate + v0 * g_rate) * number(speed),
+        )
+    }
+
     /// The time without whole revolutions.
     fn reduced(&self, t: f64) -> f64 {
         let DoubleDouble { high, low } = self.frequency;
@@ -186,31 +251,6 @@ impl Orbit {
     fn distance_at(&self, [g0, g1, g2, _]: &[f64; 4]) -> f64 {
         self.distance * g0 + self.sigma * g1 + self.scaled_mu * g2
     }
-}
-
-/// `G_k(s) = s^k c_k(β s²)` for k = 0..3.
-fn functions(beta: f64, s: f64) -> [f64; 4] {
-    /// Below this the closed forms cancel, and eleven terms of the series are exact.
-    const SERIES: f64 = 2.5;
-    let x = beta * s * s;
-    let (c2, c3) = if x.abs() < SERIES {
-        let series = |k: f64| {
-            (0..11).rev().fold(0.0, |sum, j| {
-                let n = 2.0 * f64::from(j) + k;
-                (1.0 - x * sum) / (n * (n - 1.0))
-            })
-        };
-        (series(2.0), series(3.0))
-    } else if x > 0.0 {
-        let root = x.sqrt();
-        let half = (0.5 * root).sin();
-        (2.0 * half * half / x, (root - root.sin()) / (x * root))
-    } else {
-        let root = (-x).sqrt();
-        let half = (0.5 * root).sinh();
-        (2.0 * half * half / -x, (root.sinh() - root) / (-x * root))
-    };
-    [1.0 - x * c2, s * (1.0 - x * c3), s * s * c2, s * s * s * c3]
 }
 
 /// √x, by one correction of the rounded root.
@@ -310,5 +350,47 @@ mod tests {
         assert!(Orbit::new(1.0, &Vector3::x(), &Vector3::x()).is_err());
         assert!(Orbit::new(0.0, &Vector3::x(), &Vector3::y()).is_err());
         assert!(Orbit::new(1.0, &Vector3::zeros(), &Vector3::y()).is_err());
+    }
+
+    #[test]
+    fn derivatives_are_those_of_neighbours() {
+        let cases = [
+            // An ellipse at either side of where the series of G₄ and G₅ end, and revolutions later; a hyperbola; a parabola.
+            ([1.0, 0.2, -0.1], [0.1, 0.9, 0.3], [0.4, 2.5, -1.5, 60.0]),
+            ([1.0, 0.2, -0.1], [0.5, 1.6, 0.3], [0.4, 2.5, -9.0, 60.0]),
+            ([0.5, 0.0, 0.0], [0.0, 2.0, 0.0], [0.4, 2.5, -9.0, 60.0]),
+        ];
+        for (position, velocity, times) in cases {
+            let numbers = |shift: f64, column: usize| {
+                let mut x = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+                x[1..4].copy_from_slice(&position);
+                x[4..].copy_from_slice(&velocity);
+                x[column] += shift;
+                x
+            };
+            let orbit = |[mu, a, b, c, u, v, w]: [f64; 7]| {
+                Orbit::new(mu, &Vector3::new(a, b, c), &Vector3::new(u, v, w)).expect("orbit")
+            };
+            for t in times {
+                let (r, v) = orbit(numbers(0.0, 0)).varied::<7>(t, Jet::variable);
+                let (r0, v0) = orbit(numbers(0.0, 0)).at(t);
+                assert!((r.map(|x| x.value) - r0).norm() < 1e-13 * r0.norm());
+                assert!((v.map(|x| x.value) - v0).norm() < 1e-13 * v0.norm());
+                for column in 0..7 {
+                    // Differences of fourth order.
+                    let h = 2e-3 / (1.0 + t.abs());
+                    let at = |shift| orbit(numbers(shift, column)).at(t);
+                    let ends = [at(h), at(-h), at(2.0 * h), at(-2.0 * h)];
+                    let slope = |pick: fn(&(Vector3<f64>, Vector3<f64>)) -> Vector3<f64>| {
+                        let [a, b, c, d] = ends.each_ref().map(pick);
+                        ((a - b) * 8.0 - (c - d)) / (12.0 * h)
+                    };
+                    for (own, slope) in [(r, slope(|state| state.0)), (v, slope(|state| state.1))] {
+                        let error = (own.map(|x| x.slopes[column]) - slope).norm();
+                        assert!(error < 1e-5 * (1.0 + slope.norm()), "{t} {column}");
+                    }
+                }
+            }
+        }
     }
 }

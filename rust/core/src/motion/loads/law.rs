@@ -66,14 +66,18 @@ pub struct Character {
 )]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Parts {
-    /// How many directions fixed in space: none, the vertical axis, or all three.
+    /// How many directions fixed in space its torques are made of: none, the vertical axis, or all three.
     pub directions: usize,
+    /// As many for its forces.
+    pub directions_of_path: usize,
     /// Whether a torque is linear in ω.
     pub on_omega: bool,
     /// Whether a torque is linear in the attitude's quaternion.
     pub on_attitude: bool,
     /// Whether a torque goes with |ω| ω.
     pub quadratic: bool,
+    /// Whether it would with other numbers of the law.
+    pub may_be_quadratic: bool,
     /// How many gravity gradients.
     pub gradients: usize,
     /// Whether parts depend on time.
@@ -88,9 +92,11 @@ impl Parts {
     pub fn and(self, other: Self) -> Self {
         Self {
             directions: self.directions.max(other.directions),
+            directions_of_path: self.directions_of_path.max(other.directions_of_path),
             on_omega: self.on_omega || other.on_omega,
             on_attitude: self.on_attitude || other.on_attitude,
             quadratic: self.quadratic || other.quadratic,
+            may_be_quadratic: self.may_be_quadratic || other.may_be_quadratic,
             gradients: self.gradients + other.gradients,
             is_timed: self.is_timed || other.is_timed,
             is_pushed: self.is_pushed || other.is_pushed,
@@ -105,6 +111,16 @@ impl Parts {
             directions: self.directions.max(other.directions),
             quadratic: self.quadratic || other.quadratic,
             ..*other
+        }
+    }
+
+    /// The parts of motions under the same terms with any numbers in them.
+    #[must_use]
+    pub fn with_all_numbers(self) -> Self {
+        Self {
+            directions: if self.directions > 0 { 3 } else { 0 },
+            quadratic: self.may_be_quadratic,
+            ..self
         }
     }
 

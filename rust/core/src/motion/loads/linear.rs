@@ -2,12 +2,12 @@
 
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
+use super::axes::Exact;
 use super::forcing::Timed;
-use crate::numerics::number::Real;
 
 /// Torques about the reference point in principal axes, linear in what varies, and what is not linear besides.
 #[derive(Clone, Debug)]
-pub struct Linear<'a, X> {
+pub struct Linear<'a, X: Exact> {
     /// Constant in the body.
     pub constant: Vector3<X>,
     /// Times ω.
@@ -22,11 +22,11 @@ pub struct Linear<'a, X> {
     pub force: Vector3<X>,
     /// Force constant in the body, in principal axes.
     pub thrust: Vector3<X>,
-    /// What depends on the time.
-    pub timed: Vec<&'a dyn Timed<X>>,
+    /// What depends on the time, each with the column of its first number.
+    pub timed: Vec<(usize, &'a dyn Timed<X>)>,
 }
 
-impl<X: Real> Default for Linear<'_, X> {
+impl<X: Exact> Default for Linear<'_, X> {
     fn default() -> Self {
         Self {
             constant: Vector3::zeros(),

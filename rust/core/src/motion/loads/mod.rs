@@ -28,10 +28,12 @@ mod load;
 mod parameter;
 pub mod sampled;
 pub mod schedule;
+mod stumpff;
 mod subject;
 mod switch;
 mod term;
 pub mod uniform_gravity;
+pub(in crate::motion) mod variables;
 mod wrench;
 
 pub use self::analytic::Analytic;

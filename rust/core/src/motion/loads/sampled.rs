@@ -9,10 +9,12 @@ use super::law::{Character, Kept, Law, Parts};
 use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
+use super::variables::Variables;
 use super::wrench::{Wrench, in_body};
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::motion::kinematics::Frame;
 use crate::motion::state::Phase;
+use crate::numerics::number::Real;
 
 /// A torque about the reference point, given at times and interpolated by a cubic spline, smooth to the second derivative.
 ///
@@ -86,9 +88,14 @@ impl Sampled {
     /// The cubic around time `t`, `Σ c_k (t − t₀)^k`: its t₀ and coefficients.
     #[must_use]
     pub fn piece(&self, t: f64) -> (f64, &[Vector3<f64>; 4]) {
-        let Spline { knots, pieces } = &*self.spline;
-        let after = knots[1..knots.len() - 1].partition_point(|&knot| knot <= t);
-        (knots[after], &pieces[after])
+        let index = self.index(t);
+        (self.knots()[index], &self.spline.pieces[index])
+    }
+
+    /// The number of the piece around time `t`.
+    fn index(&self, t: f64) -> usize {
+        let knots = self.knots();
+        knots[1..knots.len() - 1].partition_point(|&knot| knot <= t)
     }
 
     /// The torque at time `t`, components in its frame.
@@ -114,6 +121,25 @@ impl Sampled {
                 last,
             }))
         }
+    }
+}
+
+impl Sampled {
+    /// As [`Self::piece`], with the derivatives by the samples: those of the spline through them, which is linear in them.
+    fn varied_piece<X: Exact>(&self, axes: &Axes<'_, X>, t: f64) -> (f64, [Vector3<X>; 4]) {
+        let (from, piece) = self.piece(t);
+        let (knots, mut piece) = (self.knots(), piece.each_ref().map(exact::<X>));
+        let own = axes.first..axes.first + 3 * knots.len();
+        if axes.variables.varies(own) {
+            let zero = Vector3::zeros();
+            let samples: Vec<_> = (0..knots.len())
+                .map(|k| axes.vector(&zero, 3 * k))
+                .collect();
+            for (c, more) in piece.iter_mut().zip(pieces(knots, &samples)[self.index(t)]) {
+                *c += more;
+            }
+        }
+        (from, piece)
     }
 }
 
@@ -174,15 +200,14 @@ impl Law for Sampled {
         None
     }
 
-    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, _: &Axes<'_, X>, _: f64) {
-        linear.timed.push(self);
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        linear.timed.push((axes.first, self));
     }
 }
 
 impl<X: Exact> Timed<X> for Sampled {
     fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>) {
-        let (from, piece) = self.piece(when.middle);
-        let [c0, c1, c2, c3] = piece.each_ref().map(exact::<X>);
+        let (from, [c0, c1, c2, c3]) = self.varied_piece(axes, when.middle);
         let x = when.elapsed + X::pair(when.start, -from);
         let (two, three) = (X::from(2.0), X::from(3.0));
         let centered = [
@@ -218,23 +243,24 @@ impl<X: Exact> Timed<X> for Sampled {
 }
 
 /// The cubics between the samples, from the slopes at them.
-fn pieces(t: &[f64], y: &[Vector3<f64>]) -> Vec<[Vector3<f64>; 4]> {
+fn pieces<X: Real>(t: &[f64], y: &[Vector3<X>]) -> Vec<[Vector3<X>; 4]> {
     let steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let chords: Vec<_> = (y.windows(2).zip(&steps))
-        .map(|(pair, step)| (pair[1] - pair[0]) / *step)
+        .map(|(pair, step)| (pair[1] - pair[0]) / X::from(*step))
         .collect();
     let slopes = match chords[..] {
         [chord] => vec![chord; 2],
         [first, second] => {
-            let bend = (second - first) / (steps[0] + steps[1]);
-            let middle = first + bend * steps[0];
-            vec![first - bend * steps[0], middle, second + bend * steps[1]]
+            let bend = (second - first) / X::from(steps[0] + steps[1]);
+            let middle = first + bend * X::from(steps[0]);
+            let last = second + bend * X::from(steps[1]);
+            vec![first - bend * X::from(steps[0]), middle, last]
         }
         _ => slopes(&steps, &chords),
     };
     let cubic = |k: usize| {
-        let (h, chord, s0, s1) = (steps[k], chords[k], slopes[k], slopes[k + 1]);
-        let bend = (s0 + s1 - chord * 2.0) / h;
+        let (h, chord, s0, s1) = (X::from(steps[k]), chords[k], slopes[k], slopes[k + 1]);
+        let bend = (s0 + s1 - chord * X::from(2.0)) / h;
         [y[k], s0, (chord - s0) / h - bend, bend / h]
     };
     (0..steps.len()).map(cubic).collect()
@@ -242,38 +268,44 @@ fn pieces(t: &[f64], y: &[Vector3<f64>]) -> Vec<[Vector3<f64>; 4]> {
 
 /// The slopes that make the second derivative continuous, and the third at the second and the last but one sample:
 /// a tridiagonal system, whose pivots are positive.
-fn slopes(h: &[f64], chords: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+fn slopes<X: Real>(h: &[f64], chords: &[Vector3<X>]) -> Vec<Vector3<X>> {
     let n = h.len();
     let (first, last) = (h[0] + h[1], h[n - 2] + h[n - 1]);
+    let sum = |a: usize, by_a: f64, b: usize, by_b: f64| {
+        chords[a] * X::from(by_a) + chords[b] * X::from(by_b)
+    };
     // Rows as (below, diagonal, above, right-hand side).
     let mut rows = vec![(
         0.0,
         h[1],
         first,
-        (chords[0] * ((h[0] + 2.0 * first) * h[1]) + chords[1] * (h[0] * h[0])) / first,
+        sum(0, (h[0] + 2.0 * first) * h[1], 1, h[0] * h[0]) / X::from(first),
     )];
     rows.extend((1..n).map(|k| {
-        let side = chords[k - 1] * h[k] + chords[k] * h[k - 1];
-        (h[k], 2.0 * (h[k - 1] + h[k]), h[k - 1], side * 3.0)
+        let side = sum(k - 1, h[k], k, h[k - 1]);
+        (h[k], 2.0 * (h[k - 1] + h[k]), h[k - 1], side * X::from(3.0))
     }));
     rows.push((
         last,
         h[n - 2],
         0.0,
-        (chords[n - 2] * (h[n - 1] * h[n - 1])
-            + chords[n - 1] * ((2.0 * last + h[n - 1]) * h[n - 2]))
-            / last,
+        sum(
+            n - 2,
+            h[n - 1] * h[n - 1],
+            n - 1,
+            (2.0 * last + h[n - 1]) * h[n - 2],
+        ) / X::from(last),
     ));
     for k in 1..=n {
         let (_, pivot, above, side) = rows[k - 1];
         let ratio = rows[k].0 / pivot;
         rows[k].1 -= ratio * above;
-        rows[k].3 -= side * ratio;
+        rows[k].3 -= side * X::from(ratio);
     }
     let mut next = Vector3::zeros();
     let mut slopes: Vec<_> = (rows.iter().rev())
         .map(|&(_, pivot, above, side)| {
-            next = (side - next * above) / pivot;
+            next = (side - next * X::from(above)) / X::from(pivot);
             next
         })
         .collect();

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::axes::{Axes, Exact, exact};
+use super::axes::{Axes, Exact};
 use super::law::{Character, Kept, Law, Parts, directions_of};
 use super::linear::Linear;
 use super::parameter::Parameter;
@@ -92,9 +92,9 @@ impl Law for UniformGravity {
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
-        let (gravity, mass) = (exact(&self.gravity), X::from(axes.subject.mass));
+        let (gravity, mass) = (axes.vector(&self.gravity, 0), axes.mass());
         if axes.subject.pivoted {
-            let lever = exact(&axes.subject.center) * mass;
+            let lever = axes.center() * mass;
             let lever = cross_matrix(&axes.principal(&lever));
             linear.on_space.push((gravity, lever));
         }

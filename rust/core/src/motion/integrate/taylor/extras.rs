@@ -4,9 +4,10 @@ use nalgebra::Vector3;
 
 use super::field::Field;
 use super::frame::Precision;
-use super::pack::Pack;
+use super::gradient::Gradient;
+use super::pack::{Pack, plus};
 use super::series::Series;
-use super::terms::{Analytic, Forced, Gradient, Quadratic, STILL};
+use super::terms::{Analytic, Forced, Quadratic};
 use crate::motion::loads::{Forcing, OnOrbit, Parts};
 use crate::numerics::number::{Number, Real};
 
@@ -182,7 +183,11 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             if !is_damped(field, row) {
                 continue;
             }
-            let (still, speed, rate) = (STILL * fastest[row], size(&w, row), size(&change, row));
+            let (still, speed, rate) = (
+                L::Real::STILL * fastest[row],
+                size(&w, row),
+                size(&change, row),
+            );
             let most = if speed <= still {
                 2.0 * still / rate
             } else {
@@ -206,11 +211,6 @@ fn is_damped<L: Number, const R: usize, const B: usize>(
 fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
     let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
     (x * x + y * y + z * z).sqrt()
-}
-
-#[inline(always)]
-fn plus<L: Number, const R: usize>(a: [Pack<L, R>; 3], b: [Pack<L, R>; 3]) -> [Pack<L, R>; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// A vector of N as seen in the attitude (x, y, z, w).

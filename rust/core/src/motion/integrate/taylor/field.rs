@@ -14,6 +14,9 @@ type Square<T> = [[T; 3]; 3];
 #[derive(Clone, Debug)]
 pub(super) struct Field<T, const B: usize> {
     pub(super) kappa: [T; 3],
+    /// One over the moments, and the elements 23, 31, 12 of the tensor, which are zero where nothing is varied.
+    pub(super) inverse_moments: [T; 3],
+    pub(super) products: [T; 3],
     pub(super) constant: [T; 3],
     pub(super) on_omega: Square<T>,
     pub(super) on_attitude: [[T; 4]; 3],
@@ -31,6 +34,8 @@ impl<T: Copy, const B: usize> Field<T, B> {
     pub(super) fn none(zero: T) -> Self {
         Self {
             kappa: [zero; 3],
+            inverse_moments: [zero; 3],
+            products: [zero; 3],
             constant: [zero; 3],
             on_omega: [[zero; 3]; 3],
             on_attitude: [[zero; 4]; 3],
@@ -66,6 +71,10 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     pub(super) fn set(&mut self, row: usize, field: &Field<L::Real, B>) {
         for n in 0..3 {
             self.kappa[n].put(row, field.kappa[n]);
+            if L::VARIES {
+                (self.inverse_moments[n]).put(row, field.inverse_moments[n]);
+                self.products[n].put(row, field.products[n]);
+            }
             self.constant[n].put(row, field.constant[n]);
             self.force[n].put(row, field.force[n]);
             self.thrust[n].put(row, field.thrust[n]);
@@ -118,6 +127,39 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
         }
         let ([a, b, c], [s, t, u]) = (self.kappa, products);
         [a.mul_add(s, x), b.mul_add(t, y), c.mul_add(u, z)]
+    }
+}
+
+impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
+    /// Whether elements off the diagonal of the tensor are varied.
+    pub(super) fn is_tilted(&self) -> bool {
+        let is_zero = |x: &Pack<L, R>| (0..R).all(|row| x.real(row) == L::Real::default());
+        !self.products.iter().all(is_zero)
+    }
+
+    /// What the elements off the diagonal of the tensor add to `−x×I x`, over the moments, with the coefficients of (x₂x₃, x₃x₁, x₁x₂)
+    /// and of (x₁², x₂², x₃²); cyclic in i, j, k:
+    ///
+    /// ```text
+    /// −I_ki x_i x_j + I_ij x_k x_i + I_jk (x_k² − x_j²)
+    /// ```
+    pub(super) fn tilt(
+        &self,
+        mixed: &[Pack<L, R>; 3],
+        squares: &[Pack<L, R>; 3],
+    ) -> [Pack<L, R>; 3] {
+        let p = &self.products;
+        [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| {
+            let torque = p[k] * mixed[j] - p[j] * mixed[k] + p[i] * (squares[k] - squares[j]);
+            torque * self.inverse_moments[i]
+        })
+    }
+
+    /// `I⁻¹ N` to first order in these elements, from N over the moments.
+    pub(super) fn tilted(&self, quotient: &[Pack<L, R>; 3]) -> [Pack<L, R>; 3] {
+        let (p, a) = (&self.products, quotient);
+        [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
+            .map(|(i, j, k)| a[i] - (p[k] * a[j] + p[j] * a[k]) * self.inverse_moments[i])
     }
 }
 

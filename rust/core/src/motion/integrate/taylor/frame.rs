@@ -5,6 +5,7 @@ use nalgebra::Matrix3;
 use crate::mass::refined::RefinedPrincipal;
 use crate::motion::attitude::{components, from_axes};
 use crate::motion::loads::Exact;
+use crate::motion::loads::variables::{Block, Fixed, MOMENTS, PRODUCTS, Variables, Varied};
 use crate::motion::problem::Task;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;
@@ -17,6 +18,8 @@ pub(super) struct Principal<X> {
     pub(super) moments: [X; 3],
     /// I₂ − I₃, I₃ − I₁, I₁ − I₂.
     pub(super) differences: [X; 3],
+    /// The elements 23, 31, 12 of the tensor: zero, but what is varied may be one of them.
+    pub(super) products: [X; 3],
     /// Columns, in B.
     pub(super) axes: Matrix3<X>,
     /// (x, y, z, w) of the rotation from principal axes to B.
@@ -27,18 +30,23 @@ pub(super) struct Principal<X> {
 pub(super) trait Precision: Exact {
     /// Whether an orbit goes from step to step by its own series: Kepler's equation is solved in doubles.
     const CARRIES_ORBITS: bool;
+    /// The part of the fastest ω below which quadratic damping is left out: with it the error of ω, relative to the fastest, is
+    /// its cube, that of derivatives its square.
+    const STILL: f64;
     /// The principal frame of what is simulated.
-    fn principal(task: &Task<'_>) -> Principal<Self>;
+    fn principal(task: &Task<'_>, variables: Self::Variables) -> Principal<Self>;
 }
 
 impl Precision for f64 {
     const CARRIES_ORBITS: bool = false;
+    const STILL: f64 = 2e-6;
 
-    fn principal(task: &Task<'_>) -> Principal<Self> {
+    fn principal(task: &Task<'_>, _: Fixed) -> Principal<Self> {
         let axes = *task.euler.axes();
         Principal {
             moments: task.euler.moments(),
             differences: task.euler.differences(),
+            products: [0.0; 3],
             axes,
             q_bp: components(&from_axes(&axes)),
         }
@@ -48,16 +56,50 @@ impl Precision for f64 {
 /// What defines body and start is taken as exact: moments and axes, or the tensor; the direction of a quaternion.
 impl Precision for DoubleDouble {
     const CARRIES_ORBITS: bool = true;
+    const STILL: f64 = 2e-6;
 
-    fn principal(task: &Task<'_>) -> Principal<Self> {
+    fn principal(task: &Task<'_>, _: Fixed) -> Principal<Self> {
         let refined = RefinedPrincipal::about(task.body, &task.subject.point);
         let [i1, i2, i3] = refined.moments;
         let axes = refined.axes();
         Principal {
             moments: refined.moments,
             differences: [i2 - i3, i3 - i1, i1 - i2],
+            products: [Self::default(); 3],
             axes,
             q_bp: of_matrix(&axes),
+        }
+    }
+}
+
+/// Of a body with a zero moment, which has no neighbours on one side, nothing about the tensor is varied.
+impl Precision for Varied {
+    const CARRIES_ORBITS: bool = false;
+    const STILL: f64 = 1e-8;
+
+    fn principal(task: &Task<'_>, block: Block) -> Principal<Self> {
+        let plain = <f64 as Precision>::principal(task, Fixed);
+        let is_massless = plain.moments.contains(&0.0);
+        let variable = |value: f64, column: usize| {
+            if is_massless {
+                Self::constant(value)
+            } else {
+                block.number(value, column)
+            }
+        };
+        let moments = [0, 1, 2].map(|n| variable(plain.moments[n], MOMENTS + n));
+        let [i1, i2, i3] = moments;
+        let [d1, d2, d3] = plain.differences;
+        let exact = |value: f64, difference: Self| Self {
+            value,
+            ..difference
+        };
+        Principal {
+            moments,
+            differences: [exact(d1, i2 - i3), exact(d2, i3 - i1), exact(d3, i1 - i2)],
+            products: [0, 1, 2].map(|n| variable(0.0, PRODUCTS + n)),
+            axes: plain.axes.map(Self::constant),
+            q_bp: plain.q_bp.map(Self::constant),
         }
     }
 }

@@ -5,6 +5,7 @@ use super::drive::{Job, Settings};
 use super::frame::Precision;
 use super::{series, twin};
 use crate::error::Error;
+use crate::motion::loads::variables::Fixed;
 use crate::motion::loads::{Parts, Term};
 use crate::motion::problem::{End, Run, Task};
 
@@ -19,7 +20,7 @@ pub(super) fn settings(task: &Task<'_>, parts: Parts) -> Settings {
 }
 
 /// The job of a motion, if there is anything to do and nothing against it.
-pub(super) fn job<'a, X: Precision>(
+pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
     task: &Task<'a>,
     terms: &'a [Term],
     run: &'a mut Run<Error>,
@@ -28,8 +29,12 @@ pub(super) fn job<'a, X: Precision>(
         run.end = End::Complete;
         return None;
     }
-    match Course::new(task, terms) {
-        Ok(course) => Some(Job { course, run }),
+    match Course::new(task, terms, Fixed) {
+        Ok(course) => Some(Job {
+            course,
+            run,
+            tell: None,
+        }),
         Err(error) => {
             run.end = End::Failed(error);
             None
@@ -38,7 +43,7 @@ pub(super) fn job<'a, X: Precision>(
 }
 
 /// The jobs of `runs`, the first of which is of the task `first`.
-pub(super) fn rows<'a, X: Precision>(
+pub(super) fn rows<'a, X: Precision<Variables = Fixed>>(
     first: usize,
     runs: &'a mut [Option<Run<Error>>],
     begin: &impl Fn(usize) -> (Task<'a>, &'a [Term]),

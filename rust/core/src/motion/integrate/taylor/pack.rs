@@ -104,3 +104,12 @@ pub(super) fn cross_term<L: Number, const R: usize>(
         a[0].mul_add(b[1], (-a[1]).mul_add(b[0], sum[2])),
     ]
 }
+
+/// `a + b`.
+#[inline(always)]
+pub(super) fn plus<L: Number, const R: usize>(
+    a: [Pack<L, R>; 3],
+    b: [Pack<L, R>; 3],
+) -> [Pack<L, R>; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}

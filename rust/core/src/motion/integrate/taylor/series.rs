@@ -61,6 +61,10 @@ pub(super) trait Series<T, const B: usize> {
     /// Says which component of ω is constant in all motions, if it is the first or the third: its products of orders above
     /// zero, which are zero, may be left out.
     fn hold(&mut self, _still: Option<usize>) {}
+    /// Keeps each step so short that derivatives too are as good as the series of the motion.
+    fn limit(&mut self, _steps: &mut [f64]) {}
+    /// Forgets how large derivatives have been, when they come to another unit.
+    fn rescale(&mut self) {}
     /// The coefficient of order `k`; the directions are there once the sums of that order are.
     fn get(&self, k: usize) -> Coefficient<T, B>;
     /// The sums of products of order `k`.

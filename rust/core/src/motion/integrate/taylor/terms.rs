@@ -3,10 +3,11 @@
 use nalgebra::Vector3;
 
 use super::field::Field;
-use super::pack::{Pack, cross_term};
+use super::frame::Precision;
+use super::pack::Pack;
 use super::series::Series;
 use super::twin::COUNT;
-use crate::motion::loads::{Forcing, OnOrbit};
+use crate::motion::loads::Forcing;
 use crate::numerics::number::{Number, Real};
 
 /// A term of a load as a series: its coefficient of order k from those of the motion up to k, asked for in order.
@@ -14,8 +15,6 @@ pub(super) trait Analytic<T, const B: usize> {
     /// The coefficient of order `k` of the angular acceleration, components in principal axes.
     fn coefficient(&mut self, k: usize, series: &impl Series<T, B>, field: &Field<T, B>) -> [T; 3];
 }
-
-type Vectors<T> = [[T; 3]; COUNT];
 
 /// `E |ω| ω`: with `u = ω·ω` and `s = √u`, from s s = u
 ///
@@ -25,7 +24,7 @@ type Vectors<T> = [[T; 3]; COUNT];
 ///
 /// Rounding in s grows as `1/s(t)` does, so a step does not go as far as ω would take to zero at its present rate. Where ω
 /// passes through zero all the same the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below
-/// [`STILL`] of the fastest ω the term counts as zero, in steps over which what it does stays below rounding.
+/// [`STILL`](Precision::STILL) of the fastest ω the term counts as zero, in steps over which what it does stays below rounding.
 #[derive(Clone, Debug)]
 pub(super) struct Quadratic<T> {
     squares: [T; COUNT],
@@ -35,11 +34,7 @@ pub(super) struct Quadratic<T> {
     half_over_speed: T,
 }
 
-/// The part of the fastest ω below which quadratic damping is left out: with it the error of ω, relative to the fastest, is
-/// its cube.
-pub(super) const STILL: f64 = 2e-6;
-
-impl<L: Number, const R: usize> Quadratic<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize> Quadratic<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         let zero = Pack::new(0.0);
@@ -71,7 +66,9 @@ impl<L: Number, const R: usize> Quadratic<Pack<L, R>> {
     }
 }
 
-impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quadratic<Pack<L, R>> {
+impl<L: Number<Real: Precision>, const R: usize, const B: usize> Analytic<Pack<L, R>, B>
+    for Quadratic<Pack<L, R>>
+{
     #[inline(always)]
     fn coefficient(
         &mut self,
@@ -91,7 +88,7 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quad
         if k == 0 {
             for row in 0..R {
                 let speed = square.real(row).root();
-                let moves = speed.rounded() > STILL * self.fastest.get(row);
+                let moves = speed.rounded() > L::Real::STILL * self.fastest.get(row);
                 self.speeds[0].set(row, 0.0);
                 self.half_over_speed.set(row, 0.0);
                 if moves {
@@ -120,159 +117,6 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Quad
             }
         }
         sum
-    }
-}
-
-/// The gravity gradient on a Kepler orbit: position r and velocity v as seen from the body obey
-///
-/// ```text
-/// ṙ = r×ω + v,   v̇ = v×ω − μ r/r³
-/// ```
-///
-/// and with κ of the body, `I⁻¹ (3μ/r⁵) r×I r = −(3μ/r⁵) κ (r₂r₃, r₃r₁, r₁r₂)`. Powers `p = u^a` of u = r·r follow from
-/// `u ṗ = a u̇ p`:
-///
-/// ```text
-/// p_k = Σ_{0<j≤k} (a j − k + j) u_j p_{k−j}/(k u₀)
-/// ```
-#[derive(Clone, Debug)]
-pub(super) struct Gradient<T> {
-    position: Vectors<T>,
-    velocity: Vectors<T>,
-    squares: [T; COUNT],
-    /// r⁻³ and r⁻⁵, and (r₂r₃, r₃r₁, r₁r₂).
-    cubes: [T; COUNT],
-    fifths: [T; COUNT],
-    products: Vectors<T>,
-    pull: T,
-    strength: T,
-}
-
-impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
-    #[inline(always)]
-    pub(super) fn new() -> Self {
-        let zero = Pack::new(0.0);
-        Self {
-            position: [[zero; 3]; COUNT],
-            velocity: [[zero; 3]; COUNT],
-            squares: [zero; COUNT],
-            cubes: [zero; COUNT],
-            fifths: [zero; COUNT],
-            products: [[zero; 3]; COUNT],
-            pull: zero,
-            strength: zero,
-        }
-    }
-
-    /// The orbit's state of one row at the start of a step: components in principal axes.
-    pub(super) fn set(
-        &mut self,
-        row: usize,
-        orbit: &OnOrbit<L::Real>,
-        position: &Vector3<L::Real>,
-        velocity: &Vector3<L::Real>,
-    ) {
-        for i in 0..3 {
-            self.position[0][i].put(row, position[i]);
-            self.velocity[0][i].put(row, velocity[i]);
-        }
-        self.pull.put(row, orbit.pull);
-        self.strength.put(row, orbit.strength);
-    }
-
-    /// Goes on to the end of a step of length `h`, where the orbit has come by its own series; lengths again over the
-    /// distance there.
-    #[inline(always)]
-    pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
-        let mut position = [Pack::new(0.0); 3];
-        let mut velocity = [Pack::new(0.0); 3];
-        for k in (0..=order).rev() {
-            for i in 0..3 {
-                position[i] = position[i].mul_add(h, self.position[k][i]);
-                velocity[i] = velocity[i].mul_add(h, self.velocity[k][i]);
-            }
-        }
-        for row in 0..R {
-            let r = Vector3::from_fn(|i, _| position[i].real(row));
-            let v = Vector3::from_fn(|i, _| velocity[i].real(row));
-            let distance = r.dot(&r).root();
-            let cube = distance * distance * distance;
-            let orbit = OnOrbit {
-                position: r,
-                velocity: v,
-                pull: self.pull.real(row) / cube,
-                strength: self.strength.real(row) / cube,
-            };
-            self.set(row, &orbit, &(r / distance), &(v / distance));
-        }
-    }
-
-    /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
-    pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
-        let (once, twice) = (L::Real::from(ratio), L::Real::from(ratio * ratio));
-        for v in &mut self.velocity[0] {
-            v.put(row, v.real(row) * once);
-        }
-        self.pull.put(row, self.pull.real(row) * twice);
-        (self.strength).put(row, self.strength.real(row) * twice);
-    }
-
-    /// The next coefficient of the power `a` of the squares, of which the first is one.
-    #[inline(always)]
-    fn power(&self, a: f64, powers: &[Pack<L, R>; COUNT], k: usize) -> Pack<L, R> {
-        if k == 0 {
-            return Pack::new(1.0);
-        }
-        let mut sum = Pack::new(0.0);
-        for j in 1..=k {
-            let factor = Pack::new(a * j as f64 - (k - j) as f64);
-            sum = (self.squares[j] * factor).mul_add(powers[k - j], sum);
-        }
-        sum * Pack::over(k)
-    }
-}
-
-impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Gradient<Pack<L, R>> {
-    #[inline(always)]
-    fn coefficient(
-        &mut self,
-        k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        field: &Field<Pack<L, R>, B>,
-    ) -> [Pack<L, R>; 3] {
-        let zero = Pack::new(0.0);
-        let (mut square, mut products) = (zero, [zero; 3]);
-        for j in 0..=k {
-            let (a, b) = (self.position[j], self.position[k - j]);
-            for i in 0..3 {
-                square = a[i].mul_add(b[i], square);
-                let (next, last) = ((i + 1) % 3, (i + 2) % 3);
-                products[i] = a[next].mul_add(b[last], products[i]);
-            }
-        }
-        // u₀ is one but for rounding: lengths are over the distance at the start of the step.
-        self.squares[k] = square;
-        self.products[k] = products;
-        self.cubes[k] = self.power(-1.5, &self.cubes, k);
-        self.fifths[k] = self.power(-2.5, &self.fifths, k);
-        let (mut turned, mut moved, mut pulled) = ([zero; 3], [zero; 3], [zero; 3]);
-        let mut torque = [zero; 3];
-        for j in 0..=k {
-            let w = series.get(k - j).w;
-            turned = cross_term(&self.position[j], &w, turned);
-            moved = cross_term(&self.velocity[j], &w, moved);
-            for i in 0..3 {
-                pulled[i] = self.cubes[k - j].mul_add(self.position[j][i], pulled[i]);
-                torque[i] = self.fifths[k - j].mul_add(self.products[j][i], torque[i]);
-            }
-        }
-        let reciprocal = Pack::over(k + 1);
-        for i in 0..3 {
-            self.position[k + 1][i] = (turned[i] + self.velocity[k][i]) * reciprocal;
-            self.velocity[k + 1][i] = (-self.pull).mul_add(pulled[i], moved[i]) * reciprocal;
-            torque[i] = -(field.kappa[i] * self.strength * torque[i]);
-        }
-        torque
     }
 }
 

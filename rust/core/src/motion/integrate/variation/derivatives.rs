@@ -2,13 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::{Matrix6, Matrix6x3, Vector6};
+use nalgebra::{Matrix6, Matrix6x3, Quaternion, Vector6};
 
-use super::numbers::{Block, Columns, WIDTH};
-use super::parameters::{ATTITUDE, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, count};
-use super::walk::Walk;
 use crate::error::{Error, MotionFault};
+use crate::motion::integrate::taylor::run_varied;
 use crate::motion::loads::Term;
+use crate::motion::loads::variables::{
+    ATTITUDE, Block, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, Varied, WIDTH, count,
+};
 use crate::motion::problem::Task;
 
 /// Derivatives of (δ, ω) at a time: δ is a small rotation of the body from its attitude, `R → R exp(δ×)`, components in the body
@@ -60,12 +61,12 @@ pub fn variations(
             first: index * WIDTH,
         };
         let mut watch = |part| watch((index as f64 + part) / blocks as f64);
-        let mut give = |k: usize, columns: &Columns| {
-            for (column, slopes) in (block.first..LOAD + numbers).zip(columns) {
-                found[k].set(column, slopes);
+        let mut tell = |k: usize, state: &[Varied; 7]| {
+            for (column, slopes) in (block.first..LOAD + numbers).zip(columns(state)) {
+                found[k].set(column, &slopes);
             }
         };
-        Walk::new(task, terms, block).run(&mut give, &mut watch)?;
+        run_varied(task, terms, block, &mut tell, &mut watch)?;
     }
     let has_neighbours = !task.euler.moments().contains(&0.0);
     for (variation, &time) in found.iter_mut().zip(task.times) {
@@ -105,4 +106,16 @@ impl Variation {
             _ => self.load[column - LOAD] = *slopes,
         }
     }
+}
+
+/// The derivatives of (δ, ω) by the variables of a block: `δ = 2 vec(q⁻¹∘dq)`.
+fn columns(state: &[Varied; 7]) -> [Vector6<f64>; WIDTH] {
+    let [.., x, y, z, w] = state;
+    let at = Quaternion::new(w.value, x.value, y.value, z.value);
+    let twice = 2.0 / at.norm_squared();
+    std::array::from_fn(|n| {
+        let [p, q, r, x, y, z, w] = state.map(|number| number.slopes[n]);
+        let tilt = (at.conjugate() * Quaternion::new(w, x, y, z)).imag() * twice;
+        Vector6::new(tilt.x, tilt.y, tilt.z, p, q, r)
+    })
 }

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::segments::Course;
 use crate::motion::integrate::taylor::field::Field;
 use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::loads::variables::{Block, MASS, Variables, count};
 use crate::motion::loads::{Forcing, Parts, Term, When};
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
@@ -30,7 +31,7 @@ impl<X: Precision> Course<'_, X> {
         });
         let end = self.breaks[self.segment];
         let timed = (linear.timed.iter())
-            .map(|timed| timed.square_of_rate(&self.task.subject, end, over_moment));
+            .map(|(_, timed)| timed.square_of_rate(&self.task.subject, end, over_moment));
         let square = (squares.into_iter().chain(on_space).chain(timed)).fold(0.0, f64::max);
         let rate = Vector3::from(*omega)
             .amax()
@@ -48,9 +49,11 @@ impl<X: Precision> Course<'_, X> {
         let on_omega = inverse * linear.on_omega * rate;
         let quadratic = -(inverse * linear.quadratic);
         let on_attitude = inverse * linear.on_attitude * rate * rate;
-        let mass = X::from(self.task.subject.mass);
+        let mass = (self.variables).number(self.task.subject.mass, MASS);
         let mut field = Field {
             kappa: self.kappa.into(),
+            inverse_moments: self.inverse_moments.into(),
+            products: self.products.into(),
             constant: (inverse * linear.constant * rate * rate).into(),
             on_omega: rows(&on_omega),
             on_attitude: [0, 1, 2].map(|n| [0, 1, 2, 3].map(|i| on_attitude[(n, i)])),
@@ -96,9 +99,9 @@ impl<X: Precision> Course<'_, X> {
             middle: self.middle(),
             unit: self.unit,
         };
-        let (mut forcing, axes) = (Forcing::default(), self.principal_axes());
-        for timed in &self.linear.timed {
-            timed.force(&mut forcing, &axes, &when);
+        let mut forcing = Forcing::default();
+        for (first, timed) in &self.linear.timed {
+            timed.force(&mut forcing, &self.principal_axes(*first), &when);
         }
         for torque in &mut forcing.in_body {
             torque.component_mul_assign(&self.inverse_moments);
@@ -115,7 +118,32 @@ impl<X: Precision> Course<'_, X> {
 /// may all be vertical, it does not depend on the numbers in them.
 pub(in crate::motion::integrate::taylor) fn parts(terms: &[Term], pivoted: bool) -> Parts {
     let parts = terms.iter().map(|term| term.character(pivoted).parts);
-    parts.fold(Parts::default(), Parts::and)
+    let parts = parts.fold(Parts::default(), Parts::and);
+    Parts {
+        directions: parts.directions.max(parts.directions_of_path),
+        ..parts
+    }
+}
+
+/// As [`parts`], where the variables of a block are varied: a number that is zero may be one of them. The path of the body is
+/// left out.
+pub(in crate::motion::integrate::taylor) fn parts_of(
+    terms: &[Term],
+    pivoted: bool,
+    block: Block,
+) -> Parts {
+    let parts = terms.iter().zip(block.columns(terms)).map(|(term, first)| {
+        let parts = term.character(pivoted).parts;
+        if block.varies(first..first + count(term)) {
+            parts.with_all_numbers()
+        } else {
+            parts
+        }
+    });
+    Parts {
+        is_pushed: false,
+        ..parts.fold(Parts::default(), Parts::and)
+    }
 }
 
 fn rows<X: Real>(matrix: &Matrix3<X>) -> [[X; 3]; 3] {

@@ -12,5 +12,5 @@ mod segments;
 mod state;
 mod times;
 
-pub(super) use equations::parts;
+pub(super) use equations::{parts, parts_of};
 pub(super) use segments::Course;

@@ -1,13 +1,15 @@
 //! A motion from break to break of its load, and what acts in each segment.
 
-use nalgebra::{Matrix3, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix3x4, Vector3, Vector4};
 
 use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
 use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::loads::variables::Variables;
 use crate::motion::loads::{Axes, Linear, Term};
 use crate::motion::problem::Task;
 use crate::numerics::number::Real;
+use crate::numerics::quaternion::product;
 
 /// The scalar part w of a feedback's error, which is linear in the attitude (x, y, z, w), and the sign of it that the torques
 /// are made for.
@@ -15,6 +17,8 @@ use crate::numerics::number::Real;
 struct Switch<X> {
     scalar: Vector4<X>,
     side: f64,
+    /// What the torque is of the attitude.
+    torque: Matrix3x4<X>,
 }
 
 impl<X: Real> Switch<X> {
@@ -35,13 +39,17 @@ impl<X: Real> Switch<X> {
 
 /// A motion on its way.
 #[derive(Clone, Debug)]
-pub(in crate::motion::integrate::taylor) struct Course<'a, X> {
+pub(in crate::motion::integrate::taylor) struct Course<'a, X: Precision> {
     pub(super) task: Task<'a>,
     pub(super) terms: &'a [Term],
+    /// Which numbers are varied, and the first column of each term.
+    pub(super) variables: X::Variables,
+    firsts: Vec<usize>,
     pub(super) axes: Matrix3<X>,
     pub(super) q_bp: [X; 4],
     pub(super) kappa: Vector3<X>,
     pub(super) inverse_moments: Vector3<X>,
+    pub(super) products: Vector3<X>,
     /// The ends of the segments, and which is under way.
     pub(super) breaks: Vec<f64>,
     pub(super) segment: usize,
@@ -60,8 +68,9 @@ impl<'a, X: Precision> Course<'a, X> {
     pub(in crate::motion::integrate::taylor) fn new(
         task: &Task<'a>,
         terms: &'a [Term],
+        variables: X::Variables,
     ) -> Result<Self, Error> {
-        let principal = X::principal(task);
+        let principal = X::principal(task, variables);
         let ([i1, i2, i3], [d1, d2, d3]) = (principal.moments, principal.differences);
         let one = X::one();
         let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
@@ -76,10 +85,13 @@ impl<'a, X: Precision> Course<'a, X> {
         let mut course = Self {
             task: *task,
             terms,
+            variables,
+            firsts: variables.columns(terms),
             axes: principal.axes,
             q_bp: principal.q_bp,
             kappa: Vector3::new(over(d1, i1), over(d2, i2), over(d3, i3)),
             inverse_moments: Vector3::new(over(one, i1), over(one, i2), over(one, i3)),
+            products: principal.products.into(),
             breaks,
             segment: 0,
             linear: Linear::default(),
@@ -89,7 +101,7 @@ impl<'a, X: Precision> Course<'a, X> {
         let state = course.start();
         let mut from = start;
         for &to in &course.breaks {
-            for term in course.acting(from, to) {
+            for (_, term) in course.acting(from, to) {
                 term.check(&task.subject, from, to)?;
             }
             from = to;
@@ -111,13 +123,20 @@ impl<'a, X: Precision> Course<'a, X> {
     fn linearize(&mut self, state: &[X; 7]) -> Result<(), Error> {
         let mut linear = Linear::default();
         let mut switches: Vec<Switch<X>> = Vec::new();
-        let axes = self.principal_axes();
-        for term in self.acting(self.segment_start(), self.breaks[self.segment]) {
-            let mut side = 1.0;
+        for (first, term) in self.acting(self.segment_start(), self.breaks[self.segment]) {
+            let (axes, mut side) = (self.principal_axes(first), 1.0);
             if let Some(scalar) = term.switching(&axes) {
-                let mut switch = Switch { scalar, side };
+                let torque = Matrix3x4::zeros();
+                let mut switch = Switch {
+                    scalar,
+                    side,
+                    torque,
+                };
                 switch.side = switch.sign(state);
                 side = switch.side;
+                let mut own = Linear::default();
+                term.add_to(&mut own, &axes, side);
+                switch.torque = own.on_attitude;
                 switches.push(switch);
             }
             term.add_to(&mut linear, &axes, side);
@@ -128,11 +147,14 @@ impl<'a, X: Precision> Course<'a, X> {
         Ok(())
     }
 
-    pub(super) fn principal_axes(&self) -> Axes<'_, X> {
+    /// Those of the term whose first number is a variable of the column `first`.
+    pub(super) fn principal_axes(&self, first: usize) -> Axes<'_, X> {
         Axes {
             subject: &self.task.subject,
             columns: &self.axes,
             q_bp: &self.q_bp,
+            variables: self.variables,
+            first,
         }
     }
 
@@ -162,7 +184,7 @@ impl<'a, X: Precision> Course<'a, X> {
                 parts.push((matrix.row(n).norm() * size, matrix.norm() * size));
             }
             let axis = self.axes.column(n).map(X::rounded);
-            for timed in &linear.timed {
+            for (_, timed) in &linear.timed {
                 parts.extend(timed.torques_along(&axis, self.middle()));
             }
             if let Some(&(torque, _)) = parts.iter().find(|(part, all)| *part > ROUNDING * all) {
@@ -174,12 +196,13 @@ impl<'a, X: Precision> Course<'a, X> {
         Ok(())
     }
 
-    /// The terms that act between two breaks.
-    fn acting(&self, from: f64, to: f64) -> impl Iterator<Item = &'a Term> + use<'a, X> {
+    /// The terms that act between two breaks, each with the column of its first number.
+    fn acting(&self, from: f64, to: f64) -> impl Iterator<Item = (usize, &'a Term)> {
         let middle = from + 0.5 * (to - from);
-        self.terms
-            .iter()
-            .filter_map(move |term| term.active(middle))
+        (self.terms.iter().enumerate()).filter_map(move |(k, term)| {
+            let first = self.firsts.get(k).copied().unwrap_or(0);
+            Some((first, term.active(middle)?))
+        })
     }
 
     fn segment_start(&self) -> f64 {
@@ -217,15 +240,30 @@ impl<'a, X: Precision> Course<'a, X> {
         self.switches[index].side
     }
 
-    /// Takes the torques of the feedbacks for the signs in `state`.
+    /// Takes the torques of the feedbacks for the signs in `state`. Neighbours that come to a change of sign later have been longer
+    /// under the law before it: ω, of which they are the derivatives, becomes what it is for the law after it.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub(in crate::motion::integrate::taylor) fn flip(
         &mut self,
-        state: &[X; 7],
+        state: &mut [X; 7],
     ) -> Result<(), Error> {
-        self.linearize(state)
+        let [w1, w2, w3, x, y, z, w] = *state;
+        let attitude = Vector4::new(x, y, z, w);
+        let zero = X::zero();
+        let turn = Vector4::from(product([x, y, z, w], [w1, w2, w3, zero]));
+        let over_moment = self.inverse_moments / X::from(self.unit * self.unit);
+        let before = *state;
+        for switch in (self.switches.iter()).filter(|it| it.sign(&before) != it.side) {
+            let rate = 0.5 * switch.scalar.dot(&turn).rounded();
+            // The torque changes its sign.
+            let more = switch.torque * attitude * X::from(2.0);
+            for (omega, more) in state.iter_mut().zip(&more.component_mul(&over_moment)) {
+                *omega += more.until_later(switch.scalar.dot(&attitude), rate);
+            }
+        }
+        self.linearize(&before)
     }
 
     /// 1 or −1 for backward in time.

@@ -4,6 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::segments::Course;
 use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::loads::variables::{ATTITUDE, RATES, Variables};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::{conjugate, normalized, product};
 
@@ -17,8 +18,10 @@ impl<X: Precision> Course<'_, X> {
         let Phase {
             attitude, omega, ..
         } = self.task.initial;
-        let [x, y, z, w] = product(X::quaternion(&attitude), self.q_bp);
-        let omega = self.axes.tr_mul(&omega.map(X::from)) / X::from(self.unit);
+        let attitude = (self.variables).turned(X::quaternion(&attitude), ATTITUDE);
+        let [x, y, z, w] = product(attitude, self.q_bp);
+        let omega = self.variables.vector(&omega, RATES);
+        let omega = self.axes.tr_mul(&omega) / X::from(self.unit);
         [omega.x, omega.y, omega.z, x, y, z, w]
     }
 

@@ -16,10 +16,15 @@ use crate::numerics::number::{Number, Real};
 /// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
 pub(super) const OUTGROWN: f64 = 65_536.0;
 
+/// Gets the samples of a motion in the numbers of its run.
+pub(in crate::motion::integrate::taylor) type Tell<'a, X> = &'a mut dyn FnMut(usize, &[X; 7]);
+
 /// A motion to be run, and its run, which is at its start.
 pub(in crate::motion::integrate::taylor) struct Job<'a, X: Precision> {
     pub(in crate::motion::integrate::taylor) course: Course<'a, X>,
     pub(in crate::motion::integrate::taylor) run: &'a mut Run<Error>,
+    /// Gets each sample by its number: ω and (x, y, z, w) in body axes and real units, as the run has them.
+    pub(in crate::motion::integrate::taylor) tell: Option<Tell<'a, X>>,
 }
 
 /// What a motion comes to next.

@@ -19,6 +19,16 @@ pub(in super::super) struct Settings {
 }
 
 impl Settings {
+    /// For motions with derivatives, whose series say themselves how long a step may be.
+    pub(in super::super) fn of_derivatives(order: usize, parts: Parts) -> Self {
+        Self {
+            order,
+            last_term: 0.0,
+            floor: 0.0,
+            parts,
+        }
+    }
+
     /// For the equations that `parts` says, with the order at which the work is least: it grows with the square of the order, the step with
     /// `tolerance^(1/order)`. No order is above `highest`.
     pub(in super::super) fn new(

@@ -83,7 +83,7 @@ pub(in crate::motion::integrate::taylor) type See<'a> =
     &'a mut dyn FnMut(Step, bool) -> ControlFlow<()>;
 
 /// What a step begins with.
-pub(super) struct Before<'a, L: Number, const R: usize> {
+pub(super) struct Before<'a, L: Number<Real: Precision>, const R: usize> {
     course: Course<'a, L::Real>,
     now: (f64, f64),
     state: Compensated<Pack<L, R>>,

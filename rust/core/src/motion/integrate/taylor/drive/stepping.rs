@@ -5,7 +5,7 @@ use super::settings::Settings;
 use super::stops::Meeting;
 use crate::motion::integrate::taylor::directions::seen;
 use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::integrate::taylor::pack::Pack;
+use crate::motion::integrate::taylor::pack::{Pack, plus};
 use crate::motion::integrate::taylor::series::{Coefficient, Series};
 use crate::motion::integrate::taylor::step::{increment, longest};
 use crate::motion::problem::limits::HELD;
@@ -27,6 +27,7 @@ where
         let mut h = longest(&self.series, order, last_term, &self.fastest);
         self.extras
             .limit(&self.series, &self.field, &self.fastest, &mut h);
+        self.series.limit(&mut h);
         let mut eventful = self.settings.parts.may_flip();
         for row in 0..R {
             let (now, gap) = (self.now[row].0, self.gap(row));
@@ -131,7 +132,29 @@ where
         let acceleration = self
             .extras
             .plus_coefficients(k, series, field, acceleration);
+        let acceleration = if L::VARIES && self.field.is_tilted() {
+            self.tilted(k, &spins, acceleration)
+        } else {
+            acceleration
+        };
         self.series.extend(k, &sums, &acceleration);
+    }
+
+    /// The coefficient of order `k` of the angular acceleration, with what the elements off the diagonal of the tensor make of it.
+    #[inline(never)]
+    fn tilted(
+        &self,
+        k: usize,
+        spins: &[Pack<L, R>; 3],
+        acceleration: [Pack<L, R>; 3],
+    ) -> [Pack<L, R>; 3] {
+        let field = &self.field;
+        let mut squares = [Pack::new(0.0); 3];
+        for j in 0..=k {
+            let (a, b) = (self.series.get(j).w, self.series.get(k - j).w);
+            squares = [0, 1, 2].map(|i| a[i].mul_add(b[i], squares[i]));
+        }
+        field.tilted(&plus(acceleration, field.tilt(spins, &squares)))
     }
 
     /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.

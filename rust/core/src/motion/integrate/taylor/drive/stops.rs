@@ -73,6 +73,9 @@ where
             return;
         }
         run.samples[lead.next] = phase;
+        if let Some(tell) = &mut lead.job.tell {
+            tell(lead.next, &lead.job.course.in_body(state));
+        }
         lead.next += 1;
         if lead.next == run.samples.len() {
             run.effort = effort(lead.steps + 1);
@@ -89,7 +92,7 @@ where
     /// another unit.
     #[inline(never)]
     pub(super) fn settle(&mut self, row: usize, landing: Landing) {
-        let state = self.state.now(row);
+        let mut state = self.state.now(row);
         let Some(lead) = &mut self.leads[row] else {
             return;
         };
@@ -101,8 +104,13 @@ where
                 self.extras.restart(row);
                 course.pass_break(&state)
             }
-            Landing::Flip => course.flip(&state),
+            Landing::Flip => course.flip(&mut state),
         };
+        if L::VARIES && landing == Landing::Flip {
+            for i in 0..3 {
+                self.state.value[i].put(row, state[i]);
+            }
+        }
         if let Err(error) = changed {
             self.end(row, End::Failed(error));
         } else if landing != Landing::None

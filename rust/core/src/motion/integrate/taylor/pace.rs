@@ -1,6 +1,7 @@
-//! The length of a step: as long as the series of the state and of each of its derivatives allow.
+//! The length of a step with derivatives: as long as the series of the state and of each of its derivatives allow.
 
-use super::numbers::{ORDER, Row, WIDTH};
+use super::derived::{ORDER, Row};
+use crate::motion::loads::variables::WIDTH;
 
 /// The last terms of a series, relative to the largest that the series has been.
 const LAST_TERM: f64 = 1e-17;
@@ -18,7 +19,7 @@ impl Pace {
     /// where they are not. Rounded to a few bits, so that it is the same on every machine.
     ///
     /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
-    pub(super) fn longest(&mut self, rows: &[&[Row]]) -> f64 {
+    pub(super) fn longest(&mut self, rows: &[Row]) -> f64 {
         for k in 0..FIRST {
             for (most, size) in self.sizes.iter_mut().zip(sizes(rows, k)) {
                 *most = most.max(size);
@@ -40,12 +41,12 @@ impl Pace {
 }
 
 /// The sums of magnitudes of the coefficients of order `k`: of the values, and of each derivative.
-fn sizes(rows: &[&[Row]], k: usize) -> [f64; WIDTH + 1] {
+fn sizes(rows: &[Row], k: usize) -> [f64; WIDTH + 1] {
     let mut sizes = [0.0; WIDTH + 1];
-    for row in rows.iter().copied().flatten() {
+    for number in rows.iter().map(|row| row.get(k)) {
         let (values, slopes) = sizes.split_at_mut(1);
-        values[0] += row[k].value.abs();
-        for (size, slope) in slopes.iter_mut().zip(&row[k].slopes) {
+        values[0] += number.value.abs();
+        for (size, slope) in slopes.iter_mut().zip(&number.slopes) {
             *size += slope.abs();
         }
     }

@@ -1,0 +1,245 @@
+//! The recurrence of the gravity gradient.
+
+use nalgebra::Vector3;
+
+use super::field::Field;
+use super::pack::{Pack, cross_term, plus};
+use super::series::Series;
+use super::terms::Analytic;
+use super::twin::COUNT;
+use crate::motion::loads::OnOrbit;
+use crate::numerics::dispatch::{Kernel, dispatch};
+use crate::numerics::lane::Lane;
+use crate::numerics::number::{Number, Real};
+
+type Vectors<T> = [[T; 3]; COUNT];
+
+/// The gravity gradient on a Kepler orbit: position r and velocity v as seen from the body obey
+///
+/// ```text
+/// ṙ = r×ω + v,   v̇ = v×ω − μ r/r³
+/// ```
+///
+/// and with κ of the body, `I⁻¹ (3μ/r⁵) r×I r = −(3μ/r⁵) κ (r₂r₃, r₃r₁, r₁r₂)`. Powers `p = u^a` of u = r·r follow from
+/// `u ṗ = a u̇ p`:
+///
+/// ```text
+/// p_k = Σ_{0<j≤k} (a j − k + j) u_j p_{k−j}/(k u₀)
+/// ```
+#[derive(Clone, Debug)]
+pub(super) struct Gradient<T> {
+    position: Vectors<T>,
+    velocity: Vectors<T>,
+    squares: [T; COUNT],
+    /// r⁻³ and r⁻⁵, and (r₂r₃, r₃r₁, r₁r₂).
+    cubes: [T; COUNT],
+    fifths: [T; COUNT],
+    products: Vectors<T>,
+    /// What the elements off the diagonal of the tensor make of them.
+    tilts: Vectors<T>,
+    pull: T,
+    strength: T,
+}
+
+impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let zero = Pack::new(0.0);
+        Self {
+            position: [[zero; 3]; COUNT],
+            velocity: [[zero; 3]; COUNT],
+            squares: [zero; COUNT],
+            cubes: [zero; COUNT],
+            fifths: [zero; COUNT],
+            products: [[zero; 3]; COUNT],
+            tilts: [[zero; 3]; COUNT],
+            pull: zero,
+            strength: zero,
+        }
+    }
+
+    /// The orbit's state of one row at the start of a step: components in principal axes.
+    pub(super) fn set(
+        &mut self,
+        row: usize,
+        orbit: &OnOrbit<L::Real>,
+        position: &Vector3<L::Real>,
+        velocity: &Vector3<L::Real>,
+    ) {
+        for i in 0..3 {
+            self.position[0][i].put(row, position[i]);
+            self.velocity[0][i].put(row, velocity[i]);
+        }
+        self.pull.put(row, orbit.pull);
+        self.strength.put(row, orbit.strength);
+    }
+
+    /// Goes on to the end of a step of length `h`, where the orbit has come by its own series; lengths again over the
+    /// distance there.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
+        let mut position = [Pack::new(0.0); 3];
+        let mut velocity = [Pack::new(0.0); 3];
+        for k in (0..=order).rev() {
+            for i in 0..3 {
+                position[i] = position[i].mul_add(h, self.position[k][i]);
+                velocity[i] = velocity[i].mul_add(h, self.velocity[k][i]);
+            }
+        }
+        for row in 0..R {
+            let r = Vector3::from_fn(|i, _| position[i].real(row));
+            let v = Vector3::from_fn(|i, _| velocity[i].real(row));
+            let distance = r.dot(&r).root();
+            let cube = distance * distance * distance;
+            let orbit = OnOrbit {
+                position: r,
+                velocity: v,
+                pull: self.pull.real(row) / cube,
+                strength: self.strength.real(row) / cube,
+            };
+            self.set(row, &orbit, &(r / distance), &(v / distance));
+        }
+    }
+
+    /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
+    pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
+        let (once, twice) = (L::Real::from(ratio), L::Real::from(ratio * ratio));
+        for v in &mut self.velocity[0] {
+            v.put(row, v.real(row) * once);
+        }
+        self.pull.put(row, self.pull.real(row) * twice);
+        (self.strength).put(row, self.strength.real(row) * twice);
+    }
+
+    /// What the elements off the diagonal of the tensor add to the coefficient of order `k`.
+    #[inline(never)]
+    fn tilt<const B: usize>(&mut self, k: usize, field: &Field<Pack<L, R>, B>) -> [Pack<L, R>; 3] {
+        let mut squares = [Pack::new(0.0); 3];
+        for (a, b) in self.position[..=k]
+            .iter()
+            .zip(self.position[..=k].iter().rev())
+        {
+            squares = [0, 1, 2].map(|i| a[i].mul_add(b[i], squares[i]));
+        }
+        self.tilts[k] = field.tilt(&self.products[k], &squares);
+        let mut sum = [Pack::new(0.0); 3];
+        for (fifth, tilt) in self.fifths[..=k].iter().rev().zip(&self.tilts) {
+            sum = [0, 1, 2].map(|i| fifth.mul_add(tilt[i], sum[i]));
+        }
+        sum.map(|x| -(self.strength * x))
+    }
+
+    /// The next coefficient of the power `a` of the squares, of which the first is one.
+    #[inline(always)]
+    fn power(&self, a: f64, powers: &[Pack<L, R>; COUNT], k: usize) -> Pack<L, R> {
+        if k == 0 {
+            return Pack::new(1.0);
+        }
+        let mut sum = Pack::new(0.0);
+        for j in 1..=k {
+            let factor = Pack::new(a * j as f64 - (k - j) as f64);
+            sum = (self.squares[j] * factor).mul_add(powers[k - j], sum);
+        }
+        sum * Pack::over(k)
+    }
+}
+
+impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Gradient<Pack<L, R>> {
+    #[inline(always)]
+    fn coefficient(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        field: &Field<Pack<L, R>, B>,
+    ) -> [Pack<L, R>; 3] {
+        let next = Next {
+            gradient: self,
+            k,
+            series,
+            field,
+        };
+        if L::VARIES {
+            dispatch(next) // whose caller is not compiled for the widest lanes
+        } else {
+            next.coefficient()
+        }
+    }
+}
+
+/// The next coefficient of a gradient.
+struct Next<'a, S, L, const R: usize, const B: usize> {
+    gradient: &'a mut Gradient<Pack<L, R>>,
+    k: usize,
+    series: &'a S,
+    field: &'a Field<Pack<L, R>, B>,
+}
+
+impl<S: Series<Pack<N, R>, B>, N: Number, const R: usize, const B: usize> Kernel
+    for Next<'_, S, N, R, B>
+{
+    type Output = [Pack<N, R>; 3];
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> [Pack<N, R>; 3] {
+        self.coefficient()
+    }
+}
+
+impl<S: Series<Pack<L, R>, B>, L: Number, const R: usize, const B: usize> Next<'_, S, L, R, B> {
+    #[inline(always)]
+    fn coefficient(self) -> [Pack<L, R>; 3] {
+        let Self {
+            gradient: it,
+            k,
+            series,
+            field,
+        } = self;
+        let zero = Pack::new(0.0);
+        let (mut square, mut products) = (zero, [zero; 3]);
+        for j in 0..=k {
+            let (a, b) = (&it.position[j], &it.position[k - j]);
+            for i in 0..3 {
+                square = a[i].mul_add(b[i], square);
+            }
+        }
+        for i in 0..3 {
+            let (next, last) = ((i + 1) % 3, (i + 2) % 3);
+            for j in 0..=k {
+                let (a, b) = (&it.position[j], &it.position[k - j]);
+                products[i] = a[next].mul_add(b[last], products[i]);
+            }
+        }
+        // u₀ is one but for rounding: lengths are over the distance at the start of the step.
+        it.squares[k] = square;
+        it.products[k] = products;
+        it.cubes[k] = it.power(-1.5, &it.cubes, k);
+        it.fifths[k] = it.power(-2.5, &it.fifths, k);
+        let (mut turned, mut moved, mut pulled) = ([zero; 3], [zero; 3], [zero; 3]);
+        let mut torque = [zero; 3];
+        // Loops of their own, since numbers with derivatives fill the registers.
+        for j in 0..=k {
+            turned = cross_term(&it.position[j], &series.get(k - j).w, turned);
+        }
+        for j in 0..=k {
+            moved = cross_term(&it.velocity[j], &series.get(k - j).w, moved);
+        }
+        for i in 0..3 {
+            for j in 0..=k {
+                pulled[i] = it.cubes[k - j].mul_add(it.position[j][i], pulled[i]);
+            }
+            for j in 0..=k {
+                torque[i] = it.fifths[k - j].mul_add(it.products[j][i], torque[i]);
+            }
+        }
+        let reciprocal = Pack::over(k + 1);
+        for i in 0..3 {
+            it.position[k + 1][i] = (turned[i] + it.velocity[k][i]) * reciprocal;
+            it.velocity[k + 1][i] = (-it.pull).mul_add(pulled[i], moved[i]) * reciprocal;
+            torque[i] = -(field.kappa[i] * it.strength * torque[i]);
+        }
+        if L::VARIES && field.is_tilted() {
+            torque = plus(torque, it.tilt(k, field));
+        }
+        torque
+    }
+}

@@ -1,0 +1,60 @@
+//! The motion of one task with its derivatives by the variables of a block.
+
+use std::iter::once;
+use std::ops::ControlFlow;
+
+use super::course::{Course, parts_of};
+use super::derived::{Derived, ORDER};
+use super::drive::{Job, Settings, drive};
+use crate::error::{Error, MotionFault};
+use crate::motion::loads::Term;
+use crate::motion::loads::variables::{Block, Varied};
+use crate::motion::problem::{End, Run, Task};
+
+/// Runs `task` under `terms` to its last time; `tell` gets ω and (x, y, z, w) in B at each time after the first, by the number of
+/// the time. Tolerances do not matter. `watch` gets the fraction done and may stop it.
+///
+/// # Errors
+/// When a term cannot act, the motion cannot go on, or [`Error::Stopped`].
+pub(in crate::motion::integrate) fn run_varied(
+    task: &Task<'_>,
+    terms: &[Term],
+    block: Block,
+    tell: &mut dyn FnMut(usize, &[Varied; 7]),
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<(), Error> {
+    let mut run = Run::at_start(task, End::Stopped);
+    if run.samples.len() == 1 {
+        return Ok(());
+    }
+    let mut next = 1;
+    let mut tell = |k: usize, state: &[Varied; 7]| {
+        next = k + 1;
+        tell(k, state);
+    };
+    let parts = parts_of(terms, task.subject.pivoted, block);
+    let settings = Settings::of_derivatives(ORDER, parts);
+    let job = Job {
+        course: Course::new(task, terms, block)?,
+        run: &mut run,
+        tell: Some(&mut tell),
+    };
+    let jobs = &mut once(job);
+    let _stopped = match parts.directions {
+        0 => drive::<Varied, Derived<0>, 0, 1>(settings, jobs, watch, None),
+        1 => drive::<Varied, Derived<1>, 1, 1>(settings, jobs, watch, None),
+        _ => drive::<Varied, Derived<3>, 3, 1>(settings, jobs, watch, None),
+    };
+    match run.end {
+        End::Complete => Ok(()),
+        // The motion goes on where its derivatives do not.
+        End::Failed(Error::Motion(MotionFault::NotFiniteMotion { .. }))
+            if run.phase.is_finite() =>
+        {
+            let time = task.times[next];
+            Err(MotionFault::NotFiniteDerivative { time }.into())
+        }
+        End::Failed(error) => Err(error),
+        _ => Err(Error::Stopped),
+    }
+}

@@ -1,0 +1,41 @@
+//! Stumpff's functions, of which the motion on any Kepler orbit is made: `G_k(s) = s^k c_k(β s²)`, `c_k(x) = Σ (−x)^j/(2j+k)!`.
+
+/// Below this β s² the closed forms cancel, and eleven terms of the series are exact.
+const SERIES: f64 = 2.5;
+
+/// `Σ_{0≤j<11} (−x)^j k!/(2j + k)!`, from which c_k follows for k = 2 and 3.
+fn series(x: f64, k: f64) -> f64 {
+    (0..11).rev().fold(0.0, |sum, j| {
+        let n = 2.0 * f64::from(j) + k;
+        (1.0 - x * sum) / (n * (n - 1.0))
+    })
+}
+
+/// `G_4` and `G_5`, by `c_{k+2}(x) = (1/k! − c_k(x))/x`.
+pub(super) fn further(beta: f64, s: f64) -> [f64; 2] {
+    let x = beta * s * s;
+    let [c4, c5] = if x.abs() < SERIES {
+        [series(x, 4.0) / 2.0, series(x, 5.0) / 6.0]
+    } else {
+        let [_, _, g2, g3] = functions(beta, s);
+        [(0.5 - g2 / (s * s)) / x, (1.0 / 6.0 - g3 / (s * s * s)) / x]
+    };
+    [c4 * s.powi(4), c5 * s.powi(5)]
+}
+
+/// `G_k(s) = s^k c_k(β s²)` for k = 0..3.
+pub(super) fn functions(beta: f64, s: f64) -> [f64; 4] {
+    let x = beta * s * s;
+    let (c2, c3) = if x.abs() < SERIES {
+        (series(x, 2.0), series(x, 3.0))
+    } else if x > 0.0 {
+        let root = x.sqrt();
+        let half = (0.5 * root).sin();
+        (2.0 * half * half / x, (root - root.sin()) / (x * root))
+    } else {
+        let root = (-x).sqrt();
+        let half = (0.5 * root).sinh();
+        (2.0 * half * half / -x, (root.sinh() - root) / (-x * root))
+    };
+    [1.0 - x * c2, s * (1.0 - x * c3), s * s * c2, s * s * s * c3]
+}

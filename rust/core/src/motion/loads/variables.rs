@@ -1,0 +1,140 @@
+//! The variables of a motion: the numbers of its start, its body and its load, of which some may be varied.
+//!
+//! A law states its equations in numbers of any kind. Where these carry derivatives, its own numbers are asked for here, so
+//! that each comes with the derivative by itself.
+
+use std::fmt::Debug;
+use std::ops::Range;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::kepler::Orbit;
+use super::parameter::Parameter;
+use super::term::Term;
+use crate::numerics::jet::Jet;
+use crate::numerics::number::Real;
+use crate::numerics::quaternion::product;
+
+/// The columns of a small rotation at the start, and of ω at the start.
+pub(in crate::motion) const ATTITUDE: usize = 0;
+pub(in crate::motion) const RATES: usize = 3;
+/// Of the principal moments, ascending, and of the elements 23, 31, 12 of the tensor in principal axes.
+pub(in crate::motion) const MOMENTS: usize = 6;
+pub(in crate::motion) const PRODUCTS: usize = 9;
+/// Of the centre of mass and of the mass.
+pub(in crate::motion) const CENTER: usize = 12;
+pub(in crate::motion) const MASS: usize = 15;
+/// Of the numbers of the load, term by term.
+pub(in crate::motion) const LOAD: usize = 16;
+
+/// How many variables are varied at a time.
+pub(in crate::motion) const WIDTH: usize = 8;
+
+/// A number with its derivatives by the variables of a [`Block`].
+pub(in crate::motion) type Varied = Jet<WIDTH>;
+
+/// Which variables are varied.
+pub trait Variables<X: Real>: Copy + Debug + Send + Sync {
+    /// The variable of a column, at its value.
+    fn number(self, value: f64, column: usize) -> X;
+
+    /// The attitude `q∘exp(δ)` (x, y, z, w), the components of the small rotation δ being the variables from `column` on.
+    fn turned(self, q: [X; 4], column: usize) -> [X; 4];
+
+    /// Whether one of these columns is varied.
+    fn varies(self, columns: Range<usize>) -> bool;
+
+    /// The first column of each of these terms, the first of them at `first`; none where nothing is varied.
+    fn columns(self, terms: &[Term]) -> Vec<usize>;
+
+    /// Position and velocity on an orbit, μ, position and velocity at its epoch being the variables from `column` on.
+    fn on_orbit(self, orbit: &Orbit, elapsed: f64, column: usize) -> (Vector3<X>, Vector3<X>);
+
+    /// A vector whose components are variables.
+    fn vector(self, value: &Vector3<f64>, first: usize) -> Vector3<X> {
+        Vector3::from_fn(|i, _| self.number(value[i], first + i))
+    }
+
+    /// A matrix whose elements are variables, row by row.
+    fn matrix(self, value: &Matrix3<f64>, first: usize) -> Matrix3<X> {
+        Matrix3::from_fn(|i, j| self.number(value[(i, j)], first + 3 * i + j))
+    }
+}
+
+/// None of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Fixed;
+
+impl<X: Real> Variables<X> for Fixed {
+    #[inline(always)]
+    fn number(self, value: f64, _: usize) -> X {
+        X::from(value)
+    }
+
+    fn turned(self, q: [X; 4], _: usize) -> [X; 4] {
+        q
+    }
+
+    fn varies(self, _: Range<usize>) -> bool {
+        false
+    }
+
+    fn columns(self, _: &[Term]) -> Vec<usize> {
+        Vec::new()
+    }
+
+    fn on_orbit(self, orbit: &Orbit, elapsed: f64, _: usize) -> (Vector3<X>, Vector3<X>) {
+        let (r, v) = orbit.at(elapsed);
+        (r.map(X::from), v.map(X::from))
+    }
+}
+
+/// Those whose columns begin with `first`.
+#[derive(Clone, Copy, Debug)]
+pub struct Block {
+    /// The first column.
+    pub first: usize,
+}
+
+impl Variables<Varied> for Block {
+    fn number(self, value: f64, column: usize) -> Varied {
+        match column.checked_sub(self.first) {
+            Some(index) if index < WIDTH => Varied::variable(value, index),
+            _ => Varied::constant(value),
+        }
+    }
+
+    fn turned(self, q: [Varied; 4], column: usize) -> [Varied; 4] {
+        let half = Varied::constant(0.5);
+        let [x, y, z] = [0, 1, 2].map(|i| self.number(0.0, column + i) * half);
+        product(q, [x, y, z, Varied::constant(1.0)])
+    }
+
+    fn varies(self, columns: Range<usize>) -> bool {
+        columns.start < self.first + WIDTH && self.first < columns.end
+    }
+
+    fn columns(self, terms: &[Term]) -> Vec<usize> {
+        let firsts = terms.iter().scan(LOAD, |next, term| {
+            let first = *next;
+            *next += count(term);
+            Some(first)
+        });
+        firsts.collect()
+    }
+
+    fn on_orbit(
+        self,
+        orbit: &Orbit,
+        elapsed: f64,
+        column: usize,
+    ) -> (Vector3<Varied>, Vector3<Varied>) {
+        let number = |value, n| self.number(value, column + n);
+        orbit.varied(elapsed, number)
+    }
+}
+
+/// How many numbers a term has.
+pub(in crate::motion) fn count(term: &Term) -> usize {
+    term.parameters().iter().map(Parameter::count).sum()
+}
