@@ -19,6 +19,7 @@ pub trait Exact: Real {
 
     /// What a change of a rate comes to, in neighbours that meet it later: by the derivatives of the function `switch` of the
     /// state that is zero there, whose rate is `rate`. Nothing without derivatives.
+    #[must_use]
     fn until_later(self, switch: Self, rate: f64) -> Self;
 }
 

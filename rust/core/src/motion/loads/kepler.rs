@@ -267,6 +267,8 @@ fn root(x: DoubleDouble) -> DoubleDouble {
 mod tests {
     use super::*;
 
+    type State = (Vector3<f64>, Vector3<f64>);
+
     /// The position at a time, relative to its size.
     fn close(orbit: &Orbit, t: f64, position: [f64; 3], allowed: f64) {
         let (r, _) = orbit.at(t);
@@ -381,7 +383,7 @@ mod tests {
                     let h = 2e-3 / (1.0 + t.abs());
                     let at = |shift| orbit(numbers(shift, column)).at(t);
                     let ends = [at(h), at(-h), at(2.0 * h), at(-2.0 * h)];
-                    let slope = |pick: fn(&(Vector3<f64>, Vector3<f64>)) -> Vector3<f64>| {
+                    let slope = |pick: fn(&State) -> Vector3<f64>| {
                         let [a, b, c, d] = ends.each_ref().map(pick);
                         ((a - b) * 8.0 - (c - d)) / (12.0 * h)
                     };

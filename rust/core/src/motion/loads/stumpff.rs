@@ -3,7 +3,7 @@
 /// Below this β s² the closed forms cancel, and eleven terms of the series are exact.
 const SERIES: f64 = 2.5;
 
-/// `Σ_{0≤j<11} (−x)^j k!/(2j + k)!`, from which c_k follows for k = 2 and 3.
+/// `Σ_{0≤j<11} (−x)^j (k − 2)!/(2j + k)!`: `c_2`, `c_3`, `2 c_4` and `6 c_5`.
 fn series(x: f64, k: f64) -> f64 {
     (0..11).rev().fold(0.0, |sum, j| {
         let n = 2.0 * f64::from(j) + k;

@@ -82,7 +82,7 @@ impl Invariants {
             } else {
                 let mut slopes = [0.0; 6];
                 slopes[3..].fill(f64::NAN);
-                Jet { value, slopes }
+                Jet { slopes, value }
             }
         })
     }
