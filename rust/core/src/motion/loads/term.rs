@@ -282,6 +282,12 @@ impl Term {
         }
     }
 
+    /// How many numbers it has.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.parameters().iter().map(Parameter::count).sum()
+    }
+
     /// Whether it pushes, so that a free body's position depends on it.
     #[must_use]
     pub fn exerts_force(&self) -> bool {

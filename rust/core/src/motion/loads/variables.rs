@@ -9,8 +9,6 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use super::kepler::Orbit;
-use super::parameter::Parameter;
-use super::term::Term;
 use crate::numerics::jet::Jet;
 use crate::numerics::number::Real;
 use crate::numerics::quaternion::product;
@@ -44,8 +42,8 @@ pub trait Variables<X: Real>: Copy + Debug + Send + Sync {
     /// Whether one of these columns is varied.
     fn varies(self, columns: Range<usize>) -> bool;
 
-    /// The first column of each of these terms, the first of them at `first`; none where nothing is varied.
-    fn columns(self, terms: &[Term]) -> Vec<usize>;
+    /// The first column of each term that has so many numbers; none where nothing is varied.
+    fn columns(self, counts: &mut dyn Iterator<Item = usize>) -> Vec<usize>;
 
     /// Position and velocity on an orbit, μ, position and velocity at its epoch being the variables from `column` on.
     fn on_orbit(self, orbit: &Orbit, elapsed: f64, column: usize) -> (Vector3<X>, Vector3<X>);
@@ -79,7 +77,7 @@ impl<X: Real> Variables<X> for Fixed {
         false
     }
 
-    fn columns(self, _: &[Term]) -> Vec<usize> {
+    fn columns(self, _: &mut dyn Iterator<Item = usize>) -> Vec<usize> {
         Vec::new()
     }
 
@@ -114,10 +112,10 @@ impl Variables<Varied> for Block {
         columns.start < self.first + WIDTH && self.first < columns.end
     }
 
-    fn columns(self, terms: &[Term]) -> Vec<usize> {
-        let firsts = terms.iter().scan(LOAD, |next, term| {
+    fn columns(self, counts: &mut dyn Iterator<Item = usize>) -> Vec<usize> {
+        let firsts = counts.scan(LOAD, |next, count| {
             let first = *next;
-            *next += count(term);
+            *next += count;
             Some(first)
         });
         firsts.collect()
@@ -132,9 +130,4 @@ impl Variables<Varied> for Block {
         let number = |value, n| self.number(value, column + n);
         orbit.varied(elapsed, number)
     }
-}
-
-/// How many numbers a term has.
-pub(in crate::motion) fn count(term: &Term) -> usize {
-    term.parameters().iter().map(Parameter::count).sum()
 }

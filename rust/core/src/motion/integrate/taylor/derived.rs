@@ -5,52 +5,13 @@
 
 use super::pace::Pace;
 use super::pack::Pack;
+use super::row::Row;
 use super::series::{Coefficient, Series};
 use crate::motion::loads::variables::{Varied, WIDTH};
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 
-/// The highest order of such series.
-pub(super) const ORDER: usize = 24;
-
 type One = Pack<Varied, 1>;
-
-/// The derivatives of one coefficient: a register of the widest machines.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-struct Slopes([f64; WIDTH]);
-
-/// The coefficients of one number of the motion.
-#[derive(Clone, Debug)]
-pub(super) struct Row {
-    values: [f64; ORDER + 1],
-    slopes: [Slopes; ORDER + 1],
-}
-
-impl Row {
-    fn new() -> Self {
-        Self {
-            values: [0.0; ORDER + 1],
-            slopes: [Slopes([0.0; WIDTH]); ORDER + 1],
-        }
-    }
-
-    #[inline(always)]
-    fn set(&mut self, k: usize, number: &Varied, factor: f64) {
-        self.values[k] = number.value * factor;
-        for n in 0..WIDTH {
-            self.slopes[k].0[n] = number.slopes[n] * factor;
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn get(&self, k: usize) -> Varied {
-        Varied {
-            value: self.values[k],
-            slopes: self.slopes[k].0,
-        }
-    }
-}
 
 /// One motion with its derivatives: the rows of ω, of (x, y, z, w), of each direction.
 pub(super) struct Derived<const B: usize> {
@@ -99,8 +60,8 @@ impl<const B: usize> Series<One, B> for Derived<B> {
         }
     }
 
-    fn rescale(&mut self) {
-        self.paces = [Pace::default(); 2];
+    fn rescale(&mut self, ratio: f64) {
+        self.paces[0].rescale(ratio);
     }
 
     #[inline(always)]

@@ -9,7 +9,7 @@
 //! | `series` | the coefficients, and what is asked of the sums of their products |
 //! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
 //! | `twin` | these sums in numbers of twice the precision |
-//! | `derived`, `pace` | these sums in numbers with derivatives, and how far they reach |
+//! | `derived`, `row`, `pace` | these sums in numbers with derivatives, and how far they reach |
 //! | `directions` | directions of space as seen from the body |
 //! | `push` | the path of a body that forces act on |
 //! | `step` | the length of a step, the state at its end or within |
@@ -44,6 +44,7 @@ mod one;
 mod pace;
 mod pack;
 mod push;
+mod row;
 mod series;
 mod step;
 mod terms;

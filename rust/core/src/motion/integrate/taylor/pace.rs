@@ -1,6 +1,6 @@
 //! The length of a step with derivatives: as long as the series of the state and of each of its derivatives allow.
 
-use super::derived::{ORDER, Row};
+use super::row::{ORDER, Row};
 use crate::motion::loads::variables::WIDTH;
 
 /// The last terms of a series, relative to the largest that the series has been.
@@ -15,6 +15,11 @@ pub(super) struct Pace {
 }
 
 impl Pace {
+    /// Comes to another unit: `ratio` of the old one to the new one.
+    pub(super) fn rescale(&mut self, ratio: f64) {
+        self.sizes = self.sizes.map(|size| size * ratio);
+    }
+
     /// The longest step for which the last two terms of the series are small enough; infinite where they are zero, not a number
     /// where they are not. Rounded to a few bits, so that it is the same on every machine.
     ///

@@ -63,8 +63,8 @@ pub(super) trait Series<T, const B: usize> {
     fn hold(&mut self, _still: Option<usize>) {}
     /// Keeps each step so short that derivatives too are as good as the series of the motion.
     fn limit(&mut self, _steps: &mut [f64]) {}
-    /// Forgets how large derivatives have been, when they come to another unit.
-    fn rescale(&mut self) {}
+    /// Comes to another unit of rates: `ratio` of the old one to the new one.
+    fn rescale(&mut self, _ratio: f64) {}
     /// The coefficient of order `k`; the directions are there once the sums of that order are.
     fn get(&self, k: usize) -> Coefficient<T, B>;
     /// The sums of products of order `k`.

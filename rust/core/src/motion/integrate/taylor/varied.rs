@@ -4,8 +4,9 @@ use std::iter::once;
 use std::ops::ControlFlow;
 
 use super::course::{Course, parts_of};
-use super::derived::{Derived, ORDER};
+use super::derived::Derived;
 use super::drive::{Job, Settings, drive};
+use super::row::ORDER;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::Term;
 use crate::motion::loads::variables::{Block, Varied};

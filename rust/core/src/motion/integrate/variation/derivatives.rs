@@ -8,7 +8,7 @@ use crate::error::{Error, MotionFault};
 use crate::motion::integrate::taylor::run_varied;
 use crate::motion::loads::Term;
 use crate::motion::loads::variables::{
-    ATTITUDE, Block, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, Varied, WIDTH, count,
+    ATTITUDE, Block, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, Varied, WIDTH,
 };
 use crate::motion::problem::Task;
 
@@ -45,7 +45,7 @@ pub fn variations(
     terms: &[Term],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Vec<Variation>, Error> {
-    let numbers: usize = terms.iter().map(count).sum();
+    let numbers: usize = terms.iter().map(Term::count).sum();
     let start = Variation {
         state: Matrix6::identity(),
         moments: Matrix6x3::zeros(),

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::segments::Course;
 use crate::motion::integrate::taylor::field::Field;
 use crate::motion::integrate::taylor::frame::Precision;
-use crate::motion::loads::variables::{Block, MASS, Variables, count};
+use crate::motion::loads::variables::{Block, MASS, Variables};
 use crate::motion::loads::{Forcing, Parts, Term, When};
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
@@ -132,9 +132,10 @@ pub(in crate::motion::integrate::taylor) fn parts_of(
     pivoted: bool,
     block: Block,
 ) -> Parts {
-    let parts = terms.iter().zip(block.columns(terms)).map(|(term, first)| {
+    let firsts = block.columns(&mut terms.iter().map(Term::count));
+    let parts = terms.iter().zip(firsts).map(|(term, first)| {
         let parts = term.character(pivoted).parts;
-        if block.varies(first..first + count(term)) {
+        if block.varies(first..first + term.count()) {
             parts.with_all_numbers()
         } else {
             parts

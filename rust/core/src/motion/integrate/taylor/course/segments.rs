@@ -86,7 +86,7 @@ impl<'a, X: Precision> Course<'a, X> {
             task: *task,
             terms,
             variables,
-            firsts: variables.columns(terms),
+            firsts: variables.columns(&mut terms.iter().map(Term::count)),
             axes: principal.axes,
             q_bp: principal.q_bp,
             kappa: Vector3::new(over(d1, i1), over(d2, i2), over(d3, i3)),

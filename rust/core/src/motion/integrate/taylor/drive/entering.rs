@@ -71,7 +71,7 @@ where
             push.rescale(row, ratio);
         }
         self.extras.rescale(row, ratio);
-        self.series.rescale();
+        self.series.rescale(ratio);
         let (now, rest) = self.now[row];
         self.now[row] = (now / ratio, rest / ratio);
         let [x, y, z] = [omega[0] / unit, omega[1] / unit, omega[2] / unit];
