@@ -7,6 +7,8 @@ use crate::motion::loads::variables::WIDTH;
 const LAST_TERM: f64 = 1e-17;
 /// The first coefficients, which tell how large a derivative that is zero at the start is going to be.
 const FIRST: usize = 5;
+/// Rounds in which the step is found: each is closer by a factor of five or more.
+const ROUNDS: usize = 4;
 
 /// How large some numbers and their derivatives by each variable have been so far.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,25 +25,41 @@ impl Pace {
     /// The longest step for which the last two terms of the series are small enough; infinite where they are zero, not a number
     /// where they are not. Rounded to a few bits, so that it is the same on every machine.
     ///
+    /// What counts as large is what has been so far, or will be within the step: so that is found in a few rounds.
     /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
     pub(super) fn longest(&mut self, rows: &[Row]) -> f64 {
-        for k in 0..FIRST {
-            for (most, size) in self.sizes.iter_mut().zip(sizes(rows, k)) {
-                *most = most.max(size);
+        let first: [_; FIRST] = std::array::from_fn(|k| sizes(rows, k));
+        for (most, size) in self.sizes.iter_mut().zip(first[0]) {
+            *most = most.max(size);
+        }
+        let last = [ORDER - 1, ORDER].map(|k| (k, sizes(rows, k)));
+        if last
+            .iter()
+            .any(|(_, sizes)| sizes.iter().any(|size| !size.is_finite()))
+        {
+            return f64::NAN;
+        }
+        let mut h = 1.0_f64;
+        for _ in 0..ROUNDS {
+            let mut exponent = f64::INFINITY;
+            for (number, most) in self.sizes.iter().enumerate() {
+                let within = first
+                    .iter()
+                    .rev()
+                    .fold(0.0, |sum, sizes| sum * h + sizes[number]);
+                for (k, sizes) in &last {
+                    let ratio = LAST_TERM * (most.max(within) / sizes[number]);
+                    if sizes[number] > 0.0 {
+                        exponent = exponent.min(ratio.log2() / *k as f64);
+                    }
+                }
+            }
+            h = exponent.exp2();
+            if h.is_infinite() {
+                break;
             }
         }
-        let mut exponent = f64::INFINITY;
-        for k in [ORDER - 1, ORDER] {
-            for (scale, size) in self.sizes.iter().zip(sizes(rows, k)) {
-                if !size.is_finite() {
-                    return f64::NAN;
-                }
-                if size > 0.0 {
-                    exponent = exponent.min((LAST_TERM * (scale / size)).log2() / k as f64);
-                }
-            }
-        }
-        f64::from_bits(exponent.exp2().to_bits() & 0xffff_0000_0000_0000)
+        f64::from_bits(h.to_bits() & 0xffff_0000_0000_0000)
     }
 }
 
