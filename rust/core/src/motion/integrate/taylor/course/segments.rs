@@ -253,7 +253,7 @@ impl<'a, X: Precision> Course<'a, X> {
         let attitude = Vector4::new(x, y, z, w);
         let zero = X::zero();
         let turn = Vector4::from(product([x, y, z, w], [w1, w2, w3, zero]));
-        let over_moment = self.inverse_moments / X::from(self.unit * self.unit);
+        let over_moment = self.inverse_moments / X::from(self.unit) / X::from(self.unit);
         let before = *state;
         for switch in (self.switches.iter()).filter(|it| it.sign(&before) != it.side) {
             let rate = 0.5 * switch.scalar.dot(&turn).rounded();

@@ -11,8 +11,9 @@ use crate::motion::integrate::taylor::series::Series;
 use crate::motion::problem::End;
 use crate::numerics::number::Number;
 
-/// Steps between two looks at the watch.
+/// Steps between two looks at the watch, and of motions with derivatives, which take longer.
 const PATIENCE: u32 = 64;
+const PATIENCE_OF_DERIVATIVES: u32 = 4;
 
 /// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
 /// done, and may stop them. `see` is for motions one after the other.
@@ -29,7 +30,12 @@ pub(in crate::motion::integrate::taylor) fn drive<
     mut see: Option<See>,
 ) -> ControlFlow<()> {
     let mut lanes = Lanes::<L, S, B, R>::new(settings);
-    let mut patience = PATIENCE;
+    let looks_after = if L::VARIES {
+        PATIENCE_OF_DERIVATIVES
+    } else {
+        PATIENCE
+    };
+    let mut patience = looks_after;
     let mut idle = true;
     loop {
         if idle {
@@ -58,7 +64,7 @@ pub(in crate::motion::integrate::taylor) fn drive<
         }
         patience -= 1;
         if patience == 0 {
-            patience = PATIENCE;
+            patience = looks_after;
             idle |= lanes.refuse_endless();
             if watch(lanes.fraction()).is_break() {
                 for row in 0..R {
