@@ -18,9 +18,19 @@ use crate::numerics::reduce::{depth, sum_blocks, sum_terms};
 use crate::numerics::threads::fill_blocks;
 
 /// A number that a density may be stored as: `f32` or `f64`. Sums are taken in double precision.
-pub trait Voxel: Copy + Into<f64> + Send + Sync {}
-impl Voxel for f32 {}
-impl Voxel for f64 {}
+pub trait Voxel: Copy + Into<f64> + Send + Sync {
+    /// Whether it is sooner to add four rows of cells at once than one after the other: where the sums that are kept take
+    /// longer to read than the densities.
+    const FOUR_AT_ONCE: bool;
+}
+
+impl Voxel for f32 {
+    const FOUR_AT_ONCE: bool = true;
+}
+
+impl Voxel for f64 {
+    const FOUR_AT_ONCE: bool = false;
+}
 
 /// Densities on a grid: that of cell (i, j, k) at `(i ny + j) nz + k`, its centre at `origin + (i hx, j hy, k hz)`.
 #[derive(Clone, Copy, Debug)]
@@ -283,10 +293,6 @@ struct Columns<L> {
     below: Vec<L>,
 }
 
-/// Rows that are added to the columns at once: so the columns are read and written once for four rows, in the same order
-/// of additions as one by one.
-const AT_ONCE: usize = 4;
-
 impl<L: Lane> Columns<L> {
     #[inline(always)]
     fn new(length: usize) -> Self {
@@ -299,16 +305,31 @@ impl<L: Lane> Columns<L> {
         }
     }
 
-    /// Adds rows of cells at these y.
+    /// Adds a row of cells at y.
     #[inline(always)]
-    fn add<T: Voxel, const N: usize>(&mut self, rows: &[T], y: [L; N]) {
+    fn add<T: Voxel>(&mut self, row: &[T], y: L) {
+        let y_squared = y * y;
+        let sums = self.sum.iter_mut().zip(&mut self.first);
+        let sums = sums.zip(&mut self.second).zip(&mut self.below);
+        for (&density, (((sum, first), second), below)) in row.iter().zip(sums) {
+            let density = L::new(density.into());
+            *sum = *sum + density;
+            *first = density.mul_add(y, *first);
+            *second = density.mul_add(y_squared, *second);
+            *below = *below + density.min(L::new(0.0));
+        }
+    }
+
+    /// Adds four rows, in the order of additions of one by one.
+    #[inline(always)]
+    fn add_four<T: Voxel>(&mut self, rows: &[T], y: [L; 4]) {
         let length = self.sum.len();
-        let rows: [&[T]; N] = std::array::from_fn(|n| &rows[n * length..(n + 1) * length]);
+        let rows: [&[T]; 4] = std::array::from_fn(|n| &rows[n * length..(n + 1) * length]);
         let first = &mut self.first[..length];
         let second = &mut self.second[..length];
         let below = &mut self.below[..length];
         for k in 0..length {
-            for n in 0..N {
+            for n in 0..4 {
                 let density = L::new(rows[n][k].into());
                 self.sum[k] = self.sum[k] + density;
                 first[k] = density.mul_add(y[n], first[k]);
@@ -326,14 +347,18 @@ impl<T: Voxel> Kernel for Slab<'_, T> {
     fn run<L: Lane>(self) -> [f64; SLAB] {
         let y = |j: usize| L::new(j as f64 - self.reference[0]);
         let mut columns = Columns::new(self.length);
-        let mut rows = self.density.chunks_exact(AT_ONCE * self.length);
         let mut j = 0;
-        for four in &mut rows {
-            columns.add::<T, AT_ONCE>(four, std::array::from_fn(|n| y(j + n)));
-            j += AT_ONCE;
+        let mut rest = self.density;
+        if T::FOUR_AT_ONCE {
+            let fours = rest.chunks_exact(4 * self.length);
+            rest = fours.remainder();
+            for rows in fours {
+                columns.add_four(rows, [y(j), y(j + 1), y(j + 2), y(j + 3)]);
+                j += 4;
+            }
         }
-        for row in rows.remainder().chunks_exact(self.length) {
-            columns.add(row, [y(j)]);
+        for row in rest.chunks_exact(self.length) {
+            columns.add(row, y(j));
             j += 1;
         }
         sum_terms(self.length, |k| {
