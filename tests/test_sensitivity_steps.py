@@ -100,7 +100,7 @@ def parts(found: MotionSensitivity, terms: int) -> list[np.ndarray]:
 
 def excess(case: Case) -> float:
     """How much cutting the steps changes the derivatives, over what rounding may."""
-    times = np.linspace(*sorted((0.0, case.time)), 2 * CUTS + 1)[1:]
+    times = np.linspace(min(0.0, case.time), max(0.0, case.time), 2 * CUTS + 1)[1:]
     windows = list(zip(times[::2].tolist(), times[1::2].tolist(), strict=True))
     nothing = loads.schedule(loads.constant_torque((0, 0, 0)), windows)
     whole = case.sensitivity()
