@@ -52,7 +52,6 @@ pub mod regions;
 pub mod rods;
 pub mod second_moment;
 mod simplex;
-mod slab;
 pub mod solids;
 pub mod surface;
 pub mod tetrahedra;

@@ -1,18 +1,17 @@
-//! Bodies of voxels: a density for each cell of a rectangular grid, each cell a homogeneous box.
+//! The body of a grid of cells.
 
 use nalgebra::{Matrix3, Vector3};
 use std::convert::Infallible;
 
-use super::body::RigidBody;
-use super::error_bound::ErrorBound;
-use super::particles::sums::{Turned, block_sums};
-use super::particles::{Watch, is_thin};
-use super::second_moment::SecondMoment;
-pub use super::slab::Voxel;
-use super::slab::{SLAB, Slab};
-use super::units::Units;
+use super::slab::{SLAB, Slab, Voxel};
 use crate::error::{BodyFault, Error, all_finite, finite};
+use crate::mass::body::RigidBody;
+use crate::mass::error_bound::ErrorBound;
+use crate::mass::particles::sums::{Turned, block_sums};
+use crate::mass::particles::{Watch, is_thin};
 use crate::mass::provenance::{Checks, Provenance, Source};
+use crate::mass::second_moment::SecondMoment;
+use crate::mass::units::Units;
 use crate::numerics::dispatch::dispatch;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::reduce::{depth, sum_blocks, sum_terms};
