@@ -222,6 +222,15 @@ mod tests {
         assert_eq!((x * 5.0 - Jet::constant(1.0)).slopes, [5.0, 0.0]);
         assert_eq!((x * x * y).slopes, [12.0, 9.0]);
         assert_eq!((x / y).slopes, [0.5, -0.75]);
+        assert_eq!(((x * x).root() - x).slopes, [0.0, 0.0]);
+        assert_eq!(x.mul_add(y, x), x * y + x);
+        let mut sum = x;
+        sum += y;
+        sum *= x;
+        sum -= y;
+        sum /= x;
+        assert_eq!(sum, ((x + y) * x - y) / x);
+        assert_eq!(Jet::<2>::over(3), Jet::constant(1.0 / 3.0));
         let composed = Jet::chain(7.0, [(2.0, &(x * y)), (5.0, &y)]);
         assert_eq!((composed.value, composed.slopes), (7.0, [4.0, 11.0]));
     }
