@@ -28,7 +28,8 @@ class StateSigma(NamedTuple):
     Attributes
     ----------
     attitude : numpy.ndarray, shape (..., T, 3)
-        Of the small rotation δ from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
+        Of the small rotation δ from the attitude, ``R → R exp(δ×)``, components in the body frame, in
+        radians.
     omega : numpy.ndarray, shape (..., T, 3)
     """
 
@@ -40,11 +41,11 @@ class StateSigma(NamedTuple):
 
 
 def covariance(self: Trajectory) -> Floats | None:
-    """Tell the covariance of (δ, ω) at every time, to first order, shape (..., T, 6, 6); None where nothing is uncertain.
+    """Give the covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
 
-    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians. The doubts are
-    those of the body, and of `omega` and `attitude` at the start where they were given as `Uncertain`; by
-    :meth:`sensitivity`, along all correlations.
+    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
+    Uncertain are the body, and `omega` and `attitude` at the start where they were given as `Uncertain`. To first
+    order, by the derivatives of :meth:`sensitivity`; all correlations count.
 
     Examples
     --------
@@ -62,7 +63,7 @@ def covariance(self: Trajectory) -> Floats | None:
 
 
 def sigma(self: Trajectory) -> StateSigma | None:
-    """Tell the standard deviations of attitude and angular velocity at every time; None where nothing is uncertain."""
+    """Give standard deviations of attitude and angular velocity at every time, or None as of `covariance`."""
     found = covariance(self)
     if found is None:
         return None
@@ -71,7 +72,7 @@ def sigma(self: Trajectory) -> StateSigma | None:
 
 
 def _forms(self: Trajectory) -> Floats | None:
-    """What one standard deviation of each variable does to (δ, ω), shape (..., T, 6, k)."""
+    """Give what one standard deviation of each variable does to (δ, ω), shape (..., T, 6, k)."""
     omega, attitude = self.uncertain_start
     doubts = self.body._doubts()
     if doubts is None and omega is None and attitude is None:
@@ -91,16 +92,16 @@ def _forms(self: Trajectory) -> Floats | None:
     if omega is not None:
         forms, shape = omega._forms(), np.shape(omega.value)
         for k, row in enumerate(_rows(shape[:-1], stack)):
-            for axis, form in enumerate(forms[3 * row : 3 * row + 3]):
+            for place, form in enumerate(forms[3 * row : 3 * row + 3]):
                 for words, step in form:
                     column = columns.setdefault(tuple(words), len(columns))
-                    terms.append((k, column, by_state[k][:, :, 3 + axis] * step))
+                    terms.append((k, column, by_state[k][:, :, 3 + place] * step))
     if attitude is not None:
         # Its small angles are about fixed axes; those of the derivatives about the body's.
         starts = self.quaternion[..., 0, :].reshape(-1, 4)
-        for k, quaternion in enumerate(starts):
+        for k, start in enumerate(starts):
             for axis, form in zip(np.eye(3), attitude._forms(), strict=True):
-                local = by_state[k][:, :, :3] @ _core.rotate(quaternion, axis, inverse=True)
+                local = by_state[k][:, :, :3] @ _core.rotate(start, axis, inverse=True)
                 for words, step in form:
                     terms.append((k, columns.setdefault(tuple(words), len(columns)), local * step))
     out = np.zeros((int(np.prod(stack, dtype=int)), times, 6, len(columns)))
@@ -120,8 +121,8 @@ def _rows(shape: tuple[int, ...], stack: tuple[int, ...]) -> list[int]:
 def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:
     """Give the derivatives of (δ, ω) by the body's ten numbers, shape (..., T, 6, 10).
 
-    The sensitivities are by the tensor about the reference point, in its principal axes: with the tensor about C moved there,
-    ``I_P = I_C + m (d² 1 − d dᵀ)``, d from the point to C.
+    The sensitivities are by the tensor about the reference point P, in its principal axes:
+    ``I_P = I_C + m (d² 1 − d dᵀ)``, d from P to C.
     """
     body, about = self.body, self._about_word()
     axes = body.principal_about(about).axes if self.pivoted else body.principal.axes

@@ -100,13 +100,13 @@ class BoxFit(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """Whether standard deviations to first order are enough: within about a percent of those of the draws themselves.
+    """Whether standard deviations to first order are enough: within about a percent.
 
     Attributes
     ----------
     mass, center_of_mass, inertia, principal_moments, axes : bool or numpy.ndarray of bool
-        For each number of :class:`Sigma`. False where the second-order terms have more than a tenth of the first-order
-        ones: ``polhode.uncertainty.propagate(…, method="monte-carlo")`` tells what is right there.
+        For each number of :class:`Sigma`. False where the second-order terms exceed a tenth of the
+        first-order ones; there ``uncertainty.propagate(…, method="monte-carlo")`` tells what is right.
     """
 
     mass: Any
@@ -130,8 +130,8 @@ class Sigma(NamedTuple):
         Of the elements of the tensor about C.
     principal_moments : numpy.ndarray, shape (..., 3)
     axes : numpy.ndarray, shape (..., 3)
-        Of the small rotation of the principal axes about each of them, in radians; NaN about an axis to which the two
-        other moments are equal, or nearly so: there the axes are not determined.
+        Of the small rotation of the principal axes about each of them, in radians; NaN where the two other
+        moments are equal, or nearly so: there the axes are not determined.
     linear : Linear
         Whether the first order is enough for each of them.
     """

@@ -59,7 +59,7 @@ class Trajectory:
     pivoted : bool
         Whether the point `about` is fixed in space.
     uncertain_start : tuple
-        Angular velocity and attitude at the start as `Uncertain`, each None where it was given without a sigma.
+        Angular velocity and attitude at the start as `Uncertain`; None for one given without a sigma.
     """
 
     body: _core.RigidBody

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -96,7 +97,7 @@ class Neighbours:
         return _of_pseudo_inertia(root @ root.T, center)
 
     def draws(self, n: int, seed: int) -> Iterator[tuple[Any, ...]]:
-        """Draw bodies and other numbers."""
+        """Draw bodies and other numbers, and warn of draws that no body has."""
         generator = np.random.default_rng(seed)
         refused = 0
         made = 0
@@ -107,13 +108,17 @@ class Neighbours:
                 refused += 1
                 if refused >= TRIES and refused > 10 * made:
                     message = (
-                        f"body: of {refused + made} draws from its covariance {refused} are those of no body ({error}); the "
-                        "sigmas are too large for a normal distribution: give the dimensions and masses that they come from"
+                        f"body: of {refused + made} draws from its covariance {refused} are those of no body "
+                        f"({error}); the sigmas are too large for a normal distribution: give those of the "
+                        "dimensions and masses that they come from"
                     )
                     raise PolhodeError(message) from None
                 continue
             made += 1
             yield body
+        if refused:
+            message = f"{refused} of {refused + made} draws were those of no body, and were drawn again"
+            warnings.warn(message, stacklevel=4)
 
 
 def _joint_covariance(body: RigidBody, arguments: Sequence[Uncertain]) -> Floats:
@@ -126,13 +131,15 @@ def _joint_covariance(body: RigidBody, arguments: Sequence[Uncertain]) -> Floats
             column = columns.setdefault(tuple(words), len(columns))
             for row, step in zip(rows, tangent, strict=True):
                 row[column] = step
-    for argument in arguments:
-        for form in argument._forms():
-            rows.append({columns.setdefault(tuple(words), len(columns)): step for words, step in form})
+    rows.extend(
+        {columns.setdefault(tuple(words), len(columns)): step for words, step in form}
+        for argument in arguments
+        for form in argument._forms()
+    )
     factor = np.zeros((len(rows), len(columns)))
-    for row, steps in enumerate(rows):
+    for k, steps in enumerate(rows):
         for column, step in steps.items():
-            factor[row, column] = step
+            factor[k, column] = step
     return factor @ factor.T
 
 
@@ -171,7 +178,7 @@ def _of_pseudo_inertia(matrix: Floats, point: Floats) -> RigidBody:
 
 
 def _square_root(matrix: Floats) -> tuple[Floats, Floats, Floats]:
-    """The symmetric square root, its pseudo-inverse, and the projection on its range."""
+    """Give a square root, its pseudo-inverse, and the projection on its range."""
     scale = np.sqrt(np.diagonal(matrix))
     scale = np.where(scale > 1e-7 * scale[:3].max(), scale, scale[:3].max())
     scale[3] = np.sqrt(matrix[3, 3])

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["Propagated", "propagate"]
 
 LINEAR: Final = 0.1
-"""Second-order terms below this fraction of the first-order ones leave a deviation right within a percent: squares add."""
+"""Second-order terms below this fraction of the first-order ones leave a deviation right: squares add."""
 CUBIC: Final = 0.03
 """Third-order terms below this fraction do: they are correlated with the first-order ones."""
 PROBES: Final = 12
@@ -42,7 +42,8 @@ class Propagated(NamedTuple):
     covariance : numpy.ndarray, shape (k, k)
         Of the k numbers of the value in C order.
     linear : bool or numpy.ndarray of bool
-        Whether the first order is enough for each number, within about a percent of its sigma. Draws do not need it: True.
+        Whether the first order is enough for each number, within about a percent of its sigma. Draws do not
+        need it: True.
     """
 
     value: Any
@@ -73,8 +74,8 @@ def propagate(
     body : RigidBody
         One body. Without `arguments` it must carry a covariance.
     method : {"linear", "second-order", "monte-carlo"}
-        First order, by differences along the principal directions of the covariance; mean and covariance to second
-        order; or draws of bodies.
+        First order, by differences along the principal directions of the covariance; mean and covariance to
+        second order; or draws of bodies.
     arguments : sequence of Uncertain, optional
         Other numbers that the function takes, such as an angular velocity. What comes from one source with
         them or with the body stays one source.
@@ -94,9 +95,10 @@ def propagate(
 
     Notes
     -----
-    The function is asked about 4 k + 24 times to first order, k ≤ 10 the rank of the covariance; 2 k² + 2 k + 25 times to
-    second order; n + 1 times by draws. Draws are normal in the ten numbers, and drawn again where no body has them; of a
-    body without extent along some axis they are normal in a square root of its pseudo-inertia, so that all are possible.
+    The function is asked 4 k + 25 times to first order, k the rank of the covariance, at most 10 for a body alone;
+    2 k² + 6 k + 25 times to second order; n + 1 times by draws. Draws are normal in the ten numbers, and drawn
+    again where no body has them; of a body without extent along some axis they are normal in a square root of its
+    pseudo-inertia, so that all are possible.
 
     Examples
     --------
@@ -130,7 +132,7 @@ def propagate(
 
 
 def _numbers(f: Function, given: tuple[Any, ...], shape: tuple[int, ...] | None = None) -> Floats:
-    """The value of a function, which keeps its shape."""
+    """Give the value of a function, which keeps its shape."""
     value = np.asarray(f(*given), dtype=float)
     if shape is not None and value.shape != shape:
         message = f"f: its value has the shape {value.shape} here and {shape} for the body itself"
@@ -139,7 +141,7 @@ def _numbers(f: Function, given: tuple[Any, ...], shape: tuple[int, ...] | None 
 
 
 def _slopes(f: Function, around: Neighbours, shape: tuple[int, ...]) -> Floats:
-    """Derivatives by one standard deviation of each direction, good to its fourth order; shape (k, numbers)."""
+    """Give the derivatives by one standard deviation of each direction, shape (k, numbers)."""
     slopes = []
     for direction in np.eye(around.rank):
         far = _numbers(f, around.at(direction), shape) - _numbers(f, around.at(-direction), shape)

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 __all__ = ["TenNumbers", "from_ufloats", "to_ufloats"]
 
 _WORDS: Final[dict[Any, tuple[int, int]]] = {}
-"""The variable of this package that stands for each variable of `uncertainties` that was met. They cannot be referred to
-weakly, and a variable once met may come back in any later number, so they are kept."""
+"""The variable of this package for each variable of `uncertainties` that was met. These cannot be referred to
+weakly, and one may come back in any later number, so they are kept."""
 
 _MET: Final[dict[tuple[int, int], Any]] = {}
 """The way back: variables of `uncertainties` for those of this package, met or made."""
@@ -102,7 +102,7 @@ def _words(variable: Any) -> tuple[int, int]:
 
 
 def to_ufloats(body: RigidBody) -> TenNumbers:
-    """The numbers of one body for the package `uncertainties`, with all correlations among them.
+    """Give the numbers of one body to the package `uncertainties`, with all correlations among them.
 
     Parameters
     ----------
@@ -111,8 +111,8 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
     Returns
     -------
     TenNumbers
-        Mass, centre of mass and tensor about it. Numbers of `uncertainties` that the body was made of are those that it
-        depends on.
+        Mass, centre of mass and tensor about it. Numbers of `uncertainties` that the body was made of are
+        those that it depends on.
 
     Raises
     ------

@@ -12,6 +12,7 @@
 //! | what a body carries | [`doubt`] |
 //! | how it follows through any function of bodies and numbers | [`follow`] |
 //! | through the ways to a body and from body to body | [`changes`] |
+//! | through the vertices of a mesh | [`mesh`] |
 //! | through particles | [`particles`] |
 //! | through the corners of a polygon | [`polygon`] |
 //! | through sums, where parts are many | [`composites`] |
@@ -24,6 +25,7 @@ pub mod deviations;
 pub mod doubt;
 pub mod follow;
 pub mod given;
+pub mod mesh;
 pub mod particles;
 pub mod polygon;
 pub mod possible;
@@ -38,6 +40,7 @@ pub use deviations::{Deviations, deviations};
 pub use doubt::{Doubt, Tangent};
 pub use follow::{Change, Follow, follow};
 pub use given::{Form, Given};
+pub use mesh::of_mesh;
 pub use particles::of_particles;
 pub use polygon::OfPolygon;
 pub use possible::check_possible;

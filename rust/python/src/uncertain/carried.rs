@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use polhode::Error;
 use polhode::mass::ten::Ten;
-use polhode::uncertainty::Doubt;
+use polhode::uncertainty::{Doubt, Follow, Scaled, follow};
 use pyo3::prelude::*;
 
+use super::quantity::Weight;
 use crate::body::PyRigidBody;
+use crate::errors::to_py;
 use crate::stack::{Broadcast, Stack};
 
 /// The doubts of each body of a stack, or none where all is taken as known.
@@ -30,6 +32,30 @@ impl PyRigidBody {
     /// Bodies with their doubts.
     pub(crate) fn doubtful(bodies: Stack<polhode::RigidBody>, doubts: Doubts) -> Self {
         Self { bodies, doubts }
+    }
+
+    /// The bodies, each with that relative doubt of its mass besides what it carries.
+    pub(crate) fn weighed(self, weights: [Option<Weight>; 3]) -> PyResult<Self> {
+        let Some(relative) = (weights.into_iter().flatten())
+            .map(|weight| weight.relative)
+            .find(|form| !form.is_empty())
+        else {
+            return Ok(self);
+        };
+        let numbers = &[(1.0, &[][..]), (1.0, &relative)];
+        let doubts = (0..self.bodies.rows.len())
+            .map(|row| {
+                follow(
+                    &Scaled,
+                    Follow {
+                        bodies: &[self.row(row)],
+                        numbers,
+                    },
+                )
+            })
+            .collect::<Result<_, Error>>()
+            .map_err(|error| Python::attach(|py| to_py(py, &error)))?;
+        Ok(Self::doubtful(self.bodies, Some(Arc::new(doubts))))
     }
 
     /// One row: its ten numbers and its doubts.

@@ -262,6 +262,11 @@ impl PyUncertain {
 }
 
 impl PyUncertain {
+    /// A form for each number.
+    pub(crate) fn forms(&self) -> &[Form] {
+        &self.given.forms
+    }
+
     /// Whether it is a rotation with three small angles.
     pub(super) fn is_rotation(&self, py: Python<'_>) -> PyResult<bool> {
         self.value.bind(py).hasattr("as_quat")

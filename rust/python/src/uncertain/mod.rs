@@ -17,6 +17,6 @@ mod stored;
 pub(crate) use carried::{Doubts, carried};
 pub(crate) use class::PyUncertain;
 pub(crate) use quantity::{
-    Number, Quantity, factor, has_ufloats, is_uncertain, known, quantity, quantity_list,
+    Number, Quantity, Weight, factor, has_ufloats, is_uncertain, known, quantity, quantity_list,
     quantity_or, rotation_quantity, symmetric, value_of,
 };

@@ -43,6 +43,37 @@ impl<T: Item> Quantity<T> {
     }
 }
 
+/// A positive number of which a body has that much more or less mass: with the form of its relative doubt.
+pub(crate) struct Weight {
+    pub(crate) value: f64,
+    pub(crate) relative: Form,
+}
+
+impl<'py> FromPyObject<'_, 'py> for Weight {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let uncertain = match object.extract::<f64>() {
+            Ok(value) => {
+                return Ok(Self {
+                    value,
+                    relative: Form::new(),
+                });
+            }
+            Err(fault) => match object.cast::<PyUncertain>() {
+                Ok(uncertain) => uncertain.to_owned(),
+                Err(_) => of_ufloats(&object)?.ok_or(fault)?,
+            },
+        };
+        let value: f64 = uncertain.get().value(object.py())?.extract()?;
+        let form = &uncertain.get().given.forms[0];
+        Ok(Self {
+            value,
+            relative: factor(&[(value, form)]),
+        })
+    }
+}
+
 /// The plain value of an argument, and the argument itself where it has a sigma.
 pub(crate) fn value_of<'py>(
     object: &Bound<'py, PyAny>,

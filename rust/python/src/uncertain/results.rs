@@ -101,6 +101,35 @@ impl PyRigidBody {
         self.with_given(py, bodies, &own, &given)
     }
 
+    /// The body with what its `error_bound` leaves open as standard deviations: the error of a quadrature or of rounding.
+    ///
+    /// A number that is known to lie within ± a has the deviation a/√3 (a rectangular distribution, as of the GUM).
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody
+    /// >>> ball = RigidBody.from_radial_density(lambda r: np.exp(-r), (0, 1), rtol=1e-3)
+    /// >>> bool(ball.with_error_bound().sigma.mass == ball.error_bound.mass / 3**0.5)
+    /// True
+    fn with_error_bound(&self, py: Python<'_>) -> PyResult<Self> {
+        let sigma: Vec<f64> = (self.bodies.rows.iter())
+            .flat_map(|body| {
+                let bound = body.error_bound();
+                let (c, i) = (bound.center_of_mass, bound.inertia);
+                [bound.mass, c, c, c, i, i, i, i, i, i].map(|half| half / 3.0_f64.sqrt())
+            })
+            .collect();
+        let given =
+            Given::independent(&sigma, Source::fresh()).map_err(|error| to_py(py, &error))?;
+        let own: Vec<usize> = (0..self.bodies.rows.len()).collect();
+        self.with_given(py, self.bodies.clone(), &own, &given)
+    }
+
     /// The body with a covariance of its ten numbers, independent of what it was made of.
     ///
     /// What it already carries stays, and covariances add.
