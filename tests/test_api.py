@@ -44,9 +44,11 @@ MODULES = [
     "polhode.robots",
     "polhode.tops",
     "polhode.trajectory",
+    "polhode.uncertainty",
     "polhode.view",
 ]
 HEAVY = (
+    "uncertainties",
     "matplotlib",
     "trimesh",
     "scipy",

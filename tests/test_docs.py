@@ -32,7 +32,7 @@ def theorems() -> list[str]:
     """The files of the core that hold formulas of mechanics, and folders of them, as in ``mass/body``."""
     return sorted(
         f"{part}/{entry.stem}"
-        for part in ("mass", "principal", "motion")
+        for part in ("mass", "principal", "uncertainty", "motion")
         for entry in (CORE / part).iterdir()
         if entry.stem != "mod"
     )

@@ -44,8 +44,8 @@ def covariance(self: Trajectory) -> Floats | None:
     """Give the covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
 
     δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
-    Uncertain are the body, and `omega` and `attitude` at the start where they were given as `Uncertain`. To first
-    order, by the derivatives of :meth:`sensitivity`; all correlations count.
+    Uncertain are the body, and `omega` and `attitude` at the start where they were given as `Uncertain`. To
+    first order, by the derivatives of :meth:`sensitivity`; all correlations count.
 
     Examples
     --------

@@ -11,7 +11,7 @@ from polhode import _core
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -21,29 +21,37 @@ if TYPE_CHECKING:
 
 __all__ = ["Neighbours"]
 
-FLAT: Final = 1e-9
-"""A body whose least second moment is below this fraction of the largest is without extent there."""
+CLOSE: Final = 4.0
+"""Moments within so many deviations of their gap may change places: the tensor tells them better than
+angles do."""
 TRIES: Final = 1000
 """Draws of which none is a body, in a row, before it is told."""
+HALVINGS: Final = 40
+"""How often a step is halved before there is no body beside."""
 ORDER: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 class Neighbours:
     """The bodies and other numbers that a covariance makes likely, by coordinates that are standard normal.
 
+    To first order all ways from body to body are one. To second order bodies move straight in their ten
+    numbers, or straight in principal moments and small angles of their axes: whichever is nearer to what
+    the body knows of its second order. The latter is so where a body is turned, and where it has no extent
+    along an axis.
+
     Parameters
     ----------
-    body : RigidBody
-        One body.
+    body : RigidBody or None
+        One body, or none beside the numbers.
     arguments : sequence of Uncertain
         Other numbers.
     """
 
-    def __init__(self, body: RigidBody, arguments: Sequence[Uncertain] = ()) -> None:
-        if body.shape != ():
+    def __init__(self, body: RigidBody | None, arguments: Sequence[Uncertain] = ()) -> None:
+        if body is not None and body.shape != ():
             message = f"body: expected one body, got a stack of shape {body.shape}; take one after the other"
             raise ValueError(message)
-        if body.covariance is None and not arguments:
+        if (body is None or body.covariance is None) and not arguments:
             message = (
                 "body: it carries no covariance; give it one by with_sigma, with_covariance or Uncertain"
             )
@@ -59,12 +67,8 @@ class Neighbours:
         factor: Floats = scale[:, None] * vectors[:, kept] * np.sqrt(values[kept])
         self._factor, self._others = factor[:10], factor[10:]
         self.rank: int = int(kept.sum())
-        center, tensor = body.center_of_mass, body.inertia
-        self._numbers = np.array([body.mass, *center, *(tensor[place] for place in ORDER)])
-        second = body.principal_moments.sum() / 2 - body.principal_moments
-        self._root: Floats | None = None
-        if second.min() <= FLAT * second.max():
-            self._root, self._inverse, self._range = _square_root(_pseudo_inertia(self._numbers, center))
+        if body is not None:
+            self._way = _Way(body, self._factor)
 
     def at(self, coordinates: Floats) -> tuple[Any, ...]:
         """Give the body and the other numbers with these coordinates; their own are zero."""
@@ -73,28 +77,41 @@ class Neighbours:
         for value in self._values:
             own, moved = moved[: value.size], moved[value.size :]
             values.append(value + own.reshape(value.shape))
-        return self._body_at(coordinates), *values
+        if self.body is None:
+            return tuple(values)
+        return self._way.to(self._factor @ coordinates), *values
 
     @property
     def start(self) -> tuple[Any, ...]:
         """The body and the other numbers as they are."""
-        return self.body, *self._values
+        return tuple(self._values) if self.body is None else (self.body, *self._values)
 
-    def _body_at(self, coordinates: Floats) -> RigidBody:
-        change = self._factor @ coordinates
-        if self._root is None:
-            return _body(self._numbers + change)
-        center = self._numbers[1:4]
-        step = 1e-4
-        # The pseudo-inertia's first-order change, about where the centre of mass is.
-        moved = (
-            _pseudo_inertia(self._numbers + step * change, center)
-            - _pseudo_inertia(self._numbers - step * change, center)
-        ) / (2 * step)
-        # δU with δU Uᵀ + U δUᵀ = δJ: half of it where U has a range, all of it beside.
-        half = moved @ self._inverse
-        root = self._root + half - 0.5 * self._range @ half
-        return _of_pseudo_inertia(root @ root.T, center)
+    def step(self, direction: Floats) -> float:
+        """Give the longest step, up to one deviation, that leads to bodies both ways."""
+        step = 1.0
+        for _ in range(HALVINGS):
+            try:
+                self.at(step * direction)
+                self.at(-step * direction)
+            except PolhodeError:
+                step *= 0.5
+            else:
+                return step
+        message = "body: its covariance leads to no possible body; give the numbers that the body is made of"
+        raise PolhodeError(message)
+
+    def probes(self) -> Iterator[tuple[tuple[Any, ...], tuple[Any, ...]]]:
+        """Give the body as this class moves it and as it knows itself, a step along each of its probes."""
+        if self.body is None:
+            return
+        slopes, bends = self.body._probes()
+        for slope, bend in zip(slopes, bends, strict=True):
+            for sign in (1.0, -1.0):
+                try:
+                    here, there = self._way.to(sign * slope), self._way.straight_to(sign * slope + bend)
+                except PolhodeError:
+                    continue
+                yield (here, *self._values), (there, *self._values)
 
     def draws(self, n: int, seed: int) -> Iterator[tuple[Any, ...]]:
         """Draw bodies and other numbers, and warn of draws that no body has."""
@@ -121,11 +138,73 @@ class Neighbours:
             warnings.warn(message, stacklevel=4)
 
 
-def _joint_covariance(body: RigidBody, arguments: Sequence[Uncertain]) -> Floats:
+class _Way:
+    """The way from a body to its neighbours, by changes of its ten numbers that are right to first order."""
+
+    def __init__(self, body: RigidBody, factor: Floats) -> None:
+        tensor, principal = body.inertia, body.principal
+        self._numbers = np.array([body.mass, *body.center_of_mass, *(tensor[place] for place in ORDER)])
+        self._axes, self._moments = principal.axes, principal.moments
+        changes = np.array([self._axes.T @ _symmetric(step[4:]) @ self._axes for step in factor.T])
+        self._apart = self._pairs_apart(changes.reshape(-1, 3, 3))
+        slopes, bends = body._probes()
+        second = self._moments.sum() / 2 - self._moments
+        # Straight steps leave what has no extent along an axis.
+        is_flat = second.min() <= 1e-9 * second.max() and factor.any()
+        self._is_straight = not is_flat and self._misses(self._straight, slopes, bends) <= self._misses(
+            self._turned, slopes, bends
+        )
+
+    def to(self, change: Floats) -> RigidBody:
+        """Give the body after a change."""
+        return _body(self._straight(change) if self._is_straight else self._turned(change))
+
+    def straight_to(self, change: Floats) -> RigidBody:
+        """Give the body after a change that is right to second order."""
+        return _body(self._straight(change))
+
+    def _straight(self, change: Floats) -> Floats:
+        return self._numbers + change
+
+    def _turned(self, change: Floats) -> Floats:
+        """Give the ten numbers after a change of principal moments and angles."""
+        turned = self._axes.T @ _symmetric(change[4:]) @ self._axes
+        gaps = np.where(self._apart, self._moments[None, :] - self._moments[:, None], 1.0)
+        angles = np.where(self._apart, turned / gaps, 0.0)
+        kept = np.diag(self._moments) + np.where(self._apart, 0.0, turned)
+        axes = self._axes @ _rotation(angles)
+        tensor = axes @ kept @ axes.T
+        return np.array([*(self._numbers[:4] + change[:4]), *(tensor[place] for place in ORDER)])
+
+    def _misses(self, way: Callable[[Floats], Floats], slopes: Floats, bends: Floats) -> float:
+        """Tell how far from the body's own second order a way along its probes leads."""
+        missed = 0.0
+        for slope, bend in zip(slopes, bends, strict=True):
+            even = 0.5 * (way(slope) + way(-slope)) - self._numbers
+            missed += float(((even - bend)[4:] ** 2).sum())
+        return missed
+
+    def _pairs_apart(self, changes: Floats) -> NDArray[np.bool_]:
+        """Tell which pairs of moments are far enough apart for the angle between their axes."""
+        apart = np.zeros((3, 3), dtype=bool)
+        for i in range(3):
+            for j in range(3):
+                spread = (changes[:, j, j] - changes[:, i, i]) ** 2 + 4 * changes[:, i, j] ** 2
+                gap = abs(self._moments[j] - self._moments[i])
+                apart[i, j] = i != j and gap > CLOSE * np.sqrt(spread.sum()) and gap > 1e-9 * self._moments[2]
+        return apart
+
+
+def _body(numbers: Floats) -> RigidBody:
+    """Make a body; what a lamina or rod lacks by rounding is none."""
+    return _core.RigidBody(float(numbers[0]), _symmetric(numbers[4:]), numbers[1:4], rtol=1e-13)
+
+
+def _joint_covariance(body: RigidBody | None, arguments: Sequence[Uncertain]) -> Floats:
     """Of the ten numbers and all others, by the variables that they depend on."""
     columns: dict[tuple[int, ...], int] = {}
     rows: list[dict[int, float]] = [{} for _ in range(10)]
-    state = body._doubts()
+    state = None if body is None else body._doubts()
     if state is not None:
         for words, tangent in zip(state["variables"].tolist(), state["tangents"].tolist(), strict=True):
             column = columns.setdefault(tuple(words), len(columns))
@@ -143,11 +222,6 @@ def _joint_covariance(body: RigidBody, arguments: Sequence[Uncertain]) -> Floats
     return factor @ factor.T
 
 
-def _body(numbers: Floats) -> RigidBody:
-    mass, center, elements = float(numbers[0]), numbers[1:4], numbers[4:]
-    return _core.RigidBody(mass, _symmetric(elements), center)
-
-
 def _symmetric(elements: Floats) -> Floats:
     tensor = np.zeros((3, 3))
     for (i, j), element in zip(ORDER, elements, strict=True):
@@ -155,38 +229,12 @@ def _symmetric(elements: Floats) -> Floats:
     return tensor
 
 
-def _pseudo_inertia(numbers: Floats, point: Floats) -> Floats:
-    """∫ (r; 1)(r; 1)ᵀ dm, r from a point."""
-    mass, arm, tensor = numbers[0], numbers[1:4] - point, _symmetric(numbers[4:])
-    matrix = np.zeros((4, 4))
-    matrix[:3, :3] = 0.5 * np.trace(tensor) * np.eye(3) - tensor + mass * np.outer(arm, arm)
-    matrix[:3, 3] = matrix[3, :3] = mass * arm
-    matrix[3, 3] = mass
-    return matrix
-
-
-def _of_pseudo_inertia(matrix: Floats, point: Floats) -> RigidBody:
-    mass = float(matrix[3, 3])
-    arm = matrix[:3, 3] / mass
-    second = matrix[:3, :3] - mass * np.outer(arm, arm)
-    values, vectors = np.linalg.eigh(0.5 * (second + second.T))
-    s = np.maximum(values, 0.0)
-    moments = s.sum() - s
-    if np.linalg.det(vectors) < 0:
-        vectors[:, 0] *= -1.0
-    return _core.RigidBody.from_principal(mass, moments, vectors, arm + point)
-
-
-def _square_root(matrix: Floats) -> tuple[Floats, Floats, Floats]:
-    """Give a square root, its pseudo-inverse, and the projection on its range."""
-    scale = np.sqrt(np.diagonal(matrix))
-    scale = np.where(scale > 1e-7 * scale[:3].max(), scale, scale[:3].max())
-    scale[3] = np.sqrt(matrix[3, 3])
-    values, vectors = np.linalg.eigh(matrix / np.outer(scale, scale))
-    kept = values > 1e-12 * values[-1]
-    roots = np.sqrt(np.where(kept, values, 0.0))
-    inverse = np.where(kept, 1.0 / np.where(kept, roots, 1.0), 0.0)
-    root = scale[:, None] * (vectors * roots)  # J = U Uᵀ
-    back = (vectors * inverse) / scale[:, None]  # δU = δJ · back, where U has a range
-    projection = scale[:, None] * (vectors[:, kept] @ vectors[:, kept].T) / scale[None, :]
-    return root, back, projection
+def _rotation(angles: Floats) -> Floats:
+    """Give the exponential of an antisymmetric matrix (Rodrigues)."""
+    squared = angles @ angles
+    angle = float(np.sqrt(max(0.0, -0.5 * np.trace(squared))))
+    if angle < 1e-4:  # the next terms are below rounding
+        first, second = 1 - angle**2 / 6, 0.5 - angle**2 / 24
+    else:
+        first, second = np.sin(angle) / angle, (1 - np.cos(angle)) / angle**2
+    return np.asarray(np.eye(3) + first * angles + second * squared)

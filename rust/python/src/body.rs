@@ -1,10 +1,15 @@
 //! The class `RigidBody`: one body, or a stack of them. Its methods are in `rigid_body`.
 
+use std::sync::Arc;
+
 use polhode::RigidBody;
+use polhode::uncertainty::Doubt;
 use pyo3::prelude::*;
 
 use crate::stack::Stack;
-use crate::uncertain::Doubts;
+
+/// The doubts of each body of a stack, or none where all is taken as known.
+pub(crate) type Doubts = Option<Arc<Vec<Doubt>>>;
 
 /// A rigid body, or a stack of bodies: mass, centre of mass C, inertia tensor about C.
 ///

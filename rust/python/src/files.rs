@@ -64,8 +64,8 @@ pub(crate) fn stream_solid(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(PyRigidBody, usize, f64, f64)> {
     let _deeper = Deeper::run("from_file")?;
-    let of = |weight: &Option<Weight>| weight.as_ref().map(|weight| weight.value);
-    let amount = amount(of(&mass), of(&density))?;
+    let of = |weight: Option<&Weight>| weight.map(|weight| weight.value);
+    let amount = amount(of(mass.as_ref()), of(density.as_ref()))?;
     let options = Options {
         orient,
         check: true,

@@ -10,9 +10,8 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, read, try_rows, write, write_of};
 use crate::body::PyRigidBody;
-use crate::rigid_body::of_numbers;
 use crate::stack::{Broadcast, Stack};
-use crate::uncertain::{Quantity, carried, quantity, quantity_or};
+use crate::uncertain::{Quantity, carried, of_numbers, quantity, quantity_or};
 
 type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Array<'py> = PyResult<Floats<'py>>;

@@ -146,8 +146,29 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         f: impl Fn([usize; K]) -> Result<R, Error> + Sync,
     ) -> PyResult<Stack<R>> {
         if self.len() > BLOCK {
-            return self.on_all_cores(py, BLOCK, |row, _| f(row));
+            return self.on_all_cores(py, BLOCK, None, |row, _| f(row));
         }
+        self.one_by_one(py, f)
+    }
+
+    /// As [`try_map`](Self::try_map) of rows that are costly to copy: a blank one stands in each place until it is filled.
+    pub(crate) fn try_map_into<R: Clone + Send>(
+        &self,
+        py: Python<'_>,
+        blank: R,
+        f: impl Fn([usize; K]) -> Result<R, Error> + Sync,
+    ) -> PyResult<Stack<R>> {
+        if self.len() > BLOCK {
+            return self.on_all_cores(py, BLOCK, Some(blank), |row, _| f(row));
+        }
+        self.one_by_one(py, f)
+    }
+
+    fn one_by_one<R>(
+        &self,
+        py: Python<'_>,
+        f: impl Fn([usize; K]) -> Result<R, Error>,
+    ) -> PyResult<Stack<R>> {
         let mut rows = Vec::with_capacity(self.len());
         let mut beat = Beat::new(py);
         for (row, operands) in self.rows().enumerate() {
@@ -169,13 +190,14 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         py: Python<'_>,
         f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
     ) -> PyResult<Stack<R>> {
-        self.on_all_cores(py, if self.len() > BLOCK { BLOCK } else { 1 }, f)
+        self.on_all_cores(py, if self.len() > BLOCK { BLOCK } else { 1 }, None, f)
     }
 
     fn on_all_cores<R: Clone + Send>(
         &self,
         py: Python<'_>,
         size: usize,
+        blank: Option<R>,
         f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
     ) -> PyResult<Stack<R>> {
         let count = self.len();
@@ -186,10 +208,13 @@ impl<'a, const K: usize> Broadcast<'a, K> {
             if count == 0 {
                 return Ok(());
             }
-            // The first row stands in each place until it is filled: no row is written twice over as many pages.
+            // The first row stands in each place until it is filled, unless there is a blank one: no row is written twice
+            // over as many pages.
             let first = f(self.operands(0), watch).map_err(|error| Halt::Failed((0, error)))?;
+            let blank = blank.unwrap_or_else(|| first.clone());
+            rows.push(first);
             while rows.len() < count {
-                rows.resize(count.min(rows.len() + BLOCK), first.clone());
+                rows.resize(count.min(rows.len() + BLOCK), blank.clone());
                 if watch(0.0).is_break() {
                     return Err(Halt::Stopped);
                 }

@@ -34,14 +34,31 @@ pub enum UncertaintyFault {
     },
     /// Correlations beyond one.
     #[error(
-        "covariance must be positive semidefinite: number {index} would have {left:.3e} of its variance left beside what the \
-         numbers before it explain"
+        "covariance must be positive semidefinite: beside what the other numbers explain, number {index} would be left with \
+         {left:.3e}"
     )]
     NotPositive {
-        /// The first number whose correlations with those before it are too strong.
+        /// A number whose correlations with the others are too strong.
         index: usize,
-        /// What is left of its variance, relative to it.
+        /// What is left of its variance or of a correlation, relative to it.
         left: f64,
+    },
+    /// Two elements that are one number, with doubts of their own each.
+    #[error(
+        "{what} must be symmetric in its sigmas too: elements [{row}][{column}] and [{column}][{row}] are one number, and have \
+         the sigmas {a:?} and {b:?} or are not fully correlated"
+    )]
+    Mirrored {
+        /// The argument.
+        what: &'static str,
+        /// Row of the first.
+        row: usize,
+        /// Column of the first.
+        column: usize,
+        /// Its sigma.
+        a: f64,
+        /// That of its mirror image.
+        b: f64,
     },
     /// A variance that no body can have.
     #[error(
@@ -66,6 +83,7 @@ impl UncertaintyFault {
             Self::NoBody { .. } => Kind::Inertia,
             Self::NegativeVariance { .. }
             | Self::NotSymmetric { .. }
+            | Self::Mirrored { .. }
             | Self::NotPositive { .. } => Kind::Argument,
         }
     }

@@ -6,7 +6,6 @@ use super::body::RigidBody;
 use super::error_bound::ErrorBound;
 use super::provenance::{Checks, Provenance, Source};
 use super::second_moment::SecondMoment;
-use super::ten::Size;
 use super::units::Units;
 use crate::error::{BodyFault, Error, finite, finite_of_body};
 use crate::numerics::number::Real;
@@ -145,21 +144,6 @@ impl Unit {
         let [a, b] = halves(-self.0);
         vector.scaled(a).scaled(b)
     }
-}
-
-/// The body with C at the origin whose second moment per unit mass is diagonal in the body axes.
-pub(super) fn diagonal<X: Size>(
-    unit: Unit,
-    measure: Measure<X>,
-    amount: Amount,
-    per_mass: [X; 3],
-) -> Result<X::Body, Error> {
-    X::shape(
-        unit,
-        measure,
-        amount,
-        &Matrix3::from_diagonal(&Vector3::from(per_mass)),
-    )
 }
 
 /// The body with C at the origin whose second moment per unit mass is this, in the unit of its lengths squared.

@@ -6,12 +6,15 @@
 //! - `δC = Σ (δm_k d_k + m_k δC_k)/m`,
 //! - `δI = Σ δI_k + δm_k (d_k² 1 − d_k d_kᵀ) + m_k (2 d_k·δC_k 1 − δC_k d_kᵀ − d_k δC_kᵀ)`,
 //!
-//! where δC itself drops out of δI, since `Σ m_k d_k = 0`.
+//! where δC itself drops out of δI, since `Σ m_k d_k = 0`. To second order, along a line on which the parts move by
+//! `(δm_k, δC_k, δI_k) ε + (β…) ε²`, the same of the β and, with `F = Σ (δm_k d_k + m_k δC_k)`,
+//!
+//! - C bends by `Σ δm_k δC_k/m − F Σ δm_k/m²`,
+//! - I bends by `Σ [m_k (δC_k² 1 − δC_k δC_kᵀ) + δm_k (2 d_k·δC_k 1 − δC_k d_kᵀ − d_k δC_kᵀ)] − (F² 1 − F Fᵀ)/m`.
 
-use super::doubt::{Doubt, Tangent};
+use super::doubt::{Doubt, Tangent, plus};
 use super::variable::PROBES;
 use crate::mass::ten::Ten;
-use crate::numerics::parabola::Parabola;
 
 /// The doubts of bodies put together, each with the sign +1, or −1 where it is taken out.
 #[must_use]
@@ -19,13 +22,48 @@ pub fn together(parts: &[(f64, Ten<f64>, &Doubt)]) -> Doubt {
     let whole = Ten::together(parts.iter().map(|(sign, part, _)| (*sign, part)));
     let count = parts.iter().map(|(_, _, doubt)| doubt.tangents.len()).sum();
     let mut tangents = Vec::with_capacity(count);
+    let mut bends = [Tangent::default(); PROBES];
+    let mut first = [[0.0; 4]; PROBES]; // Σ δm, F
     for (sign, part, doubt) in parts {
         let share = Share::of(*sign, part, &whole);
         tangents.extend(
-            (doubt.tangents.iter()).map(|(variable, tangent)| (*variable, share.take(tangent))),
+            (doubt.tangents.iter()).map(|(variable, change)| (*variable, share.take(change))),
         );
+        for (probe, slope) in doubt.slopes().iter().enumerate() {
+            let of_part = plus(&share.take(&doubt.bends[probe]), &share.bend(slope));
+            bends[probe] = plus(&bends[probe], &of_part);
+            first[probe][0] += sign * slope.mass;
+            for k in 0..3 {
+                first[probe][1 + k] +=
+                    sign * (slope.mass * share.d[k] + part.mass * slope.center[k]);
+            }
+        }
     }
-    Doubt::of(tangents, bends(parts))
+    for (bend, [mass, F @ ..]) in bends.iter_mut().zip(first) {
+        let lever = moved(F, F, 0.5 / whole.mass);
+        for (place, F) in bend.center.iter_mut().zip(F) {
+            *place -= F * mass / (whole.mass * whole.mass);
+        }
+        for (element, less) in bend.inertia.iter_mut().zip(lever) {
+            *element -= less;
+        }
+    }
+    Doubt::of(tangents, bends)
+}
+
+/// `factor (2 a·b 1 − a bᵀ − b aᵀ)`, by elements.
+fn moved([x, y, z]: [f64; 3], [a, b, c]: [f64; 3], factor: f64) -> [f64; 6] {
+    let (xx, yy, zz) = (2.0 * x * a, 2.0 * y * b, 2.0 * z * c);
+    let cross = |x: f64, y: f64, a: f64, b: f64| -(x * b + y * a);
+    [
+        yy + zz,
+        xx + zz,
+        xx + yy,
+        cross(x, y, a, b),
+        cross(x, z, a, c),
+        cross(y, z, b, c),
+    ]
+    .map(|element| factor * element)
 }
 
 /// What a part does to the whole.
@@ -34,52 +72,114 @@ struct Share {
     mass: f64,
     d: [f64; 3],
     over: f64,
+    /// `d² 1 − d dᵀ`.
+    lever: [f64; 6],
 }
 
 impl Share {
     fn of(sign: f64, part: &Ten<f64>, whole: &Ten<f64>) -> Self {
+        let d = std::array::from_fn(|k| part.center[k] - whole.center[k]);
         Self {
             sign,
             mass: part.mass,
-            d: std::array::from_fn(|k| part.center[k] - whole.center[k]),
+            d,
             over: sign / whole.mass,
+            lever: moved(d, d, 0.5),
         }
     }
 
-    /// The whole's change by a change of the part.
+    /// The whole's change by a change of the part, to first order.
     fn take(&self, change: &Tangent) -> Tangent {
-        let ([x, y, z], [a, b, c]) = (self.d, change.center);
-        let (dm, m) = (change.mass, self.mass);
-        let (xx, yy, zz) = (
-            dm * x * x + 2.0 * m * x * a,
-            dm * y * y + 2.0 * m * y * b,
-            dm * z * z + 2.0 * m * z * c,
-        );
-        let cross = |x: f64, y: f64, a: f64, b: f64| -(dm * x * y + m * (x * b + y * a));
-        let arm = [
-            yy + zz,
-            xx + zz,
-            xx + yy,
-            cross(x, y, a, b),
-            cross(x, z, a, c),
-            cross(y, z, b, c),
-        ];
+        let by_place = moved(self.d, change.center, self.mass);
+        let arm = |k: usize| change.mass * self.lever[k] + by_place[k];
         Tangent {
-            mass: self.sign * dm,
-            center: std::array::from_fn(|k| self.over * (dm * self.d[k] + m * change.center[k])),
-            inertia: std::array::from_fn(|k| self.sign * (change.inertia[k] + arm[k])),
+            mass: self.sign * change.mass,
+            center: std::array::from_fn(|k| {
+                self.over * (change.mass * self.d[k] + self.mass * change.center[k])
+            }),
+            inertia: std::array::from_fn(|k| self.sign * (change.inertia[k] + arm(k))),
+        }
+    }
+
+    /// What the squares of a change of the part add to second order.
+    fn bend(&self, change: &Tangent) -> Tangent {
+        let by_both = moved(self.d, change.center, change.mass);
+        let by_place = moved(change.center, change.center, 0.5 * self.mass);
+        Tangent {
+            mass: 0.0,
+            center: change.center.map(|c| self.over * change.mass * c),
+            inertia: std::array::from_fn(|k| self.sign * (by_both[k] + by_place[k])),
         }
     }
 }
 
-/// The second-order terms of the whole along the probes.
-fn bends(parts: &[(f64, Ten<f64>, &Doubt)]) -> [Tangent; PROBES] {
-    let along: Vec<(f64, [Ten<Parabola>; PROBES])> = parts
-        .iter()
-        .map(|(sign, part, doubt)| (*sign, doubt.probes(part)))
-        .collect();
-    std::array::from_fn(|probe| {
-        Ten::together(along.iter().map(|(sign, part)| (*sign, &part[probe])))
-            .map(|number| number.bend)
-    })
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+    use crate::mass::ten::Size;
+    use crate::uncertainty::{Change, Follow, Given, Source, follow, follow::directly};
+
+    /// Two bodies put together, or one taken out of the other, by the general way.
+    struct Both(f64);
+
+    impl Change for Both {
+        fn of<X: Size<Body = Ten<X>>>(&self, bodies: &[Ten<X>], _: &[X]) -> Result<Ten<X>, Error> {
+            Ok(Ten::together(
+                [(1.0, &bodies[0]), (self.0, &bodies[1])].into_iter(),
+            ))
+        }
+    }
+
+    #[test]
+    fn parts_by_themselves_are_what_the_sum_is_by_derivatives() {
+        let doubt = |seed: u32| {
+            let sigma: Vec<f64> = (0..10)
+                .map(|k| 0.01 * f64::from((7 * k + seed) % 5 + 1))
+                .collect();
+            let given =
+                Given::independent(&sigma, Source::named(&seed.to_string())).expect("sigmas");
+            directly(&given.forms.try_into().expect("ten"))
+        };
+        let big = Ten::from_array(&[9.0, 1.0, -2.0, 0.5, 20.0, 25.0, 30.0, 1.0, -2.0, 0.3]);
+        let small = Ten::from_array(&[2.0, 0.7, -1.0, 0.9, 1.0, 1.5, 2.0, 0.1, 0.2, -0.1]);
+        for sign in [1.0, -1.0] {
+            let (a, b) = (doubt(1), doubt(2));
+            let found = together(&[(1.0, big, &a), (sign, small, &b)]);
+            let bodies = &[(big, &a), (small, &b)];
+            let expected = follow(
+                &Both(sign),
+                Follow {
+                    bodies,
+                    numbers: &[],
+                },
+            )
+            .expect("sum");
+            let close = |x: &Tangent, y: &Tangent| {
+                for (x, y) in x.to_array().into_iter().zip(y.to_array()) {
+                    assert!((x - y).abs() < 1e-14, "{x} {y}");
+                }
+            };
+            assert_eq!(found.tangents.len(), 20);
+            for (x, y) in found.tangents.iter().zip(&expected.tangents) {
+                assert_eq!(x.0, y.0);
+                close(&x.1, &y.1);
+            }
+            found
+                .bends
+                .iter()
+                .zip(&expected.bends)
+                .for_each(|(x, y)| close(x, y));
+            // Taken out and put back it is as it was, and every bit of the part's doubt is gone.
+            let rest = Ten::together([(1.0, &big), (sign, &small)].into_iter());
+            let back = together(&[(1.0, rest, &found), (-sign, small, &b)]);
+            for (_, change) in back
+                .tangents
+                .iter()
+                .filter(|(v, _)| b.tangents.iter().any(|(w, _)| w == v))
+            {
+                assert!(change.to_array().iter().all(|x| x.abs() < 1e-15));
+            }
+        }
+    }
 }

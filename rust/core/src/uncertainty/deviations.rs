@@ -1,27 +1,35 @@
 //! Standard deviations of what a body has, and where the first order is not enough for them.
 //!
 //! With `I = V diag(I_k) Vᵀ` and a change `W = Vᵀ δI V` of the tensor in its principal axes, to first order `δI_k = W_kk`, and
-//! the axes turn by the small rotation φ about themselves with `[φ]×_ij = X_ij = W_ij/(I_j − I_i)`. To second order, along a
-//! line on which the tensor is `Λ + ε W + ε² B`, with W° the part of W off the diagonal and `[P, Q] = P Q − Q P`,
+//! the axes turn by the small rotation φ about themselves with `[φ]×_ij = W_ij/(I_j − I_i)`.
 //!
-//! `Z = B + [W, X] − ½ [W°, X]`: the moments bend by `Z_kk`, the rotation by `Z_ij/(I_j − I_i)`.
+//! Whether that is enough is seen along the probes. A step forward and one back make of a number x the terms
+//! `even = ½ (x₊ + x₋) − x₀` and `odd = ½ (x₊ − x₋)`, where to first order even = 0 and odd = l. A variance is
+//! `E[l²] + 2 E[l (odd − l)] + var(even) + …`: the first order is right within a percent when the root mean square of the even
+//! terms stays below a tenth of σ, and the mean of `l (odd − l)` below a hundredth of σ². Moments that are about to change
+//! places have no such expansion: their gap has to be wide beside its own deviation.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::doubt::Doubt;
 use super::variable::PROBES;
 use crate::mass::body::RigidBody;
 use crate::mass::ten::Ten;
-use crate::principal::PrincipalAxes;
 use crate::principal::derivative::DEGENERATE_RTOL;
+use crate::principal::{PrincipalAxes, principal_axes};
 
-/// A first-order deviation counts as right within a percent as long as the second-order terms have less than this fraction of
-/// it: their squares add.
-const LINEAR: f64 = 0.1;
+/// Largest root mean square of the even terms, relative to σ.
+const EVEN: f64 = 0.1;
+/// Largest mean of `l (odd − l)`, relative to σ².
+const ODD: f64 = 0.01;
+/// Least gap between moments for them to be linear, and for the axes: in deviations of the gap.
+const GAPS: [f64; 2] = [2.0, 3.5];
 /// Relative to the size of what is deviated from: smaller terms are rounding.
 const ROUNDING: f64 = 1e-13;
 /// An angle of more than this deviation, in radians, says nothing of where an axis is.
 const ANYWHERE: f64 = 1.0;
+/// The two moments across each axis.
+const ACROSS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
 
 /// Standard deviations of a body's numbers, and whether each is linear enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,122 +53,151 @@ pub struct Deviations {
 pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
     let numbers = Ten::of(body);
     let principal = body.principal();
-    let mut own = [Spread::default(); 10];
-    let (mut moments, mut axes) = ([Spread::default(); 3], [Spread::default(); 3]);
+    let largest = principal.moments[2];
+    let mut own = [Terms::default(); 10];
+    let (mut moments, mut axes) = ([Terms::default(); 3], [Terms::default(); 3]);
+    // The variance of the gap between each two moments.
+    let mut spread = [0.0; 3];
     for (_, change) in &doubt.tangents {
         add(&mut own, change.to_array());
         let turned = Turned::of(&principal, &change.tensor());
         add(&mut moments, turned.moments());
         add(&mut axes, turned.angles());
+        for (sum, (i, j)) in spread.iter_mut().zip(ACROSS) {
+            let w = &turned.change;
+            *sum += (w[(j, j)] - w[(i, i)]).powi(2) + 4.0 * w[(i, j)] * w[(i, j)];
+        }
     }
-    for along in doubt.probes(&numbers) {
-        bend(&mut own, along.map(|number| number.bend).to_array());
-        let [slope, curve] = [
-            along.map(|number| number.slope),
-            along.map(|number| number.bend),
-        ];
-        let second = Turned::of(&principal, &slope.tensor()).bent(&curve.tensor());
-        bend(&mut moments, second.moments());
-        bend(&mut axes, second.angles());
+    let slopes = doubt.slopes();
+    for (slope, bend) in slopes.iter().zip(&doubt.bends) {
+        let zero = [0.0; 10];
+        probe(&mut own, zero, bend.to_array(), zero);
+        let first = Turned::of(&principal, &slope.tensor());
+        let [above, below] = [1.0, -1.0].map(|sign| {
+            let tensor = numbers.tensor() + slope.tensor() * sign + bend.tensor();
+            Stepped::from(&principal, &principal_axes(&tensor))
+        });
+        // A step of such a size may have its axes anywhere.
+        let half = |a: [f64; 3], b: [f64; 3], sign: f64| -> [f64; 3] {
+            std::array::from_fn(|k| 0.5 * (a[k] + sign * b[k]))
+        };
+        let evens = |of: fn(&Stepped) -> [f64; 3]| half(of(&above), of(&below), 1.0);
+        let odds = |of: fn(&Stepped) -> [f64; 3]| half(of(&above), of(&below), -1.0);
+        probe(
+            &mut moments,
+            first.moments(),
+            evens(|s| s.moments),
+            odds(|s| s.moments),
+        );
+        probe(
+            &mut axes,
+            first.angles(),
+            evens(|s| s.angles),
+            odds(|s| s.angles),
+        );
     }
-    // Of the two moments across each axis.
-    let gaps = [(1, 2), (0, 2), (0, 1)].map(|(i, j)| {
-        let gap = principal.moments[j] - principal.moments[i];
-        if gap > DEGENERATE_RTOL * principal.moments[2] {
-            gap
-        } else {
-            0.0
+    let gaps: [Gap; 3] = std::array::from_fn(|k| {
+        let (i, j) = ACROSS[k];
+        Gap {
+            width: principal.moments[j] - principal.moments[i],
+            deviation: if spread[k].sqrt() > ROUNDING * largest {
+                spread[k].sqrt()
+            } else {
+                0.0
+            },
         }
     });
-    let radius =
-        (principal.moments[2] / numbers.mass).sqrt() + Vector3::from(numbers.center).norm();
+    let is_apart = gaps.map(|gap| gap.width > DEGENERATE_RTOL * largest);
+    let radius = (largest / numbers.mass).sqrt() + Vector3::from(numbers.center).norm();
     let size = |k: usize| match k {
         0 => numbers.mass,
         1..4 => radius,
-        _ => principal.moments[2],
+        _ => largest,
     };
     Deviations {
-        numbers: own.map(|s| s.deviation()),
-        moments: moments.map(|s| s.deviation()),
+        numbers: own.map(Terms::deviation),
+        moments: moments.map(Terms::deviation),
         axes: std::array::from_fn(|k| {
             let sigma = axes[k].deviation();
-            let is_determined = gaps[k] > 0.0 && sigma < ANYWHERE;
+            let is_determined = is_apart[k] && sigma < ANYWHERE;
             if is_determined { sigma } else { f64::NAN }
         }),
         is_linear: std::array::from_fn(|k| own[k].is_linear(size(k))),
-        moments_are_linear: moments.map(|s| s.is_linear(principal.moments[2])),
-        axes_are_linear: std::array::from_fn(|k| gaps[k] > 0.0 && axes[k].is_linear(1.0)),
+        moments_are_linear: std::array::from_fn(|k| {
+            let beside = (0..3)
+                .filter(|&axis| axis != k)
+                .all(|axis| gaps[axis].is_wide(GAPS[0]));
+            beside && moments[k].is_linear(largest)
+        }),
+        axes_are_linear: std::array::from_fn(|k| {
+            is_apart[k] && gaps[k].is_wide(GAPS[1]) && axes[k].is_linear(1.0)
+        }),
     }
 }
 
-/// Squares of first- and of second-order terms.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Spread {
-    first: f64,
-    second: f64,
+/// The gap between two moments.
+#[derive(Clone, Copy)]
+struct Gap {
+    width: f64,
+    deviation: f64,
 }
 
-impl Spread {
+impl Gap {
+    fn is_wide(self, deviations: f64) -> bool {
+        self.width >= deviations * self.deviation
+    }
+}
+
+/// Sums of squares of first-order terms, and of what the probes add.
+#[derive(Clone, Copy, Debug, Default)]
+struct Terms {
+    first: f64,
+    even: f64,
+    odd: f64,
+}
+
+impl Terms {
     /// The standard deviation, to first order.
-    #[must_use]
-    pub fn deviation(self) -> f64 {
+    fn deviation(self) -> f64 {
         self.first.sqrt()
     }
 
     /// Whether it is enough, for a number of this size.
-    #[must_use]
-    pub fn is_linear(self, size: f64) -> bool {
-        let second = (self.second / PROBES as f64).sqrt();
-        second <= LINEAR * self.deviation() + ROUNDING * size
+    fn is_linear(self, size: f64) -> bool {
+        let even = (self.even / PROBES as f64).sqrt();
+        let odd = self.odd.abs() / PROBES as f64;
+        let noise = ROUNDING * size;
+        even <= EVEN * self.deviation() + noise && odd <= ODD * self.first + noise * noise
     }
 }
 
-fn add<const N: usize>(sums: &mut [Spread; N], terms: [f64; N]) {
+fn add<const N: usize>(sums: &mut [Terms; N], terms: [f64; N]) {
     for (sum, term) in sums.iter_mut().zip(terms) {
         sum.first += term * term;
     }
 }
 
-fn bend<const N: usize>(sums: &mut [Spread; N], terms: [f64; N]) {
-    for (sum, term) in sums.iter_mut().zip(terms) {
-        sum.second += term * term;
+/// Adds what a step forward and one back along a probe say, beside the first order.
+fn probe<const N: usize>(sums: &mut [Terms; N], first: [f64; N], even: [f64; N], odd: [f64; N]) {
+    for (k, sum) in sums.iter_mut().enumerate() {
+        sum.even += even[k] * even[k];
+        sum.odd += first[k] * (odd[k] - first[k]);
     }
 }
 
 /// A change of a tensor, in its principal axes.
 struct Turned {
-    /// W, or Z.
+    /// W.
     change: Matrix3<f64>,
-    /// `1/(I_j − I_i)`, infinite where they are equal.
-    over: Matrix3<f64>,
-    axes: Matrix3<f64>,
+    /// `I_k`.
+    moments: [f64; 3],
 }
 
 impl Turned {
     fn of(principal: &PrincipalAxes, change: &Matrix3<f64>) -> Self {
-        let close = DEGENERATE_RTOL * principal.moments[2];
-        let over = Matrix3::from_fn(|i, j| {
-            let gap = principal.moments[j] - principal.moments[i];
-            if gap.abs() <= close {
-                f64::INFINITY
-            } else {
-                1.0 / gap
-            }
-        });
         Self {
             change: principal.axes.tr_mul(&(change * principal.axes)),
-            over,
-            axes: principal.axes,
-        }
-    }
-
-    /// `X_ij`; infinite where it has to turn between equal moments.
-    fn turn(&self, i: usize, j: usize) -> f64 {
-        let w = self.change[(i, j)];
-        if i == j || w == 0.0 {
-            0.0
-        } else {
-            w * self.over[(i, j)]
+            moments: principal.moments,
         }
     }
 
@@ -168,21 +205,133 @@ impl Turned {
         std::array::from_fn(|k| self.change[(k, k)])
     }
 
-    /// φ.
+    /// φ; zero about an axis between equal moments, where there is none.
     fn angles(&self) -> [f64; 3] {
-        [self.turn(2, 1), self.turn(0, 2), self.turn(1, 0)]
+        let turn = |i: usize, j: usize| {
+            let gap = self.moments[j] - self.moments[i];
+            if gap.abs() > DEGENERATE_RTOL * self.moments[2] {
+                self.change[(i, j)] / gap
+            } else {
+                0.0
+            }
+        };
+        [turn(2, 1), turn(0, 2), turn(1, 0)]
+    }
+}
+
+/// What moments and axes have become after a step.
+struct Stepped {
+    /// By how much the moments are others.
+    moments: [f64; 3],
+    /// The rotation of the axes, about themselves.
+    angles: [f64; 3],
+}
+
+impl Stepped {
+    fn from(start: &PrincipalAxes, end: &PrincipalAxes) -> Self {
+        let mut turn = start.axes.tr_mul(&end.axes);
+        // Axes have no sense: each is taken as near as it can be, and the last one right-handed.
+        for k in 0..2 {
+            if turn[(k, k)] < 0.0 {
+                turn.column_mut(k).neg_mut();
+            }
+        }
+        let third = turn.column(0).cross(&turn.column(1));
+        turn.set_column(2, &third);
+        Self {
+            moments: std::array::from_fn(|k| end.moments[k] - start.moments[k]),
+            angles: Rotation3::from_matrix_unchecked(turn).scaled_axis().into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::uncertainty::Source;
+
+    fn body(moments: [f64; 3]) -> RigidBody {
+        RigidBody::from_principal(1.0, &moments, &Matrix3::identity(), &Vector3::zeros(), 0.0)
+            .expect("body")
     }
 
-    /// Z, for the bend B of the tensor.
-    fn bent(&self, bend: &Matrix3<f64>) -> Self {
-        let turn = Matrix3::from_fn(|i, j| self.turn(i, j));
-        let off = self.change - Matrix3::from_diagonal(&self.change.diagonal());
-        let commutator = |p: &Matrix3<f64>| p * turn - turn * p;
-        let own = self.axes.tr_mul(&(bend * self.axes));
-        Self {
-            change: own + commutator(&self.change) - commutator(&off) * 0.5,
-            over: self.over,
-            axes: self.axes,
+    /// One variable, by which the tensor's elements change so.
+    fn doubt(elements: [f64; 6]) -> Doubt {
+        let change = Ten {
+            inertia: elements,
+            ..Ten::default()
+        };
+        Doubt {
+            tangents: vec![(Source::named("one").variable(0), change)],
+            ..Doubt::default()
         }
+    }
+
+    #[test]
+    fn first_order_is_that_of_differences() {
+        let principal = body([2.0, 3.0, 4.0]).principal();
+        let slope = Matrix3::new(0.5, -0.3, 0.7, -0.3, 0.2, 0.4, 0.7, 0.4, -0.6);
+        let first = Turned::of(&principal, &slope);
+        let h = 1e-4;
+        let tensor = Matrix3::from_diagonal(&Vector3::from(principal.moments));
+        let [above, below] =
+            [h, -h].map(|h| Stepped::from(&principal, &principal_axes(&(tensor + slope * h))));
+        for k in 0..3 {
+            let moment = (above.moments[k] - below.moments[k]) / (2.0 * h);
+            let angle = (above.angles[k] - below.angles[k]) / (2.0 * h);
+            assert!(
+                (moment - first.moments()[k]).abs() < 1e-7
+                    && (angle - first.angles()[k]).abs() < 1e-7
+            );
+        }
+    }
+
+    #[test]
+    fn axes_between_equal_moments_are_not_determined() {
+        let doubt = doubt([1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let top = deviations(&body([1.0, 2.0, 2.0]), &doubt);
+        assert!(top.axes[0].is_nan() && top.axes[1] == 0.0 && top.axes[2] == 0.0);
+        assert_eq!(top.axes_are_linear, [false, true, true]);
+        // The two moments that are equal stay so: they are as linear as the other.
+        assert_eq!(
+            (top.moments, top.moments_are_linear),
+            ([1e-3, 0.0, 0.0], [true; 3])
+        );
+        let apart = deviations(&body([1.0, 2.0, 2.1]), &doubt);
+        assert_eq!((apart.axes, apart.axes_are_linear), ([0.0; 3], [true; 3]));
+    }
+
+    #[test]
+    fn moments_that_may_change_places_are_told_on_both_sides_of_the_limit() {
+        let doubt = doubt([0.0, 0.0, 0.01, 0.0, 0.0, 0.0]);
+        for (gap, moments) in [(0.99 * GAPS[0], false), (1.01 * GAPS[0], true)] {
+            let found = deviations(&body([1.0, 1.5, 1.5 + 0.01 * gap]), &doubt);
+            assert_eq!(found.moments_are_linear, [true, moments, moments]);
+        }
+        for (gap, axes) in [(0.99 * GAPS[1], false), (1.01 * GAPS[1], true)] {
+            let found = deviations(&body([1.0, 1.5, 1.5 + 0.01 * gap]), &doubt);
+            assert_eq!(found.axes_are_linear, [axes, true, true]);
+        }
+    }
+
+    #[test]
+    fn what_is_linear_is_told_on_both_sides_of_the_limits() {
+        let terms = |even: f64, odd: f64| Terms {
+            first: 1.0,
+            even: PROBES as f64 * even * even,
+            odd: PROBES as f64 * odd,
+        };
+        assert!(terms(0.99 * EVEN, 0.0).is_linear(1.0) && !terms(1.01 * EVEN, 0.0).is_linear(1.0));
+        for sign in [1.0, -1.0] {
+            assert!(
+                terms(0.0, sign * 0.99 * ODD).is_linear(1.0)
+                    && !terms(0.0, sign * 1.01 * ODD).is_linear(1.0)
+            );
+        }
+        let none = |even: f64| Terms {
+            first: 0.0,
+            ..terms(even, 0.0)
+        };
+        assert!(none(0.9 * ROUNDING).is_linear(1.0) && !none(1.1 * ROUNDING).is_linear(1.0));
     }
 }

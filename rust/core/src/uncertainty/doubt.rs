@@ -65,9 +65,9 @@ impl Doubt {
         sum
     }
 
-    /// The ten numbers along each probe, to second order.
+    /// The first-order terms along each probe.
     #[must_use]
-    pub fn probes(&self, numbers: &Ten<f64>) -> [Ten<Parabola>; PROBES] {
+    pub fn slopes(&self) -> [Tangent; PROBES] {
         let mut slopes = [[0.0; 10]; PROBES];
         for (variable, tangent) in &self.tangents {
             let tangent = tangent.to_array();
@@ -77,25 +77,41 @@ impl Doubt {
                 }
             }
         }
-        let numbers = numbers.to_array();
+        slopes.map(|slope| Tangent::from_array(&slope))
+    }
+
+    /// The ten numbers along each probe, to second order.
+    #[must_use]
+    pub fn probes(&self, numbers: &Ten<f64>) -> [Ten<Parabola>; PROBES] {
+        let (slopes, numbers) = (self.slopes(), numbers.to_array());
         std::array::from_fn(|probe| {
-            let bends = self.bends[probe].to_array();
+            let (slopes, bends) = (slopes[probe].to_array(), self.bends[probe].to_array());
             Ten::from_array(&std::array::from_fn(|k| Parabola {
                 value: numbers[k],
-                slope: slopes[probe][k],
+                slope: slopes[k],
                 bend: bends[k],
             }))
         })
+    }
+
+    /// The doubts after a linear map of the ten numbers.
+    #[must_use]
+    pub fn map(&self, linear: impl Fn(&Tangent) -> Tangent) -> Self {
+        Self {
+            tangents: (self.tangents.iter())
+                .map(|(variable, change)| (*variable, linear(change)))
+                .collect(),
+            bends: self.bends.map(|bend| linear(&bend)),
+        }
     }
 }
 
 /// The sum of two changes.
 #[must_use]
 pub fn plus(a: &Tangent, b: &Tangent) -> Tangent {
-    let b = b.to_array();
-    let mut k = 0;
-    a.map(|x| {
-        k += 1;
-        x + b[k - 1]
-    })
+    Tangent {
+        mass: a.mass + b.mass,
+        center: std::array::from_fn(|k| a.center[k] + b.center[k]),
+        inertia: std::array::from_fn(|k| a.inertia[k] + b.inertia[k]),
+    }
 }

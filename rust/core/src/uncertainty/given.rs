@@ -13,8 +13,8 @@ pub struct Given {
     pub forms: Vec<Form>,
 }
 
-/// By how much a correlation may exceed 1, and a variance that the others leave fall below zero: rounding.
-const ROUNDING: f64 = 1e-10;
+/// What is left of a variance, relative to it, that is rounding.
+const ROUNDING: f64 = 1e-13;
 
 impl Given {
     /// Independent numbers with these standard deviations; one without has no variable.
@@ -46,90 +46,51 @@ impl Given {
         Ok(Self { forms })
     }
 
-    /// Numbers with this covariance, by rows: each is a form of the variables of those before it and one of its own.
+    /// Numbers with this covariance, by rows: forms of as many variables as it has ranks.
     ///
     /// # Errors
     /// When the matrix is not symmetric, or some combination of the numbers would have a negative variance.
     pub fn correlated(covariance: &[f64], source: Source) -> Result<Self, Error> {
         let count = covariance.len().isqrt();
-        let at = |i: usize, j: usize| covariance[i * count + j];
-        let mut scale = Vec::with_capacity(count);
-        for i in 0..count {
-            for j in 0..count {
-                finite("covariance", at(i, j))?;
+        let (scale, mut rest) = correlations(covariance, count)?;
+        // Cholesky's decomposition of the correlations, so that numbers of any units stand side by side; the number with most of
+        // its variance left comes next, so that what is left at the end is rounding or no covariance.
+        let mut forms = vec![Form::new(); count];
+        for step in 0..count {
+            let left = |i: usize| rest[i * count + i];
+            let pivot = (0..count)
+                .max_by(|&i, &j| left(i).total_cmp(&left(j)))
+                .unwrap_or(0);
+            if left(pivot) <= ROUNDING {
+                break;
             }
-            if at(i, i) < 0.0 {
-                return Err(UncertaintyFault::NegativeVariance {
+            let root = left(pivot).sqrt();
+            let column: Vec<f64> = (0..count).map(|i| rest[i * count + pivot] / root).collect();
+            for i in 0..count {
+                for j in 0..count {
+                    rest[i * count + j] -= column[i] * column[j];
+                }
+                // What the pivot explains of itself is all of it.
+                rest[i * count + pivot] = 0.0;
+                rest[pivot * count + i] = 0.0;
+                if column[i] != 0.0 {
+                    forms[i].push((variable(source, step), scale[i] * column[i]));
+                }
+            }
+        }
+        // Where a variance is used up nothing may be left beside it.
+        for i in 0..count {
+            let worst = (0..count)
+                .map(|j| rest[i * count + j])
+                .fold(0.0_f64, |a, b| if b.abs() > a.abs() { b } else { a });
+            if worst.abs() > ROUNDING * (count as f64) {
+                return Err(UncertaintyFault::NotPositive {
                     index: i,
-                    variance: at(i, i),
+                    left: -worst.abs(),
                 }
                 .into());
             }
-            scale.push(at(i, i).sqrt());
         }
-        // Cholesky's decomposition of the correlations, so that numbers of any units stand side by side.
-        let mut lower = vec![0.0; count * count];
-        for i in 0..count {
-            for j in 0..=i {
-                let both = scale[i] * scale[j];
-                if (at(i, j) - at(j, i)).abs() > ROUNDING * both.max(f64::MIN_POSITIVE) {
-                    let (a, b) = (at(i, j), at(j, i));
-                    return Err(UncertaintyFault::NotSymmetric {
-                        row: i,
-                        column: j,
-                        a,
-                        b,
-                    }
-                    .into());
-                }
-                let done: f64 = (0..j)
-                    .map(|k| lower[i * count + k] * lower[j * count + k])
-                    .sum();
-                let correlation = if both == 0.0 {
-                    if at(i, j) != 0.0 {
-                        return Err(UncertaintyFault::NotPositive {
-                            index: i,
-                            left: -at(i, j).abs(),
-                        }
-                        .into());
-                    }
-                    0.0
-                } else {
-                    at(i, j) / scale[i] / scale[j]
-                };
-                let rest = correlation - done;
-                lower[i * count + j] = if i == j {
-                    let own = if scale[i] == 0.0 { 0.0 } else { 1.0 - done };
-                    if own < -ROUNDING {
-                        return Err(UncertaintyFault::NotPositive {
-                            index: i,
-                            left: own,
-                        }
-                        .into());
-                    }
-                    if own <= ROUNDING { 0.0 } else { own.sqrt() }
-                } else if lower[j * count + j] == 0.0 {
-                    if rest.abs() > ROUNDING.sqrt() {
-                        return Err(UncertaintyFault::NotPositive {
-                            index: i,
-                            left: -rest.abs(),
-                        }
-                        .into());
-                    }
-                    0.0
-                } else {
-                    rest / lower[j * count + j]
-                };
-            }
-        }
-        let forms = (0..count)
-            .map(|i| {
-                (0..=i)
-                    .map(|j| (variable(source, j), scale[i] * lower[i * count + j]))
-                    .filter(|&(_, step)| step != 0.0)
-                    .collect()
-            })
-            .collect();
         Ok(Self { forms })
     }
 
@@ -146,6 +107,50 @@ impl Given {
             })
             .sum()
     }
+}
+
+/// Standard deviations, and the matrix of correlations by rows.
+fn correlations(covariance: &[f64], count: usize) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    let at = |i: usize, j: usize| covariance[i * count + j];
+    for i in 0..count {
+        for j in 0..count {
+            finite("covariance", at(i, j))?;
+        }
+        if at(i, i) < 0.0 {
+            return Err(UncertaintyFault::NegativeVariance {
+                index: i,
+                variance: at(i, i),
+            }
+            .into());
+        }
+    }
+    let scale: Vec<f64> = (0..count).map(|i| at(i, i).sqrt()).collect();
+    let mut matrix = vec![0.0; count * count];
+    for i in 0..count {
+        for j in 0..count {
+            let (a, b) = (at(i, j), at(j, i));
+            if (a - b).abs() > 1e-12 * (scale[i] * scale[j]) {
+                return Err(UncertaintyFault::NotSymmetric {
+                    row: i,
+                    column: j,
+                    a,
+                    b,
+                }
+                .into());
+            }
+            if scale[i] > 0.0 && scale[j] > 0.0 {
+                matrix[i * count + j] = 0.5 * (a / scale[i] / scale[j] + b / scale[i] / scale[j]);
+            } else if a != 0.0 {
+                // Of a number that is known, with another.
+                return Err(UncertaintyFault::NotPositive {
+                    index: i.max(j),
+                    left: -a.abs(),
+                }
+                .into());
+            }
+        }
+    }
+    Ok((scale, matrix))
 }
 
 /// Component `index` of a source, of which there are fewer than 2³².
@@ -177,6 +182,11 @@ mod tests {
     fn what_is_no_covariance_is_told() {
         let source = Source::fresh();
         let fault = |p: &[f64]| Given::correlated(p, source).expect_err("no covariance");
+        let weak = [1.0, 1.0, 0.0, 1.0, 1.0, 1e-6, 0.0, 1e-6, 1.0];
+        assert!(matches!(
+            fault(&weak),
+            Error::Uncertainty(UncertaintyFault::NotPositive { .. })
+        ));
         for p in [[1.0, 1.1, 1.1, 1.0], [0.0, 1.0, 1.0, 1.0]] {
             assert!(matches!(
                 fault(&p),

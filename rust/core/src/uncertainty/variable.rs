@@ -6,10 +6,12 @@ use std::sync::Mutex;
 
 /// A draw: where a doubt comes from. What comes from one source stays one source, in pickles and files too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Source(u128);
-
-/// Bits of a variable that count the components of its source.
-const INDEX: u32 = 32;
+pub struct Source {
+    /// Of the process that made it, or of its name.
+    origin: u64,
+    /// Which of that process, or more of the name.
+    number: u32,
+}
 
 impl Source {
     /// A source that nothing else is.
@@ -26,26 +28,36 @@ impl Source {
             *made = (process, random(), 0);
         }
         made.2 += 1;
-        Self(u128::from(made.1) << 64 | u128::from(made.2) << INDEX)
+        Self {
+            origin: made.1,
+            number: made.2,
+        }
     }
 
     /// The source of this name: the same wherever it is named.
     #[must_use]
     pub fn named(name: &str) -> Self {
-        // FNV-1a of 128 bits; its upper 96 are kept.
-        let hash = name.bytes().fold(
-            0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128,
-            |hash, byte| {
-                (hash ^ u128::from(byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b)
-            },
-        );
-        Self(hash >> INDEX << INDEX)
+        // FNV-1a of 64 bits, of the name and of the name once more: 96 bits tell names apart.
+        let hash = |start: u64| {
+            name.bytes().fold(start, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+            })
+        };
+        let origin = hash(0xcbf2_9ce4_8422_2325);
+        let [.., a, b, c, d] = mixed(hash(mixed(origin))).to_be_bytes();
+        Self {
+            origin,
+            number: u32::from_be_bytes([a, b, c, d]),
+        }
     }
 
     /// Component `index` of the draw.
     #[must_use]
     pub fn variable(self, index: u32) -> Variable {
-        Variable(self.0 | u128::from(index))
+        Variable {
+            origin: self.origin,
+            place: u64::from(self.number) << 32 | u64::from(index),
+        }
     }
 }
 
@@ -56,20 +68,24 @@ fn random() -> u64 {
 
 /// A standard normal variable, independent of all others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Variable(u128);
+pub struct Variable {
+    origin: u64,
+    /// The number of its source, and its own in that.
+    place: u64,
+}
 
 /// How many directions in the space of all variables are probed to second order.
 pub const PROBES: usize = 8;
 /// The steps that each variable takes along the probes, in a place and with a sign of its own: their mean square is 1 and
 /// their mean fourth power 3, as of a normal variable.
-const STEPS: [f64; 2] = [1.8572802003960462, 0.4283729905961323];
+const STEPS: [f64; 2] = [1.857_280_200_396_046_2, 0.428_372_990_596_132_3];
 
 impl Variable {
     /// The step of the variable along each of the probes.
     #[must_use]
     pub fn steps(self) -> [f64; PROBES] {
         // Without the random part, so that the same program finds the same.
-        let bits = mixed(self.0 as u64);
+        let bits = mixed(self.place);
         let first = (bits & 7) as usize;
         let second = (first + 1 + (bits >> 3 & 0xffff) as usize % 7) % PROBES;
         std::array::from_fn(|probe| {
@@ -85,13 +101,13 @@ impl Variable {
     /// The two halves of its number.
     #[must_use]
     pub fn to_words(self) -> [u64; 2] {
-        [(self.0 >> 64) as u64, self.0 as u64]
+        [self.origin, self.place]
     }
 
     /// From the two halves.
     #[must_use]
-    pub fn from_words([high, low]: [u64; 2]) -> Self {
-        Self(u128::from(high) << 64 | u128::from(low))
+    pub fn from_words([origin, place]: [u64; 2]) -> Self {
+        Self { origin, place }
     }
 }
 

@@ -6,10 +6,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyNotImplemented, PyTuple};
 
 use crate::arrays::numpy;
-use crate::body::PyRigidBody;
+use crate::body::{Doubts, PyRigidBody};
 use crate::indexing::{picked_rows, to_index};
 use crate::stack::Broadcast;
-use crate::uncertain::{Doubts, carried};
+use crate::uncertain::carried;
 
 #[pymethods]
 impl PyRigidBody {

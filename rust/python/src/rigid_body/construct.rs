@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::uncertainty::{
-    Change, Doubt, Follow, FromPrincipal, FromTensor, FromTensorAboutOrigin, follow,
-};
+use polhode::uncertainty::{FromPrincipal, FromTensor, FromTensorAboutOrigin};
 use polhode::{Error, RigidBody};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -18,7 +16,7 @@ use crate::hints::refuse_unknown;
 use crate::interrupt::Beat;
 use crate::memory;
 use crate::stack::{BLOCK, Broadcast, Stack, extend};
-use crate::uncertain::{Number, Quantity, carried, quantity, quantity_or, symmetric};
+use crate::uncertain::{Quantity, carried, of_numbers, quantity, quantity_or, symmetric};
 
 /// An optional argument of any array-like kind.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -79,7 +77,12 @@ impl PyRigidBody {
         })?;
         let is_uncertain = mass.is_uncertain() || tensor.is_uncertain() || center.is_uncertain();
         let doubts = carried(py, &grid, is_uncertain, |[m, i, c]| {
-            let numbers = [&mass.row(m)[..], &center.row(c), &symmetric(&tensor.row(i))].concat();
+            let numbers = [
+                &mass.row(m)[..],
+                &center.row(c),
+                &symmetric(name, &tensor.row(i))?,
+            ]
+            .concat();
             if name == "inertia" {
                 of_numbers(&FromTensor, &numbers)
             } else {
@@ -289,15 +292,4 @@ impl PyRigidBody {
         });
         Ok(Self::doubtful(Stack { shape, rows }, doubts))
     }
-}
-
-/// The doubts of a body that is given by numbers.
-pub(crate) fn of_numbers(change: &impl Change, numbers: &[Number<'_>]) -> Result<Doubt, Error> {
-    follow(
-        change,
-        Follow {
-            bodies: &[],
-            numbers,
-        },
-    )
 }

@@ -98,7 +98,7 @@ impl PyRigidBody {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = py.get_type::<Self>().getattr("_from_numbers")?;
         let numbers = write_of(py, &self.bodies, RigidBody::to_array)?.into_any();
-        let state = match self._doubts(py)? {
+        let state = match self.stored_doubts(py)? {
             None => PyTuple::new(py, [numbers])?,
             Some(doubts) => PyTuple::new(py, [numbers, doubts.into_any()])?,
         };

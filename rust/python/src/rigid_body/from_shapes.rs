@@ -82,7 +82,7 @@ impl PyRigidBody {
         orient: bool,
         check: bool,
     ) -> PyResult<Self> {
-        let amount = amount(number(&mass), number(&density))?;
+        let amount = amount(number(mass.as_ref()), number(density.as_ref()))?;
         let (vertices, uncertain) = &value_of(vertices)?;
         if uncertain.is_some() && (closure.is_some() || orient) {
             return Err(PyTypeError::new_err(
@@ -186,7 +186,8 @@ impl PyRigidBody {
         mass: Option<Weight>,
         thickness: Option<f64>,
     ) -> PyResult<Self> {
-        let [own, per_area, per_volume] = [&mass, &areal_density, &density].map(number);
+        let [own, per_area, per_volume] =
+            [&mass, &areal_density, &density].map(|weight| number(weight.as_ref()));
         let amount = match (thickness, per_area, per_volume) {
             (None, _, None) => amount_per("areal_density", own, per_area)?,
             (None, _, Some(_)) => {
@@ -248,7 +249,11 @@ impl PyRigidBody {
         linear_density: Option<Weight>,
         mass: Option<Weight>,
     ) -> PyResult<Self> {
-        let amount = amount_per("linear_density", number(&mass), number(&linear_density))?;
+        let amount = amount_per(
+            "linear_density",
+            number(mass.as_ref()),
+            number(linear_density.as_ref()),
+        )?;
         let points: Stack<[f64; 3]> = read_list(points, "points", "..., n")?;
         let [shape @ .., n] = &points.shape[..] else {
             return Err(PyValueError::new_err("points: expected a list of points"));
@@ -262,8 +267,8 @@ impl PyRigidBody {
 }
 
 /// The value of an amount.
-fn number(weight: &Option<Weight>) -> Option<f64> {
-    weight.as_ref().map(|weight| weight.value)
+fn number(weight: Option<&Weight>) -> Option<f64> {
+    weight.map(|weight| weight.value)
 }
 
 /// Exactly one of the mass in all and a mass per length or area, under its own name.

@@ -12,7 +12,7 @@ mod motion;
 mod outcome;
 mod outside;
 mod properties;
+mod sigma;
 mod simulate;
+mod stored;
 mod trust;
-
-pub(crate) use construct::of_numbers;

@@ -188,9 +188,15 @@ impl PyRigidBody {
         let grid = self.with("displacement", &d.values)?;
         let moved = grid.try_map(py, |[b, i]| self.bodies[b].translated(&d.values[i]))?;
         let is_uncertain = self.doubts.is_some() || d.is_uncertain();
-        let doubts = carried(py, &grid, is_uncertain, |[b, i]| {
-            self.changed(b, &Translated, &d.row(i))
-        })?;
+        let doubts = if d.is_uncertain() {
+            carried(py, &grid, is_uncertain, |[b, i]| {
+                self.changed(b, &Translated, &d.row(i))
+            })?
+        } else if moved.shape == self.bodies.shape {
+            self.doubts.clone()
+        } else {
+            self.doubts_of(grid.rows().map(|[b, _]| b))
+        };
         Ok(Self::doubtful(moved, doubts))
     }
 
@@ -218,6 +224,11 @@ impl PyRigidBody {
         let turned = grid.try_map(py, |[b, r]| self.bodies[b].rotated(&rotations[r]))?;
         let is_uncertain = self.doubts.is_some() || angles.is_some();
         let doubts = carried(py, &grid, is_uncertain, |[b, r]| {
+            if angles.is_none() {
+                let turn = rotations[r];
+                let rows = std::array::from_fn(|i| std::array::from_fn(|j| turn[(i, j)]));
+                return Ok(self.row(b).1.map(|change| change.rotated(&rows)));
+            }
             let mut small = [known(0.0); 3];
             for (angle, form) in small.iter_mut().zip(angles.iter().flatten()) {
                 angle.1 = form;
@@ -254,7 +265,11 @@ impl PyRigidBody {
         let grid = Broadcast::of(["body", "length", "mass"], shapes)?;
         let scaled = grid.try_map(py, |[b, i, j]| self.bodies[b].scaled(s[i], k[j]))?;
         let is_uncertain = self.doubts.is_some() || length.is_uncertain() || mass.is_uncertain();
+        let is_linear = !length.is_uncertain() && !mass.is_uncertain();
         let doubts = carried(py, &grid, is_uncertain, |[b, i, j]| {
+            if is_linear {
+                return Ok(self.row(b).1.map(|change| change.scaled(s[i], k[j])));
+            }
             self.changed(b, &Scaled, &[length.row(i), mass.row(j)].concat())
         })?;
         Ok(Self::doubtful(scaled, doubts))

@@ -4,16 +4,13 @@ use std::sync::Arc;
 
 use polhode::Error;
 use polhode::mass::ten::Ten;
-use polhode::uncertainty::{Doubt, Follow, Scaled, follow};
+use polhode::uncertainty::{Change, Doubt, Follow, Scaled, follow};
 use pyo3::prelude::*;
 
-use super::quantity::Weight;
-use crate::body::PyRigidBody;
+use super::quantity::{Number, Weight};
+use crate::body::{Doubts, PyRigidBody};
 use crate::errors::to_py;
 use crate::stack::{Broadcast, Stack};
-
-/// The doubts of each body of a stack, or none where all is taken as known.
-pub(crate) type Doubts = Option<Arc<Vec<Doubt>>>;
 
 /// Those of the rows of a result, if any of what it is made of has some.
 pub(crate) fn carried<const K: usize>(
@@ -25,7 +22,20 @@ pub(crate) fn carried<const K: usize>(
     if !is_uncertain {
         return Ok(None);
     }
-    Ok(Some(Arc::new(grid.try_map(py, doubt)?.rows)))
+    Ok(Some(Arc::new(
+        grid.try_map_into(py, Doubt::default(), doubt)?.rows,
+    )))
+}
+
+/// The doubts of a body that is given by numbers.
+pub(crate) fn of_numbers(change: &impl Change, numbers: &[Number<'_>]) -> Result<Doubt, Error> {
+    follow(
+        change,
+        Follow {
+            bodies: &[],
+            numbers,
+        },
+    )
 }
 
 impl PyRigidBody {

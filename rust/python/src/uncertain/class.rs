@@ -47,8 +47,8 @@ use crate::shape::tuple;
 /// >>> radius = Uncertain(0.3, sigma=0.001)
 /// >>> front, rear = laminae.disk(radius, mass=8.0), laminae.disk(radius, mass=8.0)
 /// >>> axle = front.translated((0, 0, 0.5)) + rear.translated((0, 0, -0.5))
-/// >>> axle.sigma.inertia[2, 2].round(6)
-/// 0.0048
+/// >>> axle.sigma.inertia.diagonal().round(6)
+/// array([0.0024, 0.0024, 0.0048])
 #[pyclass(name = "Uncertain", module = "polhode", frozen)]
 pub(crate) struct PyUncertain {
     value: Py<PyAny>,
@@ -170,21 +170,20 @@ impl PyUncertain {
     }
 
     /// It is no array of plain numbers: who takes it for one would lose the sigma.
+    #[expect(clippy::unused_self, reason = "Python asks an instance")]
     #[pyo3(signature = (*_args, **_options))]
     fn __array__(
         &self,
         _args: &Bound<'_, PyAny>,
         _options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Py<PyAny>> {
-        Err(PyTypeError::new_err(
-            "an Uncertain is given where plain numbers are expected, and its sigma would be lost; pass its .value to go on \
-             without",
-        ))
+        Err(plain_numbers())
     }
 
     /// As `__array__`.
-    fn __float__(&self, py: Python<'_>) -> PyResult<f64> {
-        self.__array__(py.None().bind(py), None).map(|_| 0.0)
+    #[expect(clippy::unused_self, reason = "Python asks an instance")]
+    fn __float__(&self) -> PyResult<f64> {
+        Err(plain_numbers())
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -208,7 +207,8 @@ impl PyUncertain {
 
     /// The variables that each number depends on, each in halves of its number, with the number's change by one standard
     /// deviation of it.
-    fn _forms(&self) -> Vec<Vec<([u64; 2], f64)>> {
+    #[pyo3(name = "_forms")]
+    fn stored_forms(&self) -> Vec<Vec<([u64; 2], f64)>> {
         (self.given.forms.iter())
             .map(|form| {
                 form.iter()
@@ -227,7 +227,7 @@ impl PyUncertain {
             of(&own.sigma),
             of(&own.covariance),
             own.source.clone(),
-            own._forms(),
+            own.stored_forms(),
         );
         Ok((
             py.get_type::<Self>().getattr("_restored")?,
@@ -271,6 +271,14 @@ impl PyUncertain {
     pub(super) fn is_rotation(&self, py: Python<'_>) -> PyResult<bool> {
         self.value.bind(py).hasattr("as_quat")
     }
+}
+
+/// Who asks for plain numbers.
+fn plain_numbers() -> PyErr {
+    PyTypeError::new_err(
+        "an Uncertain is given where plain numbers are expected, and its sigma would be lost; pass its .value to go on \
+         without",
+    )
 }
 
 /// A copy of an array that nobody writes to.

@@ -1,6 +1,8 @@
 //! Arguments that may be numbers with a sigma.
 
 use nalgebra::Matrix3;
+use polhode::Error;
+use polhode::error::UncertaintyFault;
 use polhode::mass::ten::ELEMENTS;
 use polhode::uncertainty::{Form, Variable};
 use pyo3::exceptions::PyTypeError;
@@ -186,11 +188,14 @@ pub(crate) fn factor(amount: &[Number<'_>]) -> Form {
         .collect()
 }
 
-/// Rotations, and the forms of the small angles that follow each.
+/// Rotations, and the forms of the small angles that follow one.
+type Rotations = (Stack<Matrix3<f64>>, Option<Vec<Form>>);
+
+/// Reads rotations, or one with a sigma.
 pub(crate) fn rotation_quantity(
     object: &Bound<'_, PyAny>,
     name: &'static str,
-) -> PyResult<(Stack<Matrix3<f64>>, Option<Vec<Form>>)> {
+) -> PyResult<Rotations> {
     match object.cast::<PyUncertain>() {
         Err(_) => Ok((read_rotation(object, name)?, None)),
         Ok(uncertain) => {
@@ -218,6 +223,42 @@ pub(crate) fn known(value: f64) -> Number<'static> {
 }
 
 /// The elements xx, yy, zz, xy, xz, yz of a symmetric tensor; each beside the diagonal is one number, given twice.
-pub(crate) fn symmetric<'a>(tensor: &[Number<'a>]) -> [Number<'a>; 6] {
-    ELEMENTS.map(|(i, j)| tensor[3 * i + j])
+pub(crate) fn symmetric<'a>(
+    what: &'static str,
+    tensor: &[Number<'a>],
+) -> Result<[Number<'a>; 6], Error> {
+    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+        let (a, b) = (tensor[3 * row + column].1, tensor[3 * column + row].1);
+        let sigma =
+            |form: &[(Variable, f64)]| form.iter().map(|(_, step)| step * step).sum::<f64>().sqrt();
+        // Standard deviations have a variable for each element; a covariance says what is one.
+        let is_one = match (a, b) {
+            ([(_, a)], [(_, b)]) => a.abs() == b.abs(),
+            _ => sigma(&difference(a, b)) <= 1e-9 * sigma(a),
+        };
+        if !is_one {
+            let (a, b) = (sigma(a), sigma(b));
+            return Err(UncertaintyFault::Mirrored {
+                what,
+                row,
+                column,
+                a,
+                b,
+            }
+            .into());
+        }
+    }
+    Ok(ELEMENTS.map(|(i, j)| tensor[3 * i + j]))
+}
+
+/// The form of the difference of two numbers.
+fn difference(a: &[(Variable, f64)], b: &[(Variable, f64)]) -> Form {
+    let mut all: Form = a.to_vec();
+    for &(variable, step) in b {
+        match all.iter_mut().find(|(own, _)| *own == variable) {
+            Some((_, own)) => *own -= step,
+            None => all.push((variable, -step)),
+        }
+    }
+    all
 }

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::error::Error;
-use crate::mass::amount::{Amount, Measure, diagonal, length, ordered};
-use crate::mass::ten::Size;
+use crate::mass::amount::{Amount, Measure, length, ordered};
+use crate::mass::ten::{Size, diagonal};
 
 /// Disk of radius R: `I_z = ½ m R²`, `I_x = I_y = ¼ m R²`.
 ///

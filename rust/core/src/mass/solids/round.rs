@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::super::amount::{Amount, Measure, diagonal, length, ordered, ratio};
-use super::super::ten::Size;
+use super::super::amount::{Amount, Measure, length, ordered, ratio};
+use super::super::ten::{Size, diagonal};
 use crate::error::Error;
 
 /// Ellipsoid with semi-axes (a, b, c): `s_x = m a²/5`, so `I_x = m (b² + c²)/5` (mex254).

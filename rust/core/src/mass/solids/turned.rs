@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::super::amount::{Amount, Measure, diagonal, length, ordered};
-use super::super::ten::Size;
+use super::super::amount::{Amount, Measure, length, ordered};
+use super::super::ten::{Size, diagonal};
 use crate::error::Error;
 
 /// Cylinder of radius R and height h along z: `I_z = ½ m R²`, `I_x = m (3R² + h²)/12` (mex252).
@@ -167,6 +167,7 @@ pub fn torus<X: Size>(major_radius: X, minor_radius: X, amount: Amount) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::RigidBody;
     use nalgebra::Vector3;
 
     #[test]

@@ -10,3 +10,4 @@ mod size;
 
 pub use numbers::{ELEMENTS, Ten, place};
 pub use size::Size;
+pub(in crate::mass) use size::diagonal;

@@ -2,7 +2,7 @@
 
 use std::ops::{Div, Mul};
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::numbers::{ELEMENTS, Ten};
 use crate::error::Error;
@@ -37,6 +37,21 @@ pub trait Size: Real + Mul<f64, Output = Self> + Div<f64, Output = Self> {
         amount: Amount,
         per_mass: &Matrix3<Self>,
     ) -> Result<Self::Body, Error>;
+}
+
+/// The body with C at the origin whose second moment per unit mass is diagonal in the body axes.
+pub(in crate::mass) fn diagonal<X: Size>(
+    unit: Unit,
+    measure: Measure<X>,
+    amount: Amount,
+    per_mass: [X; 3],
+) -> Result<X::Body, Error> {
+    X::shape(
+        unit,
+        measure,
+        amount,
+        &Matrix3::from_diagonal(&Vector3::from(per_mass)),
+    )
 }
 
 impl Size for f64 {

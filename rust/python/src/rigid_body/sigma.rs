@@ -14,7 +14,7 @@ use pyo3::types::PyTuple;
 
 use crate::arrays::{Numbers, floats, read, write_numbers_of, write_of};
 use crate::body::PyRigidBody;
-use crate::errors::{at_row, to_py};
+use crate::errors::{at_row, to_py, with_prefix};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 
@@ -89,6 +89,20 @@ impl PyRigidBody {
                 &tensor.shape,
             ],
         )?;
+        let flat: Vec<f64> = tensor
+            .rows
+            .iter()
+            .flat_map(|row| row.iter().copied())
+            .collect();
+        for (name, numbers) in [
+            ("mass", &mass.rows[..]),
+            ("center_of_mass", center.rows.as_flattened()),
+            ("inertia", &flat),
+        ] {
+            if let Err(fault) = Given::independent(numbers, Source::named("checked")) {
+                return Err(with_prefix(py, name, &to_py(py, &fault)));
+            }
+        }
         let mut sigma = Vec::with_capacity(10 * grid.len());
         for [_, m, c, i] in grid.rows() {
             sigma.push(mass[m]);
@@ -231,8 +245,8 @@ impl PyRigidBody {
     /// --------
     /// >>> from polhode import Uncertain, solids
     /// >>> brick = solids.box(Uncertain((1, 2, 3), sigma=0.01), density=2.0)
-    /// >>> brick.sigma.mass.round(4), brick.sigma.principal_moments.round(4)
-    /// (np.float64(0.14), array([0.1..., 0.2..., 0.2...]))
+    /// >>> round(brick.sigma.mass, 4), brick.sigma.principal_moments.round(4)
+    /// (0.14, array([0.097 , 0.16  , 0.1965]))
     #[getter]
     fn sigma<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         if self.doubts.is_none() {

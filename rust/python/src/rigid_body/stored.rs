@@ -18,7 +18,11 @@ const BENDS: usize = PROBES * 10;
 impl PyRigidBody {
     /// The doubts as arrays: how many variables each body depends on, the variables (n, 2) in halves of their numbers, the
     /// tangents (n, 10), and the second-order terms (bodies, 8, 10); nothing of bodies without.
-    pub(crate) fn _doubts<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+    #[pyo3(name = "_doubts")]
+    pub(crate) fn stored_doubts<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(doubts) = &self.doubts else {
             return Ok(None);
         };
@@ -50,10 +54,18 @@ impl PyRigidBody {
         )?;
         Ok(Some(state))
     }
+
+    /// First- and second-order terms of the ten numbers of one body along its probes, shape (2, 8, 10).
+    fn _probes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let doubt = self.row(0).1;
+        let terms = [doubt.slopes(), doubt.bends].concat();
+        let numbers: Vec<f64> = terms.iter().flat_map(Tangent::to_array).collect();
+        PyArray1::from_vec(py, numbers).call_method1("reshape", ((2, PROBES, 10),))
+    }
 }
 
 impl PyRigidBody {
-    /// The same bodies with the doubts that [`Self::_doubts`] took apart.
+    /// The same bodies with the doubts that [`Self::stored_doubts`] took apart.
     pub(crate) fn with_doubts(&self, state: &Bound<'_, PyDict>) -> PyResult<Self> {
         let item = |name: &str| {
             state
