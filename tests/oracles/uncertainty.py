@@ -126,7 +126,7 @@ class Drawn:
 def monte_carlo(node: Node, n: int = 400_000, seed: int = 0, chunk: int = 20_000) -> Drawn:
     """Sigmas of n draws in pairs ±z, with the linear part as control variate."""
     sources, (_, axes) = Sources(node), values(node)
-    h = 1e-3
+    h = 0.1  # of a sigma: any J serves as control, and steps that are too short have more rounding
     steps = h * np.eye(sources.count)
     ends = draw_outputs(node, sources, np.hstack([steps, -steps, np.zeros((sources.count, 1))]), axes)
     k, nominal = sources.count, ends[-1]
