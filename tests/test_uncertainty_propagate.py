@@ -80,7 +80,7 @@ class TestFirstOrder:
             L = I * v
             M, E = (L.T * L)[0], (v.T * L)[0]
             a, b, c = sorted(mpmath.eigsy(I, eigvals_only=True))
-            if M < E * b:
+            if E * b > M:
                 a, c = c, a
             parameter = (b - a) * (E * c - M) / ((c - b) * (M - E * a))
             return 4 * mpmath.ellipk(parameter) * mpmath.sqrt(a * b * c / ((c - b) * (M - E * a)))

@@ -8,7 +8,7 @@ arithmetic: on floats, on arrays of draws, on numbers of fifty digits.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -33,6 +33,7 @@ __all__ = [
     "Sum",
     "Tensor",
     "Turned",
+    "displaced",
     "quantities",
     "ten_numbers",
 ]
@@ -311,3 +312,23 @@ def quantities(node: object) -> Iterator[Quantity]:
     elif hasattr(node, "__dataclass_fields__"):
         for one in fields(node):  # type: ignore[arg-type]
             yield from quantities(getattr(node, one.name))
+
+
+def displaced(node: Any, z: Callable[[Quantity], Floats], done: dict[int, Any] | None = None) -> Any:
+    """The same tree as it is measured: each value off by its factor times z; one object stays one."""
+    done = {} if done is None else done
+    if id(node) not in done:
+        if isinstance(node, Quantity):
+            off = node.factor is not None
+            made: Any = replace(node, value=node.value + node.factor @ z(node)) if off else node
+        elif isinstance(node, tuple):
+            made = tuple(displaced(one, z, done) for one in node)
+        elif isinstance(node, dict):
+            made = {key: displaced(one, z, done) for key, one in node.items()}
+        elif hasattr(node, "__dataclass_fields__"):
+            values = {one.name: displaced(getattr(node, one.name), z, done) for one in fields(node)}
+            made = replace(node, **values)
+        else:
+            made = node
+        done[id(node)] = made
+    return done[id(node)]

@@ -53,6 +53,16 @@ class Sources:
 
         return of
 
+    def own(self, z: Floats) -> Callable[[Quantity], Floats]:
+        """The part of one draw z (count,) that belongs to a quantity."""
+
+        def of(quantity: Quantity) -> Floats:
+            assert quantity.factor is not None
+            start = self.first[quantity.key]
+            return z[start : start + quantity.factor.shape[1]]
+
+        return of
+
     def step(self, which: int, h: Any) -> Callable[[Quantity], list[Any]]:
         """Values in numbers of mpmath with z zero but for one component h."""
 
