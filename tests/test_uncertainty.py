@@ -123,6 +123,35 @@ class TestOneSource:
         assert np.linalg.eigvalsh(P / np.outer(sigma, sigma)).min() > -1e-12
 
 
+class TestGivenCovariances:
+    """What is given comes back: no rank is lost, and none made."""
+
+    @staticmethod
+    def relative(found: Any, given: Any) -> float:
+        sigma = np.sqrt(np.diag(given))
+        return float(np.abs((found - given) / np.outer(sigma, sigma)).max())
+
+    @pytest.mark.parametrize("rank", [1, 2, 3, 6, 9, 10])
+    def test_of_any_rank(self, rank: int) -> None:
+        rng = np.random.default_rng(rank)
+        body = RigidBody(2.0, np.diag([3.0, 4.0, 5.0]))
+        for _ in range(20):
+            factor = 10 ** rng.uniform(-6, -2, 10)[:, None] * rng.standard_normal((10, rank))
+            P = factor @ factor.T
+            P = (P + P.T) / 2
+            assert self.relative(body.with_covariance(P).covariance, P) < 1e-12
+            assert self.relative(Uncertain(np.zeros(10), covariance=P).covariance, P) < 1e-12
+
+    @pytest.mark.parametrize("rest", [1e-2, 1e-5, 1e-8, 1e-11, 1e-14])
+    def test_of_strong_correlation(self, rest: float) -> None:
+        """Three gauges that all but read the same, and the differences of which matter."""
+        rng = np.random.default_rng(3)
+        factor = np.hstack([np.ones((3, 1)), rest**0.5 * rng.standard_normal((3, 3))])
+        P = factor @ factor.T
+        P = (P + P.T) / 2
+        assert self.relative(Uncertain(np.zeros(3), covariance=P).covariance, P) < 1e-12
+
+
 class TestThereAndBack:
     @makers
     def test_translated(self, make: Callable[[], RigidBody]) -> None:
@@ -323,6 +352,14 @@ class TestNotDetermined:
         gap = np.diff(rod.principal_moments)[0]
         assert rod.sigma.axes[1:] == pytest.approx([1e-4 / gap] * 2, rel=1e-10)
         assert rod.sigma.linear.principal_moments.tolist() == [True, False, False]
+
+    def test_about_its_own_axis_in_any_attitude(self) -> None:
+        """Certain moments or not, turned or not: equal moments have no axes."""
+        straight = solids.cylinder(Uncertain(0.5, 0.01), Uncertain(4.0, 0.01), mass=2.0)
+        for rod in (straight, straight.rotated(QUARTER), straight.rotated(Uncertain(QUARTER, 0.01))):
+            assert np.isnan(rod.sigma.axes).tolist() == [True, False, False]
+            assert rod.sigma.principal_moments == pytest.approx(straight.sigma.principal_moments, rel=1e-12)
+            assert rod.sigma.linear.principal_moments.all()  # two moments that are always equal do not repel
 
     def test_near_equal_moments_are_told(self) -> None:
         for gap, is_linear in ((1.0, True), (1e-4, False)):
