@@ -62,7 +62,8 @@ class TestFirstOrder:
 
     def test_of_a_body_without_sigma(self) -> None:
         body = RigidBody(2.0, np.diag([3.0, 4.0, 5.0]))
-        assert propagate(lambda b: b.mass, body).sigma == 0.0
+        with pytest.raises(ValueError, match=r"no covariance.*with_sigma"):
+            propagate(lambda b: b.mass, body)
 
     @pytest.mark.parametrize("omega", [(2.0, 0.3, 0.4), (0.3, 0.4, 2.0)], ids=["long-axis", "short-axis"])
     def test_of_the_period_of_a_tumbling_body(self, omega: tuple[float, float, float]) -> None:
@@ -138,13 +139,6 @@ class TestSecondOrder:
         found = propagate(lambda b: np.square(b.mass), body, method="second-order")
         s = body.sigma.mass
         assert found.sigma == pytest.approx(np.sqrt(4 * (body.mass * s) ** 2 + 2 * s**4), rel=1e-6)
-
-    def test_is_nearer_than_first_order(self) -> None:
-        node = given(0.003, 0.1)
-        drawn = monte_carlo(node, 200_000)
-        body = Bodies().body(node)
-        second = propagate(lambda b: b.principal_moments, body, method="second-order").sigma
-        assert np.all(np.abs(second / drawn.sigma[10:13] - 1) <= drawn.departure[10:13] + 0.002)
 
     def test_names_of_methods(self) -> None:
         body = laminae.disk(Uncertain(1.0, 0.1), mass=2.0)

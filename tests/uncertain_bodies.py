@@ -128,7 +128,10 @@ class Bodies:
                 return self._given(node.numbers)
             case Principal():
                 axes = self.rotation(node.attitude, node.turn)
-                return RigidBody.from_principal(n(node.mass), n(node.moments), axes, n(node.center))
+                if node.turn.factor is None:
+                    return RigidBody.from_principal(n(node.mass), n(node.moments), axes, n(node.center))
+                straight = RigidBody.from_principal(n(node.mass), n(node.moments))
+                return straight.rotated(axes).translated(n(node.center))
             case Particles():
                 return RigidBody.from_particles(n(node.masses), n(node.positions))
             case Solid():

@@ -116,7 +116,7 @@ def principal(rng: Rng) -> Node:
         some(rng, mass, mass),
         some(rng, moments, moments[2]),
         certain(attitude(rng)),
-        uncertain(rng, np.zeros(3), 1.0),
+        certain(np.zeros(3)) if rng.random() < 0.4 else uncertain(rng, np.zeros(3), 1.0),
         some(rng, center, length),
     )
 
