@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,6 +26,8 @@ from uncertain_bodies import Bodies, symmetric
 
 SIX = np.array([0, 4, 8, 1, 2, 5])
 """Where xx yy zz xy xz yz stand in a matrix of nine."""
+
+GROUPS = ["ten numbers"] * 10 + ["moments"] * 3 + ["axes"] * 3 + ["radii of gyration"] * 3
 
 
 def sizes(node: Node) -> Any:
@@ -65,6 +68,7 @@ class Tally:
     flagged: int = 0
     rightly: int = 0
     wrong: list[str] = field(default_factory=list)
+    groups: Counter[tuple[str, str]] = field(default_factory=Counter)
 
     def add(self, label: str, node: Node, drawn: Drawn, sigma: Any, linear: Any) -> None:
         gaps = np.linalg.eigvalsh(symmetric(values(node)[0][4:]))
@@ -80,17 +84,24 @@ class Tally:
                     self.wrong.append(f"{label}: {name} has no sigma, not {sigma[k]:.3g}")
                 continue
             self.outputs += 1
+            group = GROUPS[k]
+            self.groups[group, "outputs"] += 1
             off = abs(sigma[k] / drawn.sigma[k] - 1)
             allowed = 0.01 + 3 * drawn.error[k] / drawn.sigma[k]
             if not linear[k]:
                 self.flagged += 1
-                self.rightly += bool(not off <= 0.01)
+                self.groups[group, "flagged"] += 1
+                if not off <= 0.01:
+                    self.rightly += 1
+                    self.groups[group, "off"] += 1
             elif not off <= allowed:
                 self.wrong.append(f"{label}: {name} sigma {sigma[k]:.6g}, by draws {drawn.sigma[k]:.6g}")
 
     def hold(self) -> None:
         line = f"{self.outputs} outputs, {self.flagged} flagged, {self.rightly} of them off by over 1 %"
         print(f"{line}, {len(self.wrong)} off and not flagged")
+        for group in dict.fromkeys(GROUPS):
+            print(group, *(f"{self.groups[group, word]} {word}" for word in ("outputs", "flagged", "off")))
         assert not self.wrong, "\n".join([line, *self.wrong[:40]])
         assert self.flagged <= 0.1 * self.outputs, line
         assert 2 * self.rightly >= self.flagged, line

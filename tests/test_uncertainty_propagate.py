@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from oracles.matter_models import PAIRS, Given, Quantity
 from oracles.uncertainty import covariance, jacobian, monte_carlo
-from polhode import RigidBody, Uncertain, laminae
+from polhode import RigidBody, Uncertain, laminae, solids
 from polhode.uncertainty import propagate
+from scipy.spatial.transform import Rotation
 from uncertain_bodies import Bodies, symmetric
 
 SIX = np.array([0, 4, 8, 1, 2, 5])
@@ -129,6 +130,18 @@ class TestDraws:
         thin = RigidBody(1.0, np.diag([1.0, 1.0, 1.99])).with_sigma(inertia=np.diag([0.0, 0.0, 0.005]))
         found = propagate(lambda b: b.principal_moments, thin, method="monte-carlo", n=2000, seed=0)
         assert np.isfinite(found.sigma).all()
+
+
+class TestTurned:
+    """A turn, however uncertain, changes no principal moment: bodies move along circles, not along tangents."""
+
+    @pytest.mark.parametrize("method", ["linear", "second-order", "monte-carlo"])
+    def test_moments(self, method: Any) -> None:
+        turn = Uncertain(Rotation.from_rotvec([0.3, -1.1, 0.6]), 0.05)
+        body = solids.box((1.0, 2.0, 3.0), mass=Uncertain(12.0, 0.012)).rotated(turn)
+        found = propagate(lambda b: b.principal_moments, body, method=method, n=4000, seed=0)
+        assert found.sigma == pytest.approx([0.005, 0.01, 0.013], rel=0.05)
+        assert np.all(found.linear)
 
 
 class TestSecondOrder:
