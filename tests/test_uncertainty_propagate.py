@@ -133,7 +133,7 @@ class TestDraws:
 
 
 class TestTurned:
-    """A turn, however uncertain, changes no principal moment: bodies move along circles, not along tangents."""
+    """A turn, however uncertain, changes no principal moment: bodies move along circles, not tangents."""
 
     @pytest.mark.parametrize("method", ["linear", "second-order", "monte-carlo"])
     def test_moments(self, method: Any) -> None:
