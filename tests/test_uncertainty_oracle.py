@@ -80,7 +80,7 @@ class Tally:
             if name.startswith("k") and gaps[k - 16] < 1e-12 * gaps[2]:
                 continue  # the root of zero has no derivative
             if drawn.sigma[k] <= 1e-12 * one[k]:
-                if not sigma[k] <= 1e-11 * one[k]:
+                if not sigma[k] <= (1e-8 if name.startswith("k") else 1e-11) * one[k]:  # k: by differences
                     self.wrong.append(f"{label}: {name} has no sigma, not {sigma[k]:.3g}")
                 continue
             self.outputs += 1
@@ -131,7 +131,7 @@ class TestDraws:
 def departures(node: Node) -> dict[str, float]:
     """How far a body's covariance is from J P Jᵀ: mass, centre and tensor each count as one row.
 
-    Moments and axes are asked for where the moments differ by 1e-3, their sigmas against the row's norm.
+    Moments and axes are asked for where the moments differ by 1e-3.
     """
     body = Bodies().body(node)
     J = jacobian(node)
@@ -149,7 +149,9 @@ def departures(node: Node) -> dict[str, float]:
     if np.diff(moments).min() >= 1e-3 * moments[2]:
         s = body.sigma
         for word, rows in (("principal_moments", slice(10, 13)), ("axes", slice(13, 16))):
-            norm = max(np.linalg.norm(sigma[rows]), 1e-9 * sizes(node)[rows.start])
+            # Where a cause turns no axis its tensor still has its rounding.
+            norm = np.linalg.norm(sigma[4:10]) / (np.diff(moments).min() if word == "axes" else 1)
+            norm = max(norm, np.linalg.norm(sigma[rows]), 1e-9 * sizes(node)[rows.start])
             worst[word] = float(np.abs(getattr(s, word) - sigma[rows]).max() / norm)
     return worst
 
