@@ -82,7 +82,7 @@ class Bodies:
         return polhode.Uncertain(matrix, covariance=factor @ factor.T, source=q.source)
 
     def rotation(self, attitude: Quantity, turn: Quantity) -> Any:
-        rotation = Rotation.from_quat(attitude.value)
+        rotation = Rotation.from_rotvec(turn.value) * Rotation.from_quat(attitude.value)
         if turn.factor is None or self.sigma is None:
             return rotation
         return self._uncertain(rotation, turn.factor, turn.source)
