@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         rods,
         solids,
         tops,
+        uncertainty,
         validity,
     )
     from polhode._core import (
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
         HeavyTop,
         MassAccumulator,
         RigidBody,
+        Uncertain,
         __version__,
         principal_axes,
         principal_moments,
@@ -35,11 +37,13 @@ if TYPE_CHECKING:
         FreePrecession,
         Invariants,
         KineticEnergy,
+        Linear,
         MotionSensitivity,
         Particles,
         PrincipalAxes,
         PrincipalDerivative,
         Provenance,
+        Sigma,
         State,
     )
     from polhode.trajectory import Trajectory
@@ -85,6 +89,7 @@ __all__ = [
     "HeavyTop",
     "Invariants",
     "KineticEnergy",
+    "Linear",
     "MassAccumulator",
     "MotionSensitivity",
     "Particles",
@@ -95,8 +100,10 @@ __all__ = [
     "Provenance",
     "RigidBody",
     "Sensitivity",
+    "Sigma",
     "State",
     "Trajectory",
+    "Uncertain",
     "__version__",
     "equimomental",
     "errors",
@@ -112,5 +119,6 @@ __all__ = [
     "rods",
     "solids",
     "tops",
+    "uncertainty",
     "validity",
 ]

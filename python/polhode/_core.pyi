@@ -7,7 +7,7 @@ from typing import Any, Literal, Self, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polhode._typing import SupportsQuaternion
+from polhode._typing import SupportsQuaternion, SupportsSigma
 from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
 from polhode.results import (
     AngularMomentum,
@@ -18,6 +18,7 @@ from polhode.results import (
     Particles,
     PrincipalAxes,
     Provenance,
+    Sigma,
 )
 from polhode.trajectory import Trajectory
 
@@ -28,6 +29,7 @@ __all__ = [
     "MassAccumulator",
     "Region",
     "RigidBody",
+    "Uncertain",
     "__version__",
     "angular_velocity_from_euler_rates",
     "annulus",
@@ -114,6 +116,8 @@ _Reference: TypeAlias = Literal["center_of_mass", "origin"]
 _About: TypeAlias = _Reference | ArrayLike
 _SpatialOrder: TypeAlias = Literal["angular-linear", "linear-angular"]
 _Attitude: TypeAlias = ArrayLike | SupportsQuaternion
+_Numbers: TypeAlias = ArrayLike | Uncertain | SupportsSigma
+_Number: TypeAlias = float | Uncertain | SupportsSigma
 
 __version__: str
 
@@ -159,32 +163,62 @@ class FreeMotion:
     def __deepcopy__(self, memo: object, /) -> FreeMotion: ...
 
 @final
+class Uncertain:
+    def __new__(
+        cls,
+        value: ArrayLike | SupportsQuaternion,
+        sigma: ArrayLike | None = None,
+        *,
+        covariance: ArrayLike | None = None,
+        source: str | None = None,
+    ) -> Self: ...
+    @property
+    def value(self) -> Any: ...
+    @property
+    def sigma(self) -> Any: ...
+    @property
+    def covariance(self) -> _Floats: ...
+    @property
+    def source(self) -> str | None: ...
+    def __float__(self) -> float: ...
+    def __array__(self, *_args: object, **_options: object) -> Any: ...
+    def _forms(self) -> list[list[tuple[tuple[int, int], float]]]: ...
+    @staticmethod
+    def _restored(
+        value: Any,
+        sigma: Any,
+        covariance: Any,
+        source: str | None,
+        variables: list[list[tuple[tuple[int, int], float]]],
+    ) -> Uncertain: ...
+
+@final
 class RigidBody:
     __array_ufunc__: None
     def __new__(
         cls,
-        mass: ArrayLike,
-        inertia: ArrayLike | None = None,
-        center_of_mass: ArrayLike = (0.0, 0.0, 0.0),
+        mass: _Numbers,
+        inertia: _Numbers | None = None,
+        center_of_mass: _Numbers = (0.0, 0.0, 0.0),
         *,
-        inertia_about_origin: ArrayLike | None = None,
+        inertia_about_origin: _Numbers | None = None,
         rtol: float | None = None,
     ) -> Self: ...
     @staticmethod
     def from_principal(
-        mass: ArrayLike,
-        moments: ArrayLike,
+        mass: _Numbers,
+        moments: _Numbers,
         axes: _Attitude | None = None,
-        center_of_mass: ArrayLike = (0.0, 0.0, 0.0),
+        center_of_mass: _Numbers = (0.0, 0.0, 0.0),
         *,
         rtol: float | None = None,
     ) -> RigidBody: ...
     @staticmethod
     def from_positive_products(
-        mass: ArrayLike,
-        moments: ArrayLike,
-        products: ArrayLike,
-        center_of_mass: ArrayLike = (0.0, 0.0, 0.0),
+        mass: _Numbers,
+        moments: _Numbers,
+        products: _Numbers,
+        center_of_mass: _Numbers = (0.0, 0.0, 0.0),
         *,
         rtol: float | None = None,
     ) -> RigidBody: ...
@@ -213,7 +247,7 @@ class RigidBody:
         max_evaluations: int = 1_000_000,
     ) -> RigidBody: ...
     @staticmethod
-    def from_particles(masses: ArrayLike, positions: ArrayLike) -> RigidBody: ...
+    def from_particles(masses: _Numbers, positions: _Numbers) -> RigidBody: ...
     @staticmethod
     def from_labelled_particles(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> RigidBody: ...
     @staticmethod
@@ -222,11 +256,11 @@ class RigidBody:
     ) -> RigidBody: ...
     @staticmethod
     def from_mesh(
-        vertices: ArrayLike,
+        vertices: _Numbers,
         faces: ArrayLike,
         *,
-        density: float | None = None,
-        mass: float | None = None,
+        density: _Number | None = None,
+        mass: _Number | None = None,
         closure: Literal["caps", "hull"] | None = None,
         orient: bool = False,
         check: bool = True,
@@ -236,21 +270,21 @@ class RigidBody:
         vertices: ArrayLike,
         faces: ArrayLike,
         *,
-        areal_density: float | None = None,
-        density: float | None = None,
-        mass: float | None = None,
+        areal_density: _Number | None = None,
+        density: _Number | None = None,
+        mass: _Number | None = None,
         thickness: float | None = None,
     ) -> RigidBody: ...
     @staticmethod
     def from_curve(
-        points: ArrayLike, *, linear_density: float | None = None, mass: float | None = None
+        points: ArrayLike, *, linear_density: _Number | None = None, mass: _Number | None = None
     ) -> RigidBody: ...
     @staticmethod
     def from_file(
         path: str | PathLike[str],
         *,
-        density: float | None = None,
-        mass: float | None = None,
+        density: _Number | None = None,
+        mass: _Number | None = None,
         length_unit: str | None = None,
         weld: float = 0.0,
         closure: Literal["caps", "hull"] | None = None,
@@ -261,7 +295,7 @@ class RigidBody:
     ) -> RigidBody: ...
     @staticmethod
     def from_mesh_object(
-        mesh: Any, *, density: float | None = None, mass: float | None = None, **options: Any
+        mesh: Any, *, density: _Number | None = None, mass: _Number | None = None, **options: Any
     ) -> RigidBody: ...
     @staticmethod
     def from_atoms(
@@ -276,7 +310,23 @@ class RigidBody:
     def view(self, plotter: Any = None, **options: Any) -> Any: ...
     def _repr_html_(self) -> str: ...
     @staticmethod
-    def _from_numbers(numbers: ArrayLike) -> RigidBody: ...
+    def _from_numbers(numbers: ArrayLike, doubts: dict[str, Any] | None = None) -> RigidBody: ...
+    def _doubts(self) -> dict[str, Any] | None: ...
+    def with_sigma(
+        self,
+        *,
+        mass: ArrayLike | None = None,
+        center_of_mass: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
+        source: str | None = None,
+    ) -> RigidBody: ...
+    def with_covariance(self, covariance: ArrayLike, source: str | None = None) -> RigidBody: ...
+    def with_error_bound(self) -> RigidBody: ...
+    @property
+    def covariance(self) -> _Floats | None: ...
+    def covariance_with(self, other: RigidBody) -> _Floats: ...
+    @property
+    def sigma(self) -> Sigma | None: ...
     @property
     def mass(self) -> Any: ...
     @property
@@ -296,9 +346,9 @@ class RigidBody:
     def inertia_about(self, point: _About) -> _Floats: ...
     def moment_about(self, axis: ArrayLike, point: _About = "center_of_mass") -> Any: ...
     def principal_about(self, point: _About) -> PrincipalAxes: ...
-    def translated(self, displacement: ArrayLike) -> RigidBody: ...
-    def rotated(self, rotation: _Attitude) -> RigidBody: ...
-    def scaled(self, length: ArrayLike = 1.0, mass: ArrayLike = 1.0) -> RigidBody: ...
+    def translated(self, displacement: _Numbers) -> RigidBody: ...
+    def rotated(self, rotation: _Attitude | Uncertain) -> RigidBody: ...
+    def scaled(self, length: _Numbers = 1.0, mass: _Numbers = 1.0) -> RigidBody: ...
     def isclose(self, other: RigidBody, rtol: float = 1e-9, atol: float = 0.0) -> Any: ...
     def kinetic_energy(
         self, omega: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), about: _About = "center_of_mass"
@@ -361,8 +411,8 @@ class RigidBody:
     def simulate(
         self,
         t: ArrayLike,
-        omega: ArrayLike,
-        attitude: _Attitude | None = None,
+        omega: _Numbers,
+        attitude: _Attitude | Uncertain | None = None,
         *,
         load: Load | None = None,
         position: ArrayLike | None = None,
@@ -513,105 +563,95 @@ def callback(
     function: Callable[[float, _Floats, _Floats, _Floats, _Floats], tuple[ArrayLike, ArrayLike]],
 ) -> Load: ...
 def compiled(function: object, user_data: int | None = None) -> Load: ...
-def box(size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None) -> RigidBody: ...
-def cube(
-    side: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
-) -> RigidBody: ...
+def box(size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
+def cube(side: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def sphere(
-    radius: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def ellipsoid(
-    semi_axes: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    semi_axes: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def cylinder(
-    radius: ArrayLike, height: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    radius: _Numbers, height: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def cone(
-    radius: ArrayLike, height: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    radius: _Numbers, height: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def hollow_sphere(
-    inner_radius: ArrayLike,
-    outer_radius: ArrayLike,
+    inner_radius: _Numbers,
+    outer_radius: _Numbers,
     *,
-    mass: ArrayLike | None = None,
-    density: ArrayLike | None = None,
+    mass: _Numbers | None = None,
+    density: _Numbers | None = None,
 ) -> RigidBody: ...
 def tube(
-    inner_radius: ArrayLike,
-    outer_radius: ArrayLike,
-    height: ArrayLike,
+    inner_radius: _Numbers,
+    outer_radius: _Numbers,
+    height: _Numbers,
     *,
-    mass: ArrayLike | None = None,
-    density: ArrayLike | None = None,
+    mass: _Numbers | None = None,
+    density: _Numbers | None = None,
 ) -> RigidBody: ...
 def frustum(
-    bottom_radius: ArrayLike,
-    top_radius: ArrayLike,
-    height: ArrayLike,
+    bottom_radius: _Numbers,
+    top_radius: _Numbers,
+    height: _Numbers,
     *,
-    mass: ArrayLike | None = None,
-    density: ArrayLike | None = None,
+    mass: _Numbers | None = None,
+    density: _Numbers | None = None,
 ) -> RigidBody: ...
 def capsule(
-    radius: ArrayLike, length: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    radius: _Numbers, length: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def torus(
-    major_radius: ArrayLike,
-    minor_radius: ArrayLike,
+    major_radius: _Numbers,
+    minor_radius: _Numbers,
     *,
-    mass: ArrayLike | None = None,
-    density: ArrayLike | None = None,
+    mass: _Numbers | None = None,
+    density: _Numbers | None = None,
 ) -> RigidBody: ...
 def hemisphere(
-    radius: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def tetrahedron(
-    side: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    side: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def prism(
     sides: ArrayLike,
-    radius: ArrayLike,
-    height: ArrayLike,
+    radius: _Numbers,
+    height: _Numbers,
     *,
-    mass: ArrayLike | None = None,
-    density: ArrayLike | None = None,
+    mass: _Numbers | None = None,
+    density: _Numbers | None = None,
 ) -> RigidBody: ...
 def pyramid(
-    size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
-def wedge(
-    size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
-) -> RigidBody: ...
-def disk(
-    radius: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
-) -> RigidBody: ...
+def wedge(size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
+def disk(radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def annulus(
-    inner_radius: ArrayLike,
-    outer_radius: ArrayLike,
+    inner_radius: _Numbers,
+    outer_radius: _Numbers,
     *,
-    mass: ArrayLike | None = None,
-    density: ArrayLike | None = None,
+    mass: _Numbers | None = None,
+    density: _Numbers | None = None,
 ) -> RigidBody: ...
 def ellipse(
-    semi_axes: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    semi_axes: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def rectangle(
-    size: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def triangle(
-    vertices: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    vertices: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def polygon(
-    vertices: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    vertices: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
-def rod(
-    length: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
-) -> RigidBody: ...
-def ring(
-    radius: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
-) -> RigidBody: ...
+def rod(length: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
+def ring(radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def arc(
-    radius: ArrayLike, angle: ArrayLike, *, mass: ArrayLike | None = None, density: ArrayLike | None = None
+    radius: _Numbers, angle: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def region_box(low: ArrayLike, high: ArrayLike) -> Region: ...
 def region_ball(

@@ -23,12 +23,14 @@ __all__ = [
     "FreePrecession",
     "Invariants",
     "KineticEnergy",
+    "Linear",
     "MotionSensitivity",
     "NearestValid",
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",
     "Provenance",
+    "Sigma",
     "State",
 ]
 
@@ -92,6 +94,54 @@ class BoxFit(NamedTuple):
     possible: Any
     margin: Any
     axes: Any
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class Linear(NamedTuple):
+    """Whether standard deviations to first order are enough: within about a percent.
+
+    Attributes
+    ----------
+    mass, center_of_mass, inertia, principal_moments, axes : bool or numpy.ndarray of bool
+        For each number of :class:`Sigma`. False where the second-order terms exceed a tenth of the
+        first-order ones; there ``uncertainty.propagate(…, method="monte-carlo")`` tells what is right.
+    """
+
+    mass: Any
+    center_of_mass: Any
+    inertia: Any
+    principal_moments: Any
+    axes: Any
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class Sigma(NamedTuple):
+    """Standard deviations of what a body has, to first order.
+
+    Attributes
+    ----------
+    mass : float or numpy.ndarray, shape (...)
+    center_of_mass : numpy.ndarray, shape (..., 3)
+    inertia : numpy.ndarray, shape (..., 3, 3)
+        Of the elements of the tensor about C.
+    principal_moments : numpy.ndarray, shape (..., 3)
+    axes : numpy.ndarray, shape (..., 3)
+        Of the small rotation of the principal axes about each of them, in radians; NaN where the two other
+        moments are equal, or nearly so: there the axes are not determined.
+    linear : Linear
+        Whether the first order is enough for each of them.
+    """
+
+    mass: Any
+    center_of_mass: Any
+    inertia: Any
+    principal_moments: Any
+    axes: Any
+    linear: Linear
 
     def __repr__(self) -> str:
         return short(self)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _acting, _core, _going_on, _outlets
+from polhode import _acting, _core, _doubts, _going_on, _outlets
 from polhode._drift import drift
 from polhode._lengths import lengths
 from polhode.events import Events
@@ -58,6 +58,8 @@ class Trajectory:
         One for each row that failed, with its ``row``, ``time`` and ``state``.
     pivoted : bool
         Whether the point `about` is fixed in space.
+    uncertain_start : tuple
+        Angular velocity and attitude at the start as `Uncertain`; None for one given without a sigma.
     """
 
     body: _core.RigidBody
@@ -74,6 +76,7 @@ class Trajectory:
     events: Events = field(default_factory=Events.none)
     failures: tuple[IntegrationError | PolhodeError, ...] = ()
     pivoted: bool = False
+    uncertain_start: tuple[_core.Uncertain | None, _core.Uncertain | None] = (None, None)
 
     # Methods that stand in files of their own.
     torque = _acting.torque
@@ -82,6 +85,8 @@ class Trajectory:
     potential_energy = _acting.potential_energy
     pivot_reaction = _acting.pivot_reaction
     sensitivity = _going_on.sensitivity
+    covariance = cached_property(_doubts.covariance)
+    sigma = cached_property(_doubts.sigma)
     resume = _going_on.resume
     save = _outlets.save
     to_xarray = _outlets.to_xarray

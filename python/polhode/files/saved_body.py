@@ -33,7 +33,9 @@ _FORMAT: Final = "polhode.RigidBody/1"
 BODY_ARRAYS: Final = ("mass", "center_of_mass", "inertia")
 """The fields that every file of a body has."""
 
-BODY_FIELDS: Final = (*BODY_ARRAYS, "principal_moments", "principal_axes", "numbers")
+_DOUBTS: Final = ("variable_counts", "variables", "tangents", "second_order")
+
+BODY_FIELDS: Final = (*BODY_ARRAYS, "principal_moments", "principal_axes", "numbers", *_DOUBTS)
 """All fields of a body."""
 
 BODY_SCHEMA: dict[str, object] = {
@@ -54,6 +56,13 @@ BODY_SCHEMA: dict[str, object] = {
             "all that polhode keeps of the body, shape (..., 33); where it stands the body is made of it, to "
             "the last bit, and must agree with mass, center_of_mass and inertia"
         ),
+        "variable_counts": array_schema("of an uncertain body: how many variables each body depends on"),
+        "variables": array_schema("their identities, in eight parts of 16 bits, shape (n, 8)"),
+        "tangents": array_schema(
+            "what one standard deviation of each does to m, C and the elements xx, yy, zz, xy, xz, yz of the "
+            "tensor about C, shape (n, 10)"
+        ),
+        "second_order": array_schema("second-order terms along the probes, shape (bodies, 8, 10)"),
     },
     "patternProperties": {"^comment$": {"description": "for the reader of the file"}},
     "additionalProperties": False,
@@ -100,6 +109,39 @@ def body_fields(body: RigidBody) -> dict[str, Any]:
         "principal_moments": principal.moments,
         "principal_axes": principal.axes,
         "numbers": body.__reduce__()[1][0],
+        **_doubts_fields(body),
+    }
+
+
+def _doubts_fields(body: RigidBody) -> dict[str, Any]:
+    """Give what a body is uncertain by, in numbers that every file holds."""
+    doubts = body._doubts()
+    if doubts is None:
+        return {}
+    words = doubts["variables"].astype("<u8").view("<u2").astype(float)
+    return {
+        "variable_counts": doubts["counts"].astype(float),
+        "variables": words.reshape(-1, 8),
+        "tangents": doubts["tangents"],
+        "second_order": doubts["bends"],
+    }
+
+
+def _doubts_of(fields: dict[str, Any], file: Path) -> dict[str, Any] | None:
+    """Read it."""
+    if not any(name in fields for name in _DOUBTS):
+        return None
+    counts, words, tangents, bends = (numbers(required(fields, name, file), name, file) for name in _DOUBTS)
+    is_whole = (counts == np.floor(counts)).all() and (counts >= 0).all() and (words == np.floor(words)).all()
+    if not is_whole or (words.size and not 0 <= words.min() <= words.max() < 2**16):
+        raise FileFormatError(
+            f"{file}: variables and variable_counts must be whole numbers, below 65536 and from 0"
+        )
+    return {
+        "counts": counts.astype(np.int64).ravel(),
+        "variables": words.astype("<u2").reshape(-1).view("<u8").astype(np.uint64).reshape(-1, 2),
+        "tangents": tangents.reshape(-1, 10),
+        "bends": bends,
     }
 
 
@@ -108,8 +150,14 @@ def body_of(fields: dict[str, Any], file: Path) -> RigidBody:
     given = {name: numbers(required(fields, name, file), name, file) for name in BODY_ARRAYS}
     try:
         if "numbers" not in fields:
+            if any(name in fields for name in _DOUBTS):
+                raise FileFormatError(
+                    f"{file}: the uncertainty is of the body in numbers, which are left out"
+                )
             return _core.RigidBody(given["mass"], given["inertia"], given["center_of_mass"])
-        body = _core.RigidBody._from_numbers(numbers(fields["numbers"], "numbers", file))
+        body = _core.RigidBody._from_numbers(
+            numbers(fields["numbers"], "numbers", file), _doubts_of(fields, file)
+        )
     except FileFormatError:
         raise
     except PolhodeError as error:

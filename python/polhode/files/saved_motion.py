@@ -88,6 +88,11 @@ def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
     suffix = file.suffix.lower()
     if suffix == ".csv":
         _save_csv(trajectory, file)
+    elif trajectory.uncertain_start != (None, None):
+        raise ValueError(
+            f"path: {file}: files hold no sigma of the state at the start; save "
+            "dataclasses.replace(motion, uncertain_start=(None, None)), and its covariance beside it"
+        )
     elif suffix == ".json":
         save_trajectory_json(trajectory, file)
     elif suffix == ".npz":

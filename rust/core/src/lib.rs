@@ -7,6 +7,7 @@
 //! | `I = ∫ (r² 1 − r rᵀ) dm`, `I_P = I_C + m (d² 1 − d dᵀ)` | [`mass`] |
 //! | `I = V diag(I₁, I₂, I₃) Vᵀ` | [`principal`] |
 //! | `I ω̇ + ω × I ω = N`, `q̇ = ½ q∘ω`, `T = ½ ω·I ω`, `L = I ω` | [`motion`] |
+//! | `Σ = S Sᵀ`: what is not known of a body, and what it makes of all that follows | [`uncertainty`] |
 //! | triangles from files | [`io`] |
 //! | eigenvalues, sums, lanes, threads: the only part that is not physics | [`numerics`] |
 //! | what can be wrong, as plain data | [`error`] |
@@ -48,6 +49,7 @@ pub mod mass;
 pub mod motion;
 pub mod numerics;
 pub mod principal;
+pub mod uncertainty;
 
 pub use error::Error;
 pub use mass::RigidBody;

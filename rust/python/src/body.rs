@@ -4,6 +4,7 @@ use polhode::RigidBody;
 use pyo3::prelude::*;
 
 use crate::stack::Stack;
+use crate::uncertain::Doubts;
 
 /// A rigid body, or a stack of bodies: mass, centre of mass C, inertia tensor about C.
 ///
@@ -57,10 +58,15 @@ use crate::stack::Stack;
 #[derive(Clone)]
 pub(crate) struct PyRigidBody {
     pub(crate) bodies: Stack<RigidBody>,
+    /// What is not known of them.
+    pub(crate) doubts: Doubts,
 }
 
 impl From<Stack<RigidBody>> for PyRigidBody {
     fn from(bodies: Stack<RigidBody>) -> Self {
-        Self { bodies }
+        Self {
+            bodies,
+            doubts: None,
+        }
     }
 }

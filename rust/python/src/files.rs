@@ -25,6 +25,7 @@ use crate::meshes::{read_mesh, with_mesh};
 use crate::particles::watched;
 use crate::shapes::amount;
 use crate::stack::Stack;
+use crate::uncertain::Weight;
 
 /// Vertices (n, 3) and faces (m, 3).
 type Arrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>);
@@ -57,13 +58,14 @@ pub(crate) fn stream_solid(
     py: Python<'_>,
     path: PathBuf,
     scale: f64,
-    density: Option<f64>,
-    mass: Option<f64>,
+    density: Option<Weight>,
+    mass: Option<Weight>,
     orient: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(PyRigidBody, usize, f64, f64)> {
     let _deeper = Deeper::run("from_file")?;
-    let amount = amount(mass, density)?;
+    let of = |weight: &Option<Weight>| weight.as_ref().map(|weight| weight.value);
+    let amount = amount(of(&mass), of(&density))?;
     let options = Options {
         orient,
         check: true,
@@ -90,7 +92,7 @@ pub(crate) fn stream_solid(
         StreamError::Failed(error) => to_py(py, &error), // the caller names the file
         other => stream_error(py, &path, other),
     })?;
-    let body = Stack::one(solid.body).into();
+    let body = PyRigidBody::from(Stack::one(solid.body)).weighed([density, mass, None])?;
     Ok((body, solid.triangles, solid.volume, solid.area))
 }
 

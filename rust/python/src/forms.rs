@@ -4,12 +4,15 @@ use nalgebra::{Matrix4, Matrix6, Vector3};
 use numpy::PyArrayDyn;
 use polhode::RigidBody;
 use polhode::mass::forms::SpatialOrder;
+use polhode::uncertainty::FromPositiveProducts;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Argument, read, read_or, try_rows, write, write_of};
+use crate::arrays::{Argument, read, try_rows, write, write_of};
 use crate::body::PyRigidBody;
+use crate::rigid_body::of_numbers;
 use crate::stack::{Broadcast, Stack};
+use crate::uncertain::{Quantity, carried, quantity, quantity_or};
 
 type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Array<'py> = PyResult<Floats<'py>>;
@@ -53,19 +56,34 @@ impl PyRigidBody {
         center_of_mass: Argument<'_>,
         rtol: Option<f64>,
     ) -> PyResult<Self> {
-        let mass: Stack<f64> = read(mass, "mass")?;
-        let moments: Stack<[f64; 3]> = read(moments, "moments")?;
-        let products: Stack<[f64; 3]> = read(products, "products")?;
-        let center = read_or(&center_of_mass, "center_of_mass", Vector3::zeros())?;
+        let mass: Quantity<f64> = quantity(mass, "mass")?;
+        let moments: Quantity<[f64; 3]> = quantity(moments, "moments")?;
+        let products: Quantity<[f64; 3]> = quantity(products, "products")?;
+        let center = quantity_or(&center_of_mass, "center_of_mass", Vector3::zeros())?;
+        let (m, i, p, c) = (
+            &mass.values,
+            &moments.values,
+            &products.values,
+            &center.values,
+        );
         let grid = Broadcast::of(
             ["mass", "moments", "products", "center_of_mass"],
-            [&mass.shape, &moments.shape, &products.shape, &center.shape],
+            [&m.shape, &i.shape, &p.shape, &c.shape],
         )?;
         let rtol = rtol.unwrap_or(0.0);
-        let body = |[m, i, p, c]: [usize; 4]| {
-            RigidBody::from_positive_products(mass[m], &moments[i], &products[p], &center[c], rtol)
-        };
-        Ok(grid.try_map(py, body)?.into())
+        let bodies = grid.try_map(py, |rows: [usize; 4]| {
+            let [mass, moments, products, center] = rows;
+            RigidBody::from_positive_products(m[mass], &i[moments], &p[products], &c[center], rtol)
+        })?;
+        let is_uncertain = mass.is_uncertain()
+            || moments.is_uncertain()
+            || products.is_uncertain()
+            || center.is_uncertain();
+        let doubts = carried(py, &grid, is_uncertain, |[m, i, p, c]| {
+            let numbers = [mass.row(m), center.row(c), moments.row(i), products.row(p)].concat();
+            of_numbers(&FromPositiveProducts, &numbers)
+        })?;
+        PyRigidBody::doubtful(bodies, doubts).possible(py)
     }
 }
 

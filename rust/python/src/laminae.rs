@@ -4,10 +4,10 @@ use polhode::mass::laminae;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::read_list;
 use crate::body::PyRigidBody;
-use crate::shapes::{Given, amounts, lengths, one};
-use crate::stack::{Broadcast, Stack};
+use crate::shapes::{Amounts, Given, lengths, one, shape};
+use crate::stack::Broadcast;
+use crate::uncertain::{Quantity, carried, quantity, quantity_list};
 
 /// Disk about z: I_z = ½ m R², I_x = ¼ m R².
 ///
@@ -33,11 +33,11 @@ pub(crate) fn disk(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(
-        radius,
-        "radius",
+    lengths(
+        ["radius"],
+        [radius],
         (mass, density),
-        |&radius: &f64, amount| laminae::disk(radius, amount),
+        &shape!(|&[radius]| 1, laminae::disk, radius),
     )
 }
 
@@ -71,7 +71,7 @@ pub(crate) fn annulus(
         ["inner_radius", "outer_radius"],
         [inner_radius, outer_radius],
         (mass, density),
-        |&[inner, outer], amount| laminae::annulus(inner, outer, amount),
+        &shape!(|&[inner, outer]| 2, laminae::annulus, inner, outer),
     )
 }
 
@@ -100,7 +100,12 @@ pub(crate) fn ellipse(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(semi_axes, "semi_axes", (mass, density), laminae::ellipse)
+    one(
+        semi_axes,
+        "semi_axes",
+        (mass, density),
+        &shape!(|lengths| 2, laminae::ellipse, lengths),
+    )
 }
 
 /// Rectangle with its edges along x and y: I_x = m y²/12, I_y = m x²/12.
@@ -128,7 +133,12 @@ pub(crate) fn rectangle(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(size, "size", (mass, density), laminae::rectangle)
+    one(
+        size,
+        "size",
+        (mass, density),
+        &shape!(|lengths| 2, laminae::rectangle, lengths),
+    )
 }
 
 /// Triangle in the x-y plane, where its corners are.
@@ -161,8 +171,18 @@ pub(crate) fn triangle(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    let shape = |corners: &[[f64; 2]; 3], amount| laminae::triangle(corners, amount);
-    one(vertices, "vertices", (mass, density), shape)
+    let corners: Quantity<[[f64; 2]; 3]> = quantity(vertices, "vertices")?;
+    let amounts = Amounts::read((mass, density))?;
+    let shapes = [&corners.values.shape[..], &amounts.values.shape];
+    let grid = Broadcast::of(["vertices", "mass or density"], shapes)?;
+    let bodies = grid.try_map(vertices.py(), |[v, a]| {
+        laminae::triangle(&corners.values[v], amounts.values[a])
+    })?;
+    let is_uncertain = corners.is_uncertain() || amounts.given.is_uncertain();
+    let doubts = carried(vertices.py(), &grid, is_uncertain, |[v, a]| {
+        amounts.doubt_of_polygon(a, corners.row(v))
+    })?;
+    Ok(PyRigidBody::doubtful(bodies, doubts))
 }
 
 /// Simple polygon in the x-y plane, where its corners are.
@@ -200,17 +220,28 @@ pub(crate) fn polygon(
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
     let py = vertices.py();
-    let corners: Stack<[f64; 2]> = read_list(vertices, "vertices", "..., n")?;
-    let [shape @ .., n] = &corners.shape[..] else {
+    let corners: Quantity<[f64; 2]> = quantity_list(vertices, "vertices", "..., n")?;
+    let [shape @ .., n] = &corners.values.shape[..] else {
         return Err(PyValueError::new_err(
             "vertices: expected a list of corners",
         ));
     };
-    let (n, amounts) = (*n, amounts(mass, density)?);
-    let grid = Broadcast::of(["vertices", "mass or density"], [shape, &amounts.shape])?;
-    Ok(grid
-        .try_map_watched(py, |[v, a], watch| {
-            laminae::polygon(&corners.rows[v * n..(v + 1) * n], amounts[a], watch)
-        })?
-        .into())
+    let (n, amounts) = (*n, Amounts::read((mass, density))?);
+    let shapes = [shape, &amounts.values.shape];
+    let grid = Broadcast::of(["vertices", "mass or density"], shapes)?;
+    let bodies = grid.try_map_watched(py, |[v, a], watch| {
+        laminae::polygon(
+            &corners.values.rows[v * n..(v + 1) * n],
+            amounts.values[a],
+            watch,
+        )
+    })?;
+    let is_uncertain = corners.is_uncertain() || amounts.given.is_uncertain();
+    let doubts = carried(py, &grid, is_uncertain, |[v, a]| {
+        let numbers = (v * n..(v + 1) * n)
+            .flat_map(|row| corners.row(row))
+            .collect();
+        amounts.doubt_of_polygon(a, numbers)
+    })?;
+    Ok(PyRigidBody::doubtful(bodies, doubts))
 }

@@ -11,6 +11,7 @@
 //! | `interrupt` | Ctrl-C and progress |
 //! | `depth` | functions of Python that call the package anew |
 //! | `closed_form` | exact motions at many times |
+//! | `uncertain` | numbers with a sigma, and the covariances of bodies |
 //! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
 
@@ -59,6 +60,7 @@ mod solids;
 mod stack;
 mod times;
 mod tops;
+mod uncertain;
 
 use pyo3::prelude::*;
 
@@ -126,6 +128,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::tops::{free_precession, least_spin, steady_precession};
+    #[pymodule_export]
+    use crate::uncertain::PyUncertain;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -4,7 +4,7 @@ use polhode::mass::rods;
 use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
-use crate::shapes::{Given, lengths, one};
+use crate::shapes::{Given, lengths, shape};
 
 /// Thin rod along z: I_x = I_y = m L²/12, I_z = 0.
 ///
@@ -31,11 +31,11 @@ pub(crate) fn rod(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(
-        length,
-        "length",
+    lengths(
+        ["length"],
+        [length],
         (mass, density),
-        |&length: &f64, amount| rods::rod(length, amount),
+        &shape!(|&[length]| 1, rods::rod, length),
     )
 }
 
@@ -63,11 +63,11 @@ pub(crate) fn ring(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(
-        radius,
-        "radius",
+    lengths(
+        ["radius"],
+        [radius],
         (mass, density),
-        |&radius: &f64, amount| rods::ring(radius, amount),
+        &shape!(|&[radius]| 1, rods::ring, radius),
     )
 }
 
@@ -109,6 +109,6 @@ pub(crate) fn arc(
         ["radius", "angle"],
         [radius, angle],
         (mass, density),
-        |&[r, angle], amount| rods::arc(r, angle, amount),
+        &shape!(|&[r, angle]| 2, rods::arc, r, angle),
     )
 }

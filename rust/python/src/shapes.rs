@@ -1,13 +1,14 @@
 //! What all homogeneous shapes share: mass or density, lengths that broadcast.
 
 use polhode::mass::Amount;
-use polhode::{Error, RigidBody};
+use polhode::uncertainty::{Doubt, Follow, OfPolygon, OfShape, Shape, follow};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Item, read};
+use crate::arrays::Item;
 use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
+use crate::uncertain::{Number, Quantity, carried, factor, quantity};
 
 /// An optional argument of any array-like kind.
 pub(crate) type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -23,52 +24,139 @@ pub(crate) fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount
     }
 }
 
-/// Exactly one of masses and densities.
-pub(crate) fn amounts(mass: Given<'_, '_>, density: Given<'_, '_>) -> PyResult<Stack<Amount>> {
-    match (mass, density) {
-        (Some(mass), None) => read::<f64>(mass, "mass")?.map(mass.py(), |&mass| Amount::Mass(mass)),
-        (None, Some(density)) => {
-            read::<f64>(density, "density")?.map(density.py(), |&density| Amount::Density(density))
+/// The shape that an expression of the core makes of its lengths, for plain numbers and for numbers with derivatives.
+macro_rules! shape {
+    (|$lengths:pat_param| $n:literal, $function:path, $($argument:expr),+) => {{
+        struct Shape;
+        impl polhode::uncertainty::Shape<$n> for Shape {
+            fn of<X: polhode::mass::ten::Size>(
+                &self,
+                $lengths: &[X; $n],
+                amount: polhode::mass::Amount,
+            ) -> Result<X::Body, polhode::Error> {
+                $function($($argument,)+ amount)
+            }
         }
-        _ => Err(PyTypeError::new_err(
-            "give exactly one of mass= and density=",
-        )),
-    }
+        Shape
+    }};
 }
+pub(crate) use shape;
 
-/// A shape with one size.
-pub(crate) fn one<T: Item + Sync>(
+/// A shape with one list of N lengths.
+pub(crate) fn one<const N: usize>(
     size: &Bound<'_, PyAny>,
     name: &str,
-    (mass, density): (Given<'_, '_>, Given<'_, '_>),
-    shape: impl Fn(&T, Amount) -> Result<RigidBody, Error> + Sync,
-) -> PyResult<PyRigidBody> {
-    let (sizes, amounts): (Stack<T>, _) = (read(size, name)?, amounts(mass, density)?);
-    let grid = Broadcast::of([name, "mass or density"], [&sizes.shape, &amounts.shape])?;
-    Ok(grid
-        .try_map(size.py(), |[s, a]| shape(&sizes[s], amounts[a]))?
-        .into())
+    amounts: (Given<'_, '_>, Given<'_, '_>),
+    shape: &(impl Shape<N> + Sync),
+) -> PyResult<PyRigidBody>
+where
+    [f64; N]: Item + Sync,
+{
+    let sizes: Quantity<[f64; N]> = quantity(size, name)?;
+    let amounts = Amounts::read(amounts)?;
+    let grid = Broadcast::of(
+        [name, "mass or density"],
+        [&sizes.values.shape, &amounts.values.shape],
+    )?;
+    let bodies = grid.try_map(size.py(), |[s, a]| {
+        shape.of(&sizes.values[s], amounts.values[a])
+    })?;
+    let is_uncertain = sizes.is_uncertain() || amounts.given.is_uncertain();
+    let doubts = carried(size.py(), &grid, is_uncertain, |[s, a]| {
+        amounts.doubt(a, sizes.row(s), shape)
+    })?;
+    Ok(PyRigidBody::doubtful(bodies, doubts))
 }
 
 /// A shape with several lengths.
 pub(crate) fn lengths<const N: usize>(
     names: [&str; N],
     lengths: [&Bound<'_, PyAny>; N],
-    (mass, density): (Given<'_, '_>, Given<'_, '_>),
-    shape: impl Fn(&[f64; N], Amount) -> Result<RigidBody, Error> + Sync,
+    amounts: (Given<'_, '_>, Given<'_, '_>),
+    shape: &(impl Shape<N> + Sync),
 ) -> PyResult<PyRigidBody> {
     let py = lengths[0].py();
-    let mut read_in = Vec::with_capacity(N);
+    let mut read_in: Vec<Quantity<f64>> = Vec::with_capacity(N);
     for (length, name) in lengths.iter().zip(names) {
-        read_in.push(read::<f64>(length, name)?);
+        read_in.push(quantity(length, name)?);
     }
-    let shapes = std::array::from_fn(|k| &read_in[k].shape[..]);
-    let together = Broadcast::of(names, shapes)?
-        .try_map(py, |rows| Ok(std::array::from_fn(|k| read_in[k][rows[k]])))?;
-    let amounts = amounts(mass, density)?;
+    let shapes = std::array::from_fn(|k| &read_in[k].values.shape[..]);
+    let together: Stack<[usize; N]> = Broadcast::of(names, shapes)?.try_map(py, Ok)?;
+    let of_row = |rows: &[usize; N]| std::array::from_fn(|k| read_in[k].values[rows[k]]);
+    let amounts = Amounts::read(amounts)?;
     let all = names.join(", ");
-    let grid = Broadcast::of([&all, "mass or density"], [&together.shape, &amounts.shape])?;
-    Ok(grid
-        .try_map(py, |[l, a]| shape(&together[l], amounts[a]))?
-        .into())
+    let grid = Broadcast::of(
+        [&all, "mass or density"],
+        [&together.shape, &amounts.values.shape],
+    )?;
+    let bodies = grid.try_map(py, |[l, a]| {
+        shape.of(&of_row(&together[l]), amounts.values[a])
+    })?;
+    let is_uncertain = amounts.given.is_uncertain() || read_in.iter().any(Quantity::is_uncertain);
+    let doubts = carried(py, &grid, is_uncertain, |[l, a]| {
+        let numbers = (0..N)
+            .flat_map(|k| read_in[k].row(together[l][k]))
+            .collect();
+        amounts.doubt(a, numbers, shape)
+    })?;
+    Ok(PyRigidBody::doubtful(bodies, doubts))
+}
+
+/// Masses or densities, which may be uncertain.
+pub(crate) struct Amounts {
+    pub(crate) values: Stack<Amount>,
+    pub(crate) given: Quantity<f64>,
+}
+
+impl Amounts {
+    /// Exactly one of masses and densities.
+    pub(crate) fn read((mass, density): (Given<'_, '_>, Given<'_, '_>)) -> PyResult<Self> {
+        let (of, given, name): (fn(f64) -> Amount, _, _) = match (mass, density) {
+            (Some(mass), None) => (Amount::Mass, mass, "mass"),
+            (None, Some(density)) => (Amount::Density, density, "density"),
+            _ => {
+                return Err(PyTypeError::new_err(
+                    "give exactly one of mass= and density=",
+                ));
+            }
+        };
+        let numbers: Quantity<f64> = quantity(given, name)?;
+        Ok(Self {
+            values: numbers.values.map(given.py(), |&number| of(number))?,
+            given: numbers,
+        })
+    }
+
+    /// The doubts of a polygon with these coordinates of its corners and the amount of a row.
+    pub(crate) fn doubt_of_polygon(
+        &self,
+        row: usize,
+        corners: Vec<Number<'_>>,
+    ) -> Result<Doubt, polhode::Error> {
+        let relative = factor(&self.given.row(row));
+        let mut numbers = corners;
+        numbers.push((1.0, &relative));
+        let from = Follow {
+            bodies: &[],
+            numbers: &numbers,
+        };
+        follow(&OfPolygon(self.values[row]), from)
+    }
+
+    /// The doubts of the body that a shape makes of these lengths and the amount of a row.
+    pub(crate) fn doubt<const N: usize>(
+        &self,
+        row: usize,
+        lengths: Vec<Number<'_>>,
+        shape: &impl Shape<N>,
+    ) -> Result<Doubt, polhode::Error> {
+        let relative = factor(&self.given.row(row));
+        let mut numbers = lengths;
+        numbers.push((1.0, &relative));
+        let from = Follow {
+            bodies: &[],
+            numbers: &numbers,
+        };
+        follow(&OfShape(shape, self.values[row]), from)
+    }
 }

@@ -8,6 +8,7 @@ use super::kind::Kind;
 use super::mesh::{CellFault, MeshFault};
 use super::motion::MotionFault;
 use super::polygon::PolygonFault;
+use super::uncertainty::UncertaintyFault;
 
 /// An input that breaks a law of mechanics, of geometry or of the numbers themselves.
 #[derive(Clone, Debug, PartialEq, ThisError)]
@@ -114,6 +115,9 @@ pub enum Error {
     /// The corners do not bound a polygon; the message says where and why.
     #[error(transparent)]
     Polygon(#[from] PolygonFault),
+    /// The numbers are no covariance, or none of a body.
+    #[error(transparent)]
+    Uncertainty(#[from] UncertaintyFault),
     /// The tetrahedra cannot be used; the message says which and why.
     #[error(transparent)]
     Cells(#[from] CellFault),
@@ -136,6 +140,7 @@ impl Error {
             Self::Cells(fault) => fault.kind(),
             Self::Polygon(fault) => fault.kind(),
             Self::File(fault) => fault.kind(),
+            Self::Uncertainty(fault) => fault.kind(),
             Self::NoMemory { .. } => Kind::Memory,
             Self::NonFinite { .. }
             | Self::OutOfDomain { .. }

@@ -9,6 +9,7 @@
 //! | the boundary of a lamina | `polygon` |
 //! | what a file says | `file` |
 //! | attitudes, loads, runs | `motion` |
+//! | standard deviations, covariances | `uncertainty` |
 
 mod any;
 mod body;
@@ -18,6 +19,7 @@ mod kind;
 mod mesh;
 mod motion;
 mod polygon;
+mod uncertainty;
 
 pub use any::Error;
 pub use body::BodyFault;
@@ -27,3 +29,4 @@ pub use kind::Kind;
 pub use mesh::{CellFault, Corner, Count, MeshFault};
 pub use motion::MotionFault;
 pub use polygon::PolygonFault;
+pub use uncertainty::UncertaintyFault;

@@ -6,8 +6,10 @@ use super::body::RigidBody;
 use super::error_bound::ErrorBound;
 use super::provenance::{Checks, Provenance, Source};
 use super::second_moment::SecondMoment;
+use super::ten::Size;
 use super::units::Units;
 use crate::error::{BodyFault, Error, finite, finite_of_body};
+use crate::numerics::number::Real;
 use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
 use crate::numerics::split_vector::SplitVector;
 
@@ -56,13 +58,25 @@ impl Amount {
 
 /// What a density is counted by, and how much of it a shape has.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Measure {
-    Volume(f64),
-    Area(f64),
-    Length(f64),
+pub enum Measure<X> {
+    /// Of a solid.
+    Volume(X),
+    /// Of a lamina.
+    Area(X),
+    /// Of a rod.
+    Length(X),
 }
 
-impl Measure {
+impl<X> Measure<X> {
+    /// The number itself.
+    pub(super) fn value(self) -> X {
+        match self {
+            Self::Volume(value) | Self::Area(value) | Self::Length(value) => value,
+        }
+    }
+}
+
+impl Measure<f64> {
     fn name(self) -> &'static str {
         match self {
             Self::Volume(_) => "volume",
@@ -99,7 +113,7 @@ impl Measure {
 
 /// The unit `2^u` of a shape's lengths: their squares and their volume are numbers in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Unit(pub(super) i32);
+pub struct Unit(pub(super) i32);
 
 /// Shapes with a length of more than `2^MODERATE`, or less than its inverse, have a unit of their own.
 const MODERATE: i32 = 128;
@@ -107,6 +121,9 @@ const MODERATE: i32 = 128;
 const LARGEST: i32 = 300;
 
 impl Unit {
+    /// That of lengths that are counted as they are.
+    pub(super) const ONE: Self = Self(0);
+
     /// That of a shape with these lengths, and the lengths in it: between the largest and the least.
     pub(super) fn of<const N: usize>(lengths: [f64; N]) -> (Self, [f64; N]) {
         let powers = (lengths.iter().filter(|&&length| length != 0.0)).map(|&x| exponent(x));
@@ -131,13 +148,13 @@ impl Unit {
 }
 
 /// The body with C at the origin whose second moment per unit mass is diagonal in the body axes.
-pub(super) fn diagonal(
+pub(super) fn diagonal<X: Size>(
     unit: Unit,
-    measure: Measure,
+    measure: Measure<X>,
     amount: Amount,
-    per_mass: [f64; 3],
-) -> Result<RigidBody, Error> {
-    centered(
+    per_mass: [X; 3],
+) -> Result<X::Body, Error> {
+    X::shape(
         unit,
         measure,
         amount,
@@ -146,9 +163,9 @@ pub(super) fn diagonal(
 }
 
 /// The body with C at the origin whose second moment per unit mass is this, in the unit of its lengths squared.
-pub(super) fn centered(
+pub(super) fn body_of_shape(
     unit: Unit,
-    measure: Measure,
+    measure: Measure<f64>,
     amount: Amount,
     per_mass: &Matrix3<f64>,
 ) -> Result<RigidBody, Error> {
@@ -171,7 +188,7 @@ pub(super) fn centered(
 /// centre of mass.
 pub(super) fn of_matter(
     unit: Unit,
-    measure: Measure,
+    measure: Measure<f64>,
     amount: Amount,
     source: Source,
     of_mass: impl Fn(f64) -> SecondMoment,
@@ -201,7 +218,8 @@ pub(super) fn closed_form(amount: Amount, mass: f64, trace: f64) -> ErrorBound {
 }
 
 /// A length is finite and not negative.
-pub(super) fn length(what: &'static str, value: f64) -> Result<f64, Error> {
+pub(super) fn length<X: Real>(what: &'static str, value: X) -> Result<(), Error> {
+    let value = value.rounded();
     finite(what, value)?;
     if value < 0.0 {
         return Err(Error::OutOfDomain {
@@ -210,16 +228,17 @@ pub(super) fn length(what: &'static str, value: f64) -> Result<f64, Error> {
             value,
         });
     }
-    Ok(value)
+    Ok(())
 }
 
 /// Two lengths of which the first must not exceed the second.
-pub(super) fn ordered(
-    (smaller, a): (&'static str, f64),
-    (larger, b): (&'static str, f64),
+pub(super) fn ordered<X: Real>(
+    (smaller, a): (&'static str, X),
+    (larger, b): (&'static str, X),
 ) -> Result<(), Error> {
     length(smaller, a)?;
     length(larger, b)?;
+    let (a, b) = (a.rounded(), b.rounded());
     if a <= b {
         return Ok(());
     }
@@ -232,8 +251,8 @@ pub(super) fn ordered(
 }
 
 /// `a/b` for lengths `a ≤ b`, and 1 where both are zero: a point has whatever shape is asked of it.
-pub(super) fn ratio(a: f64, b: f64) -> f64 {
-    if b == 0.0 { 1.0 } else { a / b }
+pub(super) fn ratio<X: Real>(a: X, b: X) -> X {
+    if b.rounded() == 0.0 { X::one() } else { a / b }
 }
 
 #[cfg(test)]

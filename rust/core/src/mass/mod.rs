@@ -25,6 +25,7 @@
 //! | density ρ(r) over a region, and ρ of the radius alone | [`density`] |
 //! | closed triangle mesh: divergence theorem | [`polyhedron`] |
 //! | simplices: what segments, triangles and tetrahedra add up to | `simplex` |
+//! | the ten numbers of a body, in numbers of any kind | [`ten`] |
 //! | thin shells | [`surface`] |
 //! | shells of finite thickness | [`thick_shell`] |
 //! | thin wires | [`curve`] |
@@ -54,6 +55,7 @@ pub mod second_moment;
 mod simplex;
 pub mod solids;
 pub mod surface;
+pub mod ten;
 pub mod tetrahedra;
 pub mod thick_shell;
 mod units;

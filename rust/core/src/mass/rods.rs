@@ -2,22 +2,22 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::amount::{Amount, Measure, Unit, diagonal, length};
-use super::body::RigidBody;
+use super::amount::{Amount, Measure, diagonal, length};
+use super::ten::Size;
 use crate::error::{Error, finite};
 
 /// Thin rod of length L along z: `I_x = I_y = m L²/12`, `I_z = 0`.
 ///
 /// # Errors
 /// When the length is negative or not finite, or the amount is not positive.
-pub fn rod(length: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn rod<X: Size>(length: X, amount: Amount) -> Result<X::Body, Error> {
     self::length("length", length)?;
-    let (unit, [length]) = Unit::of([length]);
+    let (unit, [length]) = X::in_unit([length]);
     diagonal(
         unit,
         Measure::Length(length),
         amount,
-        [0.0, 0.0, length * length / 12.0],
+        [X::zero(), X::zero(), length * length / 12.0],
     )
 }
 
@@ -25,15 +25,15 @@ pub fn rod(length: f64, amount: Amount) -> Result<RigidBody, Error> {
 ///
 /// # Errors
 /// When the radius is negative or not finite, or the amount is not positive.
-pub fn ring(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn ring<X: Size>(radius: X, amount: Amount) -> Result<X::Body, Error> {
     length("radius", radius)?;
-    let (unit, [radius]) = Unit::of([radius]);
+    let (unit, [radius]) = X::in_unit([radius]);
     let across = radius * radius / 2.0;
     diagonal(
         unit,
-        Measure::Length(TAU * radius),
+        Measure::Length(radius * TAU),
         amount,
-        [across, across, 0.0],
+        [across, across, X::zero()],
     )
 }
 
@@ -43,55 +43,56 @@ pub fn ring(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
 ///
 /// # Errors
 /// When the radius is negative or not finite, the angle is not within 0 to 2π, or the amount is not positive.
-pub fn arc(radius: f64, angle: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn arc<X: Size>(radius: X, angle: X, amount: Amount) -> Result<X::Body, Error> {
     length("radius", radius)?;
-    finite("angle", angle)?;
-    if !(0.0..=TAU).contains(&angle) {
+    finite("angle", angle.rounded())?;
+    if !(0.0..=TAU).contains(&angle.rounded()) {
         return Err(Error::OutOfDomain {
             what: "angle",
             law: "from 0 to 2π",
-            value: angle,
+            value: angle.rounded(),
         });
     }
-    let (unit, [radius]) = Unit::of([radius]);
+    let (unit, [radius]) = X::in_unit([radius]);
     let square = radius * radius;
     diagonal(
         unit,
         Measure::Length(radius * angle),
         amount,
-        [square * sagitta(angle), square * chord(angle), 0.0],
+        [square * sagitta(angle), square * chord(angle), X::zero()],
     )
 }
 
 /// `½ (1 − sin α/α)`; of a short arc by its series, where the difference would cancel.
-fn chord(angle: f64) -> f64 {
-    if angle >= 2.0 {
-        return 0.5 * (1.0 - angle.sin() / angle);
+fn chord<X: Size>(angle: X) -> X {
+    if angle.rounded() >= 2.0 {
+        return (X::one() - angle.sine() / angle) * 0.5;
     }
     // Σ (−1)^(k+1) α^(2k)/(2k + 1)!, k = 1, 2, …
     let square = angle * angle;
     let mut term = square / 6.0;
-    let mut sum = 0.0;
+    let mut sum = X::zero();
     for k in 1..16 {
         sum += term;
         let n = f64::from(2 * k + 2);
         term *= -square / (n * (n + 1.0));
     }
-    0.5 * sum
+    sum * 0.5
 }
 
 /// `½ (1 + sin α/α) − (sin(α/2)/(α/2))²`; of all but long arcs by its series, where the difference would cancel.
-fn sagitta(angle: f64) -> f64 {
-    if angle >= 1.25 * PI {
-        let (half, whole) = ((angle / 2.0).sin() / (angle / 2.0), angle.sin() / angle);
-        return 0.5 * (1.0 + whole) - half * half;
+fn sagitta<X: Size>(angle: X) -> X {
+    if angle.rounded() >= 1.25 * PI {
+        let half = (angle / 2.0).sine() / (angle / 2.0);
+        let whole = angle.sine() / angle;
+        return (X::one() + whole) * 0.5 - half * half;
     }
     // Σ (−1)^k (k − 1) α^(2k)/(2k + 2)!, k = 2, 3, …
     let square = angle * angle;
     let mut power = square * square / 720.0;
-    let mut sum = 0.0;
+    let mut sum = X::zero();
     for k in 2..20 {
-        sum += f64::from(k - 1) * power;
+        sum += power * f64::from(k - 1);
         let n = f64::from(2 * k + 3);
         power *= -square / (n * (n + 1.0));
     }

@@ -103,6 +103,17 @@ impl<const N: usize> Mul<f64> for Jet<N> {
     }
 }
 
+impl<const N: usize> Div<f64> for Jet<N> {
+    type Output = Self;
+
+    fn div(self, divisor: f64) -> Self {
+        Self {
+            value: self.value / divisor,
+            slopes: self.slopes.map(|slope| slope / divisor),
+        }
+    }
+}
+
 impl<const N: usize> Div for Jet<N> {
     type Output = Self;
 

@@ -18,6 +18,7 @@
 //! | [`turns`] | phases without their whole turns, sines, exponentials in lanes |
 //! | [`jacobi`] | Jacobi's functions of one number, Carlson's integral of the second kind |
 //! | [`jet`] | numbers with their derivatives |
+//! | [`parabola`] | numbers to second order along a line |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`sign_changes`] | all places in an interval at which a polynomial changes its sign |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
@@ -35,6 +36,7 @@ pub mod jacobi;
 pub mod jet;
 pub mod lane;
 pub mod number;
+pub mod parabola;
 pub mod planes;
 pub mod power_of_two;
 pub mod quad_double;

@@ -1,6 +1,7 @@
 //! Composites: parts taken out, stacks put together.
 
 use polhode::mass::composites::combined;
+use polhode::uncertainty::together;
 use pyo3::prelude::*;
 use pyo3::types::{PyNotImplemented, PyTuple};
 
@@ -8,6 +9,7 @@ use crate::arrays::numpy;
 use crate::body::PyRigidBody;
 use crate::indexing::{picked_rows, to_index};
 use crate::stack::Broadcast;
+use crate::uncertain::{Doubts, carried};
 
 #[pymethods]
 impl PyRigidBody {
@@ -19,11 +21,11 @@ impl PyRigidBody {
         let Ok(other) = other.cast::<Self>() else {
             return Ok(PyNotImplemented::get(py).to_owned().into_any());
         };
-        let other = &other.get().bodies;
-        let grid = Broadcast::of(["body", "other"], [&self.bodies.shape, &other.shape])?;
-        let rest: Self = grid
-            .try_map(py, |[a, b]| self.bodies[a].without(&other[b]))?
-            .into();
+        let other = other.get();
+        let shapes = [&self.bodies.shape[..], &other.bodies.shape];
+        let grid = Broadcast::of(["body", "other"], shapes)?;
+        let rest = grid.try_map(py, |[a, b]| self.bodies[a].without(&other.bodies[b]))?;
+        let rest = Self::doubtful(rest, self.with_part(py, &grid, -1.0, other)?);
         Ok(rest.into_pyobject(py)?.into_any())
     }
 
@@ -75,8 +77,33 @@ impl PyRigidBody {
             .try_map(py, |[k]| Ok(self.bodies[to_index(rows[k])]))?
             .rows;
         let grid = Broadcast::of(["body"], [&shape])?;
-        Ok(Self::from(grid.try_map(py, |[row]| {
-            combined(&parts[row * count..(row + 1) * count])
-        })?))
+        let whole = grid.try_map(py, |[row]| combined(&parts[row * count..(row + 1) * count]))?;
+        let doubts = carried(py, &grid, self.doubts.is_some(), |[row]| {
+            let parts: Vec<_> = (row * count..(row + 1) * count)
+                .map(|k| {
+                    let (numbers, doubt) = self.row(to_index(rows[k]));
+                    (1.0, numbers, doubt)
+                })
+                .collect();
+            Ok(together(&parts))
+        })?;
+        Ok(Self::doubtful(whole, doubts))
+    }
+}
+
+impl PyRigidBody {
+    /// The doubts of each body with a part put to it (the sign +1) or taken out of it (−1).
+    pub(super) fn with_part(
+        &self,
+        py: Python<'_>,
+        grid: &Broadcast<'_, 2>,
+        sign: f64,
+        part: &Self,
+    ) -> PyResult<Doubts> {
+        let is_uncertain = self.doubts.is_some() || part.doubts.is_some();
+        carried(py, grid, is_uncertain, |[a, b]| {
+            let ((own, doubt), (its, other)) = (self.row(a), part.row(b));
+            Ok(together(&[(1.0, own, doubt), (sign, its, other)]))
+        })
     }
 }

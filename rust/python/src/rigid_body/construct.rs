@@ -1,24 +1,30 @@
 //! Ways to a body.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Vector3};
+use polhode::uncertainty::{
+    Change, Doubt, Follow, FromPrincipal, FromTensor, FromTensorAboutOrigin, follow,
+};
 use polhode::{Error, RigidBody};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Argument, read, read_or};
+use crate::arrays::Argument;
 use crate::attitudes::read_rotation;
 use crate::body::PyRigidBody;
 use crate::hints::refuse_unknown;
 use crate::interrupt::Beat;
 use crate::memory;
 use crate::stack::{BLOCK, Broadcast, Stack, extend};
+use crate::uncertain::{Number, Quantity, carried, quantity, quantity_or, symmetric};
 
 /// An optional argument of any array-like kind.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// A constructor of the core: mass, tensor, centre of mass, rtol.
-type FromTensor = fn(f64, &Matrix3<f64>, &Vector3<f64>, f64) -> Result<RigidBody, Error>;
+type Constructor = fn(f64, &Matrix3<f64>, &Vector3<f64>, f64) -> Result<RigidBody, Error>;
 
 #[pymethods]
 impl PyRigidBody {
@@ -44,7 +50,7 @@ impl PyRigidBody {
             "rtol",
         ];
         refuse_unknown("RigidBody", &known, unknown)?;
-        let (name, tensor, from): (_, _, FromTensor) = match (inertia, inertia_about_origin) {
+        let (name, tensor, from): (_, _, Constructor) = match (inertia, inertia_about_origin) {
             (Some(tensor), None) => ("inertia", tensor, RigidBody::new),
             (None, Some(tensor)) => (
                 "inertia_about_origin",
@@ -56,17 +62,31 @@ impl PyRigidBody {
                 return Err(PyTypeError::new_err(message));
             }
         };
-        let mass: Stack<f64> = read(mass, "mass")?;
-        let tensor: Stack<Matrix3<f64>> = read(tensor, name)?;
-        let center = read_or(&center_of_mass, "center_of_mass", Vector3::zeros())?;
+        let mass: Quantity<f64> = quantity(mass, "mass")?;
+        let tensor: Quantity<Matrix3<f64>> = quantity(tensor, name)?;
+        let center = quantity_or(&center_of_mass, "center_of_mass", Vector3::zeros())?;
         let grid = Broadcast::of(
             ["mass", name, "center_of_mass"],
-            [&mass.shape, &tensor.shape, &center.shape],
+            [
+                &mass.values.shape,
+                &tensor.values.shape,
+                &center.values.shape,
+            ],
         )?;
         let rtol = rtol.unwrap_or(0.0);
-        Ok(grid
-            .try_map(py, |[m, i, c]| from(mass[m], &tensor[i], &center[c], rtol))?
-            .into())
+        let bodies = grid.try_map(py, |[m, i, c]| {
+            from(mass.values[m], &tensor.values[i], &center.values[c], rtol)
+        })?;
+        let is_uncertain = mass.is_uncertain() || tensor.is_uncertain() || center.is_uncertain();
+        let doubts = carried(py, &grid, is_uncertain, |[m, i, c]| {
+            let numbers = [&mass.row(m)[..], &center.row(c), &symmetric(&tensor.row(i))].concat();
+            if name == "inertia" {
+                of_numbers(&FromTensor, &numbers)
+            } else {
+                of_numbers(&FromTensorAboutOrigin, &numbers)
+            }
+        })?;
+        Self::doubtful(bodies, doubts).possible(py)
     }
 
     /// Body with given principal moments about C.
@@ -117,23 +137,27 @@ impl PyRigidBody {
     ) -> PyResult<Self> {
         let known = ["mass", "moments", "axes", "center_of_mass", "rtol"];
         refuse_unknown("RigidBody.from_principal", &known, unknown)?;
-        let mass: Stack<f64> = read(mass, "mass")?;
-        let moments: Stack<[f64; 3]> = read(moments, "moments")?;
+        let mass: Quantity<f64> = quantity(mass, "mass")?;
+        let moments: Quantity<[f64; 3]> = quantity(moments, "moments")?;
         let axes = match axes {
             Some(axes) => read_rotation(axes, "axes")?,
             None => Stack::one(Matrix3::identity()),
         };
-        let center = read_or(&center_of_mass, "center_of_mass", Vector3::zeros())?;
+        let center = quantity_or(&center_of_mass, "center_of_mass", Vector3::zeros())?;
         let names = ["mass", "moments", "axes", "center_of_mass"];
-        let grid = Broadcast::of(
-            names,
-            [&mass.shape, &moments.shape, &axes.shape, &center.shape],
-        )?;
+        let (m, i, c) = (&mass.values, &moments.values, &center.values);
+        let grid = Broadcast::of(names, [&m.shape, &i.shape, &axes.shape, &c.shape])?;
         let rtol = rtol.unwrap_or(0.0);
-        let body = |[m, i, v, c]: [usize; 4]| {
-            RigidBody::from_principal(mass[m], &moments[i], &axes[v], &center[c], rtol)
-        };
-        Ok(grid.try_map(py, body)?.into())
+        let bodies = grid.try_map(py, |rows: [usize; 4]| {
+            let [mass, moments, turn, center] = rows;
+            RigidBody::from_principal(m[mass], &i[moments], &axes[turn], &c[center], rtol)
+        })?;
+        let is_uncertain = mass.is_uncertain() || moments.is_uncertain() || center.is_uncertain();
+        let doubts = carried(py, &grid, is_uncertain, |[m, i, v, c]| {
+            let numbers = [mass.row(m), center.row(c), moments.row(i)].concat();
+            of_numbers(&FromPrincipal(axes[v]), &numbers)
+        })?;
+        Self::doubtful(bodies, doubts).possible(py)
     }
 
     /// Body from a file: a mesh (STL, OBJ, PLY, plate models, …) or a molecule (XYZ).
@@ -253,6 +277,27 @@ impl PyRigidBody {
             }
             extend(py, &mut rows, &body.get().bodies.rows, |body| *body)?;
         }
-        Ok(Stack { shape, rows }.into())
+        let is_uncertain = bodies.iter().any(|body| body.get().doubts.is_some());
+        let doubts = is_uncertain.then(|| {
+            let of = |body: &Bound<'_, Self>| {
+                let body = body.get();
+                (0..body.bodies.rows.len())
+                    .map(|row| body.row(row).1.clone())
+                    .collect::<Vec<_>>()
+            };
+            Arc::new(bodies.iter().flat_map(of).collect())
+        });
+        Ok(Self::doubtful(Stack { shape, rows }, doubts))
     }
+}
+
+/// The doubts of a body that is given by numbers.
+pub(crate) fn of_numbers(change: &impl Change, numbers: &[Number<'_>]) -> Result<Doubt, Error> {
+    follow(
+        change,
+        Follow {
+            bodies: &[],
+            numbers,
+        },
+    )
 }

@@ -7,7 +7,7 @@ use numpy::PyUntypedArrayMethods;
 use polhode::RigidBody;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyIterator, PyList, PyTuple};
+use pyo3::types::{PyDict, PyIterator, PyList, PyTuple};
 
 use crate::arrays::{read, write_of};
 use crate::body::PyRigidBody;
@@ -46,7 +46,8 @@ impl PyRigidBody {
         let grid = Broadcast::of(["key"], [&shape])?;
         let picked = picked.as_slice()?;
         let bodies = grid.try_map(py, |[k]| Ok(self.bodies[to_index(picked[k])]))?;
-        Ok(bodies.into())
+        let doubts = self.doubts_of(picked.iter().map(|&row| to_index(row)));
+        Ok(Self::doubtful(bodies, doubts))
     }
 
     fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
@@ -71,7 +72,8 @@ impl PyRigidBody {
                 |body| *body,
             )?;
             let shape = shape.clone();
-            parts.append(Py::new(py, Self::from(Stack { shape, rows }))?)?;
+            let doubts = self.doubts_of(i * size..(i + 1) * size);
+            parts.append(Py::new(py, Self::doubtful(Stack { shape, rows }, doubts))?)?;
         }
         parts.try_iter()
     }
@@ -95,23 +97,31 @@ impl PyRigidBody {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = py.get_type::<Self>().getattr("_from_numbers")?;
-        Ok((
-            restore,
-            PyTuple::new(py, [write_of(py, &self.bodies, RigidBody::to_array)?])?,
-        ))
+        let numbers = write_of(py, &self.bodies, RigidBody::to_array)?.into_any();
+        let state = match self._doubts(py)? {
+            None => PyTuple::new(py, [numbers])?,
+            Some(doubts) => PyTuple::new(py, [numbers, doubts.into_any()])?,
+        };
+        Ok((restore, state))
     }
 
     /// The bodies that `__reduce__` took apart, shape (..., 34), or (..., 33) without the rounding of coordinates, as before
-    /// it was kept; for pickle.
+    /// it was kept, and their doubts if they have some; for pickle.
     #[staticmethod]
-    fn _from_numbers(py: Python<'_>, numbers: &Bound<'_, PyAny>) -> PyResult<Self> {
+    #[pyo3(signature = (numbers, doubts=None))]
+    fn _from_numbers(
+        py: Python<'_>,
+        numbers: &Bound<'_, PyAny>,
+        doubts: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
         let all = read::<[f64; 34]>(numbers, "numbers").or_else(|fault| {
             let before = read::<[f64; 33]>(numbers, "numbers").map_err(|_| fault)?;
             before.map(py, |row| {
                 std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0))
             })
         })?;
-        Self::from_numbers(&all, py)
+        let bodies = Self::from_numbers(&all, py)?;
+        doubts.map_or(Ok(bodies.clone()), |doubts| bodies.with_doubts(doubts))
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

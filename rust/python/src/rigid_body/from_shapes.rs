@@ -1,9 +1,13 @@
 //! Bodies from meshes, surfaces and curves.
 
+use std::sync::Arc;
+
 use numpy::{PyArrayDyn, PyArrayMethods};
 use polhode::mass::polyhedron::{Options, closure, polyhedron_watched};
+use polhode::mass::ten::Ten;
 use polhode::mass::{Amount, curve, surface, thick_shell};
 use polhode::numerics::threads::Watch;
+use polhode::uncertainty::of_mesh;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -13,6 +17,7 @@ use crate::interrupt::Interrupt;
 use crate::meshes::{finish, read_mesh, with_mesh};
 use crate::shapes::amount;
 use crate::stack::{Broadcast, Stack};
+use crate::uncertain::{Weight, value_of};
 
 #[pymethods]
 impl PyRigidBody {
@@ -71,13 +76,19 @@ impl PyRigidBody {
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
-        density: Option<f64>,
-        mass: Option<f64>,
+        density: Option<Weight>,
+        mass: Option<Weight>,
         closure: Option<&str>,
         orient: bool,
         check: bool,
     ) -> PyResult<Self> {
-        let amount = amount(mass, density)?;
+        let amount = amount(number(&mass), number(&density))?;
+        let (vertices, uncertain) = &value_of(vertices)?;
+        if uncertain.is_some() && (closure.is_some() || orient) {
+            return Err(PyTypeError::new_err(
+                "vertices: those with a sigma must be of a closed mesh with its faces wound outward; close and orient it first",
+            ));
+        }
         let mesh = read_mesh(vertices, faces)?;
         let options = Options { orient, check };
         let interrupt = Interrupt::new(None);
@@ -106,7 +117,19 @@ impl PyRigidBody {
                 )));
             }
         };
-        Ok(Stack::one(finish(py, interrupt, outcome)?).into())
+        let body = finish(py, interrupt, outcome)?;
+        let doubts = uncertain.as_ref().map(|uncertain| {
+            let forms = uncertain.get().forms();
+            let doubt = with_mesh!(mesh, |vertices, faces| of_mesh(
+                &Ten::of(&body),
+                vertices,
+                faces,
+                forms,
+                mass.is_some()
+            ));
+            PyResult::Ok(Arc::new(vec![doubt]))
+        });
+        Self::doubtful(Stack::one(body), doubts.transpose()?).weighed([density, mass, None])
     }
 
     /// Shell, thin or of finite thickness, around a triangle mesh, open or closed.
@@ -158,19 +181,20 @@ impl PyRigidBody {
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
-        areal_density: Option<f64>,
-        density: Option<f64>,
-        mass: Option<f64>,
+        areal_density: Option<Weight>,
+        density: Option<Weight>,
+        mass: Option<Weight>,
         thickness: Option<f64>,
     ) -> PyResult<Self> {
-        let amount = match (thickness, areal_density, density) {
-            (None, _, None) => amount_per("areal_density", mass, areal_density)?,
+        let [own, per_area, per_volume] = [&mass, &areal_density, &density].map(number);
+        let amount = match (thickness, per_area, per_volume) {
+            (None, _, None) => amount_per("areal_density", own, per_area)?,
             (None, _, Some(_)) => {
                 return Err(PyTypeError::new_err(
                     "density= needs thickness=: a thin shell has a mass= or an areal_density=",
                 ));
             }
-            (Some(_), None, _) => amount(mass, density)?,
+            (Some(_), None, _) => amount(own, per_volume)?,
             (Some(_), Some(_), _) => {
                 return Err(PyTypeError::new_err(
                     "areal_density= is of a thin shell: with thickness= give mass= or density=",
@@ -186,7 +210,8 @@ impl PyRigidBody {
                 Some(t) => thick_shell::thick_shell(vertices, faces, t, amount, watch),
             })
         });
-        Ok(Stack::one(finish(py, interrupt, outcome)?).into())
+        let body = Self::from(Stack::one(finish(py, interrupt, outcome)?));
+        body.weighed([areal_density, density, mass])
     }
 
     /// Thin wire of uniform mass per length: straight segments from point to point.
@@ -220,10 +245,10 @@ impl PyRigidBody {
     fn from_curve(
         py: Python<'_>,
         points: &Bound<'_, PyAny>,
-        linear_density: Option<f64>,
-        mass: Option<f64>,
+        linear_density: Option<Weight>,
+        mass: Option<Weight>,
     ) -> PyResult<Self> {
-        let amount = amount_per("linear_density", mass, linear_density)?;
+        let amount = amount_per("linear_density", number(&mass), number(&linear_density))?;
         let points: Stack<[f64; 3]> = read_list(points, "points", "..., n")?;
         let [shape @ .., n] = &points.shape[..] else {
             return Err(PyValueError::new_err("points: expected a list of points"));
@@ -232,8 +257,13 @@ impl PyRigidBody {
         let body = |[row]: [usize; 1], watch: &mut Watch<'_>| {
             curve::curve(&points.rows[row * n..(row + 1) * n], amount, watch)
         };
-        Ok(grid.try_map_watched(py, body)?.into())
+        Self::from(grid.try_map_watched(py, body)?).weighed([linear_density, mass, None])
     }
+}
+
+/// The value of an amount.
+fn number(weight: &Option<Weight>) -> Option<f64> {
+    weight.as_ref().map(|weight| weight.value)
 }
 
 /// Exactly one of the mass in all and a mass per length or area, under its own name.

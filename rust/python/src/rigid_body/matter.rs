@@ -3,15 +3,17 @@
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::mass::particles::{labelled_particles, particle_stack, particles_watched};
 use polhode::mass::voxels::{Grid, Voxel, voxels};
+use polhode::uncertainty::of_particles;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Argument, floats, read, read_or};
+use crate::arrays::{Argument, floats, read, read_or, write};
 use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
 use crate::particles::{ParticleArrays, read_labels, watched};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
+use crate::uncertain::{Quantity, carried, has_ufloats, is_uncertain, quantity_list};
 
 #[pymethods]
 impl PyRigidBody {
@@ -65,7 +67,16 @@ impl PyRigidBody {
         masses: &Bound<'_, PyAny>,
         positions: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        let arrays = ParticleArrays::read(masses, positions, "..., n")?;
+        if is_uncertain(masses) || is_uncertain(positions) {
+            return of_uncertain_particles(py, masses, positions);
+        }
+        let arrays = match ParticleArrays::read(masses, positions, "..., n") {
+            Ok(arrays) => arrays,
+            Err(_) if has_ufloats(masses)? || has_ufloats(positions)? => {
+                return of_uncertain_particles(py, masses, positions);
+            }
+            Err(fault) => return Err(fault),
+        };
         let grid = Broadcast::of(["masses", "positions"], arrays.shapes())?;
         let rows = arrays.rows()?;
         let bodies = watched(py, |watch| {
@@ -205,6 +216,31 @@ impl PyRigidBody {
         let array = floats(density, "density")?;
         of_voxels(py, array.as_slice()?, array.shape(), spacing, origin[0])
     }
+}
+
+/// The bodies of particles whose masses or positions have a sigma.
+fn of_uncertain_particles(
+    py: Python<'_>,
+    masses: &Bound<'_, PyAny>,
+    positions: &Bound<'_, PyAny>,
+) -> PyResult<PyRigidBody> {
+    let m: Quantity<f64> = quantity_list(masses, "masses", "..., n")?;
+    let r: Quantity<[f64; 3]> = quantity_list(positions, "positions", "..., n")?;
+    let bodies = PyRigidBody::from_particles(
+        py,
+        write(py, &m.values)?.as_any(),
+        write(py, &r.values)?.as_any(),
+    )?;
+    let ([first @ .., n], [second @ .., _]) = (&m.values.shape[..], &r.values.shape[..]) else {
+        return Ok(bodies);
+    };
+    let grid = Broadcast::of(["masses", "positions"], [first, second])?;
+    let doubts = carried(py, &grid, true, |[i, j]| {
+        Ok(of_particles(
+            (0..*n).map(|k| (m.row(i * n + k), r.row(j * n + k))),
+        ))
+    })?;
+    Ok(PyRigidBody::doubtful(bodies.bodies, doubts))
 }
 
 /// The bodies of densities of this shape.

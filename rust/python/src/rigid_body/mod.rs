@@ -14,3 +14,5 @@ mod outside;
 mod properties;
 mod simulate;
 mod trust;
+
+pub(crate) use construct::of_numbers;

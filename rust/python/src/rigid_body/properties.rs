@@ -1,7 +1,8 @@
 //! What a body is, and bodies made from bodies.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use numpy::PyArrayDyn;
+use polhode::uncertainty::{Change, Doubt, Follow, Rotated, Scaled, Translated, follow};
 use polhode::{Error, RigidBody};
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyTypeError;
@@ -10,13 +11,15 @@ use pyo3::types::PyNotImplemented;
 
 use crate::about::points;
 use crate::arrays::{
-    Argument, read, read_or, write, write_any_of, write_numbers, write_numbers_of, write_of,
+    Argument, read, write, write_any_of, write_numbers, write_numbers_of, write_of,
 };
-use crate::attitudes::read_rotation;
 use crate::body::PyRigidBody;
 use crate::interrupt::Beat;
 use crate::principal::{of_bodies, with_rtols};
 use crate::stack::{BLOCK, Broadcast, Stack};
+use crate::uncertain::{
+    Number, Quantity, carried, known, quantity, quantity_or, rotation_quantity,
+};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
@@ -181,11 +184,14 @@ impl PyRigidBody {
     /// >>> solids.sphere(1.0, mass=5.0).translated((0, 0, 2)).center_of_mass
     /// array([0., 0., 2.])
     fn translated(&self, py: Python<'_>, displacement: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let d: Stack<Vector3<f64>> = read(displacement, "displacement")?;
-        let grid = self.with("displacement", &d)?;
-        Ok(grid
-            .try_map(py, |[b, i]| self.bodies[b].translated(&d[i]))?
-            .into())
+        let d: Quantity<Vector3<f64>> = quantity(displacement, "displacement")?;
+        let grid = self.with("displacement", &d.values)?;
+        let moved = grid.try_map(py, |[b, i]| self.bodies[b].translated(&d.values[i]))?;
+        let is_uncertain = self.doubts.is_some() || d.is_uncertain();
+        let doubts = carried(py, &grid, is_uncertain, |[b, i]| {
+            self.changed(b, &Translated, &d.row(i))
+        })?;
+        Ok(Self::doubtful(moved, doubts))
     }
 
     /// The body turned about the origin: C → R C, I → R I Rᵀ. Its principal moments stay exactly as they are.
@@ -207,11 +213,18 @@ impl PyRigidBody {
     /// >>> solids.box((1, 2, 3), mass=12.0).rotated(quarter_turn).inertia.diagonal()
     /// array([10., 13.,  5.])
     fn rotated(&self, py: Python<'_>, rotation: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let rotations: Stack<Matrix3<f64>> = read_rotation(rotation, "rotation")?;
+        let (rotations, angles) = rotation_quantity(rotation, "rotation")?;
         let grid = self.with("rotation", &rotations)?;
-        Ok(grid
-            .try_map(py, |[b, r]| self.bodies[b].rotated(&rotations[r]))?
-            .into())
+        let turned = grid.try_map(py, |[b, r]| self.bodies[b].rotated(&rotations[r]))?;
+        let is_uncertain = self.doubts.is_some() || angles.is_some();
+        let doubts = carried(py, &grid, is_uncertain, |[b, r]| {
+            let mut small = [known(0.0); 3];
+            for (angle, form) in small.iter_mut().zip(angles.iter().flatten()) {
+                angle.1 = form;
+            }
+            self.changed(b, &Rotated(rotations[r]), &small)
+        })?;
+        Ok(Self::doubtful(turned, doubts))
     }
 
     /// The same shape ``length`` times as large and ``mass`` times as heavy: m → k m, C → s C, I → k s² I.
@@ -233,14 +246,18 @@ impl PyRigidBody {
     #[pyo3(signature = (length=Argument::default(), mass=Argument::default()), text_signature = "($self, length=1.0, mass=1.0)")]
     fn scaled(&self, py: Python<'_>, length: Argument<'_>, mass: Argument<'_>) -> PyResult<Self> {
         let (length, mass) = (
-            read_or(&length, "length", 1.0)?,
-            read_or(&mass, "mass", 1.0)?,
+            quantity_or(&length, "length", 1.0)?,
+            quantity_or(&mass, "mass", 1.0)?,
         );
-        let shapes = [&self.bodies.shape[..], &length.shape, &mass.shape];
+        let (s, k) = (&length.values, &mass.values);
+        let shapes = [&self.bodies.shape[..], &s.shape, &k.shape];
         let grid = Broadcast::of(["body", "length", "mass"], shapes)?;
-        Ok(grid
-            .try_map(py, |[b, s, k]| self.bodies[b].scaled(length[s], mass[k]))?
-            .into())
+        let scaled = grid.try_map(py, |[b, i, j]| self.bodies[b].scaled(s[i], k[j]))?;
+        let is_uncertain = self.doubts.is_some() || length.is_uncertain() || mass.is_uncertain();
+        let doubts = carried(py, &grid, is_uncertain, |[b, i, j]| {
+            self.changed(b, &Scaled, &[length.row(i), mass.row(j)].concat())
+        })?;
+        Ok(Self::doubtful(scaled, doubts))
     }
 
     /// Whether bodies agree, one answer for each pair.
@@ -295,11 +312,10 @@ impl PyRigidBody {
         let Ok(other) = other.cast::<Self>() else {
             return Ok(PyNotImplemented::get(py).to_owned().into_any());
         };
-        let other = &other.get().bodies;
-        let grid = self.with("other", other)?;
-        let sum: Self = grid
-            .try_map(py, |[a, b]| self.bodies[a].combined(&other[b]))?
-            .into();
+        let other = other.get();
+        let grid = self.with("other", &other.bodies)?;
+        let sum = grid.try_map(py, |[a, b]| self.bodies[a].combined(&other.bodies[b]))?;
+        let sum = Self::doubtful(sum, self.with_part(py, &grid, 1.0, other)?);
         Ok(sum.into_pyobject(py)?.into_any())
     }
 
@@ -310,7 +326,7 @@ impl PyRigidBody {
         other: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         if other.extract::<i64>().is_ok_and(|zero| zero == 0) {
-            let same: Self = self.bodies.map(py, |body| *body)?.into();
+            let same = Self::doubtful(self.bodies.map(py, |body| *body)?, self.doubts.clone());
             return Ok(same.into_pyobject(py)?.into_any());
         }
         Ok(PyNotImplemented::get(py).to_owned().into_any())
@@ -325,8 +341,9 @@ impl PyRigidBody {
         let Ok(other) = other.cast::<Self>() else {
             return Ok(PyNotImplemented::get(py).to_owned().into_any());
         };
+        let mut equal = self.doubts == other.get().doubts;
         let (own, other) = (&self.bodies, &other.get().bodies);
-        let mut equal = own.shape == other.shape;
+        equal = equal && own.shape == other.shape;
         let mut beat = Beat::new(py);
         for (own, other) in own.rows.chunks(BLOCK).zip(other.rows.chunks(BLOCK)) {
             beat.mark()?;
@@ -346,6 +363,17 @@ impl PyRigidBody {
     /// The bodies lined up with one other argument.
     fn with<'a, T>(&self, name: &'a str, other: &Stack<T>) -> PyResult<Broadcast<'a, 2>> {
         Broadcast::of(["body", name], [&self.bodies.shape, &other.shape])
+    }
+
+    /// The doubts of a row after a change of it by some numbers.
+    fn changed(
+        &self,
+        row: usize,
+        change: &impl Change,
+        numbers: &[Number<'_>],
+    ) -> Result<Doubt, Error> {
+        let bodies = &[self.row(row)];
+        follow(change, Follow { bodies, numbers })
     }
 
     /// Bodies from their numbers.

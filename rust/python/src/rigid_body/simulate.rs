@@ -19,6 +19,7 @@ use crate::interrupt::Interrupt;
 use crate::loads::PyLoad;
 use crate::stack::Stack;
 use crate::times::read_times;
+use crate::uncertain::value_of;
 
 /// An optional argument of any array-like kind.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -161,10 +162,18 @@ impl PyRigidBody {
                 .map_err(|_| hints::not_a_load(load))?
                 .get(),
         };
+        let (omega, omega_doubt) = value_of(omega)?;
+        let (attitude, attitude_doubt) = match attitude {
+            None => (None, None),
+            Some(attitude) => {
+                let (value, doubt) = value_of(attitude)?;
+                (Some(value), doubt)
+            }
+        };
         let start = Start {
             bodies: &slf.get().bodies,
-            omega: read(omega, "omega")?,
-            attitude: read_attitude_exactly(attitude, "attitude")?,
+            omega: read(&omega, "omega")?,
+            attitude: read_attitude_exactly(attitude.as_ref(), "attitude")?,
             position: at_start(position, "position")?,
             velocity: at_start(velocity, "velocity")?,
             terms: acts.terms(py)?,
@@ -198,6 +207,10 @@ impl PyRigidBody {
         };
         ensemble.check(py)?;
         let (trajectory, has_failures) = ensemble.run(py, slf, load, &interrupt)?;
+        if omega_doubt.is_some() || attitude_doubt.is_some() {
+            let known = trajectory.getattr("__dict__")?;
+            known.set_item("uncertain_start", (omega_doubt, attitude_doubt))?;
+        }
         let failure = raises && has_failures;
         if let Err(stop) = interrupt.finish(py, !failure) {
             stop.value(py).setattr("partial", trajectory)?;

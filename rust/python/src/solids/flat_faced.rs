@@ -1,13 +1,16 @@
 //! Solids with flat faces.
 
 use polhode::Error;
-use polhode::mass::solids;
+use polhode::mass::ten::Size;
+use polhode::mass::{Amount, solids};
+use polhode::uncertainty::Shape;
 use pyo3::prelude::*;
 
 use crate::arrays::read;
 use crate::body::PyRigidBody;
-use crate::shapes::{Given, amounts, one};
+use crate::shapes::{Amounts, Given, lengths, one, shape};
 use crate::stack::{Broadcast, Stack};
+use crate::uncertain::{Quantity, carried, quantity};
 
 /// Box with its faces normal to the axes: I_x = m (y² + z²)/12.
 ///
@@ -34,7 +37,12 @@ pub(crate) fn cuboid(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(size, "size", (mass, density), solids::cuboid)
+    one(
+        size,
+        "size",
+        (mass, density),
+        &shape!(|lengths| 3, solids::cuboid, lengths),
+    )
 }
 
 /// Cube with its faces normal to the axes: I = m a²/6.
@@ -62,9 +70,12 @@ pub(crate) fn cube(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(side, "side", (mass, density), |&side: &f64, amount| {
-        solids::cube(side, amount)
-    })
+    lengths(
+        ["side"],
+        [side],
+        (mass, density),
+        &shape!(|&[side]| 1, solids::cube, side),
+    )
 }
 
 /// Wedge: half of a box, cut along a diagonal of its x-z faces, the right angle at −x, −z.
@@ -97,7 +108,12 @@ pub(crate) fn wedge(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(size, "size", (mass, density), solids::wedge)
+    one(
+        size,
+        "size",
+        (mass, density),
+        &shape!(|lengths| 3, solids::wedge, lengths),
+    )
 }
 
 /// Upright prism over a regular polygon: I_z = m R² (2 + cos 2π/n)/6. One corner is toward +x.
@@ -136,17 +152,40 @@ pub(crate) fn prism(
 ) -> PyResult<PyRigidBody> {
     let py = sides.py();
     let sides: Stack<f64> = read(sides, "sides")?;
-    let (radius, height): (Stack<f64>, Stack<f64>) =
-        (read(radius, "radius")?, read(height, "height")?);
-    let amounts = amounts(mass, density)?;
+    let (radius, height): (Quantity<f64>, Quantity<f64>) =
+        (quantity(radius, "radius")?, quantity(height, "height")?);
+    let amounts = Amounts::read((mass, density))?;
     let grid = Broadcast::of(
         ["sides", "radius", "height", "mass or density"],
-        [&sides.shape, &radius.shape, &height.shape, &amounts.shape],
+        [
+            &sides.shape,
+            &radius.values.shape,
+            &height.values.shape,
+            &amounts.values.shape,
+        ],
     )?;
-    let prism = |[n, r, h, a]: [usize; 4]| {
-        solids::prism(whole(sides[n])?, radius[r], height[h], amounts[a])
-    };
-    Ok(grid.try_map(py, prism)?.into())
+    let bodies = grid.try_map(py, |[n, r, h, a]| {
+        Prism(whole(sides[n])?).of(&[radius.values[r], height.values[h]], amounts.values[a])
+    })?;
+    let is_uncertain =
+        radius.is_uncertain() || height.is_uncertain() || amounts.given.is_uncertain();
+    let doubts = carried(py, &grid, is_uncertain, |[n, r, h, a]| {
+        amounts.doubt(
+            a,
+            [radius.row(r), height.row(h)].concat(),
+            &Prism(whole(sides[n])?),
+        )
+    })?;
+    Ok(PyRigidBody::doubtful(bodies, doubts))
+}
+
+/// A prism with so many sides, by its radius and height.
+struct Prism(u32);
+
+impl Shape<2> for Prism {
+    fn of<X: Size>(&self, &[radius, height]: &[X; 2], amount: Amount) -> Result<X::Body, Error> {
+        solids::prism(self.0, radius, height, amount)
+    }
 }
 
 /// A number of sides as an integer.
@@ -188,7 +227,12 @@ pub(crate) fn pyramid(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(size, "size", (mass, density), solids::pyramid)
+    one(
+        size,
+        "size",
+        (mass, density),
+        &shape!(|lengths| 3, solids::pyramid, lengths),
+    )
 }
 
 /// Regular tetrahedron, its apex toward +z: I = m a²/20 about every axis through the centre of mass.
@@ -219,7 +263,10 @@ pub(crate) fn tetrahedron(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(side, "side", (mass, density), |&side: &f64, amount| {
-        solids::tetrahedron(side, amount)
-    })
+    lengths(
+        ["side"],
+        [side],
+        (mass, density),
+        &shape!(|&[side]| 1, solids::tetrahedron, side),
+    )
 }

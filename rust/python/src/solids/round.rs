@@ -4,7 +4,7 @@ use polhode::mass::solids;
 use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
-use crate::shapes::{Given, lengths, one};
+use crate::shapes::{Given, lengths, one, shape};
 
 /// Ball: I = ⅖ m R².
 ///
@@ -30,11 +30,11 @@ pub(crate) fn sphere(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(
-        radius,
-        "radius",
+    lengths(
+        ["radius"],
+        [radius],
         (mass, density),
-        |&radius: &f64, amount| solids::sphere(radius, amount),
+        &shape!(|&[radius]| 1, solids::sphere, radius),
     )
 }
 
@@ -63,7 +63,12 @@ pub(crate) fn ellipsoid(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(semi_axes, "semi_axes", (mass, density), solids::ellipsoid)
+    one(
+        semi_axes,
+        "semi_axes",
+        (mass, density),
+        &shape!(|lengths| 3, solids::ellipsoid, lengths),
+    )
 }
 
 /// Ball with a concentric cavity: I = ⅖ m (R⁵ − r⁵)/(R³ − r³). With equal radii a thin shell, I = ⅔ m R².
@@ -96,7 +101,7 @@ pub(crate) fn hollow_sphere(
         ["inner_radius", "outer_radius"],
         [inner_radius, outer_radius],
         (mass, density),
-        |&[inner, outer], amount| solids::hollow_sphere(inner, outer, amount),
+        &shape!(|&[inner, outer]| 2, solids::hollow_sphere, inner, outer),
     )
 }
 
@@ -124,10 +129,10 @@ pub(crate) fn hemisphere(
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
 ) -> PyResult<PyRigidBody> {
-    one(
-        radius,
-        "radius",
+    lengths(
+        ["radius"],
+        [radius],
         (mass, density),
-        |&radius: &f64, amount| solids::hemisphere(radius, amount),
+        &shape!(|&[radius]| 1, solids::hemisphere, radius),
     )
 }

@@ -4,7 +4,7 @@ use polhode::mass::solids;
 use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
-use crate::shapes::{Given, lengths};
+use crate::shapes::{Given, lengths, shape};
 
 /// Cylinder along z: I_z = ½ m R², I_x = m (3R² + h²)/12. A flat one is a disk, a thin one a rod.
 ///
@@ -36,7 +36,7 @@ pub(crate) fn cylinder(
         ["radius", "height"],
         [radius, height],
         (mass, density),
-        |&[r, h], amount| solids::cylinder(r, h, amount),
+        &shape!(|&[r, h]| 2, solids::cylinder, r, h),
     )
 }
 
@@ -72,7 +72,7 @@ pub(crate) fn cone(
         ["radius", "height"],
         [radius, height],
         (mass, density),
-        |&[r, h], amount| solids::cone(r, h, amount),
+        &shape!(|&[r, h]| 2, solids::cone, r, h),
     )
 }
 
@@ -109,7 +109,7 @@ pub(crate) fn tube(
         ["inner_radius", "outer_radius", "height"],
         [inner_radius, outer_radius, height],
         (mass, density),
-        |&[inner, outer, h], amount| solids::tube(inner, outer, h, amount),
+        &shape!(|&[inner, outer, h]| 3, solids::tube, inner, outer, h),
     )
 }
 
@@ -149,7 +149,7 @@ pub(crate) fn frustum(
         ["bottom_radius", "top_radius", "height"],
         [bottom_radius, top_radius, height],
         (mass, density),
-        |&[bottom, top, h], amount| solids::frustum(bottom, top, h, amount),
+        &shape!(|&[bottom, top, h]| 3, solids::frustum, bottom, top, h),
     )
 }
 
@@ -184,7 +184,7 @@ pub(crate) fn capsule(
         ["radius", "length"],
         [radius, length],
         (mass, density),
-        |&[r, l], amount| solids::capsule(r, l, amount),
+        &shape!(|&[r, l]| 2, solids::capsule, r, l),
     )
 }
 
@@ -220,6 +220,6 @@ pub(crate) fn torus(
         ["major_radius", "minor_radius"],
         [major_radius, minor_radius],
         (mass, density),
-        |&[major, minor], amount| solids::torus(major, minor, amount),
+        &shape!(|&[major, minor]| 2, solids::torus, major, minor),
     )
 }

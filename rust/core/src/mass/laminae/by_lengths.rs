@@ -3,14 +3,14 @@
 use std::f64::consts::PI;
 
 use crate::error::Error;
-use crate::mass::amount::{Amount, Measure, Unit, diagonal, length, ordered};
-use crate::mass::body::RigidBody;
+use crate::mass::amount::{Amount, Measure, diagonal, length, ordered};
+use crate::mass::ten::Size;
 
 /// Disk of radius R: `I_z = ½ m R²`, `I_x = I_y = ¼ m R²`.
 ///
 /// # Errors
 /// When the radius is negative or not finite, or the amount is not positive.
-pub fn disk(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn disk<X: Size>(radius: X, amount: Amount) -> Result<X::Body, Error> {
     length("radius", radius)?;
     ellipse(&[radius; 2], amount)
 }
@@ -19,18 +19,22 @@ pub fn disk(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
 ///
 /// # Errors
 /// When a radius is negative or not finite, the inner one is the larger, or the amount is not positive.
-pub fn annulus(inner_radius: f64, outer_radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn annulus<X: Size>(
+    inner_radius: X,
+    outer_radius: X,
+    amount: Amount,
+) -> Result<X::Body, Error> {
     ordered(
         ("inner_radius", inner_radius),
         ("outer_radius", outer_radius),
     )?;
-    let (unit, [r, R]) = Unit::of([inner_radius, outer_radius]);
+    let (unit, [r, R]) = X::in_unit([inner_radius, outer_radius]);
     let across = (R * R + r * r) / 4.0;
     diagonal(
         unit,
-        Measure::Area(PI * (R - r) * (R + r)),
+        Measure::Area((R - r) * PI * (R + r)),
         amount,
-        [across, across, 0.0],
+        [across, across, X::zero()],
     )
 }
 
@@ -38,16 +42,16 @@ pub fn annulus(inner_radius: f64, outer_radius: f64, amount: Amount) -> Result<R
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn ellipse(semi_axes: &[f64; 2], amount: Amount) -> Result<RigidBody, Error> {
+pub fn ellipse<X: Size>(semi_axes: &[X; 2], amount: Amount) -> Result<X::Body, Error> {
     for &semi_axis in semi_axes {
         length("semi_axes", semi_axis)?;
     }
-    let (unit, [a, b]) = Unit::of(*semi_axes);
+    let (unit, [a, b]) = X::in_unit(*semi_axes);
     diagonal(
         unit,
-        Measure::Area(PI * a * b),
+        Measure::Area(a * PI * b),
         amount,
-        [a * a / 4.0, b * b / 4.0, 0.0],
+        [a * a / 4.0, b * b / 4.0, X::zero()],
     )
 }
 
@@ -55,15 +59,15 @@ pub fn ellipse(semi_axes: &[f64; 2], amount: Amount) -> Result<RigidBody, Error>
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn rectangle(size: &[f64; 2], amount: Amount) -> Result<RigidBody, Error> {
+pub fn rectangle<X: Size>(size: &[X; 2], amount: Amount) -> Result<X::Body, Error> {
     for &edge in size {
         length("size", edge)?;
     }
-    let (unit, [x, y]) = Unit::of(*size);
+    let (unit, [x, y]) = X::in_unit(*size);
     diagonal(
         unit,
         Measure::Area(x * y),
         amount,
-        [x * x / 12.0, y * y / 12.0, 0.0],
+        [x * x / 12.0, y * y / 12.0, X::zero()],
     )
 }

@@ -3,15 +3,15 @@
 use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 
-use super::super::amount::{Amount, Measure, Unit, centered, diagonal, length};
-use super::super::body::RigidBody;
+use super::super::amount::{Amount, Measure, Unit, diagonal, length};
+use super::super::ten::Size;
 use crate::error::Error;
 
 /// Box with full edge lengths (x, y, z): `s_x = m x²/12`.
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn cuboid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
+pub fn cuboid<X: Size>(size: &[X; 3], amount: Amount) -> Result<X::Body, Error> {
     let (unit, size) = lengths(size)?;
     let [x, y, z] = size;
     diagonal(
@@ -26,7 +26,7 @@ pub fn cuboid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
 ///
 /// # Errors
 /// When the length is negative or not finite, or the amount is not positive.
-pub fn cube(side: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn cube<X: Size>(side: X, amount: Amount) -> Result<X::Body, Error> {
     length("side", side)?;
     cuboid(&[side; 3], amount)
 }
@@ -38,15 +38,15 @@ pub fn cube(side: f64, amount: Amount) -> Result<RigidBody, Error> {
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn wedge(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
+pub fn wedge<X: Size>(size: &[X; 3], amount: Amount) -> Result<X::Body, Error> {
     let (unit, [x, y, z]) = lengths(size)?;
-    let xz = -(x * z / 36.0);
+    let (zero, xz) = (X::zero(), -(x * z / 36.0));
     let (xx, yy, zz) = (x * x / 18.0, y * y / 12.0, z * z / 18.0);
-    centered(
+    X::shape(
         unit,
         Measure::Volume(x * y * z / 2.0),
         amount,
-        &Matrix3::new(xx, 0.0, xz, 0.0, yy, 0.0, xz, 0.0, zz),
+        &Matrix3::new(xx, zero, xz, zero, yy, zero, xz, zero, zz),
     )
 }
 
@@ -55,7 +55,7 @@ pub fn wedge(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
 ///
 /// # Errors
 /// When there are fewer than three sides, a length is negative or not finite, or the amount is not positive.
-pub fn prism(sides: u32, radius: f64, height: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn prism<X: Size>(sides: u32, radius: X, height: X, amount: Amount) -> Result<X::Body, Error> {
     if sides < 3 {
         return Err(Error::OutOfDomain {
             what: "sides",
@@ -65,13 +65,13 @@ pub fn prism(sides: u32, radius: f64, height: f64, amount: Amount) -> Result<Rig
     }
     length("radius", radius)?;
     length("height", height)?;
-    let (unit, [radius, height]) = Unit::of([radius, height]);
+    let (unit, [radius, height]) = X::in_unit([radius, height]);
     let n = f64::from(sides);
     let (sin, cos) = (TAU / n).sin_cos();
     let across = radius * radius * (2.0 + cos) / 12.0;
     diagonal(
         unit,
-        Measure::Volume(0.5 * n * sin * radius * radius * height),
+        Measure::Volume(radius * (0.5 * n * sin) * radius * height),
         amount,
         [across, across, height * height / 12.0],
     )
@@ -81,13 +81,13 @@ pub fn prism(sides: u32, radius: f64, height: f64, amount: Amount) -> Result<Rig
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn pyramid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
+pub fn pyramid<X: Size>(size: &[X; 3], amount: Amount) -> Result<X::Body, Error> {
     let (unit, [x, y, z]) = lengths(size)?;
     diagonal(
         unit,
         Measure::Volume(x * y * z / 3.0),
         amount,
-        [x * x / 20.0, y * y / 20.0, 3.0 * z * z / 80.0],
+        [x * x / 20.0, y * y / 20.0, z * 3.0 * z / 80.0],
     )
 }
 
@@ -97,9 +97,9 @@ pub fn pyramid(size: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
 ///
 /// # Errors
 /// When the length is negative or not finite, or the amount is not positive.
-pub fn tetrahedron(side: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn tetrahedron<X: Size>(side: X, amount: Amount) -> Result<X::Body, Error> {
     length("side", side)?;
-    let (unit, [side]) = Unit::of([side]);
+    let (unit, [side]) = X::in_unit([side]);
     diagonal(
         unit,
         Measure::Volume(side * side * side / 72.0_f64.sqrt()),
@@ -108,9 +108,9 @@ pub fn tetrahedron(side: f64, amount: Amount) -> Result<RigidBody, Error> {
     )
 }
 
-fn lengths(size: &[f64; 3]) -> Result<(Unit, [f64; 3]), Error> {
+fn lengths<X: Size>(size: &[X; 3]) -> Result<(Unit, [X; 3]), Error> {
     for &edge in size {
         length("size", edge)?;
     }
-    Ok(Unit::of(*size))
+    Ok(X::in_unit(*size))
 }

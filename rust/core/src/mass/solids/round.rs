@@ -2,23 +2,23 @@
 
 use std::f64::consts::PI;
 
-use super::super::amount::{Amount, Measure, Unit, diagonal, length, ordered, ratio};
-use super::super::body::RigidBody;
+use super::super::amount::{Amount, Measure, diagonal, length, ordered, ratio};
+use super::super::ten::Size;
 use crate::error::Error;
 
 /// Ellipsoid with semi-axes (a, b, c): `s_x = m a²/5`, so `I_x = m (b² + c²)/5` (mex254).
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn ellipsoid(semi_axes: &[f64; 3], amount: Amount) -> Result<RigidBody, Error> {
+pub fn ellipsoid<X: Size>(semi_axes: &[X; 3], amount: Amount) -> Result<X::Body, Error> {
     for &semi_axis in semi_axes {
         length("semi_axes", semi_axis)?;
     }
-    let (unit, semi_axes) = Unit::of(*semi_axes);
+    let (unit, semi_axes) = X::in_unit(*semi_axes);
     let [a, b, c] = semi_axes;
     diagonal(
         unit,
-        Measure::Volume(4.0 / 3.0 * PI * a * b * c),
+        Measure::Volume(a * (4.0 / 3.0 * PI) * b * c),
         amount,
         semi_axes.map(|semi_axis| semi_axis * semi_axis / 5.0),
     )
@@ -28,7 +28,7 @@ pub fn ellipsoid(semi_axes: &[f64; 3], amount: Amount) -> Result<RigidBody, Erro
 ///
 /// # Errors
 /// When the radius is negative or not finite, or the amount is not positive.
-pub fn sphere(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn sphere<X: Size>(radius: X, amount: Amount) -> Result<X::Body, Error> {
     length("radius", radius)?;
     ellipsoid(&[radius; 3], amount)
 }
@@ -41,22 +41,23 @@ pub fn sphere(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
 ///
 /// # Errors
 /// When a radius is negative or not finite, the inner one is the larger, or the amount is not positive.
-pub fn hollow_sphere(
-    inner_radius: f64,
-    outer_radius: f64,
+pub fn hollow_sphere<X: Size>(
+    inner_radius: X,
+    outer_radius: X,
     amount: Amount,
-) -> Result<RigidBody, Error> {
+) -> Result<X::Body, Error> {
     ordered(
         ("inner_radius", inner_radius),
         ("outer_radius", outer_radius),
     )?;
-    let (unit, [r, R]) = Unit::of([inner_radius, outer_radius]);
+    let (unit, [r, R]) = X::in_unit([inner_radius, outer_radius]);
     let t = ratio(r, R);
-    let quadratic = 1.0 + t * (1.0 + t);
-    let quartic = 1.0 + t * (1.0 + t * quadratic);
+    let one = X::one();
+    let quadratic = one + t * (one + t);
+    let quartic = one + t * (one + t * quadratic);
     diagonal(
         unit,
-        Measure::Volume(4.0 / 3.0 * PI * (R - r) * (R * R * quadratic)),
+        Measure::Volume((R - r) * (4.0 / 3.0 * PI) * (R * R * quadratic)),
         amount,
         [R * R / 5.0 * (quartic / quadratic); 3],
     )
@@ -67,14 +68,14 @@ pub fn hollow_sphere(
 ///
 /// # Errors
 /// When the radius is negative or not finite, or the amount is not positive.
-pub fn hemisphere(radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn hemisphere<X: Size>(radius: X, amount: Amount) -> Result<X::Body, Error> {
     length("radius", radius)?;
-    let (unit, [radius]) = Unit::of([radius]);
+    let (unit, [radius]) = X::in_unit([radius]);
     let square = radius * radius;
     diagonal(
         unit,
-        Measure::Volume(2.0 / 3.0 * PI * square * radius),
+        Measure::Volume(square * (2.0 / 3.0 * PI) * radius),
         amount,
-        [square / 5.0, square / 5.0, 19.0 * square / 320.0],
+        [square / 5.0, square / 5.0, square * 19.0 / 320.0],
     )
 }

@@ -2,22 +2,22 @@
 
 use std::f64::consts::PI;
 
-use super::super::amount::{Amount, Measure, Unit, diagonal, length, ordered};
-use super::super::body::RigidBody;
+use super::super::amount::{Amount, Measure, diagonal, length, ordered};
+use super::super::ten::Size;
 use crate::error::Error;
 
 /// Cylinder of radius R and height h along z: `I_z = ½ m R²`, `I_x = m (3R² + h²)/12` (mex252).
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn cylinder(radius: f64, height: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn cylinder<X: Size>(radius: X, height: X, amount: Amount) -> Result<X::Body, Error> {
     length("radius", radius)?;
     length("height", height)?;
-    let (unit, [radius, height]) = Unit::of([radius, height]);
+    let (unit, [radius, height]) = X::in_unit([radius, height]);
     let across = radius * radius / 4.0;
     diagonal(
         unit,
-        Measure::Volume(PI * radius * radius * height),
+        Measure::Volume(radius * PI * radius * height),
         amount,
         [across, across, height * height / 12.0],
     )
@@ -27,22 +27,22 @@ pub fn cylinder(radius: f64, height: f64, amount: Amount) -> Result<RigidBody, E
 ///
 /// # Errors
 /// When a length is negative or not finite, the inner radius is the larger, or the amount is not positive.
-pub fn tube(
-    inner_radius: f64,
-    outer_radius: f64,
-    height: f64,
+pub fn tube<X: Size>(
+    inner_radius: X,
+    outer_radius: X,
+    height: X,
     amount: Amount,
-) -> Result<RigidBody, Error> {
+) -> Result<X::Body, Error> {
     ordered(
         ("inner_radius", inner_radius),
         ("outer_radius", outer_radius),
     )?;
     length("height", height)?;
-    let (unit, [r, R, height]) = Unit::of([inner_radius, outer_radius, height]);
+    let (unit, [r, R, height]) = X::in_unit([inner_radius, outer_radius, height]);
     let across = (R * R + r * r) / 4.0;
     diagonal(
         unit,
-        Measure::Volume(PI * (R - r) * (R + r) * height),
+        Measure::Volume((R - r) * PI * (R + r) * height),
         amount,
         [across, across, height * height / 12.0],
     )
@@ -53,16 +53,16 @@ pub fn tube(
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn cone(radius: f64, height: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn cone<X: Size>(radius: X, height: X, amount: Amount) -> Result<X::Body, Error> {
     length("radius", radius)?;
     length("height", height)?;
-    let (unit, [radius, height]) = Unit::of([radius, height]);
-    let across = 3.0 * radius * radius / 20.0;
+    let (unit, [radius, height]) = X::in_unit([radius, height]);
+    let across = radius * 3.0 * radius / 20.0;
     diagonal(
         unit,
-        Measure::Volume(PI * radius * radius * height / 3.0),
+        Measure::Volume(radius * PI * radius * height / 3.0),
         amount,
-        [across, across, 3.0 * height * height / 80.0],
+        [across, across, height * 3.0 * height / 80.0],
     )
 }
 
@@ -73,39 +73,44 @@ pub fn cone(radius: f64, height: f64, amount: Amount) -> Result<RigidBody, Error
 ///
 /// # Errors
 /// When a length is negative or not finite, both radii are zero, or the amount is not positive.
-pub fn frustum(
-    bottom_radius: f64,
-    top_radius: f64,
-    height: f64,
+pub fn frustum<X: Size>(
+    bottom_radius: X,
+    top_radius: X,
+    height: X,
     amount: Amount,
-) -> Result<RigidBody, Error> {
+) -> Result<X::Body, Error> {
     length("bottom_radius", bottom_radius)?;
     length("top_radius", top_radius)?;
     length("height", height)?;
-    let wide = bottom_radius.max(top_radius);
-    if wide == 0.0 {
+    let [narrow, wide] = if bottom_radius.rounded() <= top_radius.rounded() {
+        [bottom_radius, top_radius]
+    } else {
+        [top_radius, bottom_radius]
+    };
+    if wide.rounded() == 0.0 {
         return Err(Error::OutOfDomain {
             what: "bottom_radius or top_radius",
             law: "positive (without width the mass along the height depends on the ratio of the two: a thin uniform one is \
                   a rod)",
-            value: wide,
+            value: 0.0,
         });
     }
     // The formulas are symmetric in the two radii.
-    let (unit, [narrow, wide, height]) = Unit::of([bottom_radius.min(top_radius), wide, height]);
+    let (unit, [narrow, wide, height]) = X::in_unit([narrow, wide, height]);
     let t = narrow / wide;
-    let quadratic = 1.0 + t * (1.0 + t);
-    let quartic = 1.0 + t * (1.0 + t * quadratic);
-    let along = 1.0 + t * (4.0 + t * (10.0 + t * (4.0 + t)));
-    let across = 3.0 / 20.0 * wide * wide * (quartic / quadratic);
+    let [one, four, ten] = [1.0, 4.0, 10.0].map(X::from);
+    let quadratic = one + t * (one + t);
+    let quartic = one + t * (one + t * quadratic);
+    let along = one + t * (four + t * (ten + t * (four + t)));
+    let across = wide * (3.0 / 20.0) * wide * (quartic / quadratic);
     diagonal(
         unit,
-        Measure::Volume(PI / 3.0 * height * (wide * wide * quadratic)),
+        Measure::Volume(height * (PI / 3.0) * (wide * wide * quadratic)),
         amount,
         [
             across,
             across,
-            3.0 / 80.0 * height * height * (along / (quadratic * quadratic)),
+            height * (3.0 / 80.0) * height * (along / (quadratic * quadratic)),
         ],
     )
 }
@@ -118,22 +123,22 @@ pub fn frustum(
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
-pub fn capsule(radius: f64, length: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn capsule<X: Size>(radius: X, length: X, amount: Amount) -> Result<X::Body, Error> {
     self::length("radius", radius)?;
     self::length("length", length)?;
-    let (unit, [R, L]) = Unit::of([radius, length]);
-    let caps = 4.0 / 3.0 * R;
+    let (unit, [R, L]) = X::in_unit([radius, length]);
+    let caps = R * (4.0 / 3.0);
     let whole = L + caps;
-    let (w, v) = if whole == 0.0 {
-        (0.0, 1.0)
+    let (w, v) = if whole.rounded() == 0.0 {
+        (X::zero(), X::one())
     } else {
         (L / whole, caps / whole)
     };
     let across = R * R * (w / 4.0 + v / 5.0);
-    let along = w * (L * L / 12.0) + v * (R * R / 5.0 + 0.375 * R * L + L * L / 4.0);
+    let along = w * (L * L / 12.0) + v * (R * R / 5.0 + R * 0.375 * L + L * L / 4.0);
     diagonal(
         unit,
-        Measure::Volume(PI * R * R * whole),
+        Measure::Volume(R * PI * R * whole),
         amount,
         [across, across, along],
     )
@@ -144,16 +149,16 @@ pub fn capsule(radius: f64, length: f64, amount: Amount) -> Result<RigidBody, Er
 ///
 /// # Errors
 /// When a radius is negative or not finite, the minor one is the larger, or the amount is not positive.
-pub fn torus(major_radius: f64, minor_radius: f64, amount: Amount) -> Result<RigidBody, Error> {
+pub fn torus<X: Size>(major_radius: X, minor_radius: X, amount: Amount) -> Result<X::Body, Error> {
     ordered(
         ("minor_radius", minor_radius),
         ("major_radius", major_radius),
     )?;
-    let (unit, [R, r]) = Unit::of([major_radius, minor_radius]);
-    let across = R * R / 2.0 + 0.375 * r * r;
+    let (unit, [R, r]) = X::in_unit([major_radius, minor_radius]);
+    let across = R * R / 2.0 + r * 0.375 * r;
     diagonal(
         unit,
-        Measure::Volume(2.0 * PI * PI * R * r * r),
+        Measure::Volume(R * (2.0 * PI * PI) * r * r),
         amount,
         [across, across, r * r / 4.0],
     )

@@ -1,0 +1,148 @@
+"""What the uncertainty of body and start makes of a motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from polhode import _core
+from polhode._repr import short
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode.results import MotionSensitivity
+    from polhode.trajectory import Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["StateSigma", "covariance", "sigma"]
+
+ELEMENTS: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+class StateSigma(NamedTuple):
+    """Standard deviations of the states of a motion, to first order.
+
+    Attributes
+    ----------
+    attitude : numpy.ndarray, shape (..., T, 3)
+        Of the small rotation δ from the attitude, ``R → R exp(δ×)``, components in the body frame, in
+        radians.
+    omega : numpy.ndarray, shape (..., T, 3)
+    """
+
+    attitude: Any
+    omega: Any
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+def covariance(self: Trajectory) -> Floats | None:
+    """Give the covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
+
+    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
+    Uncertain are the body, and `omega` and `attitude` at the start where they were given as `Uncertain`. To first
+    order, by the derivatives of :meth:`sensitivity`; all correlations count.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from polhode import Uncertain, solids
+    >>> brick = solids.box(Uncertain((1, 2, 3), sigma=0.001), mass=1.0)
+    >>> run = brick.simulate([0, 10], omega=Uncertain((0.1, 0.2, 2.0), sigma=0.001))
+    >>> run.covariance.shape, run.sigma.omega[0]
+    ((2, 6, 6), array([0.001, 0.001, 0.001]))
+    """
+    forms = _forms(self)
+    if forms is None:
+        return None
+    return np.asarray(np.einsum("...ik,...jk->...ij", forms, forms))
+
+
+def sigma(self: Trajectory) -> StateSigma | None:
+    """Give standard deviations of attitude and angular velocity at every time, or None as of `covariance`."""
+    found = covariance(self)
+    if found is None:
+        return None
+    deviations = np.sqrt(np.diagonal(found, axis1=-2, axis2=-1))
+    return StateSigma(deviations[..., :3], deviations[..., 3:])
+
+
+def _forms(self: Trajectory) -> Floats | None:
+    """Give what one standard deviation of each variable does to (δ, ω), shape (..., T, 6, k)."""
+    omega, attitude = self.uncertain_start
+    doubts = self.body._doubts()
+    if doubts is None and omega is None and attitude is None:
+        return None
+    slopes = self.sensitivity()
+    stack, times = self.omega.shape[:-2], self.omega.shape[-2]
+    columns: dict[tuple[int, ...], int] = {}
+    terms: list[tuple[int, int, Floats]] = []  # row of the stack, column, change of (δ, ω) at every time
+    if doubts is not None:
+        by_numbers = _by_numbers(self, slopes).reshape(-1, times, 6, 10)
+        ends = np.cumsum(doubts["counts"]).tolist()
+        for k, row in enumerate(_rows(self.body.shape, stack)):
+            for entry in range(ends[row] - int(doubts["counts"][row]), ends[row]):
+                column = columns.setdefault(tuple(doubts["variables"][entry].tolist()), len(columns))
+                terms.append((k, column, by_numbers[k] @ doubts["tangents"][entry]))
+    by_state = slopes.state.reshape(-1, times, 6, 6)
+    if omega is not None:
+        forms, shape = omega._forms(), np.shape(omega.value)
+        for k, row in enumerate(_rows(shape[:-1], stack)):
+            for place, form in enumerate(forms[3 * row : 3 * row + 3]):
+                for words, step in form:
+                    column = columns.setdefault(tuple(words), len(columns))
+                    terms.append((k, column, by_state[k][:, :, 3 + place] * step))
+    if attitude is not None:
+        # Its small angles are about fixed axes; those of the derivatives about the body's.
+        starts = self.quaternion[..., 0, :].reshape(-1, 4)
+        for k, start in enumerate(starts):
+            for axis, form in zip(np.eye(3), attitude._forms(), strict=True):
+                local = by_state[k][:, :, :3] @ _core.rotate(start, axis, inverse=True)
+                for words, step in form:
+                    terms.append((k, columns.setdefault(tuple(words), len(columns)), local * step))
+    out = np.zeros((int(np.prod(stack, dtype=int)), times, 6, len(columns)))
+    for k, column, term in terms:
+        out[k, :, :, column] += term
+    return out.reshape(*stack, times, 6, len(columns))
+
+
+def _rows(shape: tuple[int, ...], stack: tuple[int, ...]) -> list[int]:
+    """Which row of what has one shape each row of a stack takes."""
+    rows: list[int] = (
+        np.broadcast_to(np.arange(np.prod(shape, dtype=int)).reshape(shape), stack).ravel().tolist()
+    )
+    return rows
+
+
+def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:
+    """Give the derivatives of (δ, ω) by the body's ten numbers, shape (..., T, 6, 10).
+
+    The sensitivities are by the tensor about the reference point P, in its principal axes:
+    ``I_P = I_C + m (d² 1 − d dᵀ)``, d from P to C.
+    """
+    body, about = self.body, self._about_word()
+    axes = body.principal_about(about).axes if self.pivoted else body.principal.axes
+    d = body.center_of_mass if self.pivoted else np.zeros_like(body.center_of_mass)
+    mass = np.asarray(body.mass)[..., None, None]
+    one = np.eye(3)
+    tensors = np.zeros((*body.shape, 10, 3, 3))
+    tensors[..., 0, :, :] = (d**2).sum(axis=-1)[..., None, None] * one - d[..., :, None] * d[..., None, :]
+    for k, axis in enumerate(one):
+        if self.pivoted:
+            cross = d[..., :, None] * axis + axis[:, None] * d[..., None, :]
+            tensors[..., 1 + k, :, :] = mass * (2 * d[..., k, None, None] * one - cross)
+    for k, (i, j) in enumerate(ELEMENTS):
+        tensors[..., 4 + k, i, j] = tensors[..., 4 + k, j, i] = 1.0
+    turned = np.swapaxes(axes, -1, -2)[..., None, :, :] @ tensors @ axes[..., None, :, :]
+    # By moments, and by the elements 23, 31, 12.
+    places = ((0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1))
+    changes = np.stack([turned[..., i, j] for i, j in places], axis=-2)
+    by_tensor = np.concatenate([slopes.moments, slopes.products], axis=-1)
+    found = by_tensor @ changes[..., None, :, :]
+    found[..., 0] += slopes.mass
+    found[..., 1:4] += slopes.center_of_mass
+    return np.asarray(found)

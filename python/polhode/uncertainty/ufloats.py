@@ -1,0 +1,165 @@
+"""Numbers of the package `uncertainties`, in and out."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from polhode import _core
+from polhode._extras import require
+from polhode._repr import short
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from polhode import RigidBody
+
+__all__ = ["TenNumbers", "from_ufloats", "to_ufloats"]
+
+_WORDS: Final[dict[Any, tuple[int, int]]] = {}
+"""The variable of this package for each variable of `uncertainties` that was met. These cannot be referred to
+weakly, and one may come back in any later number, so they are kept."""
+
+_MET: Final[dict[tuple[int, int], Any]] = {}
+"""The way back: variables of `uncertainties` for those of this package, met or made."""
+
+
+class TenNumbers(NamedTuple):
+    """A body's numbers as `uncertainties` has them.
+
+    Attributes
+    ----------
+    mass : uncertainties.UFloat
+    center_of_mass : numpy.ndarray of object, shape (3,)
+    inertia : numpy.ndarray of object, shape (3, 3)
+    """
+
+    mass: Any
+    center_of_mass: Any
+    inertia: Any
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+def from_ufloats(values: Any) -> Any:
+    """Numbers of the package `uncertainties` as an :class:`Uncertain`; None when there are none among them.
+
+    Parameters
+    ----------
+    values : uncertainties.UFloat, or array_like of them
+        Plain numbers may stand among them.
+
+    Returns
+    -------
+    Uncertain or None
+        What depends on one variable there depends on one variable here, in all calls.
+
+    Examples
+    --------
+    >>> from uncertainties import ufloat  # doctest: +SKIP
+    >>> from polhode.uncertainty import from_ufloats
+    >>> from_ufloats([ufloat(1.0, 0.1), 2.0])  # doctest: +SKIP
+    Uncertain([1.0, 2.0], sigma=[0.1, 0.0])
+    """
+    module = sys.modules.get("uncertainties")
+    if module is None:  # nobody has made one
+        return None
+    try:
+        array = np.asarray(values, dtype=object)
+    except (TypeError, ValueError):
+        return None
+    flat = array.ravel().tolist()
+    if not any(isinstance(value, module.UFloat) for value in flat):
+        return None
+    numbers, sigmas, forms = [], [], []
+    for value in flat:
+        is_uncertain = isinstance(value, module.UFloat)
+        number = value.nominal_value if is_uncertain else value
+        numbers.append(float(number))
+        terms: dict[tuple[int, int], float] = {}
+        if is_uncertain:
+            for variable, slope in value.derivatives.items():
+                if slope * variable.std_dev != 0.0:
+                    terms[_words(variable)] = float(slope * variable.std_dev)
+        sigmas.append(float(np.sqrt(sum(step * step for step in terms.values()))))
+        forms.append(sorted(terms.items()))
+    shape = array.shape
+    return _core.Uncertain._restored(
+        np.array(numbers).reshape(shape), np.array(sigmas).reshape(shape), None, None, forms
+    )
+
+
+def _words(variable: Any) -> tuple[int, int]:
+    """Our variable for one of theirs."""
+    if variable not in _WORDS:
+        high, low = _core.Uncertain(0.0, 1.0)._forms()[0][0][0]
+        _WORDS[variable] = (high, low)
+        _MET[high, low] = variable
+    return _WORDS[variable]
+
+
+def to_ufloats(body: RigidBody) -> TenNumbers:
+    """Give the numbers of one body to the package `uncertainties`, with all correlations among them.
+
+    Parameters
+    ----------
+    body : RigidBody
+
+    Returns
+    -------
+    TenNumbers
+        Mass, centre of mass and tensor about it. Numbers of `uncertainties` that the body was made of are
+        those that it depends on.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Without the package; the error names the extra that installs it.
+    ValueError
+        For a stack.
+
+    Examples
+    --------
+    >>> from uncertainties import ufloat  # doctest: +SKIP
+    >>> from polhode import solids
+    >>> from polhode.uncertainty import to_ufloats
+    >>> mass = ufloat(5.0, 0.1)  # doctest: +SKIP
+    >>> to_ufloats(solids.sphere(1.0, mass=mass)).mass - mass  # doctest: +SKIP
+    0.0+/-0
+    """
+    if body.shape != ():
+        message = f"body: expected one body, got a stack of shape {body.shape}"
+        raise ValueError(message)
+    library = require("uncertainties", extra="uncertainty", purpose="to_ufloats")
+    state = body._doubts()
+    tangents = np.zeros((0, 10)) if state is None else state["tangents"]
+    words = [] if state is None else [(high, low) for high, low in state["variables"].tolist()]
+    variables = [_variable(pair, library.ufloat) for pair in words]
+
+    def number(value: float, column: int) -> Any:
+        terms = zip(variables, tangents[:, column].tolist(), strict=True)
+        sum_of_terms = sum(
+            (step / v.std_dev * (v - v.nominal_value) for v, step in terms if step != 0.0), 0.0
+        )
+        return library.ufloat(value, 0.0) if sum_of_terms == 0.0 else value + sum_of_terms
+
+    center, tensor = body.center_of_mass.tolist(), body.inertia
+    element = {(0, 0): 4, (1, 1): 5, (2, 2): 6, (0, 1): 7, (0, 2): 8, (1, 2): 9}
+    rows = [[number(float(tensor[i, j]), element[min(i, j), max(i, j)]) for j in range(3)] for i in range(3)]
+    return TenNumbers(
+        number(body.mass, 0),
+        np.array([number(c, 1 + k) for k, c in enumerate(center)], dtype=object),
+        np.array(rows, dtype=object),
+    )
+
+
+def _variable(words: tuple[int, int], ufloat: Callable[[float, float], Any]) -> Any:
+    """Their variable for one of ours."""
+    if words not in _MET:
+        variable = ufloat(0.0, 1.0)
+        _MET[words] = variable
+        _WORDS[variable] = words
+    return _MET[words]

@@ -1,0 +1,148 @@
+//! The ways to a body and from body to body, for numbers with derivatives.
+
+use nalgebra::Matrix3;
+
+use super::follow::Change;
+use crate::error::Error;
+use crate::mass::amount::Amount;
+use crate::mass::ten::{ELEMENTS, Size, Ten};
+
+/// A body from its ten numbers: m, C, the [`ELEMENTS`] of the tensor about C.
+#[derive(Clone, Copy, Debug)]
+pub struct FromTensor;
+
+impl Change for FromTensor {
+    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
+        Ok(Ten::from_array(&std::array::from_fn(|k| numbers[k])))
+    }
+}
+
+/// A body from m, C, the moments about C and the *positive* products of inertia.
+#[derive(Clone, Copy, Debug)]
+pub struct FromPositiveProducts;
+
+impl Change for FromPositiveProducts {
+    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
+        Ok(Ten::from_array(&std::array::from_fn(|k| {
+            if k < 7 { numbers[k] } else { -numbers[k] }
+        })))
+    }
+}
+
+/// A body from m, C and the [`ELEMENTS`] of the tensor about the origin.
+#[derive(Clone, Copy, Debug)]
+pub struct FromTensorAboutOrigin;
+
+impl Change for FromTensorAboutOrigin {
+    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
+        let given = Ten::from_array(&std::array::from_fn(|k| numbers[k]));
+        let point = Ten {
+            inertia: [X::zero(); 6],
+            ..given
+        };
+        let shift = point.about([X::zero(); 3]);
+        Ok(Ten {
+            inertia: std::array::from_fn(|k| given.inertia[k] - shift[k]),
+            ..given
+        })
+    }
+}
+
+/// A body from m, C and three principal moments about it, along the columns of a rotation.
+#[derive(Clone, Copy, Debug)]
+pub struct FromPrincipal(pub Matrix3<f64>);
+
+impl Change for FromPrincipal {
+    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
+        let [mass, cx, cy, cz, moments @ ..] = numbers else {
+            return Err(Error::Empty { what: "moments" });
+        };
+        let element = |(i, j): (usize, usize)| {
+            (moments.iter().enumerate()).fold(X::zero(), |sum, (k, &moment)| {
+                sum + moment * (self.0[(i, k)] * self.0[(j, k)])
+            })
+        };
+        Ok(Ten {
+            mass: *mass,
+            center: [*cx, *cy, *cz],
+            inertia: ELEMENTS.map(element),
+        })
+    }
+}
+
+/// A body moved, by three numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Translated;
+
+impl Change for Translated {
+    fn of<X: Size<Body = Ten<X>>>(
+        &self,
+        bodies: &[Ten<X>],
+        numbers: &[X],
+    ) -> Result<Ten<X>, Error> {
+        Ok(bodies[0].translated(std::array::from_fn(|k| numbers[k])))
+    }
+}
+
+/// A body turned by a rotation, and then by three small angles θ about the fixed axes: `(1 + [θ]× + ½ [θ]×²) R`.
+#[derive(Clone, Copy, Debug)]
+pub struct Rotated(pub Matrix3<f64>);
+
+impl Change for Rotated {
+    fn of<X: Size<Body = Ten<X>>>(
+        &self,
+        bodies: &[Ten<X>],
+        numbers: &[X],
+    ) -> Result<Ten<X>, Error> {
+        let (zero, one) = (X::zero(), X::one());
+        let [x, y, z] = [numbers[0], numbers[1], numbers[2]];
+        let cross = [[zero, -z, y], [z, zero, -x], [-y, x, zero]];
+        let product = |a: [[X; 3]; 3], b: [[X; 3]; 3]| -> [[X; 3]; 3] {
+            a.map(|row| {
+                std::array::from_fn(|j| row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j])
+            })
+        };
+        let square = product(cross, cross);
+        let small: [[X; 3]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                (if i == j { one } else { zero }) + cross[i][j] + square[i][j] * 0.5
+            })
+        });
+        let given = std::array::from_fn(|i| std::array::from_fn(|j| X::from(self.0[(i, j)])));
+        Ok(bodies[0].rotated(&product(small, given)))
+    }
+}
+
+/// A body scaled, by a factor of its lengths and one of its mass.
+#[derive(Clone, Copy, Debug)]
+pub struct Scaled;
+
+impl Change for Scaled {
+    fn of<X: Size<Body = Ten<X>>>(
+        &self,
+        bodies: &[Ten<X>],
+        numbers: &[X],
+    ) -> Result<Ten<X>, Error> {
+        Ok(bodies[0].scaled(numbers[0], numbers[1]))
+    }
+}
+
+/// A homogeneous shape with N lengths.
+pub trait Shape<const N: usize> {
+    /// What has these lengths and this amount of matter.
+    ///
+    /// # Errors
+    /// When a length or the amount is outside its domain.
+    fn of<X: Size>(&self, lengths: &[X; N], amount: Amount) -> Result<X::Body, Error>;
+}
+
+/// A shape from its N lengths and the factor by which its mass or density is another than this.
+#[derive(Clone, Copy, Debug)]
+pub struct OfShape<'a, S, const N: usize>(pub &'a S, pub Amount);
+
+impl<S: Shape<N>, const N: usize> Change for OfShape<'_, S, N> {
+    fn of<X: Size<Body = Ten<X>>>(&self, _: &[Ten<X>], numbers: &[X]) -> Result<Ten<X>, Error> {
+        let lengths = std::array::from_fn(|k| numbers[k]);
+        Ok(self.0.of(&lengths, self.1)?.scaled(X::one(), numbers[N]))
+    }
+}

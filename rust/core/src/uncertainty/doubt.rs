@@ -1,0 +1,101 @@
+//! What a body carries of its doubts.
+
+use nalgebra::SMatrix;
+
+use super::variable::{PROBES, Variable};
+use crate::mass::ten::Ten;
+use crate::numerics::parabola::Parabola;
+
+/// A change of the ten numbers.
+pub type Tangent = Ten<f64>;
+
+/// The covariance of ten numbers with ten.
+pub type Covariance = SMatrix<f64, 10, 10>;
+
+/// The doubts of one body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// What one standard deviation of each variable does to the body's ten numbers, to first order; in the order of the
+    /// variables.
+    pub tangents: Vec<(Variable, Tangent)>,
+    /// The second-order term along each of the probes.
+    pub bends: [Tangent; PROBES],
+}
+
+impl Default for Doubt {
+    fn default() -> Self {
+        Self {
+            tangents: Vec::new(),
+            bends: [Tangent::default(); PROBES],
+        }
+    }
+}
+
+impl Doubt {
+    /// From tangents in any order, of which those of one variable add up.
+    #[must_use]
+    pub fn of(mut tangents: Vec<(Variable, Tangent)>, bends: [Tangent; PROBES]) -> Self {
+        tangents.sort_by_key(|(variable, _)| *variable);
+        tangents.dedup_by(|(next, more), (variable, sum)| {
+            if next != variable {
+                return false;
+            }
+            *sum = plus(sum, more);
+            true
+        });
+        Self { tangents, bends }
+    }
+
+    /// Covariance of the numbers of one body with those of another: of what both depend on.
+    #[must_use]
+    pub fn covariance_with(&self, other: &Self) -> Covariance {
+        let mut sum = Covariance::zeros();
+        let mut others = other.tangents.iter().peekable();
+        for (variable, tangent) in &self.tangents {
+            while others.next_if(|(own, _)| own < variable).is_some() {}
+            if let Some((_, its)) = others.next_if(|(own, _)| own == variable) {
+                let (a, b) = (tangent.to_array(), its.to_array());
+                for (i, a) in a.iter().enumerate() {
+                    for (j, b) in b.iter().enumerate() {
+                        sum[(i, j)] += a * b;
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    /// The ten numbers along each probe, to second order.
+    #[must_use]
+    pub fn probes(&self, numbers: &Ten<f64>) -> [Ten<Parabola>; PROBES] {
+        let mut slopes = [[0.0; 10]; PROBES];
+        for (variable, tangent) in &self.tangents {
+            let tangent = tangent.to_array();
+            for (slope, step) in slopes.iter_mut().zip(variable.steps()) {
+                for (sum, t) in slope.iter_mut().zip(tangent) {
+                    *sum += step * t;
+                }
+            }
+        }
+        let numbers = numbers.to_array();
+        std::array::from_fn(|probe| {
+            let bends = self.bends[probe].to_array();
+            Ten::from_array(&std::array::from_fn(|k| Parabola {
+                value: numbers[k],
+                slope: slopes[probe][k],
+                bend: bends[k],
+            }))
+        })
+    }
+}
+
+/// The sum of two changes.
+#[must_use]
+pub fn plus(a: &Tangent, b: &Tangent) -> Tangent {
+    let b = b.to_array();
+    let mut k = 0;
+    a.map(|x| {
+        k += 1;
+        x + b[k - 1]
+    })
+}

@@ -1,0 +1,121 @@
+//! Doubts of the solid that a closed triangle mesh bounds, by those of its vertices.
+//!
+//! By the divergence theorem the volume, its first and its second moments about a fixed point are sums over the tetrahedra that
+//! it makes with each face: a face is asked for its nine derivatives alone, whatever the number of vertices.
+
+use super::doubt::{Doubt, Tangent};
+use super::follow::line;
+use super::given::Form;
+use super::variable::PROBES;
+use crate::mass::Index;
+use crate::mass::ten::Ten;
+use crate::numerics::jet::Jet;
+use crate::numerics::number::Real;
+
+/// Volume, `∫ r dV` and `∫ r rᵀ dV` (xx, yy, zz, xy, xz, yz).
+type Moments<X> = [X; 10];
+
+/// The places of the second moments.
+const SECOND: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+/// The doubts of a homogeneous solid with these numbers: three forms for each vertex. Of a solid whose mass was given the
+/// density changes with the volume.
+#[must_use]
+pub fn of_mesh<I: Index>(
+    solid: &Ten<f64>,
+    vertices: &[[f64; 3]],
+    faces: &[[I; 3]],
+    forms: &[Form],
+    mass_is_given: bool,
+) -> Doubt {
+    let corners = |face: &[I; 3]| face.map(Index::position);
+    let from = |corner: usize| -> [f64; 3] {
+        std::array::from_fn(|k| vertices[corner][k] - solid.center[k])
+    };
+    let mut moments = [0.0; 10];
+    let mut by_coordinate = vec![[0.0; 10]; 3 * vertices.len()];
+    for face in faces {
+        let corners = corners(face);
+        let place = |n: usize, k: usize| Jet::<9>::variable(from(corners[n])[k], 3 * n + k);
+        let found = tetrahedron(std::array::from_fn(|n| {
+            std::array::from_fn(|k| place(n, k))
+        }));
+        for (sum, term) in moments.iter_mut().zip(found) {
+            *sum += term.value;
+        }
+        for (n, corner) in corners.into_iter().enumerate() {
+            for k in 0..3 {
+                for (sum, term) in by_coordinate[3 * corner + k].iter_mut().zip(found) {
+                    *sum += term.slopes[3 * n + k];
+                }
+            }
+        }
+    }
+    let tangents = (forms.iter().zip(&by_coordinate))
+        .flat_map(|(form, slopes)| {
+            let along = std::array::from_fn(|k| Jet {
+                value: moments[k],
+                slopes: [slopes[k]],
+            });
+            let change = body(solid, &along, mass_is_given).map(|number: Jet<1>| number.slopes[0]);
+            form.iter()
+                .map(move |&(variable, step)| (variable, change.map(|x| x * step)))
+        })
+        .collect();
+    let lines: Vec<_> = (forms.iter().enumerate())
+        .map(|(place, form)| line(from(place / 3)[place % 3], form))
+        .collect();
+    let bends: [Tangent; PROBES] = std::array::from_fn(|probe| {
+        let mut along = [crate::numerics::parabola::Parabola::default(); 10];
+        for face in faces {
+            let corners = corners(face);
+            let found = tetrahedron(
+                corners.map(|corner| std::array::from_fn(|k| lines[3 * corner + k][probe])),
+            );
+            for (sum, term) in along.iter_mut().zip(found) {
+                *sum += term;
+            }
+        }
+        body(solid, &along, mass_is_given).map(|number| number.bend)
+    });
+    Doubt::of(tangents, bends)
+}
+
+/// The moments of the tetrahedron between the origin and a face.
+fn tetrahedron<X: Real>([a, b, c]: [[X; 3]; 3]) -> Moments<X> {
+    let [x, y, z] = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| b[i] * c[j] - b[j] * c[i]);
+    let six = a[0] * x + a[1] * y + a[2] * z;
+    let sum: [X; 3] = std::array::from_fn(|k| a[k] + b[k] + c[k]);
+    let (first, second) = (six / X::from(24.0), six / X::from(120.0));
+    std::array::from_fn(|k| match k {
+        0 => six / X::from(6.0),
+        1..4 => first * sum[k - 1],
+        _ => {
+            let (i, j) = SECOND[k - 4];
+            second * (sum[i] * sum[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j])
+        }
+    })
+}
+
+/// The body of these moments about the centre of mass that the solid is known to have.
+fn body<X: Real>(solid: &Ten<f64>, moments: &Moments<X>, mass_is_given: bool) -> Ten<X> {
+    let [volume, first @ .., xx, yy, zz, xy, xz, yz] = moments;
+    let first: &[X; 3] = first;
+    let density = if mass_is_given {
+        X::from(solid.mass) / *volume
+    } else {
+        X::from(solid.mass / volume.rounded())
+    };
+    let mean = first.map(|sum| sum / *volume);
+    let about =
+        |second: X, (i, j): (usize, usize)| density * (second - *volume * mean[i] * mean[j]);
+    let [xx, yy, zz, xy, xz, yz]: [X; 6] = {
+        let second = [*xx, *yy, *zz, *xy, *xz, *yz];
+        std::array::from_fn(|k| about(second[k], SECOND[k]))
+    };
+    Ten {
+        mass: *volume * density,
+        center: std::array::from_fn(|k| X::from(solid.center[k]) + mean[k]),
+        inertia: [yy + zz, xx + zz, xx + yy, -xy, -xz, -yz],
+    }
+}

@@ -1,0 +1,77 @@
+//! The doubts of a stack of bodies, and how they go along.
+
+use std::sync::Arc;
+
+use polhode::Error;
+use polhode::mass::ten::Ten;
+use polhode::uncertainty::{Doubt, Follow, Scaled, follow};
+use pyo3::prelude::*;
+
+use super::quantity::Weight;
+use crate::body::PyRigidBody;
+use crate::errors::to_py;
+use crate::stack::{Broadcast, Stack};
+
+/// The doubts of each body of a stack, or none where all is taken as known.
+pub(crate) type Doubts = Option<Arc<Vec<Doubt>>>;
+
+/// Those of the rows of a result, if any of what it is made of has some.
+pub(crate) fn carried<const K: usize>(
+    py: Python<'_>,
+    grid: &Broadcast<'_, K>,
+    is_uncertain: bool,
+    doubt: impl Fn([usize; K]) -> Result<Doubt, Error> + Sync,
+) -> PyResult<Doubts> {
+    if !is_uncertain {
+        return Ok(None);
+    }
+    Ok(Some(Arc::new(grid.try_map(py, doubt)?.rows)))
+}
+
+impl PyRigidBody {
+    /// Bodies with their doubts.
+    pub(crate) fn doubtful(bodies: Stack<polhode::RigidBody>, doubts: Doubts) -> Self {
+        Self { bodies, doubts }
+    }
+
+    /// The bodies, each with that relative doubt of its mass besides what it carries.
+    pub(crate) fn weighed(self, weights: [Option<Weight>; 3]) -> PyResult<Self> {
+        let Some(relative) = (weights.into_iter().flatten())
+            .map(|weight| weight.relative)
+            .find(|form| !form.is_empty())
+        else {
+            return Ok(self);
+        };
+        let numbers = &[(1.0, &[][..]), (1.0, &relative)];
+        let doubts = (0..self.bodies.rows.len())
+            .map(|row| {
+                follow(
+                    &Scaled,
+                    Follow {
+                        bodies: &[self.row(row)],
+                        numbers,
+                    },
+                )
+            })
+            .collect::<Result<_, Error>>()
+            .map_err(|error| Python::attach(|py| to_py(py, &error)))?;
+        Ok(Self::doubtful(self.bodies, Some(Arc::new(doubts))))
+    }
+
+    /// One row: its ten numbers and its doubts.
+    pub(crate) fn row(&self, row: usize) -> (Ten<f64>, &Doubt) {
+        static CERTAIN: std::sync::LazyLock<Doubt> = std::sync::LazyLock::new(Doubt::default);
+        let doubt = match &self.doubts {
+            Some(doubts) => &doubts[row],
+            None => &CERTAIN,
+        };
+        (Ten::of(&self.bodies[row]), doubt)
+    }
+
+    /// The doubts of rows of it.
+    pub(crate) fn doubts_of(&self, rows: impl Iterator<Item = usize>) -> Doubts {
+        self.doubts
+            .as_ref()
+            .map(|doubts| Arc::new(rows.map(|row| doubts[row].clone()).collect()))
+    }
+}

@@ -1,0 +1,223 @@
+//! Arguments that may be numbers with a sigma.
+
+use nalgebra::Matrix3;
+use polhode::mass::ten::ELEMENTS;
+use polhode::uncertainty::{Form, Variable};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+use super::class::PyUncertain;
+use crate::arrays::{Argument, Item, read, read_list};
+use crate::attitudes::read_rotation;
+use crate::items::size;
+use crate::stack::Stack;
+
+/// A number with the form of its doubts.
+pub(crate) type Number<'a> = (f64, &'a [(Variable, f64)]);
+
+/// Items over the last axes and a stack over the leading ones, with a form for each number where they are uncertain.
+pub(crate) struct Quantity<T> {
+    pub(crate) values: Stack<T>,
+    forms: Option<Vec<Form>>,
+}
+
+impl<T: Item> Quantity<T> {
+    /// Whether its numbers have doubts.
+    pub(crate) fn is_uncertain(&self) -> bool {
+        self.forms.is_some()
+    }
+
+    /// The numbers of one row.
+    pub(crate) fn row(&self, row: usize) -> Vec<Number<'_>> {
+        let mut values = Vec::with_capacity(size::<T>());
+        self.values.rows[row].write(&mut values);
+        let forms = |k: usize| match &self.forms {
+            Some(forms) => &forms[row * size::<T>() + k][..],
+            None => &[],
+        };
+        values
+            .into_iter()
+            .enumerate()
+            .map(|(k, value)| (value, forms(k)))
+            .collect()
+    }
+}
+
+/// A positive number of which a body has that much more or less mass: with the form of its relative doubt.
+pub(crate) struct Weight {
+    pub(crate) value: f64,
+    pub(crate) relative: Form,
+}
+
+impl<'py> FromPyObject<'_, 'py> for Weight {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let uncertain = match object.extract::<f64>() {
+            Ok(value) => {
+                return Ok(Self {
+                    value,
+                    relative: Form::new(),
+                });
+            }
+            Err(fault) => match object.cast::<PyUncertain>() {
+                Ok(uncertain) => uncertain.to_owned(),
+                Err(_) => of_ufloats(&object)?.ok_or(fault)?,
+            },
+        };
+        let value: f64 = uncertain.get().value(object.py())?.extract()?;
+        let form = &uncertain.get().given.forms[0];
+        Ok(Self {
+            value,
+            relative: factor(&[(value, form)]),
+        })
+    }
+}
+
+/// The plain value of an argument, and the argument itself where it has a sigma.
+pub(crate) fn value_of<'py>(
+    object: &Bound<'py, PyAny>,
+) -> PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyUncertain>>)> {
+    match object.cast::<PyUncertain>() {
+        Ok(uncertain) => Ok((uncertain.get().value(object.py())?, Some(uncertain.clone()))),
+        Err(_) => Ok((object.clone(), None)),
+    }
+}
+
+/// Whether an argument is an `Uncertain`.
+pub(crate) fn is_uncertain(object: &Bound<'_, PyAny>) -> bool {
+    object.is_instance_of::<PyUncertain>()
+}
+
+/// Whether an argument has numbers of the package `uncertainties`.
+pub(crate) fn has_ufloats(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(of_ufloats(object)?.is_some())
+}
+
+/// Reads an argument that may be an `Uncertain`, or numbers of the package `uncertainties`.
+pub(crate) fn quantity<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Quantity<T>> {
+    if let Ok(uncertain) = object.cast::<PyUncertain>() {
+        return with_forms(uncertain, name);
+    }
+    // Plain numbers are not asked: what has a sigma is refused first.
+    match read(object, name) {
+        Ok(values) => Ok(Quantity {
+            values,
+            forms: None,
+        }),
+        Err(fault) => match of_ufloats(object)? {
+            Some(uncertain) => with_forms(&uncertain, name),
+            None => Err(fault),
+        },
+    }
+}
+
+fn with_forms<T: Item>(uncertain: &Bound<'_, PyUncertain>, name: &str) -> PyResult<Quantity<T>> {
+    let (py, uncertain) = (uncertain.py(), uncertain.get());
+    if uncertain.is_rotation(py)? {
+        let message = format!("{name}: expected numbers with a sigma, got a rotation with one");
+        return Err(PyTypeError::new_err(message));
+    }
+    Ok(Quantity {
+        values: read(&uncertain.value(py)?, name)?,
+        forms: Some(uncertain.given.forms.clone()),
+    })
+}
+
+/// As [`quantity`] for items in a row, shape (n, tail) or (..., n, tail): `leading` names the axes before the tail.
+pub(crate) fn quantity_list<T: Item>(
+    object: &Bound<'_, PyAny>,
+    name: &str,
+    leading: &str,
+) -> PyResult<Quantity<T>> {
+    match object.cast::<PyUncertain>() {
+        Ok(uncertain) => {
+            let forms = Some(uncertain.get().given.forms.clone());
+            let value = uncertain.get().value(object.py())?;
+            Ok(Quantity {
+                values: read_list(&value, name, leading)?,
+                forms,
+            })
+        }
+        Err(_) => match read_list(object, name, leading) {
+            Ok(values) => Ok(Quantity {
+                values,
+                forms: None,
+            }),
+            Err(fault) => match of_ufloats(object)? {
+                Some(uncertain) => quantity_list(uncertain.as_any(), name, leading),
+                None => Err(fault),
+            },
+        },
+    }
+}
+
+/// As [`quantity`], with a default for an argument that was not given.
+pub(crate) fn quantity_or<T: Item>(
+    argument: &Argument<'_>,
+    name: &str,
+    default: T,
+) -> PyResult<Quantity<T>> {
+    argument.given().map_or_else(
+        || {
+            Ok(Quantity {
+                values: Stack::one(default),
+                forms: None,
+            })
+        },
+        |object| quantity(object, name),
+    )
+}
+
+/// The `Uncertain` that numbers of the package `uncertainties` become, or an array of such; nothing of what else was refused.
+fn of_ufloats<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyUncertain>>> {
+    let found = object
+        .py()
+        .import("polhode.uncertainty")?
+        .call_method1("from_ufloats", (object,))?;
+    Ok(found.cast_into::<PyUncertain>().ok())
+}
+
+/// The relative doubt of an amount, as a factor of one.
+pub(crate) fn factor(amount: &[Number<'_>]) -> Form {
+    let (value, form) = amount[0];
+    form.iter()
+        .map(|&(variable, step)| (variable, step / value))
+        .collect()
+}
+
+/// Rotations, and the forms of the small angles that follow each.
+pub(crate) fn rotation_quantity(
+    object: &Bound<'_, PyAny>,
+    name: &'static str,
+) -> PyResult<(Stack<Matrix3<f64>>, Option<Vec<Form>>)> {
+    match object.cast::<PyUncertain>() {
+        Err(_) => Ok((read_rotation(object, name)?, None)),
+        Ok(uncertain) => {
+            let (py, uncertain) = (object.py(), uncertain.get());
+            if !uncertain.is_rotation(py)? {
+                let message = format!(
+                    "{name}: a rotation with a sigma is Uncertain(rotation, sigma=) of an object with as_quat(), such as \
+                     scipy.spatial.transform.Rotation, and the sigma of three small angles in radians"
+                );
+                return Err(PyTypeError::new_err(message));
+            }
+            let rotations = read_rotation(&uncertain.value(py)?, name)?;
+            if !rotations.is_one() {
+                let message = format!("{name}: expected one rotation with a sigma, got a stack");
+                return Err(PyTypeError::new_err(message));
+            }
+            Ok((rotations, Some(uncertain.given.forms.clone())))
+        }
+    }
+}
+
+/// A number without doubts.
+pub(crate) fn known(value: f64) -> Number<'static> {
+    (value, &[])
+}
+
+/// The elements xx, yy, zz, xy, xz, yz of a symmetric tensor; each beside the diagonal is one number, given twice.
+pub(crate) fn symmetric<'a>(tensor: &[Number<'a>]) -> [Number<'a>; 6] {
+    ELEMENTS.map(|(i, j)| tensor[3 * i + j])
+}

@@ -1,0 +1,325 @@
+//! Sigmas given to bodies, and what they are worth: covariances and standard deviations.
+
+use std::sync::Arc;
+
+use nalgebra::Matrix3;
+use numpy::PyArrayDyn;
+use polhode::mass::ten::place;
+use polhode::uncertainty::doubt::plus;
+use polhode::uncertainty::follow::directly;
+use polhode::uncertainty::{Deviations, Doubt, Given, Source, check_possible, deviations};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::arrays::{Numbers, floats, read, write_numbers_of, write_of};
+use crate::body::PyRigidBody;
+use crate::errors::{at_row, to_py};
+use crate::shape::tuple;
+use crate::stack::{Broadcast, Stack};
+
+/// An optional argument of any array-like kind.
+type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+#[pymethods]
+impl PyRigidBody {
+    /// The body with standard deviations of its numbers, independent of one another and of what it was made of.
+    ///
+    /// What it already carries stays, and variances add. Measured numbers are seldom independent: where their covariance is
+    /// known give that, by `with_covariance`.
+    ///
+    /// Parameters
+    /// ----------
+    /// mass : array_like, shape (...), optional
+    /// center_of_mass : array_like, shape (..., 3), optional
+    /// inertia : array_like, shape (..., 3, 3), optional
+    ///     Of the elements of the tensor about C, symmetric.
+    /// source : str, optional
+    ///     A name for the draw: as of `Uncertain`.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     When no body can have these: what has no extent along an axis has no variance of it.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> brick = solids.box((1, 2, 3), mass=12.0).with_sigma(mass=0.1, center_of_mass=(0.01, 0.01, 0.02))
+    /// >>> brick.sigma.mass, brick.translated((0, 0, 5)).sigma.center_of_mass
+    /// (0.1, array([0.01, 0.01, 0.02]))
+    #[pyo3(signature = (*, mass=None, center_of_mass=None, inertia=None, source=None))]
+    fn with_sigma(
+        &self,
+        py: Python<'_>,
+        mass: Argument<'_, '_>,
+        center_of_mass: Argument<'_, '_>,
+        inertia: Argument<'_, '_>,
+        source: Option<&str>,
+    ) -> PyResult<Self> {
+        if mass.is_none() && center_of_mass.is_none() && inertia.is_none() {
+            let message = "give at least one of mass=, center_of_mass= and inertia=";
+            return Err(PyTypeError::new_err(message));
+        }
+        let mass = mass.map_or(Ok(Stack::one(0.0)), |mass| read(mass, "mass"))?;
+        let center = center_of_mass.map_or(Ok(Stack::one([0.0; 3])), |center| {
+            read(center, "center_of_mass")
+        })?;
+        let tensor: Stack<Matrix3<f64>> = inertia
+            .map_or(Ok(Stack::one(Matrix3::zeros())), |tensor| {
+                read(tensor, "inertia")
+            })?;
+        if let Some(row) = tensor.rows.iter().find(|row| **row != row.transpose()) {
+            let message = format!(
+                "inertia: expected symmetric standard deviations, got the rows {:?}",
+                <[[f64; 3]; 3]>::from(row.transpose())
+            );
+            return Err(PyValueError::new_err(message));
+        }
+        let grid = Broadcast::of(
+            ["body", "mass", "center_of_mass", "inertia"],
+            [
+                &self.bodies.shape,
+                &mass.shape,
+                &center.shape,
+                &tensor.shape,
+            ],
+        )?;
+        let mut sigma = Vec::with_capacity(10 * grid.len());
+        for [_, m, c, i] in grid.rows() {
+            sigma.push(mass[m]);
+            sigma.extend(center[c]);
+            sigma.extend(polhode::mass::ten::ELEMENTS.map(|place| tensor[i][place]));
+        }
+        let given = Given::independent(&sigma, named(source)).map_err(|error| to_py(py, &error))?;
+        let bodies = grid.try_map(py, |[b, ..]| Ok(self.bodies[b]))?;
+        let own: Vec<usize> = grid.rows().map(|[b, ..]| b).collect();
+        self.with_given(py, bodies, &own, &given)
+    }
+
+    /// The body with what its `error_bound` leaves open as standard deviations: the error of a quadrature or of rounding.
+    ///
+    /// A number that is known to lie within ± a has the deviation a/√3 (a rectangular distribution, as of the GUM).
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from polhode import RigidBody
+    /// >>> ball = RigidBody.from_radial_density(lambda r: np.exp(-r), (0, 1), rtol=1e-3)
+    /// >>> bool(ball.with_error_bound().sigma.mass == ball.error_bound.mass / 3**0.5)
+    /// True
+    fn with_error_bound(&self, py: Python<'_>) -> PyResult<Self> {
+        let sigma: Vec<f64> = (self.bodies.rows.iter())
+            .flat_map(|body| {
+                let bound = body.error_bound();
+                let (c, i) = (bound.center_of_mass, bound.inertia);
+                [bound.mass, c, c, c, i, i, i, i, i, i].map(|half| half / 3.0_f64.sqrt())
+            })
+            .collect();
+        let given =
+            Given::independent(&sigma, Source::fresh()).map_err(|error| to_py(py, &error))?;
+        let own: Vec<usize> = (0..self.bodies.rows.len()).collect();
+        self.with_given(py, self.bodies.clone(), &own, &given)
+    }
+
+    /// The body with a covariance of its ten numbers, independent of what it was made of.
+    ///
+    /// What it already carries stays, and covariances add.
+    ///
+    /// Parameters
+    /// ----------
+    /// covariance : array_like, shape (10, 10)
+    ///     Of m, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz: the tensor's elements about C, off the diagonal *minus* the products.
+    /// source : str, optional
+    ///     A name for the draw: as of `Uncertain`.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     For a matrix that is no covariance.
+    /// InvalidInertiaError
+    ///     When no body can have it.
+    #[pyo3(signature = (covariance, source=None))]
+    fn with_covariance(
+        &self,
+        py: Python<'_>,
+        covariance: &Bound<'_, PyAny>,
+        source: Option<&str>,
+    ) -> PyResult<Self> {
+        let covariance = floats(covariance, "covariance")?;
+        let shape = numpy::PyUntypedArrayMethods::shape(&*covariance);
+        if shape != [10, 10] {
+            let message = format!("covariance: expected shape (10, 10), got {}", tuple(shape));
+            return Err(PyValueError::new_err(message));
+        }
+        if !self.bodies.is_one() {
+            let message = "with_covariance: expected one body, got a stack; pick them one by one, and put them together by \
+                           RigidBody.stack";
+            return Err(PyValueError::new_err(message));
+        }
+        let given = Given::correlated(covariance.as_slice()?, named(source))
+            .map_err(|error| to_py(py, &error))?;
+        self.with_given(py, self.bodies.clone(), &[0], &given)
+    }
+
+    /// Covariance of m, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz (the tensor's elements about C, off the diagonal *minus* the
+    /// products), shape (..., 10, 10); None where nothing is uncertain.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import Uncertain, solids
+    /// >>> ball = solids.sphere(Uncertain(1.0, 0.01), mass=5.0)
+    /// >>> ball.covariance[4, 4].round(6), solids.sphere(1.0, mass=5.0).covariance
+    /// (np.float64(0.0016), None)
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
+        match &self.doubts {
+            None => Ok(None),
+            Some(_) => self.covariance_with(py, self).map(Some),
+        }
+    }
+
+    /// Covariance of the ten numbers of one body with those of another, by the sources that both depend on.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : RigidBody
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., 10, 10)
+    ///     Rows for the numbers of this body, columns for those of the other, in the order of `covariance`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import Uncertain, solids
+    /// >>> radius = Uncertain(1.0, 0.01, source="drawing")
+    /// >>> a, b = solids.sphere(radius, density=1.0), solids.sphere(radius, density=2.0)
+    /// >>> a.covariance_with(b)[0, 0] / (a.sigma.mass * b.sigma.mass)
+    /// np.float64(1.0)
+    fn covariance_with<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Self,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let shapes = [&self.bodies.shape[..], &other.bodies.shape];
+        let grid = Broadcast::of(["body", "other"], shapes)?;
+        let mut numbers =
+            Numbers::of::<[f64; 10]>(py, "covariance", &[&grid.shape[..], &[10]].concat())?;
+        numbers.put(grid.rows(), |[a, b], out| {
+            let both = self.row(a).1.covariance_with(self_or(other, b));
+            out.extend(both.transpose().as_slice()); // nalgebra stores columns
+        })?;
+        numbers.finish::<[f64; 10]>(&[&grid.shape[..], &[10]].concat())
+    }
+
+    /// Standard deviations of mass, centre of mass, tensor, principal moments and axes; None where nothing is uncertain.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import Uncertain, solids
+    /// >>> brick = solids.box(Uncertain((1, 2, 3), sigma=0.01), density=2.0)
+    /// >>> brick.sigma.mass.round(4), brick.sigma.principal_moments.round(4)
+    /// (np.float64(0.14), array([0.1..., 0.2..., 0.2...]))
+    #[getter]
+    fn sigma<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if self.doubts.is_none() {
+            return Ok(py.None().into_bound(py));
+        }
+        let shape = &self.bodies.shape;
+        let grid = Broadcast::of(["body"], [shape])?;
+        let found = grid.try_map(py, |[row]| {
+            Ok(deviations(&self.bodies[row], self.row(row).1))
+        })?;
+        let center = |d: &Deviations| -> [f64; 3] { std::array::from_fn(|k| d.numbers[1 + k]) };
+        let tensor = |d: &Deviations| Matrix3::from_fn(|i, j| d.numbers[4 + place(i, j)]);
+        let results = py.import("polhode.results")?;
+        let linear = results.getattr("Linear")?.call1((
+            flags(py, &found, &[], |d, out| out.push(d.is_linear[0]))?,
+            flags(py, &found, &[3], |d, out| out.extend(&d.is_linear[1..4]))?,
+            flags(py, &found, &[3, 3], |d, out| {
+                out.extend((0..9).map(|k| d.is_linear[4 + place(k / 3, k % 3)]));
+            })?,
+            flags(py, &found, &[3], |d, out| out.extend(d.moments_are_linear))?,
+            flags(py, &found, &[3], |d, out| out.extend(d.axes_are_linear))?,
+        ))?;
+        results.getattr("Sigma")?.call1((
+            write_numbers_of(py, &found, |d| d.numbers[0])?,
+            write_of(py, &found, center)?,
+            write_of(py, &found, tensor)?,
+            write_of(py, &found, |d| d.moments)?,
+            write_of(py, &found, |d| d.axes)?,
+            linear,
+        ))
+    }
+}
+
+fn self_or(body: &PyRigidBody, row: usize) -> &Doubt {
+    body.row(row).1
+}
+
+fn named(source: Option<&str>) -> Source {
+    source.map_or_else(Source::fresh, Source::named)
+}
+
+/// An array of flags; one flag for one value without axes.
+fn flags<'py>(
+    py: Python<'py>,
+    found: &Stack<Deviations>,
+    tail: &[usize],
+    of: impl Fn(&Deviations, &mut Vec<bool>),
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut all = Vec::new();
+    found.rows.iter().for_each(|d| of(d, &mut all));
+    let shape = [&found.shape[..], tail].concat();
+    if shape.is_empty() {
+        return Ok(all[0].into_pyobject(py)?.to_owned().into_any());
+    }
+    numpy::PyArray1::from_vec(py, all).call_method1("reshape", (PyTuple::new(py, shape)?,))
+}
+
+impl PyRigidBody {
+    /// Bodies with ten given forms for each, besides the doubts of the rows they are of.
+    fn with_given(
+        &self,
+        py: Python<'_>,
+        bodies: Stack<polhode::RigidBody>,
+        own: &[usize],
+        given: &Given,
+    ) -> PyResult<Self> {
+        let rows = (own.iter().zip(given.forms.as_chunks::<10>().0))
+            .map(|(&row, forms)| {
+                let (before, more) = (self.row(row).1, directly(forms));
+                let bends = std::array::from_fn(|k| plus(&before.bends[k], &more.bends[k]));
+                Doubt::of([&before.tangents[..], &more.tangents].concat(), bends)
+            })
+            .collect();
+        Self::doubtful(bodies, Some(Arc::new(rows))).possible(py)
+    }
+
+    /// The bodies, when bodies can have these doubts.
+    pub(crate) fn possible(self, py: Python<'_>) -> PyResult<Self> {
+        for (row, doubt) in self
+            .doubts
+            .iter()
+            .flat_map(|doubts| doubts.iter())
+            .enumerate()
+        {
+            check_possible(&self.bodies[row], doubt)
+                .map_err(|error| at_row(&self.bodies.shape, row, &to_py(py, &error), py))?;
+        }
+        Ok(self)
+    }
+}
