@@ -361,6 +361,15 @@ class TestNotDetermined:
             assert rod.sigma.principal_moments == pytest.approx(straight.sigma.principal_moments, rel=1e-12)
             assert rod.sigma.linear.principal_moments.all()  # two moments that are always equal do not repel
 
+    def test_moments_that_may_change_places_are_told(self) -> None:
+        """Each edge by itself turns no axis, but which of the moments is the least is not known."""
+        body = solids.ellipsoid(Uncertain((1.0, 1.0005, 2.0), 0.003), mass=1.0)
+        assert body.sigma.linear.principal_moments.tolist() == [True, False, False]
+        assert body.sigma.linear.axes.tolist() == [False, False, False]
+        apart = solids.ellipsoid(Uncertain((1.0, 1.5, 2.0), 0.003), mass=1.0)
+        assert apart.sigma.linear.principal_moments.all()
+        assert apart.sigma.linear.axes.all()
+
     def test_near_equal_moments_are_told(self) -> None:
         for gap, is_linear in ((1.0, True), (1e-4, False)):
             body = RigidBody(1.0, np.diag([3.0, 4.0, 4.0 + gap])).with_sigma(inertia=np.full((3, 3), 1e-4))

@@ -63,6 +63,14 @@ REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: PLAIN.with_sigma(inertia=[[0.1, 0.2, 0.1], [0.1, 0.1, 0.1], [0.1, 0.1, 0.1]]),
         "symmetric",
     ),
+    "number with sigmas not symmetric": (
+        lambda: RigidBody(2.0, Uncertain(np.diag([3.0, 4.0, 5.0]), [[0.1, 0.2, 0.1], [0.1] * 3, [0.1] * 3])),
+        "symmetric",
+    ),
+    "tensor whose mirrored elements move apart": (
+        lambda: RigidBody(2.0, Uncertain(np.diag([3.0, 4.0, 5.0]), covariance=0.01 * np.eye(9))),
+        "symmetric",
+    ),
     "body's covariance of nine": (lambda: PLAIN.with_covariance(np.eye(9)), r"10, 10"),
     "body's covariance not symmetric": (lambda: PLAIN.with_covariance(ten_by_ten(_01=1e-5)), "symmetric"),
     "body's covariance not positive": (

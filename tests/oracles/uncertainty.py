@@ -20,7 +20,17 @@ from oracles.textbook_shapes import FLOATS, Field, fifty_digits
 
 Floats: TypeAlias = NDArray[np.float64]
 
-__all__ = ["OUTPUTS", "Drawn", "Sources", "covariance", "draw_outputs", "jacobian", "monte_carlo", "values"]
+__all__ = [
+    "OUTPUTS",
+    "Drawn",
+    "Sources",
+    "covariance",
+    "draw_outputs",
+    "drawn",
+    "jacobian",
+    "monte_carlo",
+    "values",
+]
 
 OUTPUTS = (
     *("mass", "C_x", "C_y", "C_z", "I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz"),
@@ -120,7 +130,7 @@ def values(node: Node) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class Drawn:
-    """Sigmas by draws, their statistical errors, and the sigmas of first order: each of shape (19,)."""
+    """Sigmas by draws, their statistical errors, and the sigmas of first order: one for each output."""
 
     sigma: Floats
     error: Floats
@@ -133,21 +143,20 @@ class Drawn:
             return np.abs(self.first_order / self.sigma - 1)
 
 
-def monte_carlo(node: Node, n: int = 400_000, seed: int = 0, chunk: int = 20_000) -> Drawn:
-    """Sigmas of n draws in pairs ±z, with the linear part as control variate."""
-    sources, (_, axes) = Sources(node), values(node)
+def drawn(f: Callable[[Floats], Floats], count: int, n: int, seed: int, chunk: int = 20_000) -> Drawn:
+    """Sigmas of a function of draws z (count, m), with values (m, k), by n draws in pairs ±z."""
     h = 0.1  # of a sigma: any J serves as control, and steps that are too short have more rounding
-    steps = h * np.eye(sources.count)
-    ends = draw_outputs(node, sources, np.hstack([steps, -steps, np.zeros((sources.count, 1))]), axes)
-    k, nominal = sources.count, ends[-1]
-    J = ((ends[:k] - ends[k : 2 * k]) / (2 * h)).T
+    steps = h * np.eye(count)
+    ends = f(np.hstack([steps, -steps, np.zeros((count, 1))]))
+    nominal = ends[-1]
+    J = ((ends[:count] - ends[count : 2 * count]) / (2 * h)).T
     first = np.einsum("ij,ij->i", J, J)
     rng = np.random.default_rng(seed)
     parts: list[Floats] = []
     evens: list[Floats] = []
     for start in range(0, n // 2, chunk):
-        z = rng.standard_normal((k, min(chunk, n // 2 - start)))
-        both = draw_outputs(node, sources, np.hstack([z, -z]), axes)
+        z = rng.standard_normal((count, min(chunk, n // 2 - start)))
+        both = f(np.hstack([z, -z]))
         plus, minus = both[: z.shape[1]], both[z.shape[1] :]
         linear = (J @ z).T
         odd = (plus - minus) / 2 - linear
@@ -160,6 +169,12 @@ def monte_carlo(node: Node, n: int = 400_000, seed: int = 0, chunk: int = 20_000
     with np.errstate(invalid="ignore", divide="ignore"):
         error = np.where(sigma > 0, part.std(axis=0) / np.sqrt(len(part)) / (2 * sigma), 0.0)
     return Drawn(sigma, error, np.sqrt(first))
+
+
+def monte_carlo(node: Node, n: int = 400_000, seed: int = 0) -> Drawn:
+    """Sigmas of all outputs of a tree."""
+    sources, (_, axes) = Sources(node), values(node)
+    return drawn(lambda z: draw_outputs(node, sources, z, axes), sources.count, n, seed)
 
 
 def _outputs(numbers: list[Any], axes: Any) -> tuple[list[Any], Any]:
