@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import polhode
 import pytest
-from polhode import RigidBody
+from uncertain_bodies import RigidBody
 
 #        m      C_x     C_y    C_z    I_xx     I_yy     I_zz     P_xy     P_xz     P_yz
 WIDGET = (57.83, 121.20, 0.04, -0.16, 7258.90, 8607.02, 10453.40, 834.44, -1198.38, -1066.58)
@@ -40,12 +40,12 @@ def matrix(six: Any) -> Any:
     return full
 
 
-def part(row: tuple[float, ...], sigma: tuple[float, ...]) -> RigidBody:
+def part(row: tuple[float, ...], sigma: tuple[float, ...]) -> Any:
     body = RigidBody.from_positive_products(row[0], row[4:7], row[7:], row[1:4])
     return body.with_sigma(mass=sigma[0], center_of_mass=sigma[1:4], inertia=matrix(sigma[4:]))
 
 
-def printed(body: RigidBody) -> Any:
+def printed(body: Any) -> Any:
     """Ten numbers as the table has them, with positive products."""
     tensor = [body.inertia[i, j] * (1 if i == j else -1) for i, j in SIX]
     return np.array([body.mass, *body.center_of_mass, *tensor])
@@ -76,28 +76,28 @@ def principal_sigmas(tensor: Any, covariance: Any) -> Any:
 
 
 @pytest.fixture
-def combined() -> RigidBody:
+def combined() -> Any:
     return part(WIDGET, WIDGET_SIGMA) + part(SECOND, SECOND_SIGMA)
 
 
 class TestAsPrinted:
-    def test_values_and_sigmas(self, combined: RigidBody) -> None:
+    def test_values_and_sigmas(self, combined: Any) -> None:
         """Sigmas within 0.3 %; values within the 0.16 % that 70.90 for 70.85 makes."""
         assert printed(combined) == pytest.approx(RESULT, rel=1.7e-3)
         assert np.sqrt(np.diag(combined.covariance)) == pytest.approx(RESULT_SIGMA, rel=3e-3)
         assert combined.sigma.mass == pytest.approx(2.1301, abs=5e-5)
         assert combined.sigma.center_of_mass[0] == pytest.approx(0.95821, abs=5e-6)
 
-    def test_whole_covariance_is_numpys(self, combined: RigidBody) -> None:
+    def test_whole_covariance_is_numpys(self, combined: Any) -> None:
         _, covariance = by_numpy(SECOND)
         sigma = np.sqrt(np.diag(covariance))
         assert np.abs((combined.covariance - covariance) / np.outer(sigma, sigma)).max() < 1e-10
 
-    def test_tensor_elements_are_not_independent(self, combined: RigidBody) -> None:
+    def test_tensor_elements_are_not_independent(self, combined: Any) -> None:
         sigma = np.sqrt(np.diag(combined.covariance))
         assert combined.covariance[5, 6] / (sigma[5] * sigma[6]) == pytest.approx(0.986, abs=5e-4)
 
-    def test_principal_sigmas(self, combined: RigidBody) -> None:
+    def test_principal_sigmas(self, combined: Any) -> None:
         """2791, and not the 2373 of ten independent sigmas."""
         tensor, covariance = by_numpy(SECOND)
         expected = principal_sigmas(tensor, covariance[4:, 4:])
@@ -118,7 +118,7 @@ class TestAsPrinted:
         rest = (widget + second) - widget
         assert np.sqrt(np.diag(rest.covariance)) == pytest.approx(SECOND_SIGMA, rel=1e-10)
 
-    def test_from_uncertain_numbers(self, combined: RigidBody) -> None:
+    def test_from_uncertain_numbers(self, combined: Any) -> None:
         """The same with each number given as uncertain; the mirrored elements of a tensor are one number."""
         twice = np.array([matrix(row).ravel() for row in np.eye(6)]).T
         parts = []

@@ -21,7 +21,6 @@ from oracles.uncertainty import (
     monte_carlo,
     values,
 )
-from polhode import RigidBody
 from uncertain_bodies import Bodies, symmetric
 
 SIX = np.array([0, 4, 8, 1, 2, 5])
@@ -38,7 +37,7 @@ def sizes(node: Node) -> Any:
     return np.array([ten[0], *[length] * 3, *[inertia] * 9, *[1.0] * 3, *[length] * 3])
 
 
-def answers(body: RigidBody) -> tuple[Any, Any]:
+def answers(body: Any) -> tuple[Any, Any]:
     """Sigmas and whether each is linear, in the order of `OUTPUTS`, of what a body says of itself."""
     s = body.sigma
     words = ("mass", "center_of_mass", "inertia", "principal_moments", "axes")
@@ -150,9 +149,9 @@ def departures(node: Node) -> dict[str, float]:
         s = body.sigma
         for word, rows in (("principal_moments", slice(10, 13)), ("axes", slice(13, 16))):
             # Where a cause turns no axis its tensor still has its rounding.
-            norm = np.linalg.norm(sigma[4:10]) / (np.diff(moments).min() if word == "axes" else 1)
-            norm = max(norm, np.linalg.norm(sigma[rows]), 1e-9 * sizes(node)[rows.start])
-            worst[word] = float(np.abs(getattr(s, word) - sigma[rows]).max() / norm)
+            least = np.linalg.norm(sigma[4:10]) / (np.diff(moments).min() if word == "axes" else 1)
+            row = max(least, np.linalg.norm(sigma[rows]), 1e-9 * sizes(node)[rows.start])
+            worst[word] = float(np.abs(getattr(s, word) - sigma[rows]).max() / row)
     return worst
 
 

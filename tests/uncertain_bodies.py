@@ -22,10 +22,15 @@ from oracles.matter_models import (
     Turned,
 )
 from oracles.textbook_shapes import SHAPES
-from polhode import RigidBody
 from scipy.spatial.transform import Rotation
 
-__all__ = ["Bodies", "symmetric"]
+__all__ = ["Bodies", "RigidBody", "laminae", "rods", "solids", "symmetric"]
+
+# What has a sigma is known where it is tested; the types do not know it.
+RigidBody: Any = polhode.RigidBody
+laminae: Any = polhode.laminae
+rods: Any = polhode.rods
+solids: Any = polhode.solids
 
 
 def symmetric(six: Any) -> Any:
@@ -87,14 +92,13 @@ class Bodies:
             return rotation
         return self._uncertain(rotation, turn.factor, turn.source)
 
-    def body(self, node: Node) -> RigidBody:
+    def body(self, node: Node) -> Any:
         if id(node) not in self.made:
             self.kept.append(node)
             self.made[id(node)] = self._body(node)
-        made: RigidBody = self.made[id(node)]
-        return made
+        return self.made[id(node)]
 
-    def _given(self, q: Quantity) -> RigidBody:
+    def _given(self, q: Quantity) -> Any:
         body = RigidBody(float(q.value[0]), symmetric(q.value[4:]), q.value[1:4])
         if q.factor is None or self.sigma is None:
             return body
@@ -106,17 +110,14 @@ class Bodies:
             mass=sigma[0], center_of_mass=sigma[1:4], inertia=symmetric(sigma[4:]), source=q.source
         )
 
-    def _solid(self, node: Solid) -> RigidBody:
+    def _solid(self, node: Solid) -> Any:
         _, arguments, module = SHAPES[node.name]
         make = getattr(getattr(polhode, module), node.name)
         numbers: list[Any] = [v if isinstance(v, int) else self.number(v) for v in node.lengths.values()]
         assert len(numbers) == len(arguments)
-        made: RigidBody = make(
-            *numbers, **{"density" if node.by_density else "mass": self.number(node.amount)}
-        )
-        return made
+        return make(*numbers, **{"density" if node.by_density else "mass": self.number(node.amount)})
 
-    def _body(self, node: Node) -> RigidBody:
+    def _body(self, node: Node) -> Any:
         n = self.number
         match node:
             case Tensor():
@@ -146,7 +147,7 @@ class Bodies:
             case Scaled():
                 return self.body(node.body).scaled(length=n(node.length), mass=n(node.mass))
             case Sum():
-                total: RigidBody | None = None
+                total: Any = None
                 for part, sign in zip(node.parts, node.signs, strict=True):
                     one = self.body(part)
                     total = one if total is None else total + one if sign > 0 else total - one

@@ -319,8 +319,9 @@ def displaced(node: Any, z: Callable[[Quantity], Floats], done: dict[int, Any] |
     done = {} if done is None else done
     if id(node) not in done:
         if isinstance(node, Quantity):
-            off = node.factor is not None
-            made: Any = replace(node, value=node.value + node.factor @ z(node)) if off else node
+            made: Any = node
+            if node.factor is not None:
+                made = replace(node, value=node.value + node.factor @ z(node))
         elif isinstance(node, tuple):
             made = tuple(displaced(one, z, done) for one in node)
         elif isinstance(node, dict):
