@@ -144,6 +144,14 @@ class TestTurned:
         assert found.sigma == pytest.approx([0.005, 0.01, 0.013], rel=0.05)
         assert np.all(found.linear)
 
+    @pytest.mark.parametrize("method", ["linear", "second-order", "monte-carlo"])
+    def test_a_thin_plate(self, method: Any) -> None:
+        """Steps along the tangents would leave what bodies there are."""
+        turn = Uncertain(Rotation.from_rotvec([0.3, -1.1, 0.6]), 0.03)
+        plate = solids.box((1.0, 1.0, 0.02), mass=Uncertain(12.0, 0.012)).rotated(turn)
+        found = propagate(lambda b: b.principal_moments, plate, method=method, n=1000, seed=0)
+        assert found.sigma == pytest.approx(plate.principal_moments * 1e-3, rel=0.1)
+
 
 class TestSecondOrder:
     def test_a_square(self) -> None:
