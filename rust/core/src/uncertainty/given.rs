@@ -70,12 +70,14 @@ impl Given {
                 for j in 0..count {
                     rest[i * count + j] -= column[i] * column[j];
                 }
-                // What the pivot explains of itself is all of it.
-                rest[i * count + pivot] = 0.0;
-                rest[pivot * count + i] = 0.0;
                 if column[i] != 0.0 {
                     forms[i].push((variable(source, step), scale[i] * column[i]));
                 }
+            }
+            // What the pivot explains of itself is all of it.
+            for i in 0..count {
+                rest[i * count + pivot] = 0.0;
+                rest[pivot * count + i] = 0.0;
             }
         }
         // Where a variance is used up nothing may be left beside it.
