@@ -138,8 +138,8 @@ class Covariances:
 def _shared_leaves(tree: Tree, names: list[str]) -> tuple[Integers, Integers]:
     """Give the leaves, by ascending place, that share their source with another one, and the number of it."""
     found: dict[str, list[int]] = {}
-    for place, (row, is_leaf) in enumerate(zip(tree.order.tolist(), tree.is_leaf.tolist(), strict=True)):
-        if is_leaf and names[row]:
+    for place, row in enumerate(tree.order.tolist() if names else ()):
+        if names[row] and tree.is_leaf[place]:
             found.setdefault(names[row], []).append(place)
     shared = [places for places in found.values() if len(places) > 1]
     pairs = sorted((place, code) for code, places in enumerate(shared) for place in places)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import repeat
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -31,6 +32,8 @@ COLUMNS: Final = (
 )  # fmt: skip
 """The columns of a ledger's table. `predicted_mass` is what `Ledger.to_csv` adds; it is computed anew."""
 
+_PLUS: Final = 1
+_SIGNS: Final = {"": 0, "+": _PLUS, "-": 2}
 _ABOUT: Final = ("", "center_of_mass", "origin")
 
 
@@ -48,7 +51,7 @@ class Parts(NamedTuple):
     correlated : dict
         Of leaves whose ten errors are not independent: the effect of each of the ten draws on z, a matrix (10, 10).
     source : list of str
-        "" for a part whose draws are its own.
+        "" for a part whose draws are its own; empty where there is no other.
     unstated : int
         How many leaves state no sigma at all.
     """
@@ -107,7 +110,7 @@ def read_parts(
         for row in origin:
             correlated[row] = _of_origin(values[:, row], sigma[:, row])
     _check_bodies(values, leaves, where, rtol)
-    source = table.words("source")
+    source = table.words("source") if "source" in table else []
     return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, unstated)
 
 
@@ -243,19 +246,18 @@ def _signs(
     where: Callable[[int], str],
 ) -> None:
     """Turn positive products into elements of the tensor."""
-    is_plus = np.array([word == "+" for word in conventions])
-    is_other = is_leaf & ~is_plus & np.array([word != "-" for word in conventions])
-    for row in np.flatnonzero(is_other).tolist():
+    signs = np.fromiter(map(_SIGNS.get, conventions, repeat(-1)), np.int8, len(conventions))
+    for row in np.flatnonzero(is_leaf & (signs < 1)).tolist():
         if conventions[row]:
             raise PolhodeError(f"{where(row)}: POIconv is {conventions[row][:40]!r}; write + or -")
         stated = next((name for name in NUMBERS[7:] if numbers[name][row] != 0.0), None)
         if stated is not None:
             raise PolhodeError(
-                f"{where(row)}: nothing says which sign {stated} = {numbers[stated][row]:g} has; give a column POIconv: + "
-                f"for the integral of {stated[1]} {stated[2]} dm, - for minus that, the element of the tensor"
+                f"{where(row)}: nothing says which sign {stated} = {numbers[stated][row]:g} has; give a column "
+                f"POIconv: + for the integral of {stated[1]} {stated[2]} dm, - for minus that, the tensor's element"
             )
     for name in NUMBERS[7:]:
-        numbers[name] = np.where(is_plus, 0.0 - numbers[name], numbers[name])
+        numbers[name] = np.where(signs == _PLUS, 0.0 - numbers[name], numbers[name])
 
 
 def _about_origin(table: Table, leaves: NDArray[np.intp], where: Callable[[int], str]) -> list[int]:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Table", "read_table"]
 
-_MISSING: Final = frozenset({"", "NA", "N/A", "<NA>"})
-"""Cells that state nothing: R writes NA, pandas <NA>."""
+_ABSENT: Final = frozenset({"NA", "N/A", "<NA>"})
+"""Cells that state nothing, as empty ones do: R writes NA, pandas <NA>."""
 _TRUE: Final = frozenset({"true", "t", "yes", "1"})
 _FALSE: Final = frozenset({"false", "f", "no", "0"})
 _SIGMA: Final = "\u03c3_"
@@ -65,10 +65,11 @@ class Table:
         cells = self.columns[column]
         if isinstance(cells, np.ndarray):
             cells = cells.tolist()
-        return [
-            cell if type(cell) is str and cell not in _MISSING and cell[0] > " " < cell[-1] else _word(cell)
-            for cell in cells
-        ]
+        try:
+            words = list(map(str.strip, cells))
+        except TypeError:  # not all of them are text
+            return [_word(cell) for cell in cells]
+        return words if _ABSENT.isdisjoint(words) else ["" if word in _ABSENT else word for word in words]
 
     def numbers(self, column: str, *, percent: bool = False) -> NDArray[np.float64]:
         """Give a column of numbers; NaN where nothing is stated, or the table has no such column.
@@ -212,24 +213,30 @@ def _from_file(file: Path) -> Table:
 
 
 def _from_columns(columns: dict[str, Any], argument: str) -> Table:
-    arrays: dict[str, Any] = {}
-    for name, cells in columns.items():
-        is_one = isinstance(cells, str) or np.ndim(cells) == 0
-        arrays[name] = cells if is_one else np.asarray(cells, None if _is_uniform(cells) else object)
-        if not is_one and arrays[name].ndim != 1:
-            raise PolhodeError(
-                f"{argument}: column {name!r} has shape {arrays[name].shape}; expected one cell a row"
-            )
-    lengths = {name: len(cells) for name, cells in arrays.items() if isinstance(cells, np.ndarray)}
+    full = {name: _cells(cells, name, argument) for name, cells in columns.items()}
+    lengths = {name: len(cells) for name, cells in full.items() if cells is not None}
     first = next(iter(lengths), "")
     other = next((name for name in lengths if lengths[name] != lengths[first]), None)
     if other is not None:
         raise PolhodeError(
             f"{argument}: column {first!r} has {lengths[first]} rows, but {other!r} has {lengths[other]}"
         )
-    count = next(iter(lengths.values()), 1)
-    full = {name: cells if name in lengths else np.full(count, cells) for name, cells in arrays.items()}
-    return Table("", full)
+    count = lengths.get(first, 1)
+    return Table(
+        "", {name: [columns[name]] * count if cells is None else cells for name, cells in full.items()}
+    )
+
+
+def _cells(cells: Any, name: str, argument: str) -> Any:
+    """Give the cells of a column as a list or an array of one axis; None for a single value."""
+    if isinstance(cells, list | tuple):
+        return list(cells)
+    if isinstance(cells, str) or np.ndim(cells) == 0:
+        return None
+    array = np.asarray(cells)
+    if array.ndim != 1:
+        raise PolhodeError(f"{argument}: column {name!r} has shape {array.shape}; expected one cell a row")
+    return array
 
 
 def _from_rows(rows: list[Any], argument: str) -> Table:
@@ -243,11 +250,6 @@ def _from_rows(rows: list[Any], argument: str) -> Table:
     return Table("", {str(name): [row.get(name) for row in rows] for name in names})
 
 
-def _is_uniform(cells: Any) -> bool:
-    """Whether NumPy can tell the type of the cells without making text of numbers."""
-    return isinstance(cells, np.ndarray) or len({type(cell) for cell in cells}) == 1
-
-
 def _word(cell: Any) -> str:
     if cell is None:
         return ""
@@ -256,7 +258,7 @@ def _word(cell: Any) -> str:
             return ""
         return str(int(cell)) if cell.is_integer() and abs(cell) < 1e15 else repr(cell)
     word = str(cell).strip()
-    return "" if word in _MISSING else word
+    return "" if word in _ABSENT else word
 
 
 def _is_number(word: str | float) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise, repeat
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -94,12 +95,12 @@ def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int],
         If an id is missing or there twice, a parent has no row, there is no root or more than one, or a part is
         its own ancestor.
     """
-    index = {name: row for row, name in enumerate(ids)}
+    index = dict(zip(ids, range(len(ids)), strict=True))
     if "" in index:
         raise PolhodeError(f"{where(ids.index(''))}: id is empty; give each part its own")
     if len(index) < len(ids):
         _refuse_twice(ids, where)
-    parent = np.fromiter((index.get(name, -1) for name in parents), np.intp, len(ids))
+    parent = np.fromiter(map(index.get, parents, repeat(-1)), np.intp, len(ids))
     roots = np.flatnonzero(parent < 0)
     orphan = next((row for row in roots.tolist() if parents[row]), None)
     if orphan is not None:
@@ -121,7 +122,7 @@ def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int],
     above = np.where(parent[order] < 0, -1, places[parent[order]])
     is_leaf = np.ones(len(order), np.bool_)
     is_leaf[above[1:]] = False
-    levels = tuple(slice(start, end) for start, end in zip(bounds, bounds[1:], strict=False))
+    levels = tuple(slice(start, end) for start, end in pairwise(bounds))
     return Tree(tuple(ids), index, parent, order, levels, above, is_leaf)
 
 
