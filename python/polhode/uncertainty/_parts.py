@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from itertools import repeat
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from polhode._core import RigidBody
 from polhode.errors import InvalidInertiaError, PolhodeError
 from polhode.uncertainty._rollup import NUMBERS, own_moment, shift
-from polhode.uncertainty._shapes import shape_body
+from polhode.uncertainty._shapes import shape_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from polhode.uncertainty._table import Table
 
     Floats = NDArray[np.float64]
+    Integers = NDArray[np.intp]
 
 __all__ = ["COLUMNS", "SIGMAS", "Parts", "bodies_of", "read_parts"]
 
@@ -34,6 +35,8 @@ COLUMNS: Final = (
 
 _PLUS: Final = 1
 _SIGNS: Final = {"": 0, "+": _PLUS, "-": 2}
+_CHUNK: Final = 4096
+"""Bodies that are made at once."""
 _ABOUT: Final = ("", "center_of_mass", "origin")
 
 
@@ -49,7 +52,7 @@ class Parts(NamedTuple):
     sigma : numpy.ndarray
         Standard deviations as they are stated, shape (10, n); zero where none is.
     correlated : dict
-        Of leaves whose ten errors are not independent: the effect of each of the ten draws on z, a matrix (10, 10).
+        Of leaves whose ten errors are not independent: the effect of each of the ten draws on z, (10, 10).
     source : list of str
         "" for a part whose draws are its own; empty where there is no other.
     unstated : int
@@ -89,19 +92,23 @@ def read_parts(
         See `RigidBody`.
     """
     leaves = np.flatnonzero(is_leaf)
-    numbers = {name: table.numbers(name, percent=name == "growth") for name in _OWN}
     if not overwrite:
-        _refuse_own(table, numbers, ~is_leaf, where)
-    sigma, unstated = _sigmas(numbers, leaves, where)
-    growth = _growth(numbers["growth"], leaves, where)
-    shapes = _shapes(table, numbers, sigma, leaves, where)
+        _refuse_own(table, ~is_leaf, where)
+    values, sigma = (_stacked(table, names) for names in (NUMBERS, SIGMAS))
+    density, of_density = table.numbers("density"), table.numbers("sigma_density")
+    unstated = int(np.sum(np.isnan(sigma[:, leaves]).all(axis=0) & np.isnan(of_density[leaves])))
+    for name, cells in zip((*SIGMAS, "sigma_density"), (*sigma, of_density), strict=True):
+        _refuse(leaves[cells[leaves] < 0.0], cells, where, f"{name} must not be negative")
+    sigma[np.isnan(sigma)] = 0.0
+    growth = np.nan_to_num(table.numbers("growth", percent=True))
+    beyond = leaves[(growth[leaves] < 0.0) | (growth[leaves] > 1.0)]
+    law = "growth must be a fraction of the basic mass from 0 to 1 (write 15 % as 0.15 or 15%)"
+    _refuse(beyond, growth, where, law)
+    shapes = shape_rows(table, values, sigma, leaves, where)
     is_point = table.truths("Ipoint")
-    for name in NUMBERS[4:]:
-        numbers[name][is_point] = 0.0
-    sigma[4:, is_point] = 0.0
-    _refuse_missing(numbers, leaves, where)
-    _signs(table.words("POIconv"), numbers, is_leaf, where)
-    values = np.stack([numbers[name] for name in NUMBERS])
+    values[4:, is_point] = sigma[4:, is_point] = 0.0
+    _refuse_missing(values, leaves, where)
+    _turn_signs(table, values, is_leaf, where)
     origin = _about_origin(table, leaves, where) if "about" in table else []
     origin = [row for row in origin if row not in shapes and not is_point[row]]
     correlated = {row: _of_shape(values[:, row], sigma[:, row]) for row in shapes}
@@ -114,16 +121,29 @@ def read_parts(
     return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, unstated)
 
 
-def _refuse_own(
-    table: Table, numbers: dict[str, Floats], has_children: NDArray[np.bool_], where: Callable[[int], str]
-) -> None:
-    for name, cells in numbers.items():
-        rows = np.flatnonzero(has_children & ~np.isnan(cells)) if name in table else ()
+def _stacked(table: Table, names: tuple[str, ...]) -> Floats:
+    stacked = np.empty((len(names), table.count))
+    for row, name in zip(stacked, names, strict=True):
+        row[:] = table.numbers(name)
+    return stacked
+
+
+def _refuse(rows: Integers, cells: Floats, where: Callable[[int], str], law: str) -> None:
+    """Name the first of the rows that break a law."""
+    if len(rows):
+        row = int(rows[0])
+        raise PolhodeError(f"{where(row)}: {law}, got {cells[row]:g}")
+
+
+def _refuse_own(table: Table, has_children: NDArray[np.bool_], where: Callable[[int], str]) -> None:
+    for name in _OWN:
+        cells = table.numbers(name, percent=name == "growth") if name in table else np.empty(0)
+        rows = np.flatnonzero(has_children & ~np.isnan(cells)) if len(cells) else ()
         if len(rows):
             row = int(rows[0])
             raise PolhodeError(
-                f"{where(row)}: has children, and {name} = {cells[row]:g} of its own; leave it empty, give it to a part "
-                "below, or pass overwrite=True to roll up over it"
+                f"{where(row)}: has children, and {name} = {cells[row]:g} of its own; leave it empty, give it to a "
+                "part below, or pass overwrite=True to roll up over it"
             )
     for name in ("file", "solid"):
         words = table.words(name) if name in table else ()
@@ -134,133 +154,35 @@ def _refuse_own(
             )
 
 
-def _sigmas(
-    numbers: dict[str, Floats], leaves: NDArray[np.intp], where: Callable[[int], str]
-) -> tuple[Floats, int]:
-    """Give the standard deviations, and how many parts state none."""
-    sigma = np.stack([numbers[name] for name in SIGMAS])
-    is_stated = ~np.isnan(sigma[:, leaves]).all(axis=0) | ~np.isnan(numbers["sigma_density"][leaves])
-    for name in (*SIGMAS, "sigma_density"):
-        negative = leaves[numbers[name][leaves] < 0.0]
-        if len(negative):
-            row = int(negative[0])
-            raise PolhodeError(f"{where(row)}: {name} must not be negative, got {numbers[name][row]:g}")
-    return np.nan_to_num(sigma), int(np.sum(~is_stated))
-
-
-def _growth(growth: Floats, leaves: NDArray[np.intp], where: Callable[[int], str]) -> Floats:
-    growth = np.nan_to_num(growth)
-    beyond = leaves[(growth[leaves] < 0.0) | (growth[leaves] > 1.0)]
-    if len(beyond):
-        row = int(beyond[0])
-        raise PolhodeError(
-            f"{where(row)}: growth must be a fraction of the basic mass from 0 to 1, got {growth[row]:g}; write 15 % as "
-            "0.15 or 15%"
-        )
-    return growth
-
-
-def _shapes(
-    table: Table,
-    numbers: dict[str, Floats],
-    sigma: Floats,
-    leaves: NDArray[np.intp],
-    where: Callable[[int], str],
-) -> list[int]:
-    """Fill in the values of rows that are a file or a shape; give these rows."""
-    if not any(name in table for name in ("file", "solid", "density")):
-        return []
-    words = {name: table.words(name) for name in ("file", "solid", "arguments")}
-    made: dict[Any, RigidBody] = {}
-    rows = []
-    for row in leaves.tolist():
-        density, mass = float(numbers["density"][row]), float(numbers["mass"][row])
-        kinds = [name for name in ("file", "solid") if words[name][row]]
-        if not kinds:
-            if words["arguments"][row] or not np.isnan(density):
-                raise PolhodeError(f"{where(row)}: density and arguments are of a file or a solid; name one")
-            continue
-        if len(kinds) == 2 or np.isnan(density) == np.isnan(mass):
-            raise PolhodeError(
-                f"{where(row)}: give a file or a solid, and its mass or its density, one of each"
-            )
-        stated = next((name for name in NUMBERS[4:] if not np.isnan(numbers[name][row])), None)
-        if stated is not None:
-            raise PolhodeError(
-                f"{where(row)}: {stated} is stated beside the {kinds[0]} that it follows from; leave one out"
-            )
-        _density_sigma(numbers, sigma, row, density, where)
-        try:
-            body = shape_body(
-                kinds[0],
-                words[kinds[0]][row],
-                words["arguments"][row],
-                table.folder,
-                mass=mass,
-                density=density,
-                made=made,
-            )
-        except (ValueError, OSError) as error:
-            raise PolhodeError(f"{where(row)}: {error}") from error
-        center = np.array([numbers[name][row] for name in NUMBERS[1:4]])
-        tensor = body.inertia
-        own = np.concatenate(
-            [[body.mass], np.where(np.isnan(center), body.center_of_mass, center), np.diag(tensor)]
-        )
-        for name, value in zip(NUMBERS, [*own, tensor[0, 1], tensor[0, 2], tensor[1, 2]], strict=True):
-            numbers[name][row] = value
-        if not np.isnan(density):
-            sigma[0, row] *= body.mass
-        rows.append(row)
-    return rows
-
-
-def _density_sigma(
-    numbers: dict[str, Floats], sigma: Floats, row: int, density: float, where: Callable[[int], str]
-) -> None:
-    """Put the relative sigma of the density in the place of that of the mass."""
-    of_density = float(numbers["sigma_density"][row])
-    if np.isnan(density):
-        if not np.isnan(of_density):
-            raise PolhodeError(f"{where(row)}: sigma_density is stated, but no density; state sigma_mass")
-    elif sigma[0, row] != 0.0:
-        raise PolhodeError(f"{where(row)}: sigma_mass is stated beside a density; state sigma_density")
-    else:
-        sigma[0, row] = np.nan_to_num(of_density) / density
-
-
-def _refuse_missing(
-    numbers: dict[str, Floats], leaves: NDArray[np.intp], where: Callable[[int], str]
-) -> None:
-    for name in NUMBERS:
-        missing = leaves[np.isnan(numbers[name][leaves])]
+def _refuse_missing(values: Floats, leaves: Integers, where: Callable[[int], str]) -> None:
+    for name, cells in zip(NUMBERS, values, strict=True):
+        missing = leaves[np.isnan(cells[leaves])]
         if len(missing):
             way_out = "; Ipoint TRUE takes the part as a point" if name[0] == "I" else ""
             raise PolhodeError(f"{where(int(missing[0]))}: has no children, and no {name}; state it{way_out}")
 
 
-def _signs(
-    conventions: list[str],
-    numbers: dict[str, Floats],
-    is_leaf: NDArray[np.bool_],
-    where: Callable[[int], str],
+def _turn_signs(
+    table: Table, values: Floats, is_leaf: NDArray[np.bool_], where: Callable[[int], str]
 ) -> None:
     """Turn positive products into elements of the tensor."""
+    conventions = table.words("POIconv")
     signs = np.fromiter(map(_SIGNS.get, conventions, repeat(-1)), np.int8, len(conventions))
     for row in np.flatnonzero(is_leaf & (signs < 1)).tolist():
         if conventions[row]:
             raise PolhodeError(f"{where(row)}: POIconv is {conventions[row][:40]!r}; write + or -")
-        stated = next((name for name in NUMBERS[7:] if numbers[name][row] != 0.0), None)
-        if stated is not None:
+        k = next((k for k in (7, 8, 9) if values[k, row] != 0.0), None)
+        if k is not None:
+            x, y = NUMBERS[k][1:]
             raise PolhodeError(
-                f"{where(row)}: nothing says which sign {stated} = {numbers[stated][row]:g} has; give a column "
-                f"POIconv: + for the integral of {stated[1]} {stated[2]} dm, - for minus that, the tensor's element"
+                f"{where(row)}: nothing says which sign {NUMBERS[k]} = {values[k, row]:g} has; give a column POIconv: "
+                f"+ for the integral of {x} {y} dm, - for minus that, the element of the tensor"
             )
-    for name in NUMBERS[7:]:
-        numbers[name] = np.where(signs == _PLUS, 0.0 - numbers[name], numbers[name])
+    for cells in values[7:]:
+        np.subtract(0.0, cells, out=cells, where=signs == _PLUS)
 
 
-def _about_origin(table: Table, leaves: NDArray[np.intp], where: Callable[[int], str]) -> list[int]:
+def _about_origin(table: Table, leaves: Integers, where: Callable[[int], str]) -> list[int]:
     """Give the parts whose tensor is stated about the origin."""
     about = table.words("about")
     other = next((row for row in leaves.tolist() if about[row] not in _ABOUT), None)
@@ -270,7 +192,7 @@ def _about_origin(table: Table, leaves: NDArray[np.intp], where: Callable[[int],
 
 
 def _of_shape(values: Floats, sigma: Floats) -> Floats:
-    """Give the draws of a file or shape: its tensor grows with its mass; nothing else of it is uncertain but its place."""
+    """Give the draws of a file or shape: its tensor grows with its mass."""
     draws = np.diag(sigma)
     draws[1:4] *= values[0]
     draws[4:, 0] = values[4:] / values[0] * sigma[0]
@@ -289,27 +211,19 @@ def _of_origin(values: Floats, sigma: Floats) -> Floats:
     return shift(draws[:, :, None], -center[:, None])[:, :, 0]
 
 
-def _check_bodies(
-    values: Floats, leaves: NDArray[np.intp], where: Callable[[int], str], rtol: float | None
-) -> None:
+def _check_bodies(values: Floats, leaves: Integers, where: Callable[[int], str], rtol: float | None) -> None:
     """Let the constructor of bodies judge every part; name the first that it refuses."""
-    try:
-        bodies_of(values[:, leaves], rtol)
-    except InvalidInertiaError:
-        while len(leaves) > 1:
-            half = leaves[: len(leaves) // 2]
-            try:
-                bodies_of(values[:, half], rtol)
-            except InvalidInertiaError:
-                leaves = half
-            else:
-                leaves = leaves[len(leaves) // 2 :]
-        row = int(leaves[0])
+    for start in range(0, len(leaves), _CHUNK):
+        some = leaves[start : start + _CHUNK]
         try:
-            bodies_of(values[:, row], rtol)
-        except InvalidInertiaError as error:
-            raise InvalidInertiaError(f"{where(row)}: {error}") from None
-        raise
+            bodies_of(values[:, some], rtol)
+        except InvalidInertiaError:
+            for row in some.tolist():
+                try:
+                    bodies_of(values[:, row], rtol)
+                except InvalidInertiaError as error:
+                    raise InvalidInertiaError(f"{where(row)}: {error}") from None
+            raise
 
 
 def bodies_of(values: Floats, rtol: float | None = None) -> RigidBody:

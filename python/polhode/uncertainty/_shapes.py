@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import inspect
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
 
 from polhode import laminae, rods, solids
 from polhode._core import RigidBody
@@ -14,56 +16,104 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-__all__ = ["shape_body"]
+    from numpy.typing import NDArray
+
+    from polhode.uncertainty._table import Table
+
+    Floats = NDArray[np.float64]
+    Integers = NDArray[np.intp]
+
+__all__ = ["shape_rows"]
 
 _SHAPES: Final = {name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__}
-_OF_FILES: Final = ("length_unit", "weld", "closure", "orient", "index_base")
 
 
-def shape_body(
-    kind: str,
-    what: str,
-    arguments: str,
-    folder: Path,
-    *,
-    mass: float,
-    density: float,
-    made: dict[Any, RigidBody],
-) -> RigidBody:
-    """Make the body of a row.
+def shape_rows(
+    table: Table, values: Floats, sigma: Floats, leaves: Integers, where: Callable[[int], str]
+) -> set[int]:
+    """Fill in the values of rows that are a file or a shape.
 
     Parameters
     ----------
-    kind : str
-        ``"file"`` or ``"solid"``.
-    what : str
-        The name of the file or of the shape.
-    arguments : str
-        ``"radius=0.1 height=0.3"``: names and values; the numbers of an array are separated by commas.
-    folder : pathlib.Path
-        Where the name of a file starts from.
-    mass, density : float
-        One of them; the other is NaN.
-    made : dict
-        Bodies that have been made, so that a file is read once.
+    table : Table
+    values, sigma : numpy.ndarray
+        The ten numbers and their standard deviations, shape (10, n); filled in place.
+    leaves : numpy.ndarray
+        Rows without children.
+    where : callable
+        Names a row in errors.
 
-    Raises
-    ------
-    PolhodeError
-        If there is no such shape, or it does not take these arguments.
+    Returns
+    -------
+    set of int
+        These rows.
     """
-    options = _arguments(arguments)
-    weight = {"mass": mass} if math.isnan(density) else {"density": density}
-    key = (kind, what, arguments, *weight.items())
-    if key not in made:
-        if kind == "file":
-            unknown = next((name for name in options if name not in _OF_FILES), None)
-            if unknown is not None:
-                raise PolhodeError(f"arguments: a file takes {', '.join(_OF_FILES)}, not {unknown!r}")
-            made[key] = RigidBody.from_file(folder / what, **options, **weight)
-        else:
-            made[key] = _shape(what)(**_checked(what, options, weight))
-    return made[key]
+    if not any(name in table for name in ("file", "solid", "arguments", "density", "sigma_density")):
+        return set()
+    words = {name: table.words(name) for name in ("file", "solid", "arguments")}
+    densities = table.numbers("density"), table.numbers("sigma_density")
+    made: dict[Any, RigidBody] = {}
+    rows = set()
+    for row in leaves.tolist():
+        density, of_density = (float(cells[row]) for cells in densities)
+        kinds = [name for name in ("file", "solid") if words[name][row]]
+        is_by_mass, is_by_density = (not math.isnan(value) for value in (values[0, row], density))
+        try:
+            if not kinds:
+                if words["arguments"][row] or is_by_density or not math.isnan(of_density):
+                    raise PolhodeError("density and arguments are of a file or a solid; name one")
+                continue
+            if len(kinds) == 2 or is_by_mass == is_by_density:
+                raise PolhodeError("give a file or a solid, and its mass or its density: one of each")
+            if not np.isnan(values[4:, row]).all():
+                raise PolhodeError(
+                    f"a tensor is stated beside the {kinds[0]} that it follows from; leave one out"
+                )
+            if is_by_mass and not math.isnan(of_density):
+                raise PolhodeError("sigma_density is stated, but no density; state sigma_mass")
+            if is_by_density and sigma[0, row] != 0.0:
+                raise PolhodeError("sigma_mass is stated beside a density; state sigma_density")
+            weight = {"density": density} if is_by_density else {"mass": float(values[0, row])}
+            what, arguments = words[kinds[0]][row], words["arguments"][row]
+            key = (kinds[0], what, arguments, *weight.items())
+            if key not in made:  # a file that is there often is read once
+                options = _arguments(arguments)
+                make = _of_file(table.folder / what) if kinds[0] == "file" else _shape(what)
+                made[key] = _called(make, what, options, weight)
+        except (ValueError, OSError) as error:
+            kind = type(error) if isinstance(error, PolhodeError) else PolhodeError
+            raise kind(f"{where(row)}: {error}") from error
+        body = made[key]
+        tensor = body.inertia
+        center = np.where(np.isnan(values[1:4, row]), body.center_of_mass, values[1:4, row])
+        values[:, row] = [body.mass, *center, *np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
+        if is_by_density and not math.isnan(of_density):
+            sigma[0, row] = body.mass * of_density / density
+        rows.add(row)
+    return rows
+
+
+def _of_file(path: Path) -> Callable[..., RigidBody]:
+    def make(
+        *,
+        length_unit: str | None = None,
+        weld: float = 0.0,
+        closure: Literal["caps", "hull"] | None = None,
+        orient: bool = False,
+        index_base: Literal[0, 1] = 1,
+        **weight: float,
+    ) -> RigidBody:
+        return RigidBody.from_file(
+            path,
+            length_unit=length_unit,
+            weld=weld,
+            closure=closure,
+            orient=orient,
+            index_base=index_base,
+            **weight,
+        )
+
+    return make
 
 
 def _shape(name: str) -> Callable[..., RigidBody]:
@@ -73,17 +123,20 @@ def _shape(name: str) -> Callable[..., RigidBody]:
     return shape
 
 
-def _checked(name: str, options: dict[str, Any], weight: dict[str, float]) -> dict[str, Any]:
-    """Refuse arguments that the shape does not take, by name."""
+def _called(
+    make: Callable[..., RigidBody], what: str, options: dict[str, Any], weight: dict[str, float]
+) -> RigidBody:
+    """Make a body; arguments that it does not take are refused by name."""
+    signature = inspect.signature(make)
     try:
-        inspect.signature(_shape(name)).bind(**options, **weight)
+        signature.bind(**options, **weight)
     except TypeError as error:
-        raise PolhodeError(f"arguments: {name}: {error}; it takes {_taken(name)}") from None
-    return options | weight
-
-
-def _taken(name: str) -> str:
-    return ", ".join(str(word) for word in inspect.signature(_shape(name)).parameters)
+        taken = ", ".join(name for name in signature.parameters if name not in ("mass", "density", "weight"))
+        raise PolhodeError(f"arguments: {what}: {error}; it takes {taken}") from None
+    try:
+        return make(**options, **weight)
+    except TypeError as error:  # a word where a number should be
+        raise PolhodeError(f"arguments: {what}: {error}") from None
 
 
 def _arguments(text: str) -> dict[str, Any]:

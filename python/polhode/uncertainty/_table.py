@@ -72,7 +72,7 @@ class Table:
         return words if _ABSENT.isdisjoint(words) else ["" if word in _ABSENT else word for word in words]
 
     def numbers(self, column: str, *, percent: bool = False) -> NDArray[np.float64]:
-        """Give a column of numbers; NaN where nothing is stated, or the table has no such column.
+        """Give a column of numbers, to be read only; NaN where nothing is stated, or the table has no such column.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class Table:
             return np.full(self.count, np.nan)
         cells = self.columns[column]
         if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiu":
-            numbers = cells.astype(np.float64)
+            numbers = cells.astype(np.float64, copy=False)
         else:
             numbers = self._parsed(column, cells, percent)
         infinite = np.flatnonzero(np.isinf(numbers))
