@@ -40,7 +40,7 @@ def random_table(count: int, seed: int) -> dict[str, Any]:
 
 
 def by_recursion(table: dict[str, Any]) -> dict[str, Any]:
-    """Roll up as R massProps does: from the leaves up, get the parts of a node, combine them, set the node."""
+    """Roll up as R massProps does, from the leaves up: get the parts of a node, combine them, set it."""
     table = {
         name: column.copy() if isinstance(column, np.ndarray) else column for name, column in table.items()
     }
@@ -138,8 +138,8 @@ def rows() -> Iterator[Row]:
     def same(ours: Ledger, theirs: dict[str, Any]) -> None:
         """All values, and all sigmas that the recursion has right.
 
-        It hands on ten independent sigmas a node. Those of centres and tensors lean on the same masses, so that one
-        level above assemblies of parts it drops what they have in common.
+        It hands on ten independent sigmas a node. Those of centres and tensors lean on the same masses, so
+        that one level above assemblies of parts it drops what they have in common.
         """
         sigma = ours.sigma
         assert sigma is not None

@@ -1,4 +1,4 @@
-"""Covariances of all nodes of a ledger, of parts that share a source too, and who contributes what to them."""
+"""Covariances of all nodes of a ledger, also of parts that share a source, and who contributes to them."""
 
 from __future__ import annotations
 

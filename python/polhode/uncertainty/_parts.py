@@ -95,7 +95,7 @@ def read_parts(
     if not overwrite:
         _refuse_own(table, ~is_leaf, where)
     values, sigma = (_stacked(table, names) for names in (NUMBERS, SIGMAS))
-    density, of_density = table.numbers("density"), table.numbers("sigma_density")
+    of_density = table.numbers("sigma_density")
     unstated = int(np.sum(np.isnan(sigma[:, leaves]).all(axis=0) & np.isnan(of_density[leaves])))
     for name, cells in zip((*SIGMAS, "sigma_density"), (*sigma, of_density), strict=True):
         _refuse(leaves[cells[leaves] < 0.0], cells, where, f"{name} must not be negative")
@@ -137,13 +137,15 @@ def _refuse(rows: Integers, cells: Floats, where: Callable[[int], str], law: str
 
 def _refuse_own(table: Table, has_children: NDArray[np.bool_], where: Callable[[int], str]) -> None:
     for name in _OWN:
-        cells = table.numbers(name, percent=name == "growth") if name in table else np.empty(0)
-        rows = np.flatnonzero(has_children & ~np.isnan(cells)) if len(cells) else ()
+        if name not in table:
+            continue
+        cells = table.numbers(name, percent=name == "growth")
+        rows = np.flatnonzero(has_children & ~np.isnan(cells))
         if len(rows):
             row = int(rows[0])
             raise PolhodeError(
-                f"{where(row)}: has children, and {name} = {cells[row]:g} of its own; leave it empty, give it to a "
-                "part below, or pass overwrite=True to roll up over it"
+                f"{where(row)}: has children, and {name} = {cells[row]:g} of its own; leave it empty, give it "
+                "to a part below, or pass overwrite=True to roll up over it"
             )
     for name in ("file", "solid"):
         words = table.words(name) if name in table else ()
@@ -173,10 +175,10 @@ def _turn_signs(
             raise PolhodeError(f"{where(row)}: POIconv is {conventions[row][:40]!r}; write + or -")
         k = next((k for k in (7, 8, 9) if values[k, row] != 0.0), None)
         if k is not None:
-            x, y = NUMBERS[k][1:]
+            x, y = NUMBERS[k][1], NUMBERS[k][2]
             raise PolhodeError(
-                f"{where(row)}: nothing says which sign {NUMBERS[k]} = {values[k, row]:g} has; give a column POIconv: "
-                f"+ for the integral of {x} {y} dm, - for minus that, the element of the tensor"
+                f"{where(row)}: nothing says which sign {NUMBERS[k]} = {values[k, row]:g} has; give a column "
+                f"POIconv: + for the integral of {x} {y} dm, - for minus that, the element of the tensor"
             )
     for cells in values[7:]:
         np.subtract(0.0, cells, out=cells, where=signs == _PLUS)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._rounding import with_sigma
 from polhode.plot._style import axes_2d, matplotlib
-from polhode.uncertainty._rounding import with_sigma
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +23,10 @@ _LEAST: Final = 0.004
 """Of the circle: what is less is drawn together with its neighbours of that kind."""
 _NAMED: Final = 0.025
 """Of the circle: what is less bears no name."""
+_UPRIGHT: Final = 0.2
+"""In the first ring what is more than two thirds of this bears its name upright; farther out less will do."""
+_DARK: Final = 0.5
+"""Brightness below which letters are white."""
 _BARS: Final = 12
 _LONGEST: Final = 22
 _COLORS: Final = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#F0E442")
@@ -104,11 +108,19 @@ def _wedge(ax: Axes, name: str, start: float, share: float, level: int, color: s
     middle = np.deg2rad(0.5 * (begin + end))
     turn = np.rad2deg(middle) % 360.0
     turn = turn + 180.0 if 90.0 < turn < 270.0 else turn
-    if share > 0.15 and level == 0:
+    if share > _UPRIGHT / (inner + 0.5):
         turn = 0.0
     place = (inner + 0.5) * np.array([np.cos(middle), np.sin(middle)])
+    brightness = shade[3] * np.dot(shade[:3], (0.3, 0.59, 0.11)) + 1.0 - shade[3]
     ax.text(
-        *place, f"{_short(name)}\n{100.0 * share:.3g} %", ha="center", va="center", fontsize=7, rotation=turn
+        float(place[0]),
+        float(place[1]),
+        f"{_short(name)}\n{100.0 * share:.3g} %",
+        ha="center",
+        va="center",
+        fontsize=7,
+        rotation=turn,
+        color="white" if brightness < _DARK else "black",
     )
 
 

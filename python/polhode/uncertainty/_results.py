@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from polhode._repr import short
+from polhode._rounding import with_sigma
 from polhode.errors import PolhodeError
 from polhode.uncertainty._parts import bodies_of
 from polhode.uncertainty._rollup import NUMBERS
-from polhode.uncertainty._rounding import with_sigma
 from polhode.uncertainty._shares import Shares
 
 if TYPE_CHECKING:
@@ -48,7 +48,9 @@ class Sigmas(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ledger:
-    """A tree of parts rolled up to every level; made by `ledger`. Arrays are in the order of the table's rows.
+    """A tree of parts rolled up to every level; made by `ledger`.
+
+    Arrays are in the order of the table's rows.
 
     Attributes
     ----------
@@ -99,12 +101,13 @@ class Ledger:
     def covariance(self) -> Floats | None:
         """Covariances of the ten numbers, shape (n, 10, 10); None where no part states a standard deviation.
 
-        In the order mass, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz; tensors about the own centres, as elements
-        (minus the products).
+        In the order mass, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz; tensors about the own centres, as
+        elements (minus the products).
         """
         if self._covariances is None:
             return None
-        return frozen(self._covariances.matrices(self._tree.places()))
+        covariance: Floats = frozen(self._covariances.matrices(self._tree.places()))
+        return covariance
 
     @cached_property
     def sigma(self) -> Sigmas | None:
@@ -116,11 +119,11 @@ class Ledger:
 
     @property
     def growth(self) -> Floats:
-        """Mass growth allowance as a fraction of the basic mass: of assemblies, that of their parts together."""
+        """Mass growth allowance as a fraction of the basic mass: of an assembly, its parts' together."""
         return self.predicted_mass / self.mass - 1.0
 
     def variance_shares(self, of: str = "mass", at: str | None = None) -> Shares:
-        """Tell which part contributes what to the variance of a number: which scale has to become better?
+        """Tell which part contributes what to the variance of a number: the scale that has to become better.
 
         Parameters
         ----------
@@ -218,13 +221,13 @@ class Ledger:
         return sunburst(self[self.root if at is None else at], ax)
 
     def __getitem__(self, name: str) -> Part:
-        row = self._tree.index.get(name) if isinstance(name, str) else None
+        row = self._tree.row_of.get(name) if isinstance(name, str) else None
         if row is None:
             raise KeyError(f"no part has the id {name!r}")
         return Part(self, row)
 
     def __contains__(self, name: object) -> bool:
-        return name in self._tree.index
+        return name in self._tree.row_of
 
     def __len__(self) -> int:
         return len(self.ids)
@@ -232,15 +235,17 @@ class Ledger:
     def __iter__(self) -> Iterator[Part]:
         return (Part(self, row) for row in range(len(self)))
 
-    def walk(self, depth: int | None = None) -> Iterator[Part]:
+    def walk(self, depth: int | None = None, at: str | None = None) -> Iterator[Part]:
         """Give the nodes from the root down, each before its children.
 
         Parameters
         ----------
         depth : int, optional
-            How many levels below the root; all by default.
+            The level of the last ones, counted from the root; all by default.
+        at : str, optional
+            The id of the node to begin with; the root by default.
         """
-        waiting = [self[self.root]]
+        waiting = [self[self.root if at is None else at]]
         while waiting:
             node = waiting.pop()
             yield node
@@ -311,12 +316,14 @@ class Part:
     @property
     def center_of_mass(self) -> Floats:
         """Centre, in the frame of the whole."""
-        return self.ledger.center_of_mass[self.row]
+        center: Floats = self.ledger.center_of_mass[self.row]
+        return center
 
     @property
     def inertia(self) -> Floats:
         """Tensor about the own centre."""
-        return self.ledger.inertia[self.row]
+        tensor: Floats = self.ledger.inertia[self.row]
+        return tensor
 
     @property
     def body(self) -> RigidBody:
@@ -329,7 +336,8 @@ class Part:
         covariances = self.ledger._covariances
         if covariances is None:
             return None
-        return frozen(covariances.matrices(self.ledger._tree.places()[[self.row]])[0])
+        covariance: Floats = frozen(covariances.matrices(self.ledger._tree.places()[[self.row]])[0])
+        return covariance
 
     @property
     def sigma(self) -> Sigmas | None:

@@ -1,15 +1,18 @@
 """The roll-up: mass, centre and tensor of every node from its children, and the covariance of the ten.
 
-Definition: m = Σ m_k, C = Σ m_k c_k / m, I = Σ I_k + m_k (d² 1 − d dᵀ) with d = c_k − C; all tensors about their own
-centres. What makes the covariances simple are other variables than these: the errors of mass, of the first moment
-about a fixed point, and of the tensor about that point. About the node's C they are z = (δm, m δC, δI), since there
-the first moment itself is zero; under a shift of the point by d they change by the matrix S(d):
+Definition: m = Σ m_k, C = Σ m_k c_k / m, I = Σ I_k + m_k (d² 1 − d dᵀ) with d = c_k − C; all tensors about
+their own centres. What makes the covariances simple are other variables than these: the errors of mass, of
+the first moment about a fixed point, and of the tensor about that point. About the node's C they are z = (δm,
+m δC, δI), since there the first moment itself is zero; under a shift of the point by d they change by the
+matrix S(d):
 
-    δs ← δs + d δm,     δI ← δI + A(d) δm + B(d) δs,     A = d² 1 − d dᵀ,     B δs = 2 (d·δs) 1 − δs dᵀ − d δsᵀ
+    δs ← δs + d δm,     δI ← δI + A(d) δm + B(d) δs,     A = d² 1 − d dᵀ,     B δs = 2 (d·δs) 1 − δs dᵀ − d
+    δsᵀ
 
-and those of the children about one point add up. So z of a node is Σ S(d_k) z_k, its covariance Σ S(d_k) Q_k S(d_k)ᵀ for
-parts that are independent; S(d) S(e) = S(d + e): rolling up in one step or in many gives the same.
-Source: first-order propagation of SAWE paper 3360 (Zimmerman, Nakai 2005), with the correlations that it leaves out.
+and those of the children about one point add up. So z of a node is Σ S(d_k) z_k, its covariance Σ S(d_k) Q_k
+S(d_k)ᵀ for parts that are independent; S(d) S(e) = S(d + e): rolling up in one step or in many gives the
+same. Source: first-order propagation of SAWE paper 3360 (Zimmerman, Nakai 2005), with the correlations that
+it leaves out.
 """
 
 from __future__ import annotations
@@ -57,7 +60,7 @@ _CHUNK: Final = 8192
 
 
 class Values(NamedTuple):
-    """Mass (n,), centre (3, n), tensor about the centre (6, n) by place, and d = c − C of the parent (3, n)."""
+    """By place: mass (n,), centre (3, n), tensor about it (6, n), and d = c − C of the parent (3, n)."""
 
     mass: Floats
     center: Floats
@@ -155,7 +158,8 @@ def shift_row(a: int, d: Floats) -> Floats:
 
 def pack(matrices: Floats) -> Floats:
     """Keep the 55 elements: (10, 10, n) to (55, n)."""
-    return matrices[_ROWS, _COLUMNS]
+    packed: Floats = matrices[_ROWS, _COLUMNS]
+    return packed
 
 
 def unpack(packed: Floats) -> Floats:

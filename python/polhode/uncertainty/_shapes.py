@@ -101,16 +101,18 @@ def _of_file(path: Path) -> Callable[..., RigidBody]:
         closure: Literal["caps", "hull"] | None = None,
         orient: bool = False,
         index_base: Literal[0, 1] = 1,
-        **weight: float,
+        mass: float | None = None,
+        density: float | None = None,
     ) -> RigidBody:
         return RigidBody.from_file(
             path,
+            mass=mass,
+            density=density,
             length_unit=length_unit,
             weld=weld,
             closure=closure,
             orient=orient,
             index_base=index_base,
-            **weight,
         )
 
     return make
@@ -131,7 +133,7 @@ def _called(
     try:
         signature.bind(**options, **weight)
     except TypeError as error:
-        taken = ", ".join(name for name in signature.parameters if name not in ("mass", "density", "weight"))
+        taken = ", ".join(name for name in signature.parameters if name not in ("mass", "density"))
         raise PolhodeError(f"arguments: {what}: {error}; it takes {taken}") from None
     try:
         return make(**options, **weight)

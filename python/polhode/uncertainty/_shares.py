@@ -34,9 +34,9 @@ class Shares:
     fraction : numpy.ndarray
         The share of each in the variance; they sum to 1.
     by_number : numpy.ndarray
-        The same split by the ten numbers of the part whose error it is, shape (n, 10): mass, Cx, Cy, Cz, Ixx, Iyy,
-        Izz, Ixy, Ixz, Iyz. Of a part of which a tensor about the origin, a mass of a shape or a density is stated,
-        the numbers as they are stated; a density counts as mass.
+        The same split by the ten numbers of the part whose error it is, shape (n, 10): mass, Cx, Cy, Cz, Ixx,
+        Iyy, Izz, Ixy, Ixz, Iyz. Of a part of which a tensor about the origin, a mass of a shape or a density
+        is stated, the numbers as they are stated; a density counts as mass.
     sigma : float
         The standard deviation whose square is shared.
     """

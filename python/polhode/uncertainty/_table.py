@@ -19,7 +19,7 @@ from polhode.files.reading import read_text
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Table", "read_table"]
+__all__ = ["Table", "read_table", "table_of_text"]
 
 _ABSENT: Final = frozenset({"NA", "N/A", "<NA>"})
 """Cells that state nothing, as empty ones do: R writes NA, pandas <NA>."""
@@ -72,7 +72,7 @@ class Table:
         return words if _ABSENT.isdisjoint(words) else ["" if word in _ABSENT else word for word in words]
 
     def numbers(self, column: str, *, percent: bool = False) -> NDArray[np.float64]:
-        """Give a column of numbers, to be read only; NaN where nothing is stated, or the table has no such column.
+        """Give a column of numbers, to be read only; NaN where nothing is stated.
 
         Parameters
         ----------
@@ -112,8 +112,8 @@ class Table:
             row = next(row for row, word in enumerate(words) if not _is_number(word or "nan"))
         if row is not None:
             raise PolhodeError(
-                f"{self.where(row)}: {column} is not a number: {str(words[row])[:40]!r}; write it as 0.25 or 2.5e-1, "
-                "without a unit, or leave the cell empty"
+                f"{self.where(row)}: {column} is not a number: {str(words[row])[:40]!r}; write it as 0.25 or "
+                "2.5e-1, without a unit, or leave the cell empty"
             )
         return numbers
 
@@ -153,7 +153,9 @@ def read_table(
         If there is a column that is not known, or there are no rows.
     """
     if isinstance(table, str | os.PathLike):
-        read = _from_file(Path(table))
+        read = table_of_text(read_text(table, "a table"), str(table), Path(table).parent)
+    elif isinstance(table, Table):
+        read = table
     elif hasattr(table, "keys") and hasattr(table, "__getitem__"):
         read = _from_columns({str(name): table[name] for name in table.keys()}, argument)  # noqa: SIM118 (a data frame)
     elif isinstance(table, Iterable):
@@ -171,17 +173,33 @@ def read_table(
     unknown = [name for name in read.columns if name not in known]
     if unknown:
         near = difflib.get_close_matches(unknown[0], known, n=1)
-        hint = f"meant {near[0]!r}?" if near else "words for the reader may stand in 'name' and 'comment'"
+        hint = f"meant {near[0]!r}" if near else "words for the reader may stand in 'name' and 'comment'"
         raise PolhodeError(
-            f"{where}: nobody knows the column {unknown[0][:40]!r}; {hint} Pass ignore= with its name to leave it out"
+            f"{where}: nobody knows the column {unknown[0][:40]!r}; {hint}; or pass ignore= with its name"
         )
     if not read.count:
         raise PolhodeError(f"{where}: there are no rows")
     return read
 
 
-def _from_file(file: Path) -> Table:
-    text = read_text(file, "a table").removeprefix("\ufeff")
+def table_of_text(text: str, file: str, folder: Path) -> Table:
+    """Read a table from a text.
+
+    Parameters
+    ----------
+    text : str
+        Separated by commas, tabs or semicolons: by what the first line has most of.
+    file : str
+        What errors call it.
+    folder : pathlib.Path
+        Where names of files in it start from.
+
+    Raises
+    ------
+    FileFormatError
+        If it is no table.
+    """
+    text = text.removeprefix("\ufeff")
     head = text.partition("\n")[0]
     delimiter = max("\t,;", key=head.count)  # the first of those that are there most often
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
@@ -205,11 +223,11 @@ def _from_file(file: Path) -> Table:
     for row, line in zip(rows, lines, strict=True):
         if len(row) != len(names):
             raise FileFormatError(
-                f"{file}: line {line}: {len(row)} cells, but {len(names)} columns; a cell with a separator in it stands in "
-                'quotes: "1,2"'
+                f"{file}: line {line}: {len(row)} cells, but {len(names)} columns; a cell with a separator "
+                'in it stands in quotes: "1,2"'
             )
     cells = zip(*rows[1:], strict=True) if len(rows) > 1 else ([] for _ in names)
-    return Table(str(file), dict(zip(names, map(list, cells), strict=True)), lines[1:], file.parent)
+    return Table(file, dict(zip(names, map(list, cells), strict=True)), lines[1:], folder)
 
 
 def _from_columns(columns: dict[str, Any], argument: str) -> Table:

@@ -25,14 +25,14 @@ _SHOWN = 8
 class Tree(NamedTuple):
     """Who is whose part.
 
-    Rows are those of the table. Places count through the levels from the root down: within a level the children
-    of one parent stand side by side, in the order of their parents.
+    Rows are those of the table. Places count through the levels from the root down: within a level the
+    children of one parent stand side by side, in the order of their parents.
 
     Attributes
     ----------
     ids : tuple of str
         By row.
-    index : dict
+    row_of : dict
         The row of each id.
     parent : numpy.ndarray
         The row of the parent, by row; -1 for the root.
@@ -47,7 +47,7 @@ class Tree(NamedTuple):
     """
 
     ids: tuple[str, ...]
-    index: dict[str, int]
+    row_of: dict[str, int]
     parent: Integers
     order: Integers
     levels: tuple[slice, ...]
@@ -92,8 +92,8 @@ def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int],
     Raises
     ------
     PolhodeError
-        If an id is missing or there twice, a parent has no row, there is no root or more than one, or a part is
-        its own ancestor.
+        If an id is missing or there twice, a parent has no row, there is no root or more than one, or a part
+        is its own ancestor.
     """
     index = dict(zip(ids, range(len(ids)), strict=True))
     if "" in index:
@@ -105,14 +105,15 @@ def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int],
     orphan = next((row for row in roots.tolist() if parents[row]), None)
     if orphan is not None:
         raise PolhodeError(
-            f"{where(orphan)}: an orphan: its parent {parents[orphan]!r} has no row; add one for it or correct the name"
+            f"{where(orphan)}: an orphan: its parent {parents[orphan]!r} has no row; add one for it "
+            "or correct the name"
         )
     if len(roots) > 1:
         one, two = (ids[row] for row in roots[:2].tolist())
         raise PolhodeError(
             f"{where(int(roots[1]))}: a second root: {one!r} and {two!r} have no parent"
-            f"{f' ({len(roots)} roots in all)' if len(roots) > 2 else ''}; add a row for the whole and name it as their "
-            "parent"
+            f"{f' ({len(roots)} roots in all)' if len(roots) > 2 else ''}; add a row for the whole and "
+            "name it as their parent"
         )
     order, bounds = _by_levels(parent)
     if len(order) < len(ids):
@@ -147,7 +148,8 @@ def _refuse_twice(ids: Sequence[str], where: Callable[[int], str]) -> None:
     for row, name in enumerate(ids):
         if name in seen:
             raise PolhodeError(
-                f"{where(row)}: id {name!r} is there twice, first at {where(seen[name])}; give each part its own"
+                f"{where(row)}: id {name!r} is there twice, first at {where(seen[name])}; give each part "
+                "its own"
             )
         seen[name] = row
 
@@ -167,6 +169,6 @@ def _refuse_circle(
     circle = walk[met[row] :]
     names = [repr(ids[row]) for row in circle[:_SHOWN]] + (["..."] if len(circle) > _SHOWN else [])
     raise PolhodeError(
-        f"{where(circle[0])}: a cycle: {' in '.join([*names, names[0]])}; a part cannot be its own ancestor: correct "
-        "one of the parents"
+        f"{where(circle[0])}: a cycle: {' in '.join([*names, names[0]])}; a part cannot be its own ancestor: "
+        "correct one of the parents"
     )

@@ -1,8 +1,8 @@
 """A ledger of parts: a tree rolled up to every level, each number with its uncertainty.
 
-A table says of each part its mass, centre and tensor with their standard deviations, and what it is part of. All
-centres are in one frame, that of the whole. Errors are propagated to first order with all their correlations: the
-moments of an assembly lean on the same masses and centres, and their errors go together.
+A table says of each part its mass, centre and tensor with their standard deviations, and what it is part of.
+All centres are in one frame, that of the whole. Errors are propagated to first order with all their
+correlations: the moments of an assembly lean on the same masses and centres, and their errors go together.
 """
 
 from __future__ import annotations
@@ -47,10 +47,11 @@ def ledger(
     table : path, mapping or iterable of mappings
         A file of comma- or tab-separated text, columns by name, or rows; see the notes for the columns.
     tree : path, mapping or iterable of mappings, optional
-        The edges, with the columns ``child`` (or ``id``) and ``parent``, where the table has no column ``parent``.
+        The edges, with the columns ``child`` (or ``id``) and ``parent``, where the table has no column
+        ``parent``.
     overwrite : bool, optional
-        Whether numbers that the row of an assembly states are passed over, as R massProps does; by default they
-        are an error.
+        Whether numbers that the row of an assembly states are passed over, as R massProps does; by default
+        they are an error.
     ignore : collection of str, optional
         Columns that are left out; others that are not known are an error.
     rtol : float, optional
@@ -63,23 +64,26 @@ def ledger(
     Raises
     ------
     PolhodeError
-        If the table has a bad row or the rows are no tree; the message names the line, the law and the number.
+        If the table has a bad row or the rows are no tree; the message names the line, the law and the
+        number.
 
     Notes
     -----
     Columns, of which all but the first two may be absent:
 
     - ``id``, ``parent``: empty for the root. ``name``, ``comment``: words for the reader.
-    - ``mass``, ``Cx`` ``Cy`` ``Cz``, ``Ixx`` ``Iyy`` ``Izz`` ``Ixy`` ``Ixz`` ``Iyz``, and ``sigma_mass`` … ``sigma_Iyz``: empty
-      for rows with children. Standard deviations that are not stated are zero; the ten errors of a part are independent.
+    - ``mass``, ``Cx`` ``Cy`` ``Cz``, ``Ixx`` ``Iyy`` ``Izz`` ``Ixy`` ``Ixz`` ``Iyz``, and ``sigma_mass`` …
+      ``sigma_Iyz``: empty for rows with children. Standard deviations that are not stated are zero; the ten
+      errors of a part are independent.
     - ``POIconv``: ``+`` for products of inertia ∫ x y dm, ``-`` for minus that, the element of the tensor.
     - ``about``: ``center_of_mass`` (the default) or ``origin``, about which the tensor is stated.
     - ``Ipoint``: TRUE takes a part as a point, whatever tensor it states.
-    - ``source``: parts with the same word in it share their ten draws (made to one drawing, weighed on one scale):
-      each of their errors is the same multiple of its sigma.
+    - ``source``: parts with the same word in it share their ten draws (made to one drawing, weighed on one
+      scale): each of their errors is the same multiple of its sigma.
     - ``growth``: mass growth allowance, a fraction of the basic mass (0.15 or 15%), as in AIAA S-120A.
     - ``file`` or ``solid``, its ``arguments`` (``radius=0.1 height=0.3``), and ``mass`` or ``density`` with
-      ``sigma_mass`` or ``sigma_density``, with which the tensor grows in proportion; ``Cx`` ``Cy`` ``Cz`` move its centre there.
+      ``sigma_mass`` or ``sigma_density``, with which the tensor grows in proportion; ``Cx`` ``Cy`` ``Cz``
+      move its centre there.
 
     Examples
     --------
@@ -171,7 +175,8 @@ def _edges(table: Table, tree: Any) -> tuple[list[str], list[str]]:
         for row, (one, other) in enumerate(zip(ids, table.words("parent"), strict=True)):
             if other and other != parent[one]:
                 raise PolhodeError(
-                    f"{table.where(row)} ({one!r}): its parent is {other!r} here, but {parent[one]!r} in the tree; leave one out"
+                    f"{table.where(row)} ({one!r}): its parent is {other!r} here, but {parent[one]!r} in the "
+                    "tree; leave one out"
                 )
     return ids, [parent[name] for name in ids]
 

@@ -40,7 +40,8 @@ def with_sigma(value: float, sigma: float | None) -> str:
     scale = 10.0**exponent if abs(exponent) < 300 else 1.0
     if scale == 1.0:
         return f"{value:.3g} ± {sigma:.1e}"
-    return f"({_rounded(value / scale, last - exponent)} ± {_rounded(sigma / scale, last - exponent)})e{exponent:+03d}"
+    one, other = (_rounded(number / scale, last - exponent) for number in (value, sigma))
+    return f"({one} ± {other})e{exponent:+03d}"
 
 
 def _rounded(value: float, last: int) -> str:
