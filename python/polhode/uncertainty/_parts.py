@@ -108,7 +108,9 @@ def read_parts(
     is_point = table.truths("Ipoint")
     values[4:, is_point] = sigma[4:, is_point] = 0.0
     _refuse_missing(values, leaves, where)
-    _turn_signs(table, values, is_leaf, where)
+    is_stated = is_leaf.copy()
+    is_stated[list(shapes)] = False
+    _turn_signs(table, values, is_stated, where)
     origin = _about_origin(table, leaves, where) if "about" in table else []
     origin = [row for row in origin if row not in shapes and not is_point[row]]
     correlated = {row: _of_shape(values[:, row], sigma[:, row]) for row in shapes}
@@ -137,7 +139,7 @@ def _refuse(rows: Integers, cells: Floats, where: Callable[[int], str], law: str
 
 def _refuse_own(table: Table, has_children: NDArray[np.bool_], where: Callable[[int], str]) -> None:
     for name in _OWN:
-        if name not in table:
+        if name not in table or name in table.uniform:
             continue
         cells = table.numbers(name, percent=name == "growth")
         rows = np.flatnonzero(has_children & ~np.isnan(cells))
@@ -165,12 +167,12 @@ def _refuse_missing(values: Floats, leaves: Integers, where: Callable[[int], str
 
 
 def _turn_signs(
-    table: Table, values: Floats, is_leaf: NDArray[np.bool_], where: Callable[[int], str]
+    table: Table, values: Floats, is_stated: NDArray[np.bool_], where: Callable[[int], str]
 ) -> None:
     """Turn positive products into elements of the tensor."""
     conventions = table.words("POIconv")
     signs = np.fromiter(map(_SIGNS.get, conventions, repeat(-1)), np.int8, len(conventions))
-    for row in np.flatnonzero(is_leaf & (signs < 1)).tolist():
+    for row in np.flatnonzero(is_stated & (signs < 1)).tolist():
         if conventions[row]:
             raise PolhodeError(f"{where(row)}: POIconv is {conventions[row][:40]!r}; write + or -")
         k = next((k for k in (7, 8, 9) if values[k, row] != 0.0), None)
@@ -181,7 +183,7 @@ def _turn_signs(
                 f"POIconv: + for the integral of {x} {y} dm, - for minus that, the element of the tensor"
             )
     for cells in values[7:]:
-        np.subtract(0.0, cells, out=cells, where=signs == _PLUS)
+        np.subtract(0.0, cells, out=cells, where=is_stated & (signs == _PLUS))
 
 
 def _about_origin(table: Table, leaves: Integers, where: Callable[[int], str]) -> list[int]:

@@ -42,12 +42,18 @@ class Table:
         The line of the file at which each row begins.
     folder : pathlib.Path
         Where names of files in it start from.
+
+    Attributes
+    ----------
+    uniform : set of str
+        Columns for which a single value was given.
     """
 
     def __init__(
         self, name: str, columns: dict[str, Any], lines: list[int] | None = None, folder: Path = Path()
     ) -> None:
         self.name, self.columns, self.lines, self.folder = name, columns, lines, folder
+        self.uniform: set[str] = set()
         self.count = len(next(iter(columns.values()))) if columns else 0
 
     def __contains__(self, column: str) -> bool:
@@ -94,9 +100,9 @@ class Table:
         return numbers
 
     def _parsed(self, column: str, cells: Any, percent: bool) -> NDArray[np.float64]:
-        words = [cell if type(cell) is float else _word(cell) for cell in cells]
+        words = [cell if isinstance(cell, float) else _word(cell) for cell in cells]
         try:
-            numbers = np.array([float(word or "nan") for word in words])
+            numbers = np.array([float("nan" if word == "" else word) for word in words])
             # "nan" as text is no number, unlike the float by which arrays say that nothing is known.
             row = next(
                 (
@@ -109,7 +115,7 @@ class Table:
         except ValueError:
             if percent and any(str(word).endswith("%") for word in words):
                 return self._parsed(column, [_of_percent(word) for word in words], False)
-            row = next(row for row, word in enumerate(words) if not _is_number(word or "nan"))
+            row = next(row for row, word in enumerate(words) if not _is_number("nan" if word == "" else word))
         if row is not None:
             raise PolhodeError(
                 f"{self.where(row)}: {column} is not a number: {str(words[row])[:40]!r}; write it as 0.25 or "
@@ -139,7 +145,7 @@ def read_table(
     Parameters
     ----------
     table : path, mapping or iterable of mappings
-        A file, columns by name (a single value holds for all rows), or rows.
+        A file, columns by name (a single value holds for all parts), or rows.
     known : collection of str
         The columns that it may have.
     ignore : collection of str
@@ -240,9 +246,11 @@ def _from_columns(columns: dict[str, Any], argument: str) -> Table:
             f"{argument}: column {first!r} has {lengths[first]} rows, but {other!r} has {lengths[other]}"
         )
     count = lengths.get(first, 1)
-    return Table(
+    table = Table(
         "", {name: [columns[name]] * count if cells is None else cells for name, cells in full.items()}
     )
+    table.uniform = {name for name, cells in full.items() if cells is None}
+    return table
 
 
 def _cells(cells: Any, name: str, argument: str) -> Any:
@@ -274,7 +282,7 @@ def _word(cell: Any) -> str:
     if isinstance(cell, float):
         if math.isnan(cell):
             return ""
-        return str(int(cell)) if cell.is_integer() and abs(cell) < 1e15 else repr(cell)
+        return str(int(cell)) if cell.is_integer() and abs(cell) < 1e15 else repr(float(cell))
     word = str(cell).strip()
     return "" if word in _ABSENT else word
 
