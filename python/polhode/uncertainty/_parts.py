@@ -146,8 +146,8 @@ def _refuse_own(table: Table, has_children: NDArray[np.bool_], where: Callable[[
         if len(rows):
             row = int(rows[0])
             raise PolhodeError(
-                f"{where(row)}: has children, and {name} = {cells[row]:g} of its own; leave it empty, give it "
-                "to a part below, or pass overwrite=True to roll up over it"
+                f"{where(row)}: has children, and {name} = {cells[row]:g} of its own; leave it empty, give "
+                "it to a part below, or pass overwrite=True to roll up over it"
             )
     for name in ("file", "solid"):
         words = table.words(name) if name in table else ()
