@@ -311,6 +311,11 @@ class TestCovariances:
         assert apart.with_sigma("mass")[1] == pytest.approx(0.1 * 2.0**0.5, rel=1e-15)
         assert as_one.with_sigma("mass")[1] == pytest.approx(0.2, rel=1e-15)
         assert as_one.with_sigma("Cx") == (0.0, 0.0)
+        for row in rows[1:]:
+            row["Cx"] += 0.1
+        uneven = ledger([row | {"source": "drawing"} for row in rows])  # where rounding leaves 1e-17
+        with pytest.raises(ValueError, match="Cx of 'car' has no variance"):
+            uneven.variance_shares("Cx")
 
     def test_what_is_exact_has_no_covariance(self) -> None:
         table, _ = random_tree(9, 1)

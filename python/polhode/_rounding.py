@@ -7,6 +7,8 @@ import math
 __all__ = ["with_sigma"]
 
 _DIGITS = 7
+_ROUNDING = 1e-15
+"""Of the value: a sigma below it is what rounding left of zero."""
 _LARGE = 1e7
 _SMALL = 1e-4
 
@@ -29,7 +31,7 @@ def with_sigma(value: float, sigma: float | None) -> str:
     >>> with_sigma(-3.2e-9, 4.56e-11)
     '(-3.200 ± 0.046)e-09'
     """
-    if not sigma or not math.isfinite(sigma) or not math.isfinite(value):
+    if not sigma or not math.isfinite(sigma) or not math.isfinite(value) or sigma < _ROUNDING * abs(value):
         return f"{value + 0.0:.{_DIGITS}g}"
     # The place of the last digit, after rounding: 0.0996 has the digits 10 of 0.100.
     last = int(f"{sigma:.1e}".partition("e")[2]) - 1

@@ -20,7 +20,7 @@ from polhode.uncertainty.ledger import ledger
 
 if TYPE_CHECKING:
     from polhode.cli.options import LedgerOptions
-    from polhode.uncertainty.ledger import Ledger, Part
+    from polhode.uncertainty.ledger import Ledger, Part, Shares
 
 __all__ = ["draw_ledger", "ledger_report"]
 
@@ -70,7 +70,7 @@ def draw_ledger(made: Ledger, options: LedgerOptions) -> None:
     assert options.picture is not None
     figure_module: Any = require("matplotlib.figure", extra="plot", purpose="drawing")
     top = _top(made, options)
-    count = 1 if made.sigma is None or top.with_sigma(options.of)[1] == 0.0 else 2
+    count = 1 if _found_shares(made, top, options) is None else 2
     figure = figure_module.Figure(figsize=(6.0 * count, 5.6), facecolor="white", layout="constrained")
     axes = figure.subplots(1, count, squeeze=False)[0]
     made.plot(axes[0], of="mass", at=top.id)
@@ -127,21 +127,26 @@ def _cell(node: Part, name: str) -> Cell:
     return Cell(with_sigma(value, sigma), {"value": value, "sigma": sigma})
 
 
+def _found_shares(made: Ledger, top: Part, options: LedgerOptions) -> Shares | None:
+    """Give who contributes; None where nothing that the number depends on is uncertain."""
+    try:
+        return made.variance_shares(options.of, top.id)
+    except PolhodeError:
+        return None
+
+
 def _shares(report: Report, made: Ledger, top: Part, options: LedgerOptions) -> None:
-    title = f"who contributes to the variance of {options.of} of {top.id}"
-    if top.with_sigma(options.of)[1] == 0.0:
+    shares = _found_shares(made, top, options)
+    if shares is None:
         report.notes.append(f"{options.of} of {top.id} is exact: nothing that it depends on is uncertain")
         return
-    shares = made.variance_shares(options.of, top.id)
+    alone = shares.sigma * np.sqrt(shares.fraction)
     rows = [
         {
             "name": shares.names[k],
             "is_source": bool(shares.is_source[k]),
             "fraction": Cell(f"{100.0 * shares.fraction[k]:.3g} %", float(shares.fraction[k])),
-            "sigma": Cell(
-                f"{shares.sigma * shares.fraction[k] ** 0.5:.2g}",
-                float(shares.sigma * shares.fraction[k] ** 0.5),
-            ),
+            "sigma": Cell(f"{alone[k]:.2g}", float(alone[k])),
             "mostly": shares.largest(k),
         }
         for k in range(min(len(shares), _CONTRIBUTORS))
@@ -152,6 +157,7 @@ def _shares(report: Report, made: Ledger, top: Part, options: LedgerOptions) -> 
         Column("sigma", "alone"),
         Column("mostly", "mostly by its"),
     )
+    title = f"who contributes to the variance of {options.of} of {top.id}"
     report.section(title, Table("variance_shares", columns, rows))
     if len(shares) > _CONTRIBUTORS:
         rest = float(shares.fraction[_CONTRIBUTORS:].sum())

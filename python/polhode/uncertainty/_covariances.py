@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     Integers = NDArray[np.intp]
 
 __all__ = ["Contributions", "Covariances"]
+
+_ROUNDING: Final = 1e-15
+"""Of the sum of their sizes: what is left of effects that cancel."""
 
 
 class Contributions(NamedTuple):
@@ -116,7 +119,9 @@ class Covariances:
             codes = self._codes[np.searchsorted(self._shared, leaves[together])]
             order = np.argsort(codes, kind="stable")
             _, starts, _ = groups(codes[order])
-            sums = np.add.reduceat(effect[:, together[order]], starts, axis=1)
+            shared = effect[:, together[order]]
+            sums = np.add.reduceat(shared, starts, axis=1)
+            sums[np.abs(sums) <= _ROUNDING * np.add.reduceat(np.abs(shared), starts, axis=1)] = 0.0
             first = rows[together[order][starts]]
             sources = [""] * int(np.sum(~is_shared)) + [self._names[row] for row in first.tolist()]
             effect = np.concatenate([effect[:, ~is_shared], sums], axis=1)
