@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from random_ledgers import (
     values,
 )
 
+CRAFT = Path(__file__).resolve().parents[1] / "examples" / "craft.csv"
 HEAD = "id,parent,mass,Cx,Cy,Cz,Ixx,Iyy,Izz,Ixy,Ixz,Iyz,POIconv,sigma_mass"
 GOOD = "a,,,,,,,,,,,,,\nb,a,1,0,0,0,1,1,1,0,0,0,-,0.1\n"
 BAD_ROWS = {
@@ -126,6 +128,57 @@ class TestBadTables:
             InvalidInertiaError, match=rf"^row {below['n0'][7000]} \('n{below['n0'][7000]}'\): principal"
         ):
             ledger(table)
+
+    def test_numbers_beyond_the_range_of_floats(self) -> None:
+        rows: list[dict[str, Any]] = [{"id": "all"}, {"id": "p", "parent": "all", "sigma_mass": 0.1}]
+        rows[1] |= {"mass": 1.0, "Cx": 1.0, "Cy": 0.0, "Cz": 0.0, "Ipoint": True}
+        assert ledger([*rows[:1], rows[1] | {"sigma_mass": 1e150}])["all"].with_sigma("mass")[1] == 1e150
+        with pytest.raises(ValueError, match="the sigmas of 'all' are beyond the range of numbers"):
+            ledger([*rows[:1], rows[1] | {"sigma_mass": 1e160}])
+        with pytest.raises(ValueError, match="the numbers of 'all' are beyond the range of numbers"):
+            ledger([*rows, rows[1] | {"id": "q", "Cx": 1e160}])
+
+    def test_spoilt_cells(self, tmp_path: Path) -> None:
+        """Cells of a table replaced by others, or by words: a ledger, or an error that says where."""
+        words = [
+            "",
+            "NA",
+            "nan",
+            "inf",
+            "1e308",
+            "1e-320",
+            "-1",
+            "0",
+            "x",
+            "%",
+            "=",
+            "craft",
+            "wheels",
+            "origin",
+            "+",
+        ]
+        rows = [line.split(",") for line in CRAFT.read_text("utf-8").splitlines()]
+        cells = [*words, *(cell for row in rows for cell in row if cell)]
+        rng = np.random.default_rng(5)
+        good, told = 0, []
+        for _ in range(600):
+            spoilt = [list(row) for row in rows]
+            for _ in range(int(rng.integers(1, 4))):
+                row = spoilt[int(rng.integers(len(rows)))]
+                row[int(rng.integers(len(row)))] = cells[int(rng.integers(len(cells)))]
+            file = tmp_path / "parts.csv"
+            file.write_text("".join(f"{','.join(row)}\n" for row in spoilt), "utf-8")
+            try:
+                made = ledger(file)
+            except ValueError as error:
+                told.append(str(error))
+                continue
+            good += 1
+            assert np.all(np.isfinite(covariances(made)))
+            assert np.all(np.linalg.eigvalsh(made.inertia) > -1e-9 * np.abs(made.inertia).max())
+        assert 60 < good < 300
+        places = re.compile(rf"{re.escape(str(tmp_path / 'parts.csv'))}: |the (numbers|sigmas) of ")
+        assert [words for words in told if not places.match(words)] == []
 
     def test_texts_that_are_no_table(self, tmp_path: Path) -> None:
         file = tmp_path / "parts.csv"

@@ -161,4 +161,4 @@ def _shares(report: Report, made: Ledger, top: Part, options: LedgerOptions) -> 
     report.section(title, Table("variance_shares", columns, rows))
     if len(shares) > _CONTRIBUTORS:
         rest = float(shares.fraction[_CONTRIBUTORS:].sum())
-        report.notes.append(f"{len(shares) - _CONTRIBUTORS} more contribute {100.0 * rest:.2g} % together")
+        report.notes.append(f"{len(shares) - _CONTRIBUTORS} more contribute {100.0 * rest:.3g} % together")

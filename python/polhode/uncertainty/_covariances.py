@@ -55,17 +55,18 @@ class Covariances:
     def __init__(self, tree: Tree, values: Values, parts: Parts) -> None:
         self._tree, self._values, self._names = tree, values, parts.source
         self._sigma = np.ascontiguousarray(parts.sigma[:, tree.order])
-        places = tree.places()
-        self._draws = {int(places[row]): draws for row, draws in parts.correlated.items()}
+        rows, self._draws = parts.correlated
+        own = tree.places()[rows]
+        self._draws_at = np.full(len(tree.order), -1)
+        self._draws_at[own] = np.arange(len(own))
         self._shared, self._codes = _shared_leaves(tree, parts.source)
         is_dense = ~tree.is_leaf
-        is_dense[list(self._draws)] = True
+        is_dense[own] = True
         is_dense[self._shared] = True
         self._slot = np.where(is_dense, np.cumsum(is_dense) - 1, -1)
         packed = np.zeros((55, int(is_dense.sum())))
-        own = sorted(set(self._draws) - set(self._shared.tolist()))
-        if own:
-            packed[:, self._slot[own]] = _squared(self._of(np.array(own)))
+        own = np.setdiff1d(own, self._shared)
+        packed[:, self._slot[own]] = _squared(self._of(own))
         variances = self._sigma**2
         variances[1:4] *= values.mass**2
         self._packed = roll_covariances(tree, values.arm, variances, is_dense, packed)
@@ -78,8 +79,10 @@ class Covariances:
                 squares = _squared(draws[:, :, order])
                 self._packed[:, self._slot[nodes]] += np.add.reduceat(squares, starts, axis=1)
 
-    def sigmas(self) -> Floats:
-        """Give the standard deviations of the ten numbers, shape (10, n), by place."""
+        self.sigma = self._sigmas()
+        """Standard deviations of the ten numbers, shape (10, n), by place."""
+
+    def _sigmas(self) -> Floats:
         sigma = self._sigma.copy()
         dense = np.flatnonzero(self._slot >= 0)
         diagonal = [k for k, (a, b) in enumerate(zip(*np.triu_indices(10), strict=True)) if a == b]
@@ -110,8 +113,9 @@ class Covariances:
         sigma = self._sigma[:, leaves].copy()
         sigma[1:4] *= values.mass[leaves]
         effect = gradient * sigma
-        for k in np.flatnonzero(np.isin(leaves, list(self._draws))).tolist():
-            effect[:, k] = gradient[:, k] @ self._draws[int(leaves[k])]
+        own = np.flatnonzero(self._draws_at[leaves] >= 0)
+        draws = self._draws[:, :, self._draws_at[leaves[own]]]
+        effect[:, own] = np.einsum("an,ajn->jn", gradient[:, own], draws)
         rows, sources = tree.order[leaves], [""] * len(leaves)
         is_shared = np.isin(leaves, self._shared)
         if is_shared.any():
@@ -134,9 +138,8 @@ class Covariances:
         sigma = self._sigma[:, places].copy()
         sigma[1:4] *= self._values.mass[places]
         draws[np.arange(10), np.arange(10)] = sigma
-        for k, place in enumerate(places.tolist()):
-            if place in self._draws:
-                draws[:, :, k] = self._draws[place]
+        own = np.flatnonzero(self._draws_at[places] >= 0)
+        draws[:, :, own] = self._draws[:, :, self._draws_at[places[own]]]
         return draws
 
 

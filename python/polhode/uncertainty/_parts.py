@@ -51,8 +51,9 @@ class Parts(NamedTuple):
         Mass growth allowance as a fraction, shape (n,).
     sigma : numpy.ndarray
         Standard deviations as they are stated, shape (10, n); zero where none is.
-    correlated : dict
-        Of leaves whose ten errors are not independent: the effect of each of the ten draws on z, (10, 10).
+    correlated : (numpy.ndarray, numpy.ndarray)
+        Leaves whose ten errors are not independent, and the effect of each of their ten draws (second index)
+        on z, shape (10, 10, number of them).
     source : list of str
         "" for a part whose draws are its own; empty where there is no other.
     unstated : int
@@ -64,7 +65,7 @@ class Parts(NamedTuple):
     inertia: Floats
     growth: Floats
     sigma: Floats
-    correlated: dict[int, Floats]
+    correlated: tuple[Integers, Floats]
     source: list[str]
     unstated: int
 
@@ -113,11 +114,11 @@ def read_parts(
     _turn_signs(table, values, is_stated, where)
     origin = _about_origin(table, leaves, where) if "about" in table else []
     origin = [row for row in origin if row not in shapes and not is_point[row]]
-    correlated = {row: _of_shape(values[:, row], sigma[:, row]) for row in shapes}
     if origin:
         values[4:, origin] -= values[0, origin] * own_moment(values[1:4, origin])
-        for row in origin:
-            correlated[row] = _of_origin(values[:, row], sigma[:, row])
+    shaped = sorted(shapes)
+    draws = [_of_shapes(values[:, shaped], sigma[:, shaped]), _of_origin(values[:, origin], sigma[:, origin])]
+    correlated = np.array([*shaped, *origin], np.intp), np.concatenate(draws, axis=2)
     _check_bodies(values, leaves, where, rtol)
     source = table.words("source") if "source" in table else []
     return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, unstated)
@@ -195,24 +196,29 @@ def _about_origin(table: Table, leaves: Integers, where: Callable[[int], str]) -
     return [row for row in leaves.tolist() if about[row] == "origin"]
 
 
-def _of_shape(values: Floats, sigma: Floats) -> Floats:
-    """Give the draws of a file or shape: its tensor grows with its mass."""
-    draws = np.diag(sigma)
-    draws[1:4] *= values[0]
+def _of_shapes(values: Floats, sigma: Floats) -> Floats:
+    """Give the draws of files or shapes: the tensor grows with the mass."""
+    draws = _independent(values, sigma)
     draws[4:, 0] = values[4:] / values[0] * sigma[0]
     return draws
 
 
 def _of_origin(values: Floats, sigma: Floats) -> Floats:
-    """Give the draws of a part whose tensor about the origin is stated: z of it, shifted by −c.
+    """Give the draws of parts whose tensor about the origin is stated: z there, shifted by −c.
 
     With z about the origin, δs = c δm + m δc and δI_O its own; S(−c) takes both to the centre.
     """
-    mass, center = values[0], values[1:4]
-    draws = np.diag(sigma)
-    draws[1:4, 0] = center * sigma[0]
-    draws[1:4, 1:4] *= mass
-    return shift(draws[:, :, None], -center[:, None])[:, :, 0]
+    draws = _independent(values, sigma)
+    draws[1:4, 0] = values[1:4] * sigma[0]
+    return shift(draws, -values[1:4])
+
+
+def _independent(values: Floats, sigma: Floats) -> Floats:
+    """Give the effect on z of ten independent errors, shape (10, 10, n)."""
+    draws = np.zeros((10, 10, sigma.shape[1]))
+    draws[np.arange(10), np.arange(10)] = sigma
+    draws[(1, 2, 3), (1, 2, 3)] *= values[0]
+    return draws
 
 
 def _check_bodies(values: Floats, leaves: Integers, where: Callable[[int], str], rtol: float | None) -> None:

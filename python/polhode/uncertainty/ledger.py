@@ -105,8 +105,8 @@ def ledger(
     ...         "sigma_mass": [None, 0.2, 0.01],
     ...     }
     ... )
-    >>> craft["craft"].with_sigma("mass")
-    (55.0, 0.20024984394500786)
+    >>> craft
+    <Ledger of 'craft': 2 parts, 2 levels, mass 55.00 ± 0.20>
     >>> craft.variance_shares("mass")
     <Shares of the variance of mass of 'craft': bus 99.8% (mass), wheel 0.2% (mass)>
     """
@@ -120,10 +120,15 @@ def ledger(
     is_part = np.empty(len(rows), np.bool_)
     is_part[made.order] = made.is_leaf
     parts = read_parts(read, is_part, where, overwrite=overwrite, rtol=rtol)
-    values = roll_values(
-        made, parts.mass[made.order], parts.center[:, made.order], parts.inertia[:, made.order]
-    )
     is_uncertain = parts.sigma[:, is_part].any()
+    with np.errstate(over="ignore", invalid="ignore"):
+        values = roll_values(
+            made, parts.mass[made.order], parts.center[:, made.order], parts.inertia[:, made.order]
+        )
+        covariances = Covariances(made, values, parts) if is_uncertain else None
+    _refuse_infinite(made, np.concatenate([values.mass[None], values.center, values.inertia]), "numbers")
+    if covariances is not None:
+        _refuse_infinite(made, covariances.sigma, "sigmas")
     places = made.places()
     growing = (parts.mass * (1.0 + parts.growth))[made.order]
     predicted = _rolled_sum(made, growing) if parts.growth[is_part].any() else values.mass
@@ -140,7 +145,7 @@ def ledger(
         unstated=parts.unstated,
         _tree=made,
         _values=values,
-        _covariances=Covariances(made, values, parts) if is_uncertain else None,
+        _covariances=covariances,
         _sources=tuple(parts.source),
         _words={name: tuple(read.words(name)) for name in ("name", "comment") if name in read},
         _rtol=rtol,
@@ -179,6 +184,14 @@ def _edges(table: Table, tree: Any) -> tuple[list[str], list[str]]:
                     "tree; leave one out"
                 )
     return ids, [parent[name] for name in ids]
+
+
+def _refuse_infinite(tree: Tree, numbers: Floats, what: str) -> None:
+    """Name the first node whose numbers are beyond the range of floats."""
+    bad = np.flatnonzero(~np.isfinite(numbers).all(axis=0))
+    if len(bad):
+        name = tree.ids[int(tree.order[bad[-1]])]
+        raise PolhodeError(f"the {what} of {name!r} are beyond the range of numbers; check its exponents")
 
 
 def _rolled_sum(tree: Tree, amounts: Floats) -> Floats:
