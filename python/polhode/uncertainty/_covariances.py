@@ -67,9 +67,7 @@ class Covariances:
         packed = np.zeros((55, int(is_dense.sum())))
         own = np.setdiff1d(own, self._shared)
         packed[:, self._slot[own]] = _squared(self._of(own))
-        variances = self._sigma**2
-        variances[1:4] *= values.mass**2
-        self._packed = roll_covariances(tree, values.arm, variances, is_dense, packed)
+        self._packed = roll_covariances(tree, values, self._sigma, is_dense, packed)
         if len(self._shared):
             for pairs, draws in _rolled_draws(
                 tree, values.arm, self._of(self._shared), self._shared, self._codes
@@ -83,8 +81,10 @@ class Covariances:
         """Standard deviations of the ten numbers, shape (10, n), by place."""
 
     def _sigmas(self) -> Floats:
-        sigma = self._sigma.copy()
-        dense = np.flatnonzero(self._slot >= 0)
+        # What parts with independent errors state is theirs to the bit.
+        is_full = ~self._tree.is_leaf | (self._draws_at >= 0)
+        sigma = self._sigma.copy() if self._draws.shape[2] else self._sigma
+        dense = np.flatnonzero(is_full)
         diagonal = [k for k, (a, b) in enumerate(zip(*np.triu_indices(10), strict=True)) if a == b]
         sigma[:, dense] = np.sqrt(self._packed[diagonal][:, self._slot[dense]])
         sigma[1:4, dense] /= self._values.mass[dense]

@@ -97,7 +97,9 @@ def read_parts(
         _refuse_own(table, ~is_leaf, where)
     values, sigma = (_stacked(table, names) for names in (NUMBERS, SIGMAS))
     of_density = table.numbers("sigma_density")
-    unstated = int(np.sum(np.isnan(sigma[:, leaves]).all(axis=0) & np.isnan(of_density[leaves])))
+    is_silent = is_leaf & np.isnan(of_density)
+    for cells in sigma:
+        is_silent &= np.isnan(cells)
     for name, cells in zip((*SIGMAS, "sigma_density"), (*sigma, of_density), strict=True):
         _refuse(leaves[cells[leaves] < 0.0], cells, where, f"{name} must not be negative")
     sigma[np.isnan(sigma)] = 0.0
@@ -121,7 +123,7 @@ def read_parts(
     correlated = np.array([*shaped, *origin], np.intp), np.concatenate(draws, axis=2)
     _check_bodies(values, leaves, where, rtol)
     source = table.words("source") if "source" in table else []
-    return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, unstated)
+    return Parts(values[0], values[1:4], values[4:], growth, sigma, correlated, source, int(is_silent.sum()))
 
 
 def _stacked(table: Table, names: tuple[str, ...]) -> Floats:

@@ -101,17 +101,17 @@ def roll_values(tree: Tree, mass: Floats, center: Floats, inertia: Floats) -> Va
 
 
 def roll_covariances(
-    tree: Tree, arm: Floats, variances: Floats, is_dense: NDArray[np.bool_], covariances: Floats
+    tree: Tree, values: Values, sigma: Floats, is_dense: NDArray[np.bool_], covariances: Floats
 ) -> Floats:
     """Roll up the covariances of z for parts that are independent.
 
     Parameters
     ----------
     tree : Tree
-    arm : numpy.ndarray
-        See `Values`.
-    variances : numpy.ndarray
-        Shape (10, n), by place: variances of z of the leaves whose ten errors are independent; else unused.
+    values : Values
+    sigma : numpy.ndarray
+        Shape (10, n), by place: standard deviations of the leaves whose ten errors are independent; else
+        unused.
     is_dense : numpy.ndarray of bool
         By place: nodes with children, and leaves whose errors are correlated.
     covariances : numpy.ndarray
@@ -126,13 +126,13 @@ def roll_covariances(
     leaves = np.flatnonzero(~is_dense)
     if len(tree.order) > 1:
         for start in range(0, len(leaves), _CHUNK):
-            _add_leaves(tree, arm, variances, leaves[start : start + _CHUNK], slot, covariances)
+            _add_leaves(tree, values, sigma, leaves[start : start + _CHUNK], slot, covariances)
     for places in reversed(tree.levels[1:]):
         level = np.flatnonzero(is_dense[places]) + places.start
         for start in range(0, len(level), _CHUNK // 8):
             dense = level[start : start + _CHUNK // 8]
             parents, starts, _ = groups(tree.above[dense])
-            moved = _shifted(unpack(covariances[:, slot[dense]]), arm[:, dense])
+            moved = _shifted(unpack(covariances[:, slot[dense]]), values.arm[:, dense])
             covariances[:, slot[parents]] += np.add.reduceat(pack(moved), starts, axis=1)
     return covariances
 
@@ -185,13 +185,14 @@ def _columns(d: Floats) -> tuple[Column, Column, Column, Column]:
 
 
 def _add_leaves(
-    tree: Tree, arm: Floats, variances: Floats, leaves: Integers, slot: Integers, covariances: Floats
+    tree: Tree, values: Values, sigma: Floats, leaves: Integers, slot: Integers, covariances: Floats
 ) -> None:
     """Add S diag(v) Sᵀ of leaves to their parents, element by element: most of those of S are zero."""
     parents, starts, _ = groups(tree.above[leaves])
     target = slot[parents]
-    v = variances[:, leaves]
-    columns = _columns(arm[:, leaves])
+    v = sigma[:, leaves] ** 2
+    v[1:4] *= values.mass[leaves] ** 2
+    columns = _columns(values.arm[:, leaves])
     weighted = [{a: factor * v[j] for a, factor in column.items()} for j, column in enumerate(columns)]
     for k, (a, b) in enumerate(PAIRS):
         terms = [w[a] * c[b] for w, c in zip(weighted, columns, strict=True) if a in w and b in c]

@@ -126,9 +126,9 @@ def ledger(
             made, parts.mass[made.order], parts.center[:, made.order], parts.inertia[:, made.order]
         )
         covariances = Covariances(made, values, parts) if is_uncertain else None
-    _refuse_infinite(made, np.concatenate([values.mass[None], values.center, values.inertia]), "numbers")
+    _refuse_infinite(made, (values.mass[None], values.center, values.inertia), "numbers")
     if covariances is not None:
-        _refuse_infinite(made, covariances.sigma, "sigmas")
+        _refuse_infinite(made, (covariances.sigma,), "sigmas")
     places = made.places()
     growing = (parts.mass * (1.0 + parts.growth))[made.order]
     predicted = _rolled_sum(made, growing) if parts.growth[is_part].any() else values.mass
@@ -186,12 +186,13 @@ def _edges(table: Table, tree: Any) -> tuple[list[str], list[str]]:
     return ids, [parent[name] for name in ids]
 
 
-def _refuse_infinite(tree: Tree, numbers: Floats, what: str) -> None:
-    """Name the first node whose numbers are beyond the range of floats."""
-    bad = np.flatnonzero(~np.isfinite(numbers).all(axis=0))
-    if len(bad):
-        name = tree.ids[int(tree.order[bad[-1]])]
-        raise PolhodeError(f"the {what} of {name!r} are beyond the range of numbers; check its exponents")
+def _refuse_infinite(tree: Tree, numbers: tuple[Floats, ...], what: str) -> None:
+    """Name the lowest node whose numbers are beyond the range of floats; so are those of all above it."""
+    if all(np.isfinite(rows[:, 0]).all() for rows in numbers):
+        return
+    bad = np.flatnonzero(~np.isfinite(np.concatenate(numbers)).all(axis=0))
+    name = tree.ids[int(tree.order[bad[-1]])]
+    raise PolhodeError(f"the {what} of {name!r} are beyond the range of numbers; check its exponents")
 
 
 def _rolled_sum(tree: Tree, amounts: Floats) -> Floats:
