@@ -56,7 +56,7 @@ class Covariances:
         self._tree, self._values, self._names = tree, values, parts.source
         self._sigma = np.ascontiguousarray(parts.sigma[:, tree.order])
         rows, self._draws = parts.correlated
-        own = tree.places()[rows]
+        own = tree.place[rows]
         self._draws_at = np.full(len(tree.order), -1)
         self._draws_at[own] = np.arange(len(own))
         self._shared, self._codes = _shared_leaves(tree, parts.source)
@@ -105,7 +105,7 @@ class Covariances:
     def contributions(self, number: int, row: int) -> Contributions:
         """Tell which part adds what to the variance of one of the ten numbers of the node in a row."""
         tree, values = self._tree, self._values
-        node = int(tree.places()[row])
+        node = int(tree.place[row])
         leaves = np.flatnonzero(tree.below(row) & tree.is_leaf)
         gradient = shift_row(number, values.center[:, leaves] - values.center[:, node, None])
         if 1 <= number <= 3:

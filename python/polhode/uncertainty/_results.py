@@ -95,7 +95,7 @@ class Ledger:
     def bodies(self) -> RigidBody:
         """All of them as a stack of bodies, without their uncertainties."""
         values = np.concatenate([self._values.mass[None], self._values.center, self._values.inertia])
-        return bodies_of(values[:, self._tree.places()], self._rtol)
+        return bodies_of(values[:, self._tree.place], self._rtol)
 
     @cached_property
     def covariance(self) -> Floats | None:
@@ -106,7 +106,7 @@ class Ledger:
         """
         if self._covariances is None:
             return None
-        covariance: Floats = frozen(self._covariances.matrices(self._tree.places()))
+        covariance: Floats = frozen(self._covariances.matrices(self._tree.place))
         return covariance
 
     @cached_property
@@ -114,7 +114,7 @@ class Ledger:
         """Standard deviations; None where no part states one."""
         if self._covariances is None:
             return None
-        sigma = self._covariances.sigma[:, self._tree.places()]
+        sigma = self._covariances.sigma[:, self._tree.place]
         return Sigmas(frozen(sigma[0]), frozen(sigma[1:4].T), frozen(tensors(sigma[4:])))
 
     @property
@@ -336,7 +336,7 @@ class Part:
         covariances = self.ledger._covariances
         if covariances is None:
             return None
-        covariance: Floats = frozen(covariances.matrices(self.ledger._tree.places()[[self.row]])[0])
+        covariance: Floats = frozen(covariances.matrices(self.ledger._tree.place[[self.row]])[0])
         return covariance
 
     @property

@@ -189,7 +189,7 @@ def _add_leaves(
 ) -> None:
     """Add S diag(v) Sᵀ of leaves to their parents, element by element: most of those of S are zero."""
     parents, starts, _ = groups(tree.above[leaves])
-    target = slot[parents]
+    sums = np.empty((len(PAIRS), len(parents)))
     v = sigma[:, leaves] ** 2
     v[1:4] *= values.mass[leaves] ** 2
     columns = _columns(values.arm[:, leaves])
@@ -198,8 +198,8 @@ def _add_leaves(
         terms = [w[a] * c[b] for w, c in zip(weighted, columns, strict=True) if a in w and b in c]
         if a == b and a > 3:
             terms.append(v[a])
-        if terms:
-            covariances[k, target] += np.add.reduceat(sum(terms[1:], terms[0]), starts)
+        np.add.reduceat(sum(terms[1:], terms[0]), starts, out=sums[k])
+    covariances[:, slot[parents]] += sums
 
 
 def groups(above: Integers) -> tuple[Integers, Integers, Integers]:

@@ -38,6 +38,8 @@ class Tree(NamedTuple):
         The row of the parent, by row; -1 for the root.
     order : numpy.ndarray
         The row, by place.
+    place : numpy.ndarray
+        The place, by row.
     levels : tuple of slice
         The places of each level.
     above : numpy.ndarray
@@ -50,15 +52,10 @@ class Tree(NamedTuple):
     row_of: dict[str, int]
     parent: Integers
     order: Integers
+    place: Integers
     levels: tuple[slice, ...]
     above: Integers
     is_leaf: NDArray[np.bool_]
-
-    def places(self) -> Integers:
-        """Give the place of each row."""
-        places = np.empty_like(self.order)
-        places[self.order] = np.arange(len(self.order))
-        return places
 
     def depth(self) -> Integers:
         """Give the level of each row: 0 for the root."""
@@ -76,7 +73,9 @@ class Tree(NamedTuple):
 
     def children(self, row: int) -> tuple[int, ...]:
         """Give the rows of the children, in the order of the table."""
-        return tuple(np.flatnonzero(self.parent == row).tolist())
+        place = self.place[row]
+        start, end = np.searchsorted(self.above, (place, place + 1))
+        return tuple(self.order[start:end].tolist())
 
 
 def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int], str]) -> Tree:
@@ -118,13 +117,13 @@ def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int],
     order, bounds = _by_levels(parent)
     if len(order) < len(ids):
         _refuse_circle(ids, parent, order, where)
-    places = np.empty_like(order)
-    places[order] = np.arange(len(order))
-    above = np.where(parent[order] < 0, -1, places[parent[order]])
+    place = np.empty_like(order)
+    place[order] = np.arange(len(order))
+    above = np.where(parent[order] < 0, -1, place[parent[order]])
     is_leaf = np.ones(len(order), np.bool_)
     is_leaf[above[1:]] = False
     levels = tuple(slice(start, end) for start, end in pairwise(bounds))
-    return Tree(tuple(ids), index, parent, order, levels, above, is_leaf)
+    return Tree(tuple(ids), index, parent, order, place, levels, above, is_leaf)
 
 
 def _by_levels(parent: Integers) -> tuple[Integers, list[int]]:

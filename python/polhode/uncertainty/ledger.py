@@ -129,7 +129,7 @@ def ledger(
     _refuse_infinite(made, (values.mass[None], values.center, values.inertia), "numbers")
     if covariances is not None:
         _refuse_infinite(made, (covariances.sigma,), "sigmas")
-    places = made.places()
+    places = made.place
     growing = (parts.mass * (1.0 + parts.growth))[made.order]
     predicted = _rolled_sum(made, growing) if parts.growth[is_part].any() else values.mass
     return Ledger(
