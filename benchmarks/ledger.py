@@ -21,7 +21,9 @@ ELEMENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 def random_table(count: int, seed: int) -> dict[str, Any]:
     """Parts of a random tree, level by level as in the tables of massProps, as columns."""
     rng = np.random.default_rng(seed)
-    above = np.array([-1, *((np.arange(1, count) - 1 - rng.integers(0, FAN, count - 1)).clip(0) // FAN)])
+    above = np.array(
+        [-1, *np.sort((np.arange(1, count) - 1 - rng.integers(0, FAN, count - 1)).clip(0) // FAN)]
+    )
     is_leaf = np.ones(count, bool)
     is_leaf[above[1:]] = False
     arms = rng.normal(size=(count, 3, 4))

@@ -54,7 +54,7 @@ class Covariances:
 
     def __init__(self, tree: Tree, values: Values, parts: Parts) -> None:
         self._tree, self._values, self._names = tree, values, parts.source
-        self._sigma = np.ascontiguousarray(parts.sigma[:, tree.order])
+        self._sigma = tree.by_place(parts.sigma)
         rows, self._draws = parts.correlated
         own = tree.place[rows]
         self._draws_at = np.full(len(tree.order), -1)

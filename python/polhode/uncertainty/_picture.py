@@ -87,7 +87,7 @@ def bars(shares: Shares, ax: Axes | None = None) -> Axes:
     ax.invert_yaxis()
     ax.set_xlim(0.0, max(1.18 * float(left.max()), 1.0))
     ax.set_xlabel(f"share of the variance of {shares.of} of {_short(shares.at)}, %; sigma {shares.sigma:.2g}")
-    ax.legend(frameon=False, loc="lower right", title="error of")
+    ax.legend(frameon=False, ncols=3, title="error of", loc="lower left", bbox_to_anchor=(0.0, 1.0))
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
     return ax

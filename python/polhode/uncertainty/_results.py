@@ -114,7 +114,7 @@ class Ledger:
         """Standard deviations; None where no part states one."""
         if self._covariances is None:
             return None
-        sigma = self._covariances.sigma[:, self._tree.place]
+        sigma = self._tree.by_row(self._covariances.sigma)
         return Sigmas(frozen(sigma[0]), frozen(sigma[1:4].T), frozen(tensors(sigma[4:])))
 
     @property

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    Floats = NDArray[np.float64]
     Integers = NDArray[np.intp]
 
 __all__ = ["Tree", "make_tree"]
@@ -46,6 +47,8 @@ class Tree(NamedTuple):
         The place of the parent, by place: it never descends. -1 for the root.
     is_leaf : numpy.ndarray of bool
         By place: whether nothing is below it.
+    is_sorted : bool
+        Whether places are rows: the table goes level by level.
     """
 
     ids: tuple[str, ...]
@@ -56,6 +59,15 @@ class Tree(NamedTuple):
     levels: tuple[slice, ...]
     above: Integers
     is_leaf: NDArray[np.bool_]
+    is_sorted: bool
+
+    def by_place(self, rows: Floats) -> Floats:
+        """Put what stands by row, last axis, in the order of places; not copied where that is the same."""
+        return rows if self.is_sorted else rows[..., self.order]
+
+    def by_row(self, places: Floats) -> Floats:
+        """Put what stands by place, last axis, in the order of rows; not copied where that is the same."""
+        return places if self.is_sorted else places[..., self.place]
 
     def depth(self) -> Integers:
         """Give the level of each row: 0 for the root."""
@@ -123,7 +135,9 @@ def make_tree(ids: Sequence[str], parents: Sequence[str], where: Callable[[int],
     is_leaf = np.ones(len(order), np.bool_)
     is_leaf[above[1:]] = False
     levels = tuple(slice(start, end) for start, end in pairwise(bounds))
-    return Tree(tuple(ids), index, parent, order, place, levels, above, is_leaf)
+    return Tree(
+        tuple(ids), index, parent, order, place, levels, above, is_leaf, bool(np.all(place[:-1] < place[1:]))
+    )
 
 
 def _by_levels(parent: Integers) -> tuple[Integers, list[int]]:

@@ -122,15 +122,12 @@ def ledger(
     parts = read_parts(read, is_part, where, overwrite=overwrite, rtol=rtol)
     is_uncertain = parts.sigma[:, is_part].any()
     with np.errstate(over="ignore", invalid="ignore"):
-        values = roll_values(
-            made, parts.mass[made.order], parts.center[:, made.order], parts.inertia[:, made.order]
-        )
+        values = roll_values(made, *map(made.by_place, (parts.mass, parts.center, parts.inertia)))
         covariances = Covariances(made, values, parts) if is_uncertain else None
     _refuse_infinite(made, (values.mass[None], values.center, values.inertia), "numbers")
     if covariances is not None:
         _refuse_infinite(made, (covariances.sigma,), "sigmas")
-    places = made.place
-    growing = (parts.mass * (1.0 + parts.growth))[made.order]
+    growing = made.by_place(parts.mass * (1.0 + parts.growth))
     predicted = _rolled_sum(made, growing) if parts.growth[is_part].any() else values.mass
     return Ledger(
         ids=made.ids,
@@ -138,10 +135,10 @@ def ledger(
         root=made.ids[int(made.order[0])],
         depth=frozen(made.depth()),
         is_part=frozen(is_part),
-        mass=frozen(values.mass[places]),
-        center_of_mass=frozen(values.center[:, places].T),
-        inertia=frozen(tensors(values.inertia[:, places])),
-        predicted_mass=frozen(predicted[places]),
+        mass=frozen(made.by_row(values.mass)),
+        center_of_mass=frozen(made.by_row(values.center).T),
+        inertia=frozen(tensors(made.by_row(values.inertia))),
+        predicted_mass=frozen(made.by_row(predicted)),
         unstated=parts.unstated,
         _tree=made,
         _values=values,
