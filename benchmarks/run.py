@@ -20,6 +20,7 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", 
 FILES_OF_ROWS = (
     "startup",
     "command_line",
+    "ledger",
     "principal_axes",
     "particles",
     "voxels",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import runpy
+import shutil
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -45,6 +46,7 @@ class TestCode:
     def test_blocks_print_what_is_shown(
         self, page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
+        shutil.copy(ROOT / "examples" / "craft.csv", tmp_path)
         monkeypatch.chdir(tmp_path)
         run_page(page)
 

@@ -27,6 +27,8 @@ COMMANDS = (
     "check arm.urdf",
     "molecule n2.xyz",
     "spin part.obj --omega 0 1 0",
+    "ledger craft.csv",
+    "ledger craft.csv --output -",
     "demo --output-dir demo",
 )
 
@@ -35,6 +37,7 @@ COMMANDS = (
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "part.obj").write_text(MESH, "utf-8")
     (tmp_path / "arm.urdf").write_text(ROBOT, "utf-8")
+    (tmp_path / "craft.csv").write_text("id,parent,mass,Cx,Cy,Cz,Ipoint\na,,1,0,0,0,TRUE\n", "utf-8")
     (tmp_path / "n2.xyz").write_text("2\nnitrogen\nN 0 0 0\nN 0 0 1.1\n", "utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path

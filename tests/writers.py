@@ -20,6 +20,7 @@ import numpy as np
 from polhode import Trajectory, solids
 from polhode.cli import main
 from polhode.cli.t_handle import t_handle, write_stl
+from polhode.uncertainty import ledger
 
 __all__ = ["OLD", "WRITERS"]
 
@@ -32,6 +33,7 @@ _READ = {
 <inertia ixx="1" iyy="1" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>
 <visual><geometry><box size="1 2 3"/></geometry></visual></link></robot>
 """,
+    "craft.csv": "id,parent,mass,Cx,Cy,Cz,Ipoint,sigma_mass\na,,,,,,,\nb,a,1,0,0,0,TRUE,0.1\n",
     "n2.xyz": "2\nnitrogen\nN 0 0 0\nN 0 0 1.1\n",
 }
 """What the commands read."""
@@ -39,6 +41,11 @@ _READ = {
 
 def _motion() -> Trajectory:
     return solids.box((3.0, 2.0, 1.0), mass=1.0).simulate(np.linspace(0.0, 1.0, 4), (0.1, 1.0, 0.2))
+
+
+def _ledger() -> Any:
+    point = {"mass": 1.0, "Cx": 0.5, "Cy": 0.0, "Cz": 0.0, "Ipoint": True, "sigma_mass": 0.1}
+    return ledger([{"id": "all"}, *({"id": f"p{k}", "parent": "all"} | point for k in range(100))])
 
 
 def _stack() -> Any:
@@ -80,6 +87,11 @@ WRITERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "spin, PNG": ("spin.png", _command(*_SPIN)),
     "spin, PDF": ("spin.pdf", _command(*_SPIN)),
     "spin, SVG": ("spin.svg", _command(*_SPIN)),
+    "ledger, CSV": ("all.csv", lambda path: _ledger().to_csv(path)),
+    "ledger, JSON": ("all.json", lambda path: _ledger().to_json(path)),
+    "ledger, report": ("told.txt", _command("ledger", "craft.csv", "--output", "OUT")),
+    "ledger, rows": ("rows.csv", _command("ledger", "craft.csv", "--output", "OUT")),
+    "ledger, PNG": ("craft.png", _command("ledger", "craft.csv", "--picture", "OUT")),
     "demo, STL": ("handle.stl", lambda path: write_stl(path, *t_handle())),
 }
 

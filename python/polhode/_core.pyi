@@ -190,6 +190,7 @@ class Uncertain:
         covariance: Any,
         source: str | None,
         variables: list[list[tuple[tuple[int, int], float]]],
+        by_sigma: bool,
     ) -> Uncertain: ...
 
 @final

@@ -19,6 +19,7 @@ from cyclopts import App, CycloptsError, Parameter
 from polhode.cli.options import (
     BodyOptions,
     CheckOptions,
+    LedgerOptions,
     MoleculeOptions,
     OutputOptions,
     ReportOptions,
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = ["app", "run"]
 
-COMMANDS: Final = ("report", "check", "molecule", "spin", "demo")
+COMMANDS: Final = ("report", "check", "molecule", "spin", "ledger", "demo")
 GOOD: Final = 0
 BAD_VERDICT: Final = 1
 BAD_INPUT: Final = 2
@@ -166,6 +167,42 @@ def spin(
 
     check_outputs([*(("--save", path) for path in spin.save), ("--output", output.output)], [file])
     _show(spin_report(file, spin, body), output)
+    return GOOD
+
+
+@app.command
+def ledger(
+    file: File,
+    /,
+    *,
+    ledger: Annotated[LedgerOptions, Parameter(name="*")] = LedgerOptions(),  # noqa: B008
+    output: Output = SHOWN,
+) -> int:
+    """Roll up a tree of parts with its uncertainties, and tell who contributes to them.
+
+    Parameters
+    ----------
+    file
+        A table of parts (CSV, TSV), or - for standard input. --output writes every row where its name ends in
+        .csv.
+    """
+    from polhode.cli.ledger import ledger_report
+    from polhode.cli.outputs import check_outputs
+    from polhode.files.reading import files_read
+
+    places = [("--picture", ledger.picture), ("--output", output.output)]
+    check_outputs(places, [file, ledger.tree])
+    with files_read() as read:
+        told, made = ledger_report(file, ledger)
+    check_outputs(places, read)
+    if ledger.picture is not None:
+        from polhode.cli.ledger import draw_ledger
+
+        draw_ledger(made, ledger)
+    if output.form is None and output.output is not None and output.output.suffix.lower() == ".csv":
+        made.to_csv(output.output)
+    else:
+        _show(told, output)
     return GOOD
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from rich.console import Console
 
-__all__ = ["Column", "Field", "Report", "Table", "number"]
+__all__ = ["Cell", "Column", "Field", "Report", "Table", "number"]
 
 DIGITS: Final = 7
 LABEL_WIDTH: Final = 20
@@ -85,6 +85,14 @@ class Table:
     key: str
     columns: Sequence[Column]
     rows: Sequence[Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What a table shows and what stands in JSON for it, where the two differ."""
+
+    text: str
+    value: Any
 
 
 @dataclass
@@ -165,6 +173,8 @@ def _table_lines(table: Table) -> Iterator[str]:
 def _cell(value: Any, decimals: int | None) -> str:
     if value is None:
         return "-"
+    if isinstance(value, Cell):
+        return printable(value.text)
     if isinstance(value, str):
         return printable(value)
     if isinstance(value, int):
@@ -186,6 +196,8 @@ def _rows(item: Field) -> Iterator[list[str]]:
 def _plain(value: object) -> Any:
     if value is None or isinstance(value, str | bool):
         return value
+    if isinstance(value, Cell):
+        return _plain(value.value)
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     return _finite(np.asarray(value).tolist())

@@ -11,6 +11,7 @@ from cyclopts import Parameter
 __all__ = [
     "BodyOptions",
     "CheckOptions",
+    "LedgerOptions",
     "LengthUnit",
     "MoleculeOptions",
     "OutputOptions",
@@ -145,6 +146,37 @@ class MoleculeOptions:
     masses: Annotated[Literal["most_common", "average"], Parameter(name="--masses")] = "most_common"
     length_unit: Annotated[LengthUnit, Parameter(name="--length-unit")] = "angstrom"
     rtol: Annotated[float | None, Parameter(name="--rtol")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class LedgerOptions:
+    """What is told of a ledger.
+
+    Attributes
+    ----------
+    tree
+        A table with the columns child and parent, where the table of parts has no column parent.
+    depth
+        How many levels below the whole are shown.
+    of
+        Whose variance is shared out among the parts: mass, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz or Iyz.
+    at
+        The id of the assembly that is shown instead of the whole.
+    overwrite
+        Roll up over numbers that the rows of assemblies state; without it they are an error.
+    ignore
+        A column to leave out. May be repeated; other columns that are not known are an error.
+    picture
+        Where to draw who contributes mass and who contributes variance (.png, .pdf, .svg).
+    """
+
+    tree: Annotated[Path | None, Parameter(name="--tree")] = None
+    depth: Annotated[int, Parameter(name="--depth")] = 2
+    of: Annotated[str, Parameter(name="--of")] = "mass"
+    at: Annotated[str | None, Parameter(name="--at")] = None
+    overwrite: Annotated[bool, Parameter(name="--overwrite", negative="")] = False
+    ignore: Annotated[Words, Parameter(name="--ignore", negative="", show_default=False)] = ()
+    picture: Annotated[Path | None, Parameter(name="--picture")] = None
 
 
 @dataclass(frozen=True, kw_only=True)

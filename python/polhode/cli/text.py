@@ -19,6 +19,9 @@ _WAYS_OUT: Final = (
     ("pass rtol= to take them as equal", "give equal moments"),
     ("move the body with translated()", "correct --center"),
     ("index_base=0", "--index-base 0"),
+    ("pass overwrite=True", "pass --overwrite"),
+    ("pass ignore= with its name", "pass --ignore with its name"),
+    ("pass the edges as tree=", "pass the edges as --tree"),
     ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
 )
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")

@@ -100,18 +100,19 @@ class Neighbours:
         message = "body: its covariance leads to no possible body; give the numbers that the body is made of"
         raise PolhodeError(message)
 
-    def probes(self) -> Iterator[tuple[tuple[Any, ...], tuple[Any, ...]]]:
-        """Give the body as this class moves it and as it knows itself, a step along each of its probes."""
+    def probes(self, step: float) -> Iterator[tuple[list[tuple[Any, ...]], list[tuple[Any, ...]]]]:
+        """Give the bodies a step forward and one back along each probe: as moved here, and as the body knows."""
         if self.body is None:
             return
         slopes, bends = self.body._probes()
         for slope, bend in zip(slopes, bends, strict=True):
-            for sign in (1.0, -1.0):
-                try:
-                    here, there = self._way.to(sign * slope), self._way.straight_to(sign * slope + bend)
-                except PolhodeError:
-                    continue
-                yield (here, *self._values), (there, *self._values)
+            changes = [sign * step * slope for sign in (1.0, -1.0)]
+            try:
+                here = [self._way.to(change) for change in changes]
+                there = [self._way.straight_to(change + step * step * bend) for change in changes]
+            except PolhodeError:
+                continue
+            yield [(body, *self._values) for body in here], [(body, *self._values) for body in there]
 
     def draws(self, n: int, seed: int) -> Iterator[tuple[Any, ...]]:
         """Draw bodies and other numbers, and warn of draws that no body has."""

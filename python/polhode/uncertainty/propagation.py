@@ -26,6 +26,8 @@ EVEN: Final = 0.1
 """Root mean square of second-order terms, relative to σ, that leaves a deviation right within a percent."""
 ODD: Final = 0.01
 """Mean of first- times third-order terms, relative to σ², that does."""
+NEAR: Final = 0.25
+"""Steps along a body's own probes, in deviations: so short that the second order is all that is seen."""
 PROBES: Final = 12
 """Directions in which second- and third-order terms are looked for."""
 ROUNDING: Final = 1e-9
@@ -181,10 +183,11 @@ def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -
 def _follows(f: Function, around: Neighbours, value: Floats, sigma: Floats) -> NDArray[np.bool_]:
     """Whether the ways from body to body taken here lead where the body's own second order does."""
     missed, count = np.zeros(value.size), 0
-    for here, there in around.probes():
-        missed += (_numbers(f, here, value.shape).ravel() - _numbers(f, there, value.shape).ravel()) ** 2
+    for probe in around.probes(NEAR):
+        here, there = (sum(_numbers(f, given, value.shape).ravel() for given in pair) / 2 for pair in probe)
+        missed += ((here - there) / NEAR**2) ** 2
         count += 1
-    noise = ROUNDING * np.abs(value.ravel())
+    noise = ROUNDING * np.abs(value.ravel()) / NEAR**2
     return np.asarray(np.sqrt(missed / max(count, 1)) <= EVEN * sigma + noise)
 
 

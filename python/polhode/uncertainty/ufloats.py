@@ -88,7 +88,7 @@ def from_ufloats(values: Any) -> Any:
         forms.append(sorted(terms.items()))
     shape = array.shape
     return _core.Uncertain._restored(
-        np.array(numbers).reshape(shape), np.array(sigmas).reshape(shape), None, None, forms
+        np.array(numbers).reshape(shape), np.array(sigmas).reshape(shape), None, None, forms, False
     )
 
 

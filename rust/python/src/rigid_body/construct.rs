@@ -80,7 +80,7 @@ impl PyRigidBody {
             let numbers = [
                 &mass.row(m)[..],
                 &center.row(c),
-                &symmetric(name, &tensor.row(i))?,
+                &symmetric(name, &tensor, i)?,
             ]
             .concat();
             if name == "inertia" {

@@ -55,6 +55,8 @@ pub(crate) struct PyUncertain {
     sigma: Option<Py<PyAny>>,
     covariance: Option<Py<PyAny>>,
     source: Option<String>,
+    /// Whether standard deviations were given, so that the two mirrored elements of a tensor stand for one number.
+    by_sigma: bool,
     /// A form for each number, or for each of the three small angles.
     pub(super) given: Given,
 }
@@ -120,6 +122,7 @@ impl PyUncertain {
             }
         };
         Ok(Self {
+            by_sigma: sigma.is_some(),
             value: kept.unbind(),
             sigma: sigma.map(Bound::unbind),
             covariance: covariance.map(Bound::unbind),
@@ -228,6 +231,7 @@ impl PyUncertain {
             of(&own.covariance),
             own.source.clone(),
             own.stored_forms(),
+            own.by_sigma,
         );
         Ok((
             py.get_type::<Self>().getattr("_restored")?,
@@ -243,6 +247,7 @@ impl PyUncertain {
         covariance: Option<Py<PyAny>>,
         source: Option<String>,
         variables: Vec<Vec<([u64; 2], f64)>>,
+        by_sigma: bool,
     ) -> Self {
         let form = |form: Vec<([u64; 2], f64)>| -> Form {
             form.into_iter()
@@ -254,6 +259,7 @@ impl PyUncertain {
             sigma,
             covariance,
             source,
+            by_sigma,
             given: Given {
                 forms: variables.into_iter().map(form).collect(),
             },
@@ -262,6 +268,11 @@ impl PyUncertain {
 }
 
 impl PyUncertain {
+    /// Whether standard deviations were given.
+    pub(super) fn is_by_sigma(&self) -> bool {
+        self.by_sigma
+    }
+
     /// A form for each number.
     pub(crate) fn forms(&self) -> &[Form] {
         &self.given.forms

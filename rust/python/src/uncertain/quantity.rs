@@ -21,9 +21,19 @@ pub(crate) type Number<'a> = (f64, &'a [(Variable, f64)]);
 pub(crate) struct Quantity<T> {
     pub(crate) values: Stack<T>,
     forms: Option<Vec<Form>>,
+    by_sigma: bool,
 }
 
 impl<T: Item> Quantity<T> {
+    /// Numbers without doubts.
+    fn known(values: Stack<T>) -> Self {
+        Self {
+            values,
+            forms: None,
+            by_sigma: false,
+        }
+    }
+
     /// Whether its numbers have doubts.
     pub(crate) fn is_uncertain(&self) -> bool {
         self.forms.is_some()
@@ -103,10 +113,7 @@ pub(crate) fn quantity<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResu
     }
     // Plain numbers are not asked: what has a sigma is refused first.
     match read(object, name) {
-        Ok(values) => Ok(Quantity {
-            values,
-            forms: None,
-        }),
+        Ok(values) => Ok(Quantity::known(values)),
         Err(fault) => match of_ufloats(object)? {
             Some(uncertain) => with_forms(&uncertain, name),
             None => Err(fault),
@@ -123,6 +130,7 @@ fn with_forms<T: Item>(uncertain: &Bound<'_, PyUncertain>, name: &str) -> PyResu
     Ok(Quantity {
         values: read(&uncertain.value(py)?, name)?,
         forms: Some(uncertain.given.forms.clone()),
+        by_sigma: uncertain.is_by_sigma(),
     })
 }
 
@@ -139,13 +147,11 @@ pub(crate) fn quantity_list<T: Item>(
             Ok(Quantity {
                 values: read_list(&value, name, leading)?,
                 forms,
+                by_sigma: uncertain.get().is_by_sigma(),
             })
         }
         Err(_) => match read_list(object, name, leading) {
-            Ok(values) => Ok(Quantity {
-                values,
-                forms: None,
-            }),
+            Ok(values) => Ok(Quantity::known(values)),
             Err(fault) => match of_ufloats(object)? {
                 Some(uncertain) => quantity_list(uncertain.as_any(), name, leading),
                 None => Err(fault),
@@ -161,12 +167,7 @@ pub(crate) fn quantity_or<T: Item>(
     default: T,
 ) -> PyResult<Quantity<T>> {
     argument.given().map_or_else(
-        || {
-            Ok(Quantity {
-                values: Stack::one(default),
-                forms: None,
-            })
-        },
+        || Ok(Quantity::known(Stack::one(default))),
         |object| quantity(object, name),
     )
 }
@@ -225,15 +226,18 @@ pub(crate) fn known(value: f64) -> Number<'static> {
 /// The elements xx, yy, zz, xy, xz, yz of a symmetric tensor; each beside the diagonal is one number, given twice.
 pub(crate) fn symmetric<'a>(
     what: &'static str,
-    tensor: &[Number<'a>],
+    tensor: &'a Quantity<Matrix3<f64>>,
+    row: usize,
 ) -> Result<[Number<'a>; 6], Error> {
+    let by_sigma = tensor.by_sigma;
+    let tensor = tensor.row(row);
     for (row, column) in [(0, 1), (0, 2), (1, 2)] {
         let (a, b) = (tensor[3 * row + column].1, tensor[3 * column + row].1);
         let sigma =
             |form: &[(Variable, f64)]| form.iter().map(|(_, step)| step * step).sum::<f64>().sqrt();
         // Standard deviations have a variable for each element; a covariance says what is one.
         let is_one = match (a, b) {
-            ([(_, a)], [(_, b)]) => a.abs() == b.abs(),
+            ([(_, a)], [(_, b)]) if by_sigma => a.abs() == b.abs(),
             _ => sigma(&difference(a, b)) <= 1e-9 * sigma(a),
         };
         if !is_one {
