@@ -62,7 +62,7 @@ BODY_SCHEMA: dict[str, object] = {
             "what one standard deviation of each does to m, C and the elements xx, yy, zz, xy, xz, yz of the "
             "tensor about C, shape (n, 10)"
         ),
-        "second_order": array_schema("second-order terms along the probes, shape (bodies, 8, 10)"),
+        "second_order": array_schema("second-order terms along the probes, shape (bodies, 16, 10)"),
     },
     "patternProperties": {"^comment$": {"description": "for the reader of the file"}},
     "additionalProperties": False,

@@ -3,33 +3,30 @@
 //! With `I = V diag(I_k) Vᵀ` and a change `W = Vᵀ δI V` of the tensor in its principal axes, to first order `δI_k = W_kk`, and
 //! the axes turn by the small rotation φ about themselves with `[φ]×_ij = W_ij/(I_j − I_i)`.
 //!
-//! Whether that is enough is seen along the probes. A step forward and one back make of a number x the terms
-//! `even = ½ (x₊ + x₋) − x₀` and `odd = ½ (x₊ − x₋)`, where to first order even = 0 and odd = l. A variance is
-//! `E[l²] + 2 E[l (odd − l)] + var(even) + …`: the first order is right within a percent when the root mean square of the even
-//! terms stays below a tenth of σ, and the mean of `l (odd − l)` below a hundredth of σ². Moments that are about to change
-//! places have no such expansion: their gap has to be wide beside its own deviation.
+//! Of a number with the terms l, e and c of first, second and third order the variance is
+//! `E[l²] + var(e) + 2 E[l c] + …` for normal draws: the first order is right within a percent as long as what follows stays
+//! below a fiftieth of it. The even terms are seen along the probes, by a step forward and one back; the third-order terms of
+//! moments and axes are in [`Third`]. Moments that are about to change places have no such expansion: their gap has
+//! to be wide beside its own deviation.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::doubt::Doubt;
+use super::third::{Third, across};
 use super::variable::PROBES;
 use crate::mass::body::RigidBody;
 use crate::mass::ten::Ten;
 use crate::principal::derivative::DEGENERATE_RTOL;
 use crate::principal::{PrincipalAxes, principal_axes};
 
-/// Largest root mean square of the even terms, relative to σ.
-const EVEN: f64 = 0.1;
-/// Largest mean of `l (odd − l)`, relative to σ².
-const ODD: f64 = 0.01;
+/// Largest part of a variance that the first order may lack.
+const LACKING: f64 = 0.02;
 /// Least gap between moments for them to be linear, and for the axes: in deviations of the gap.
 const GAPS: [f64; 2] = [2.0, 3.5];
 /// Relative to the size of what is deviated from: smaller terms are rounding.
 const ROUNDING: f64 = 1e-13;
 /// An angle of more than this deviation, in radians, says nothing of where an axis is.
 const ANYWHERE: f64 = 1.0;
-/// The two moments across each axis.
-const ACROSS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
 
 /// Standard deviations of a body's numbers, and whether each is linear enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,54 +53,44 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
     let largest = principal.moments[2];
     let mut own = [Terms::default(); 10];
     let (mut moments, mut axes) = ([Terms::default(); 3], [Terms::default(); 3]);
-    // The variance of the gap between each two moments.
-    let mut spread = [0.0; 3];
+    let mut third = Third::new(principal.moments);
     for (_, change) in &doubt.tangents {
         add(&mut own, change.to_array());
         let turned = Turned::of(&principal, &change.tensor());
         add(&mut moments, turned.moments());
         add(&mut axes, turned.angles());
-        for (sum, (i, j)) in spread.iter_mut().zip(ACROSS) {
-            let w = &turned.change;
-            *sum += (w[(j, j)] - w[(i, i)]).powi(2) + 4.0 * w[(i, j)] * w[(i, j)];
-        }
+        third.add(&turned.change);
     }
-    let slopes = doubt.slopes();
-    for (slope, bend) in slopes.iter().zip(&doubt.bends) {
-        let zero = [0.0; 10];
-        probe(&mut own, zero, bend.to_array(), zero);
-        let first = Turned::of(&principal, &slope.tensor());
+    for (slope, bend) in doubt.slopes().iter().zip(&doubt.bends) {
+        bent(&mut own, bend.to_array());
         let [above, below] = [1.0, -1.0].map(|sign| {
             let tensor = numbers.tensor() + slope.tensor() * sign + bend.tensor();
             Stepped::from(&principal, &principal_axes(&tensor))
         });
-        // A step of such a size may have its axes anywhere.
-        let half = |a: [f64; 3], b: [f64; 3], sign: f64| -> [f64; 3] {
-            std::array::from_fn(|k| 0.5 * (a[k] + sign * b[k]))
-        };
-        let evens = |of: fn(&Stepped) -> [f64; 3]| half(of(&above), of(&below), 1.0);
-        let odds = |of: fn(&Stepped) -> [f64; 3]| half(of(&above), of(&below), -1.0);
-        probe(
+        bent(
             &mut moments,
-            first.moments(),
-            evens(|s| s.moments),
-            odds(|s| s.moments),
+            std::array::from_fn(|k| 0.5 * (above.moments[k] + below.moments[k])),
         );
-        probe(
+        bent(
             &mut axes,
-            first.angles(),
-            evens(|s| s.angles),
-            odds(|s| s.angles),
+            std::array::from_fn(|k| 0.5 * (above.angles[k] + below.angles[k])),
         );
     }
+    for k in 0..3 {
+        moments[k].odd = third.of_moment(k);
+        axes[k].odd = third.of_angle(k);
+    }
     let gaps: [Gap; 3] = std::array::from_fn(|k| {
-        let (i, j) = ACROSS[k];
+        let (i, j) = across(k);
         Gap {
             width: principal.moments[j] - principal.moments[i],
-            deviation: if spread[k].sqrt() > ROUNDING * largest {
-                spread[k].sqrt()
-            } else {
-                0.0
+            deviation: {
+                let deviation = third.gap(k).sqrt();
+                if deviation > ROUNDING * largest {
+                    deviation
+                } else {
+                    0.0
+                }
             },
         }
     });
@@ -150,7 +137,7 @@ impl Gap {
     }
 }
 
-/// Sums of squares of first-order terms, and of what the probes add.
+/// Variance to first order, squares of even terms along the probes, and twice the mean of first- times third-order terms.
 #[derive(Clone, Copy, Debug, Default)]
 struct Terms {
     first: f64,
@@ -166,10 +153,9 @@ impl Terms {
 
     /// Whether it is enough, for a number of this size.
     fn is_linear(self, size: f64) -> bool {
-        let even = (self.even / PROBES as f64).sqrt();
-        let odd = self.odd.abs() / PROBES as f64;
         let noise = ROUNDING * size;
-        even <= EVEN * self.deviation() + noise && odd <= ODD * self.first + noise * noise
+        let lacking = self.even / PROBES as f64 + self.odd;
+        lacking.abs() <= LACKING * self.first + noise * noise
     }
 }
 
@@ -179,11 +165,9 @@ fn add<const N: usize>(sums: &mut [Terms; N], terms: [f64; N]) {
     }
 }
 
-/// Adds what a step forward and one back along a probe say, beside the first order.
-fn probe<const N: usize>(sums: &mut [Terms; N], first: [f64; N], even: [f64; N], odd: [f64; N]) {
-    for (k, sum) in sums.iter_mut().enumerate() {
-        sum.even += even[k] * even[k];
-        sum.odd += first[k] * (odd[k] - first[k]);
+fn bent<const N: usize>(sums: &mut [Terms; N], terms: [f64; N]) {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        sum.even += term * term;
     }
 }
 
@@ -320,20 +304,21 @@ mod tests {
     fn what_is_linear_is_told_on_both_sides_of_the_limits() {
         let terms = |even: f64, odd: f64| Terms {
             first: 1.0,
-            even: PROBES as f64 * even * even,
-            odd: PROBES as f64 * odd,
+            even: PROBES as f64 * even,
+            odd,
         };
-        assert!(terms(0.99 * EVEN, 0.0).is_linear(1.0) && !terms(1.01 * EVEN, 0.0).is_linear(1.0));
-        for sign in [1.0, -1.0] {
-            assert!(
-                terms(0.0, sign * 0.99 * ODD).is_linear(1.0)
-                    && !terms(0.0, sign * 1.01 * ODD).is_linear(1.0)
+        for (near, is_linear) in [(0.99, true), (1.01, false)] {
+            assert_eq!(terms(near * LACKING, 0.0).is_linear(1.0), is_linear);
+            assert_eq!(terms(0.0, -near * LACKING).is_linear(1.0), is_linear);
+            assert_eq!(
+                terms(0.5 * near * LACKING, 0.5 * near * LACKING).is_linear(1.0),
+                is_linear
             );
+            let none = Terms {
+                first: 0.0,
+                ..terms((near * ROUNDING).powi(2), 0.0)
+            };
+            assert_eq!(none.is_linear(1.0), is_linear);
         }
-        let none = |even: f64| Terms {
-            first: 0.0,
-            ..terms(even, 0.0)
-        };
-        assert!(none(0.9 * ROUNDING).is_linear(1.0) && !none(1.1 * ROUNDING).is_linear(1.0));
     }
 }

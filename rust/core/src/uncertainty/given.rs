@@ -198,8 +198,8 @@ mod tests {
         assert!(matches!(
             fault(&[1.0, 0.5, 0.4, 1.0]),
             Error::Uncertainty(UncertaintyFault::NotSymmetric {
-                row: 1,
-                column: 0,
+                row: 0,
+                column: 1,
                 ..
             })
         ));

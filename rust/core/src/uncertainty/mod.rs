@@ -17,6 +17,7 @@
 //! | through the corners of a polygon | [`polygon`] |
 //! | through sums, where parts are many | [`composites`] |
 //! | which covariances no body can have | [`possible`] |
+//! | third-order terms of moments and axes | `third` |
 //! | standard deviations of all that a body has, and where they are not to be trusted | [`deviations`] |
 
 pub mod changes;
@@ -29,6 +30,7 @@ pub mod mesh;
 pub mod particles;
 pub mod polygon;
 pub mod possible;
+mod third;
 pub mod variable;
 
 pub use changes::{

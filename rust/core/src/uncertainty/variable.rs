@@ -75,7 +75,9 @@ pub struct Variable {
 }
 
 /// How many directions in the space of all variables are probed to second order.
-pub const PROBES: usize = 8;
+pub const PROBES: usize = 16;
+/// Of each eight probes a variable takes two by a long step.
+const EIGHT: usize = 8;
 /// The steps that each variable takes along the probes, in a place and with a sign of its own: their mean square is 1 and
 /// their mean fourth power 3, as of a normal variable.
 const STEPS: [f64; 2] = [1.857_280_200_396_046_2, 0.428_372_990_596_132_3];
@@ -84,13 +86,17 @@ impl Variable {
     /// The step of the variable along each of the probes.
     #[must_use]
     pub fn steps(self) -> [f64; PROBES] {
-        // Without the random part, so that the same program finds the same.
-        let bits = mixed(self.place);
-        let first = (bits & 7) as usize;
-        let second = (first + 1 + (bits >> 3 & 0xffff) as usize % 7) % PROBES;
+        let (mut bits, mut first, mut second) = (0, 0, 0);
         std::array::from_fn(|probe| {
-            let size = STEPS[usize::from(probe != first && probe != second)];
-            if bits >> (32 + probe) & 1 == 0 {
+            let place = probe % EIGHT;
+            if place == 0 {
+                // Without the random part, so that the same program finds the same.
+                bits = mixed(self.place ^ mixed((probe / EIGHT) as u64));
+                first = (bits & 7) as usize;
+                second = (first + 1 + (bits >> 3 & 0xffff) as usize % 7) % EIGHT;
+            }
+            let size = STEPS[usize::from(place != first && place != second)];
+            if bits >> (32 + place) & 1 == 0 {
                 size
             } else {
                 -size
@@ -139,10 +145,11 @@ mod tests {
         let mut cross = 0.0;
         for index in 0..2000 {
             let steps = source.variable(index).steps();
-            let mean = |power: i32| steps.iter().map(|s| s.powi(power)).sum::<f64>() / 8.0;
+            let mean =
+                |power: i32| steps.iter().map(|s| s.powi(power)).sum::<f64>() / PROBES as f64;
             assert!((mean(2) - 1.0).abs() < 1e-15 && (mean(4) - 3.0).abs() < 1e-14);
             let next = source.variable(index + 1).steps();
-            cross += steps.iter().zip(next).map(|(a, b)| a * b).sum::<f64>() / 8.0;
+            cross += steps.iter().zip(next).map(|(a, b)| a * b).sum::<f64>() / PROBES as f64;
         }
         assert!((cross / 2000.0).abs() < 0.05, "{cross}");
     }

@@ -17,7 +17,7 @@ const BENDS: usize = PROBES * 10;
 #[pymethods]
 impl PyRigidBody {
     /// The doubts as arrays: how many variables each body depends on, the variables (n, 2) in halves of their numbers, the
-    /// tangents (n, 10), and the second-order terms (bodies, 8, 10); nothing of bodies without.
+    /// tangents (n, 10), and the second-order terms (bodies, 16, 10); nothing of bodies without.
     #[pyo3(name = "_doubts")]
     pub(crate) fn stored_doubts<'py>(
         &self,
@@ -55,7 +55,7 @@ impl PyRigidBody {
         Ok(Some(state))
     }
 
-    /// First- and second-order terms of the ten numbers of one body along its probes, shape (2, 8, 10).
+    /// First- and second-order terms of the ten numbers of one body along its probes, shape (2, 16, 10).
     fn _probes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let doubt = self.row(0).1;
         let terms = [doubt.slopes(), doubt.bends].concat();
