@@ -105,8 +105,9 @@ class Linear(NamedTuple):
     Attributes
     ----------
     mass, center_of_mass, inertia, principal_moments, axes : bool or numpy.ndarray of bool
-        For each number of :class:`Sigma`. False where the second-order terms exceed a tenth of the
-        first-order ones; there ``uncertainty.propagate(…, method="monte-carlo")`` tells what is right.
+        For each number of :class:`Sigma`. False where terms of higher order add more than 1.5 percent to the
+        variance, or moments may change places. There ``method="monte-carlo"`` of
+        :func:`polhode.uncertainty.propagate` tells what is right.
     """
 
     mass: Any

@@ -101,7 +101,7 @@ class Neighbours:
         raise PolhodeError(message)
 
     def probes(self, step: float) -> Iterator[tuple[list[tuple[Any, ...]], list[tuple[Any, ...]]]]:
-        """Give the bodies a step forward and one back along each probe: as moved here, and as the body knows."""
+        """Give the bodies a step each way along each probe: as moved here, and as the body knows."""
         if self.body is None:
             return
         slopes, bends = self.body._probes()

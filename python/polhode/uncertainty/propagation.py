@@ -22,13 +22,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Propagated", "propagate"]
 
-EVEN: Final = 0.1
-"""Root mean square of second-order terms, relative to σ, that leaves a deviation right within a percent."""
-ODD: Final = 0.01
-"""Mean of first- times third-order terms, relative to σ², that does."""
+LACKING: Final = 0.015
+"""Largest part of a variance that the first order may lack: a percent of the deviation, with a margin."""
 NEAR: Final = 0.25
 """Steps along a body's own probes, in deviations: so short that the second order is all that is seen."""
-PROBES: Final = 12
+PROBES: Final = 32
 """Directions in which second- and third-order terms are looked for."""
 ROUNDING: Final = 1e-9
 
@@ -98,8 +96,8 @@ def propagate(
 
     Notes
     -----
-    The function is asked about 4 k + 57 times to first order, k the rank of the covariance, at most 10 for
-    a body alone; 2 k² + 6 k + 57 times to second order; n + 33 times by draws. Draws are normal in the ten
+    The function is asked about 4 k + 130 times to first order, k the rank of the covariance, at most 10 for
+    a body alone; 2 k² + 6 k + 130 times to second order; n + 65 times by draws. Draws are normal in the ten
     numbers, and drawn again where no body has them; or, where the body's own second order is nearer to
     that, as of a body that is turned or has no extent along an axis, in principal moments and small angles
     of the axes. For draws of what a body is made of, make it inside of `f`, and give those numbers as
@@ -175,12 +173,12 @@ def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -
         odd += first * (0.5 * (above - below) - first)
     variance = (slopes**2).sum(axis=0)
     sigma, noise = np.sqrt(variance), ROUNDING * np.abs(value.ravel())
-    fits = np.sqrt(even / PROBES) <= EVEN * sigma + noise
-    fits &= np.abs(odd / PROBES) <= ODD * variance + noise * sigma + noise**2
-    return np.asarray(fits & _follows(f, around, value, sigma))
+    lacking = (even + 2 * odd) / PROBES
+    fits = np.abs(lacking) <= LACKING * variance + 2 * noise * sigma + noise**2
+    return np.asarray(fits & _follows(f, around, value, variance))
 
 
-def _follows(f: Function, around: Neighbours, value: Floats, sigma: Floats) -> NDArray[np.bool_]:
+def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -> NDArray[np.bool_]:
     """Whether the ways from body to body taken here lead where the body's own second order does."""
     missed, count = np.zeros(value.size), 0
     for probe in around.probes(NEAR):
@@ -188,7 +186,7 @@ def _follows(f: Function, around: Neighbours, value: Floats, sigma: Floats) -> N
         missed += ((here - there) / NEAR**2) ** 2
         count += 1
     noise = ROUNDING * np.abs(value.ravel()) / NEAR**2
-    return np.asarray(np.sqrt(missed / max(count, 1)) <= EVEN * sigma + noise)
+    return np.asarray(missed / max(count, 1) <= LACKING * variance + noise**2)
 
 
 def _linear(f: Function, around: Neighbours) -> Propagated:
@@ -221,7 +219,7 @@ def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int) -> Propagat
     draws = np.array([_numbers(f, given, value.shape).ravel() for given in around.draws(n, seed)])
     mean = draws.mean(axis=0)
     covariance = np.atleast_2d(np.cov(draws, rowvar=False))
-    follows = _follows(f, around, value, np.sqrt(np.diagonal(covariance)))
+    follows = _follows(f, around, value, np.diagonal(covariance))
     return _told(mean.reshape(value.shape), covariance, follows)
 
 

@@ -144,7 +144,9 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
         sum_of_terms = sum(
             (step / v.std_dev * (v - v.nominal_value) for v, step in terms if step != 0.0), 0.0
         )
-        return library.ufloat(value, 0.0) if sum_of_terms == 0.0 else value + sum_of_terms
+        if isinstance(sum_of_terms, float):  # known exactly: of no variable
+            return library.core.AffineScalarFunc(value, library.core.LinearCombination({}))
+        return value + sum_of_terms
 
     center, tensor = body.center_of_mass.tolist(), body.inertia
     element = {(0, 0): 4, (1, 1): 5, (2, 2): 6, (0, 1): 7, (0, 2): 8, (1, 2): 9}

@@ -119,7 +119,7 @@ mod tests {
         let change = Matrix3::new(0.3, 0.2, 0.1, 0.2, -0.4, 0.25, 0.1, 0.25, 0.2);
         let mut third = Third::new(moments);
         third.add(&change);
-        let h = 0.05;
+        let h = 0.01;
         let at = |s: f64| {
             principal_axes(&(Matrix3::from_diagonal(&moments.into()) + change * s)).moments
         };
