@@ -79,6 +79,7 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "RigidBody.translated": (BODY.translated, {"displacement": V}),
     "RigidBody.rotated": (BODY.rotated, {"rotation": Q}),
     "RigidBody.scaled": (BODY.scaled, {"length": 1.0, "mass": 1.0}),
+    "RigidBody.with_sigma": (BODY.with_sigma, {"center_of_mass": V, "inertia": T}),
     "RigidBody.kinetic_energy": (BODY.kinetic_energy, {"omega": V, "velocity": V, "about": V}),
     "RigidBody.angular_momentum": (BODY.angular_momentum, {"omega": V, "velocity": V, "position": V}),
     "RigidBody.angular_acceleration": (BODY.angular_acceleration, {"omega": V, "torque": V}),
@@ -205,6 +206,10 @@ OTHERS: dict[str, Callable[[], object]] = {
     "Load.__getitem__": lambda: LOADS[np.broadcast_to(0, ABSURD)],
     "RigidBody.__add__": lambda: COLUMN + COLUMN[:, 0],
     "RigidBody.__sub__": lambda: COLUMN - COLUMN[:, 0],
+    "RigidBody.covariance_with": lambda: COLUMN.covariance_with(COLUMN[:, 0]),
+    "RigidBody.with_covariance": lambda: BODY.with_covariance(np.broadcast_to(1.0, (ABSURD, 10))),
+    "Uncertain": lambda: _core.Uncertain(np.broadcast_to(1.0, ABSURD), 1.0),
+    "Uncertain, sigma": lambda: _core.Uncertain(1.0, np.broadcast_to(1.0, ABSURD)),
     "RigidBody.isclose": lambda: COLUMN.isclose(COLUMN[:, 0]),
     "Load.__add__": lambda: LOADS + LOADS[:, 0],
     "RigidBody.from_density": lambda: RigidBody.from_density(

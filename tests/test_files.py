@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from polhode import RigidBody, Trajectory, files, loads, solids
+from polhode import RigidBody, Trajectory, Uncertain, files, loads, solids
 from polhode.errors import FileFormatError
 from polhode.molecules import isotopes
 
@@ -49,8 +49,25 @@ class TestBodies:
         assert fields["mass"] == 0.7
         assert fields["center_of_mass"] == BODIES["box"].center_of_mass.tolist()
         properties: Any = files.BODY_SCHEMA["properties"]
-        assert set(fields) == set(properties)
+        of_uncertain_bodies = {"variable_counts", "variables", "tangents", "second_order"}
+        assert set(fields) == set(properties) - of_uncertain_bodies
         assert fields["format"] == properties["format"]["const"]
+
+    def test_an_uncertain_one_has_its_sources_too(self, tmp_path: Path) -> None:
+        brick: Any = solids.box(
+            Uncertain((1.0, 2.0, 3.0), sigma=0.01), mass=Uncertain(2.0, 0.1, source="scale")
+        )
+        for name in ("body.json", "body.npz"):
+            brick.save(tmp_path / name)
+            again: Any = RigidBody.load(tmp_path / name)
+            assert again == brick
+            assert np.array_equal(again.covariance_with(brick), brick.covariance)
+        fields = json.loads((tmp_path / "body.json").read_text("utf-8"))
+        assert set(fields) == set(files.BODY_SCHEMA["properties"])  # type: ignore[call-overload]
+        del fields["numbers"]
+        (tmp_path / "spoilt.json").write_text(json.dumps(fields), "utf-8")
+        with pytest.raises(FileFormatError, match="uncertainty"):
+            RigidBody.load(tmp_path / "spoilt.json")
 
     def test_one_written_by_hand(self, tmp_path: Path) -> None:
         fields = {"format": "polhode.RigidBody/1", "mass": 2, "center_of_mass": [0, 0, 1]}

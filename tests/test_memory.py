@@ -41,6 +41,7 @@ SIZELESS = {
     "RigidBody.save",
     "RigidBody.stack",
     "RigidBody.view",
+    "RigidBody.with_error_bound",
     "Load.anchored",
     "Load.keeps_momentum",
     "MassAccumulator.finish",

@@ -59,6 +59,10 @@ def answers(body: Any) -> tuple[Any, Any]:
     return sigma, linear.astype(bool)
 
 
+MANY = 30
+"""So many flags say what part of them is right."""
+
+
 @dataclass
 class Tally:
     """Outputs that were compared, flagged, rightly flagged; and what was neither right nor flagged."""
@@ -103,7 +107,8 @@ class Tally:
             print(group, *(f"{self.groups[group, word]} {word}" for word in ("outputs", "flagged", "off")))
         assert not self.wrong, "\n".join([line, *self.wrong[:40]])
         assert self.flagged <= 0.1 * self.outputs, line
-        assert 2 * self.rightly >= self.flagged, line
+        if self.flagged >= MANY:
+            assert 2 * self.rightly >= self.flagged, line
 
 
 def tally(kinds: list[str], seeds: range, draws: int) -> Tally:
@@ -112,7 +117,7 @@ def tally(kinds: list[str], seeds: range, draws: int) -> Tally:
         for seed in seeds:
             node = case(kind, seed)
             drawn = monte_carlo(node, draws, seed)
-            sigma, linear = answers(Bodies().body(node))
+            sigma, linear = answers(Bodies(label=f"{kind} {seed}").body(node))
             total.add(f"{kind} {seed}", node, drawn, sigma, linear)
     return total
 

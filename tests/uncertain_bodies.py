@@ -48,11 +48,14 @@ TWICE = np.array([symmetric(row).ravel() for row in np.eye(6)]).T
 class Bodies:
     """One quantity becomes one `Uncertain`, one node one body: what is the same stays the same.
 
-    `sigma` None: without any sigma; a number: each factor times this.
+    `sigma` None: without any sigma; a number: each factor times this. With a `label` sources have names, so
+    that the probes by which the body tells what is linear are the same in every run.
     """
 
-    def __init__(self, sigma: float | None = 1.0) -> None:
+    def __init__(self, sigma: float | None = 1.0, label: str | None = None) -> None:
         self.sigma = sigma
+        self.label = label
+        self.count = 0
         self.made: dict[int, Any] = {}
         self.kept: list[object] = []
 
@@ -63,6 +66,9 @@ class Bodies:
     def _uncertain(self, value: Any, factor: Any, source: str | None) -> Any:
         assert self.sigma is not None
         factor = factor * self.sigma
+        if source is None and self.label is not None:
+            self.count += 1
+            source = f"{self.label}, {self.count}"
         square = factor.shape[0] == factor.shape[1]
         if square and not np.any(factor - np.diag(np.diag(factor))):
             sigma = np.abs(np.diag(factor))

@@ -90,6 +90,7 @@ VALUES: dict[str, Any] = {
     "constants": [3.0, 2.0, 1.0],
     "unwrap": False, "options": {}, "unit": "MHz", "factor": 2.0, "key": 0, "user_data": None,
     "labels_of_atoms": ["C", "O"],
+    "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
 }  # fmt: skip
 """What a parameter of this name takes; numbers that float32 has too."""
 
@@ -112,6 +113,12 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "rotation_period": 4.0,
         "precession_period": 2.0,
     },
+    "RigidBody.with_sigma": {
+        "mass": 0.125,
+        "center_of_mass": [0.25, 0.125, 0.5],
+        "inertia": np.full((3, 3), 0.125).tolist(),
+    },
+    "RigidBody.with_covariance": {"self": [TUMBLER, TOP], "covariance": (np.eye(10) / 64).tolist()},
     "RigidBody._from_numbers": {},
     "Load.__getitem__": {"self": [loads.constant_torque([[0.5, 0.0, 0.25], [1.0, 0.0, 0.0]])]},
     "Load.__add__": {"other": loads.uniform_gravity((0.0, 0.0, -8.0))},
