@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -56,6 +58,23 @@ def test_particles_and_a_mesh() -> None:
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     solid: Any = RigidBody.from_mesh(corners, faces, density=ufloat(6.0, 0.3))
     assert solid.sigma.mass == pytest.approx(0.05)
+
+
+def test_files_of_meshes_keep_it(tmp_path: Path) -> None:
+    """Formats that are streamed and formats that are read whole, with a number of either kind."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    text = "".join("v {} {} {}\n".format(*row) for row in corners)
+    text += "".join("f {} {} {}\n".format(*(i + 1 for i in face)) for face in faces)
+    (tmp_path / "a.obj").write_text(text, "utf-8")
+    triangles = b"".join(struct.pack("<12fH", 0, 0, 0, *corners[list(face)].ravel(), 0) for face in faces)
+    (tmp_path / "a.stl").write_bytes(b" " * 80 + struct.pack("<I", 4) + triangles)
+    for name in ("a.obj", "a.stl"):
+        for number in (Uncertain(6.0, 0.3), ufloat(6.0, 0.3)):
+            by_density: Any = RigidBody.from_file(tmp_path / name, density=number)
+            by_mass: Any = RigidBody.from_file(tmp_path / name, mass=number)
+            assert by_density.sigma.mass == pytest.approx(0.05)
+            assert by_mass.sigma.mass == pytest.approx(0.3)
 
 
 def test_what_has_none_is_none() -> None:

@@ -734,8 +734,8 @@ def stream_solid(
     path: str | PathLike[str],
     *,
     scale: float = 1.0,
-    density: float | None = None,
-    mass: float | None = None,
+    density: _Number | None = None,
+    mass: _Number | None = None,
     orient: bool = False,
     progress: Callable[[float], object] | None = None,
 ) -> tuple[RigidBody, int, float, float]: ...

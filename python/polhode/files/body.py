@@ -18,7 +18,9 @@ from polhode.units import metres_per
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from polhode import _core
     from polhode._core import RigidBody
+    from polhode._typing import SupportsSigma
     from polhode.files.xyz import Molecule
     from polhode.molecules import Masses
 
@@ -28,8 +30,8 @@ __all__ = ["body_from_file", "check_molecule_options", "molecule_isotopes"]
 def body_from_file(
     path: str | os.PathLike[str],
     *,
-    density: float | None = None,
-    mass: float | None = None,
+    density: float | _core.Uncertain | SupportsSigma | None = None,
+    mass: float | _core.Uncertain | SupportsSigma | None = None,
     length_unit: str | None = None,
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
@@ -45,7 +47,7 @@ def body_from_file(
     path : str or os.PathLike
         A mesh (STL, OBJ and ``v``/``f`` plate files, PLY, OFF, GLB; see :func:`read_mesh`) or a molecule
         (XYZ; see :func:`read_xyz`).
-    density, mass : float, optional
+    density, mass : float or Uncertain, optional
         Exactly one of them for a mesh, neither for a molecule.
     length_unit : str, optional
         Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's

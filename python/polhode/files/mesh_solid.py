@@ -16,7 +16,10 @@ from polhode.files.mesh import weld_within
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from polhode._typing import SupportsSigma
     from polhode.files.mesh import Mesh
+
+    Number = float | _core.Uncertain | SupportsSigma
 
 __all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of"]
 
@@ -55,8 +58,8 @@ class MeshSolid(NamedTuple):
 def solid_from_file(
     path: str | os.PathLike[str],
     *,
-    density: float | None = None,
-    mass: float | None = None,
+    density: Number | None = None,
+    mass: Number | None = None,
     scale: float = 1.0,
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
@@ -76,7 +79,7 @@ def solid_from_file(
     ----------
     path : str or os.PathLike
         See :func:`read_mesh`.
-    density, mass : float, optional
+    density, mass : float or Uncertain, optional
         Exactly one of them.
     scale : float
         Unit of the coordinates, in the unit of the result.
@@ -117,8 +120,8 @@ def solid_from_file(
 def solid_of(
     loaded: Loaded,
     *,
-    density: float | None = None,
-    mass: float | None = None,
+    density: Number | None = None,
+    mass: Number | None = None,
     scale: float = 1.0,
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
@@ -145,7 +148,7 @@ def solid_of(
     with np.errstate(over="ignore"):  # what is beyond float64 is refused as infinite, with its number
         vertices = mesh.vertices * scale
 
-    def solid(density: float | None, mass: float | None = None) -> _core.RigidBody:
+    def solid(density: Number | None, mass: Number | None = None) -> _core.RigidBody:
         return _core.RigidBody.from_mesh(
             vertices, mesh.faces, density=density, mass=mass, closure=closure, orient=orient
         )
@@ -153,7 +156,7 @@ def solid_of(
     try:
         with naming_file(file):
             body = solid(density, mass)
-            volume = float(body.mass) / density if density is not None else float(solid(1.0).mass)
+            volume = float(body.mass) / _value(density) if density is not None else float(solid(1.0).mass)
             area = _core.surface_area(vertices, mesh.faces)
     except MeshError as error:
         _offer_weld(error, mesh)
@@ -161,6 +164,13 @@ def solid_of(
     welded = corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
+
+
+def _value(number: Number) -> float:
+    """Give the value of a number that may have a sigma."""
+    if isinstance(number, _core.Uncertain):
+        return float(number.value)
+    return float(number) if isinstance(number, float | int) else float(number.nominal_value)
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
-use polhode::uncertainty::{Change, Doubt, Follow, Rotated, Scaled, Translated, follow};
+use polhode::uncertainty::{Rotated, Scaled, Translated};
 use polhode::{Error, RigidBody};
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyTypeError;
@@ -17,9 +17,7 @@ use crate::body::PyRigidBody;
 use crate::interrupt::Beat;
 use crate::principal::{of_bodies, with_rtols};
 use crate::stack::{BLOCK, Broadcast, Stack};
-use crate::uncertain::{
-    Number, Quantity, carried, known, quantity, quantity_or, rotation_quantity,
-};
+use crate::uncertain::{Quantity, carried, known, quantity, quantity_or, rotation_quantity};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
@@ -378,17 +376,6 @@ impl PyRigidBody {
     /// The bodies lined up with one other argument.
     fn with<'a, T>(&self, name: &'a str, other: &Stack<T>) -> PyResult<Broadcast<'a, 2>> {
         Broadcast::of(["body", name], [&self.bodies.shape, &other.shape])
-    }
-
-    /// The doubts of a row after a change of it by some numbers.
-    fn changed(
-        &self,
-        row: usize,
-        change: &impl Change,
-        numbers: &[Number<'_>],
-    ) -> Result<Doubt, Error> {
-        let bodies = &[self.row(row)];
-        follow(change, Follow { bodies, numbers })
     }
 
     /// Bodies from their numbers.

@@ -99,7 +99,10 @@ impl PyRigidBody {
             };
             body.with_provenance(provenance)
         };
-        Ok(self.bodies.map(py, of_atoms)?.into())
+        Ok(Self::doubtful(
+            self.bodies.map(py, of_atoms)?,
+            self.doubts.clone(),
+        ))
     }
 
     /// The same bodies, of meshes of which so many corners were joined to others on request.
@@ -111,6 +114,9 @@ impl PyRigidBody {
             };
             body.with_provenance(provenance)
         };
-        Ok(self.bodies.map(py, welded)?.into())
+        Ok(Self::doubtful(
+            self.bodies.map(py, welded)?,
+            self.doubts.clone(),
+        ))
     }
 }

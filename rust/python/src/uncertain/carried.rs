@@ -68,6 +68,17 @@ impl PyRigidBody {
         Ok(Self::doubtful(self.bodies, Some(Arc::new(doubts))))
     }
 
+    /// The doubts of a row after a change of it by some numbers.
+    pub(crate) fn changed(
+        &self,
+        row: usize,
+        change: &impl Change,
+        numbers: &[Number<'_>],
+    ) -> Result<Doubt, Error> {
+        let bodies = &[self.row(row)];
+        follow(change, Follow { bodies, numbers })
+    }
+
     /// One row: its ten numbers and its doubts.
     pub(crate) fn row(&self, row: usize) -> (Ten<f64>, &Doubt) {
         static CERTAIN: std::sync::LazyLock<Doubt> = std::sync::LazyLock::new(Doubt::default);
