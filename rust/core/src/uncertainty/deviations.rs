@@ -6,7 +6,7 @@
 //! Of a number with the terms l, e and c of first, second and third order the variance is
 //! `E[l²] + var(e) + 2 E[l c] + …` for normal draws: the first order is right within a percent as long as what follows stays
 //! below 1.5 percent of it, with a margin for what is not seen. The even terms are seen along the probes, by a step forward and one back; the third-order terms of
-//! moments and axes are in [`Third`]. Moments that are about to change places have no such expansion: their gap has
+//! moments and axes are in `third`. Moments that are about to change places have no such expansion: their gap has
 //! to be wide beside its own deviation.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};

@@ -10,7 +10,7 @@
 //! | sources and their variables, the probes | [`variable`] |
 //! | standard deviations and covariances as linear forms of variables | [`given`](mod@given) |
 //! | what a body carries | [`doubt`] |
-//! | how it follows through any function of bodies and numbers | [`follow`] |
+//! | how it follows through any function of bodies and numbers | [`follow`](mod@follow) |
 //! | through the ways to a body and from body to body | [`changes`] |
 //! | through the vertices of a mesh | [`mesh`] |
 //! | through particles | [`particles`] |
@@ -18,7 +18,7 @@
 //! | through sums, where parts are many | [`composites`] |
 //! | which covariances no body can have | [`possible`] |
 //! | third-order terms of moments and axes | `third` |
-//! | standard deviations of all that a body has, and where they are not to be trusted | [`deviations`] |
+//! | standard deviations of all that a body has, and where they are not to be trusted | [`deviations`](mod@deviations) |
 
 pub mod changes;
 pub mod composites;
