@@ -85,6 +85,22 @@ def test_what_has_none_is_none() -> None:
         solids.sphere(["a"], mass=1.0)
 
 
+def test_other_objects_are_not_asked() -> None:
+    class Asked:
+        """Refuses to be an array, once for each time that it is asked."""
+
+        count = 0
+
+        def __array__(self, *_: object, **__: object) -> Any:
+            self.count += 1
+            raise TypeError("no array")
+
+    asked: Any = Asked()
+    with pytest.raises(TypeError, match="no array"):
+        solids.sphere(asked, mass=1.0)
+    assert asked.count == 1
+
+
 def test_a_body_without_sigma_and_a_stack() -> None:
     numbers = to_ufloats(solids.cube(1.0, mass=6.0))
     assert numbers.mass.nominal_value == 6.0

@@ -67,13 +67,10 @@ def from_ufloats(values: Any) -> Any:
     module = sys.modules.get("uncertainties")
     if module is None:  # nobody has made one
         return None
-    try:
-        array = np.asarray(values, dtype=object)
-    except (TypeError, ValueError):
+    if not _holds(values, module.UFloat):
         return None
+    array = np.asarray(values, dtype=object)
     flat = array.ravel().tolist()
-    if not any(isinstance(value, module.UFloat) for value in flat):
-        return None
     numbers, sigmas, forms = [], [], []
     for value in flat:
         is_uncertain = isinstance(value, module.UFloat)
@@ -90,6 +87,16 @@ def from_ufloats(values: Any) -> Any:
     return _core.Uncertain._restored(
         np.array(numbers).reshape(shape), np.array(sigmas).reshape(shape), None, None, forms, False
     )
+
+
+def _holds(values: Any, kind: type, depth: int = 32) -> bool:
+    """Whether there is one: nothing is asked of other objects, which may call the package anew."""
+    if isinstance(values, kind):
+        return True
+    if isinstance(values, np.ndarray):
+        return values.dtype == object and any(isinstance(value, kind) for value in values.ravel().tolist())
+    is_list = isinstance(values, list | tuple) and depth > 0  # a list may hold itself
+    return is_list and any(_holds(value, kind, depth - 1) for value in values)
 
 
 def _words(variable: Any) -> tuple[int, int]:
