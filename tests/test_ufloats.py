@@ -81,6 +81,9 @@ def test_what_has_none_is_none() -> None:
     assert from_ufloats([1.0, 2.0]) is None
     assert from_ufloats("text") is None
     assert from_ufloats([[1.0], [2.0, 3.0]]) is None
+    itself: list[Any] = [1.0]
+    itself += [itself, itself]
+    assert from_ufloats(itself) is None
     with pytest.raises(TypeError, match="radius"):
         solids.sphere(["a"], mass=1.0)
 

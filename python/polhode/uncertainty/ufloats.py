@@ -89,14 +89,19 @@ def from_ufloats(values: Any) -> Any:
     )
 
 
-def _holds(values: Any, kind: type, depth: int = 32) -> bool:
+def _holds(values: Any, kind: type) -> bool:
     """Whether there is one: nothing is asked of other objects, which may call the package anew."""
-    if isinstance(values, kind):
-        return True
-    if isinstance(values, np.ndarray):
-        return values.dtype == object and any(isinstance(value, kind) for value in values.ravel().tolist())
-    is_list = isinstance(values, list | tuple) and depth > 0  # a list may hold itself
-    return is_list and any(_holds(value, kind, depth - 1) for value in values)
+    rest, seen = [values], set()  # a list may hold itself
+    while rest:
+        one = rest.pop()
+        if isinstance(one, kind):
+            return True
+        if isinstance(one, np.ndarray) and one.dtype == object:
+            one = one.ravel().tolist()
+        if isinstance(one, list | tuple) and id(one) not in seen:
+            seen.add(id(one))
+            rest.extend(one)
+    return False
 
 
 def _words(variable: Any) -> tuple[int, int]:
