@@ -91,7 +91,8 @@ def from_ufloats(values: Any) -> Any:
 
 def _holds(values: Any, kind: type) -> bool:
     """Whether there is one: nothing is asked of other objects, which may call the package anew."""
-    rest, seen = [values], set()  # a list may hold itself
+    rest: list[Any] = [values]
+    seen: dict[int, Any] = {}  # a list may hold itself
     while rest:
         one = rest.pop()
         if isinstance(one, kind):
@@ -99,7 +100,7 @@ def _holds(values: Any, kind: type) -> bool:
         if isinstance(one, np.ndarray) and one.dtype == object:
             one = one.ravel().tolist()
         if isinstance(one, list | tuple) and id(one) not in seen:
-            seen.add(id(one))
+            seen[id(one)] = one
             rest.extend(one)
     return False
 
