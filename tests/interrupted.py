@@ -17,6 +17,7 @@ import numpy as np
 from polhode import (
     MassAccumulator,
     RigidBody,
+    Uncertain,
     _core,
     equimomental,
     laminae,
@@ -70,6 +71,7 @@ def calls() -> dict[str, Callable[[], object]]:
     logarithms = _core.to_log_cholesky(bodies)
     found = principal_axes(tensors)
     vertices, faces = sphere(1000)
+    doubted = Uncertain(vertices, 1e-3)
     nodes, cells = 30.0 * vectors, rng.integers(0, ROWS, (ROWS, 4))
     accumulator = MassAccumulator()
     pickled = pickle.dumps(bodies)
@@ -163,6 +165,7 @@ def calls() -> dict[str, Callable[[], object]]:
         "from_voxels": lambda: RigidBody.from_voxels(np.ones((DEAR, 3, 3, 3)), 1.0),
         "accumulator": lambda: accumulator.add(heavy_ones, long),
         "from_mesh": lambda: RigidBody.from_mesh(vertices, faces, mass=1.0, orient=True),
+        "uncertain vertices": lambda: RigidBody.from_mesh(doubted, faces, mass=1.0),
         "from_surface": lambda: RigidBody.from_surface(vertices, faces, mass=1.0, thickness=1e-4),
         "thin surface": lambda: RigidBody.from_surface(vertices, faces, mass=1.0),
         "from_tetrahedra": lambda: RigidBody.from_tetrahedra(nodes, cells, density=1.0),

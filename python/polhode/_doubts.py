@@ -73,6 +73,11 @@ def sigma(self: Trajectory) -> StateSigma | None:
 
 def _forms(self: Trajectory) -> Floats | None:
     """Give what one standard deviation of each variable does to (δ, ω), shape (..., T, 6, k)."""
+    if self.uncertain_start is None:
+        raise ValueError(
+            "covariance: the state at the first time is uncertain by the motion before it, which is not "
+            "known here; simulate from the start on, or ask uncertainty.propagate"
+        )
     omega, attitude = self.uncertain_start
     doubts = self.body._doubts()
     if doubts is None and omega is None and attitude is None:

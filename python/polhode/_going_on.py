@@ -95,4 +95,7 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     given = state._asdict()
     if self.pivoted:
         del given["velocity"]
-    return self.body.simulate(t, **given, **options)
+    run = self.body.simulate(t, **given, **options)
+    if self.uncertain_start != (None, None) or self.body._doubts() is not None:
+        run.__dict__["uncertain_start"] = None  # the last state is uncertain, together with the body
+    return run

@@ -104,7 +104,7 @@ class Linear(NamedTuple):
 
     Attributes
     ----------
-    mass, center_of_mass, inertia, principal_moments, axes : bool or numpy.ndarray of bool
+    mass, center_of_mass, inertia, principal_moments, axes, radii_of_gyration : bool or numpy.ndarray of bool
         For each number of :class:`Sigma`. False where terms of higher order add more than 1.5 percent to the
         variance, or moments may change places. There ``method="monte-carlo"`` of
         :func:`polhode.uncertainty.propagate` tells what is right.
@@ -115,6 +115,7 @@ class Linear(NamedTuple):
     inertia: Any
     principal_moments: Any
     axes: Any
+    radii_of_gyration: Any
 
     def __repr__(self) -> str:
         return short(self)
@@ -133,6 +134,8 @@ class Sigma(NamedTuple):
     axes : numpy.ndarray, shape (..., 3)
         Of the small rotation of the principal axes about each of them, in radians; NaN where the two other
         moments are equal, or nearly so: there the axes are not determined.
+    radii_of_gyration : numpy.ndarray, shape (..., 3)
+        About the principal axes.
     linear : Linear
         Whether the first order is enough for each of them.
     """
@@ -142,6 +145,7 @@ class Sigma(NamedTuple):
     inertia: Any
     principal_moments: Any
     axes: Any
+    radii_of_gyration: Any
     linear: Linear
 
     def __repr__(self) -> str:

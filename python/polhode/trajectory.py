@@ -58,8 +58,9 @@ class Trajectory:
         One for each row that failed, with its ``row``, ``time`` and ``state``.
     pivoted : bool
         Whether the point `about` is fixed in space.
-    uncertain_start : tuple
-        Angular velocity and attitude at the start as `Uncertain`; None for one given without a sigma.
+    uncertain_start : tuple or None
+        Angular velocity and attitude at the first time as `Uncertain`, each None where it was given without a
+        sigma. None in all where that state follows from an uncertain motion before it.
     """
 
     body: _core.RigidBody
@@ -76,7 +77,7 @@ class Trajectory:
     events: Events = field(default_factory=Events.none)
     failures: tuple[IntegrationError | PolhodeError, ...] = ()
     pivoted: bool = False
-    uncertain_start: tuple[_core.Uncertain | None, _core.Uncertain | None] = (None, None)
+    uncertain_start: tuple[_core.Uncertain | None, _core.Uncertain | None] | None = (None, None)
 
     # Methods that stand in files of their own.
     torque = _acting.torque

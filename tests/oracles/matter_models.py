@@ -8,7 +8,7 @@ arithmetic: on floats, on arrays of draws, on numbers of fifty digits.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -309,8 +309,8 @@ def quantities(node: object) -> Iterator[Quantity]:
     elif isinstance(node, dict):
         for one in node.values():
             yield from quantities(one)
-    elif hasattr(node, "__dataclass_fields__"):
-        for one in fields(node):  # type: ignore[arg-type]
+    elif is_dataclass(node):
+        for one in fields(node):
             yield from quantities(getattr(node, one.name))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -232,6 +233,10 @@ def named(rng: Rng) -> Node:
     return Sum((left, Moved(right, some(rng, rng.uniform(-1, 1, 3), 1.0))), (1, 1))
 
 
+def placed_shape(rng: Rng, name: str) -> Node:
+    return placed(rng, shape(rng, name))
+
+
 KINDS: dict[str, Callable[[Rng], Node]] = {
     "tensor": tensor,
     "given": given,
@@ -242,7 +247,7 @@ KINDS: dict[str, Callable[[Rng], Node]] = {
     "composite": composite,
     "cavity": cavity,
     "named": named,
-    **{name: (lambda rng, name=name: placed(rng, shape(rng, name))) for name in SHAPES},  # type: ignore[misc]
+    **{name: partial(placed_shape, name=name) for name in SHAPES},
 }
 """What a random case may be: every source, and every shape placed anyhow."""
 

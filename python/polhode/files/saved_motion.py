@@ -90,8 +90,8 @@ def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
         _save_csv(trajectory, file)
     elif trajectory.uncertain_start != (None, None):
         raise ValueError(
-            f"path: {file}: files hold no sigma of the state at the start; save "
-            "dataclasses.replace(motion, uncertain_start=(None, None)), and its covariance beside it"
+            f"path: {file}: such a file does not hold what is uncertain of the state at the first time; "
+            "pickle keeps it, and .csv holds the states alone"
         )
     elif suffix == ".json":
         save_trajectory_json(trajectory, file)

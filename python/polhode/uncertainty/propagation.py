@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 import numpy as np
@@ -156,24 +157,24 @@ def _slopes(f: Function, around: Neighbours, shape: tuple[int, ...]) -> Floats:
             for step in (full, 0.5 * full)
         )
         slopes.append(((8.0 * near - far) / (6.0 * full)).ravel())
-    return np.array(slopes).reshape(around.rank, -1)
+    return np.array(slopes).reshape(around.rank, math.prod(shape))
 
 
 def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -> NDArray[np.bool_]:
     """Whether terms of higher order stay small along some directions, those of the body itself among them."""
     directions = np.random.default_rng(20).normal(size=(PROBES, around.rank))
-    even, odd = np.zeros(value.size), np.zeros(value.size)
+    even, odd = [], np.zeros(value.size)
     for direction in directions:
         try:
             above, below = (_numbers(f, around.at(s * direction), value.shape).ravel() for s in (1.0, -1.0))
         except PolhodeError:  # beyond what bodies have
             return np.zeros(value.size, dtype=bool)
         first = direction @ slopes
-        even += (0.5 * (above + below) - value.ravel()) ** 2
+        even.append(0.5 * (above + below) - value.ravel())
         odd += first * (0.5 * (above - below) - first)
     variance = (slopes**2).sum(axis=0)
     sigma, noise = np.sqrt(variance), ROUNDING * np.abs(value.ravel())
-    lacking = (even + 2 * odd) / PROBES
+    lacking = np.var(even, axis=0) + 2 * odd / PROBES
     fits = np.abs(lacking) <= LACKING * variance + 2 * noise * sigma + noise**2
     return np.asarray(fits & _follows(f, around, value, variance))
 

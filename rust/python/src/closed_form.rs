@@ -66,6 +66,11 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
         });
         interrupt.finish(py, outcome.is_ok())?;
     }
+    let starts_at_zero = times.ndim() == 1 && times.as_slice()?.first() == Some(&0.0);
+    if body.get().doubts.is_some() && !starts_at_zero {
+        // The motion began at t = 0: what the first of these states owes to the body's doubts is not known.
+        fields.set_item("uncertain_start", py.None())?;
+    }
     let np = numpy(py)?;
     let still = array(3)?;
     let none = np.call_method1("zeros", (motions.shape.clone(), dtype::<i64>(py)))?;

@@ -1,6 +1,6 @@
 //! Error-free transformations, and numbers of twice the precision: a rounded value plus the rest.
 
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_traits::{One, Zero};
 
@@ -194,20 +194,7 @@ impl Div for DoubleDouble {
     }
 }
 
-macro_rules! assign {
-    ($operator:ident, $method:ident, $symbol:tt) => {
-        impl $operator for DoubleDouble {
-            #[inline]
-            fn $method(&mut self, other: Self) {
-                *self = *self $symbol other;
-            }
-        }
-    };
-}
-assign!(AddAssign, add_assign, +);
-assign!(SubAssign, sub_assign, -);
-assign!(MulAssign, mul_assign, *);
-assign!(DivAssign, div_assign, /);
+super::number::assign_operators!([] DoubleDouble);
 
 impl Zero for DoubleDouble {
     #[inline]

@@ -1,6 +1,6 @@
 //! Numbers that carry their first derivatives with them.
 
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_traits::{One, Zero};
 
@@ -124,20 +124,7 @@ impl<const N: usize> Div for Jet<N> {
     }
 }
 
-macro_rules! assign {
-    ($operator:ident, $method:ident, $symbol:tt) => {
-        impl<const N: usize> $operator for Jet<N> {
-            #[inline(always)]
-            fn $method(&mut self, other: Self) {
-                *self = *self $symbol other;
-            }
-        }
-    };
-}
-assign!(AddAssign, add_assign, +);
-assign!(SubAssign, sub_assign, -);
-assign!(MulAssign, mul_assign, *);
-assign!(DivAssign, div_assign, /);
+super::number::assign_operators!([const N: usize] Jet<N>);
 
 impl<const N: usize> Default for Jet<N> {
     fn default() -> Self {

@@ -1,6 +1,6 @@
 //! Numbers that move along a line: value, slope and bend.
 
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_traits::{One, Zero};
 
@@ -127,19 +127,7 @@ impl Div<f64> for Parabola {
     }
 }
 
-macro_rules! assign {
-    ($operator:ident, $method:ident, $symbol:tt) => {
-        impl $operator for Parabola {
-            fn $method(&mut self, other: Self) {
-                *self = *self $symbol other;
-            }
-        }
-    };
-}
-assign!(AddAssign, add_assign, +);
-assign!(SubAssign, sub_assign, -);
-assign!(MulAssign, mul_assign, *);
-assign!(DivAssign, div_assign, /);
+super::number::assign_operators!([] Parabola);
 
 impl Zero for Parabola {
     fn zero() -> Self {

@@ -12,43 +12,83 @@
 //! - C bends by `Σ δm_k δC_k/m − F Σ δm_k/m²`,
 //! - I bends by `Σ [m_k (δC_k² 1 − δC_k δC_kᵀ) + δm_k (2 d_k·δC_k 1 − δC_k d_kᵀ − d_k δC_kᵀ)] − (F² 1 − F Fᵀ)/m`.
 
-use super::doubt::{Doubt, Tangent, plus};
-use super::variable::PROBES;
+use super::doubt::{Doubt, Tangent, plus, slopes};
+use super::variable::{PROBES, Variable};
 use crate::mass::ten::Ten;
 
 /// The doubts of bodies put together, each with the sign +1, or −1 where it is taken out.
 #[must_use]
 pub fn together(parts: &[(f64, Ten<f64>, &Doubt)]) -> Doubt {
-    let whole = Ten::together(parts.iter().map(|(sign, part, _)| (*sign, part)));
-    let count = parts.iter().map(|(_, _, doubt)| doubt.tangents.len()).sum();
-    let mut tangents = Vec::with_capacity(count);
-    let mut bends = [Tangent::default(); PROBES];
-    let mut first = [[0.0; 4]; PROBES]; // Σ δm, F
+    let mut sum = Sum::of(Ten::together(
+        parts.iter().map(|(sign, part, _)| (*sign, part)),
+    ));
     for (sign, part, doubt) in parts {
-        let share = Share::of(*sign, part, &whole);
-        tangents.extend(
-            (doubt.tangents.iter()).map(|(variable, change)| (*variable, share.take(change))),
+        sum.add(*sign, part, &doubt.tangents, Some(&doubt.bends));
+    }
+    sum.finish()
+}
+
+/// The doubts of a whole, part by part.
+pub(super) struct Sum {
+    whole: Ten<f64>,
+    tangents: Vec<(Variable, Tangent)>,
+    bends: [Tangent; PROBES],
+    /// Σ δm and F along each of the probes.
+    first: [(f64, [f64; 3]); PROBES],
+}
+
+impl Sum {
+    /// Of a whole with these numbers, without parts yet.
+    pub(super) fn of(whole: Ten<f64>) -> Self {
+        Self {
+            whole,
+            tangents: Vec::new(),
+            bends: [Tangent::default(); PROBES],
+            first: [(0.0, [0.0; 3]); PROBES],
+        }
+    }
+
+    /// Adds a part, with the second-order terms that it has of its own.
+    pub(super) fn add(
+        &mut self,
+        sign: f64,
+        part: &Ten<f64>,
+        tangents: &[(Variable, Tangent)],
+        bends: Option<&[Tangent; PROBES]>,
+    ) {
+        let share = Share::of(sign, part, &self.whole);
+        self.tangents.extend(
+            tangents
+                .iter()
+                .map(|(variable, change)| (*variable, share.take(change))),
         );
-        for (probe, slope) in doubt.slopes().iter().enumerate() {
-            let of_part = plus(&share.take(&doubt.bends[probe]), &share.bend(slope));
-            bends[probe] = plus(&bends[probe], &of_part);
-            first[probe][0] += sign * slope.mass;
-            for k in 0..3 {
-                first[probe][1 + k] +=
-                    sign * (slope.mass * share.d[k] + part.mass * slope.center[k]);
+        for (probe, slope) in slopes(tangents).iter().enumerate() {
+            let sum = &mut self.bends[probe];
+            *sum = plus(sum, &share.bend(slope));
+            if let Some(bends) = bends {
+                *sum = plus(sum, &share.take(&bends[probe]));
+            }
+            let (mass, F) = &mut self.first[probe];
+            *mass += sign * slope.mass;
+            for (k, F) in F.iter_mut().enumerate() {
+                *F += sign * (slope.mass * share.d[k] + part.mass * slope.center[k]);
             }
         }
     }
-    for (bend, [mass, F @ ..]) in bends.iter_mut().zip(first) {
-        let lever = moved(F, F, 0.5 / whole.mass);
-        for (place, F) in bend.center.iter_mut().zip(F) {
-            *place -= F * mass / (whole.mass * whole.mass);
+
+    /// The doubts of all that was added.
+    pub(super) fn finish(mut self) -> Doubt {
+        let over = 1.0 / self.whole.mass;
+        for (bend, (mass, F)) in self.bends.iter_mut().zip(self.first) {
+            for (place, F) in bend.center.iter_mut().zip(F) {
+                *place -= F * mass * over * over;
+            }
+            for (element, less) in bend.inertia.iter_mut().zip(moved(F, F, 0.5 * over)) {
+                *element -= less;
+            }
         }
-        for (element, less) in bend.inertia.iter_mut().zip(lever) {
-            *element -= less;
-        }
+        Doubt::of(self.tangents, self.bends)
     }
-    Doubt::of(tangents, bends)
 }
 
 /// `factor (2 a·b 1 − a bᵀ − b aᵀ)`, by elements.

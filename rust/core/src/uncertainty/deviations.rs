@@ -5,14 +5,15 @@
 //!
 //! Of a number with the terms l, e and c of first, second and third order the variance is
 //! `E[l²] + var(e) + 2 E[l c] + …` for normal draws: the first order is right within a percent as long as what follows stays
-//! below 1.5 percent of it, with a margin for what is not seen. The even terms are seen along the probes, by a step forward and one back; the third-order terms of
-//! moments and axes are in `third`. Moments that are about to change places have no such expansion: their gap has
-//! to be wide beside its own deviation.
+//! below two percent of it, here less a margin for what is not seen. What the tensor's change does by itself, `higher` has in
+//! closed form; what else there is, bends of the ten numbers above all, is seen along the probes, by a step forward and one
+//! back: as the probes' variance of e, less that of its closed part. Moments that are about to change places have no such
+//! expansion: their gap has to be wide beside its own deviation.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::doubt::Doubt;
-use super::third::{Third, across};
+use super::higher::{Higher, Second, across};
 use super::variable::PROBES;
 use crate::mass::body::RigidBody;
 use crate::mass::ten::Ten;
@@ -35,57 +36,90 @@ pub struct Deviations {
     pub numbers: [f64; 10],
     /// Of the principal moments.
     pub moments: [f64; 3],
+    /// Of the radii of gyration.
+    pub radii: [f64; 3],
     /// Of the axes: of the small rotations about each of them, in radians; NaN where the axes are not determined.
     pub axes: [f64; 3],
     /// Whether the first order is enough for each of the ten numbers.
     pub is_linear: [bool; 10],
     /// For each of the moments.
     pub moments_are_linear: [bool; 3],
+    /// For each of the radii.
+    pub radii_are_linear: [bool; 3],
     /// For each of the angles.
     pub axes_are_linear: [bool; 3],
 }
 
-/// Standard deviations of mass, centre, tensor, principal moments and axes about C.
+/// Standard deviations of mass, centre and tensor, of the principal moments and axes about C, and of the radii of gyration.
 #[must_use]
 pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
     let numbers = Ten::of(body);
     let principal = body.principal();
     let largest = principal.moments[2];
+    let radii = body.radii_of_gyration();
+    // Of a radius k: `δk = m (k²)′/(2 m k)`; of none where a moment is zero, since what is never negative has no deviation there.
+    let of_radius = radii.map(|k| {
+        if k > 0.0 {
+            0.5 / (numbers.mass * k)
+        } else {
+            0.0
+        }
+    });
     let mut own = [Terms::default(); 10];
-    let (mut moments, mut axes) = ([Terms::default(); 3], [Terms::default(); 3]);
-    let mut third = Third::new(principal.moments);
+    let [mut moments, mut angles, mut lengths] = [[Terms::default(); 3]; 3];
+    let mut higher = Higher::new(principal.moments, radii);
     for (_, change) in &doubt.tangents {
         add(&mut own, change.to_array());
         let turned = Turned::of(&principal, &change.tensor());
         add(&mut moments, turned.moments());
-        add(&mut axes, turned.angles());
-        third.add(&turned.change);
+        add(&mut angles, turned.angles());
+        let of_mass = |k: usize| turned.change[(k, k)] - radii[k].powi(2) * change.mass;
+        add(
+            &mut lengths,
+            std::array::from_fn(|k| of_radius[k] * of_mass(k)),
+        );
+        higher.add(&turned.change, change.mass);
     }
+    let seconds: [(Second, Second); 3] =
+        std::array::from_fn(|k| (higher.second_of_moment(k), higher.second_of_angle(k)));
+    let mut bends = [Even::default(); 10];
+    let mut evens = [[Even::default(); 3]; 3];
     for (slope, bend) in doubt.slopes().iter().zip(&doubt.bends) {
-        bent(&mut own, bend.to_array());
-        let [above, below] = [1.0, -1.0].map(|sign| {
+        for (even, bend) in bends.iter_mut().zip(bend.to_array()) {
+            even.add(bend, 0.0);
+        }
+        let ends = [1.0, -1.0].map(|sign| {
             let tensor = numbers.tensor() + slope.tensor() * sign + bend.tensor();
-            Stepped::from(&principal, &principal_axes(&tensor))
+            let mass = numbers.mass + slope.mass * sign + bend.mass;
+            Stepped::from(&principal, radii, &principal_axes(&tensor), mass)
         });
-        bent(
-            &mut moments,
-            std::array::from_fn(|k| 0.5 * (above.moments[k] + below.moments[k])),
-        );
-        bent(
-            &mut axes,
-            std::array::from_fn(|k| 0.5 * (above.angles[k] + below.angles[k])),
-        );
+        let change = Turned::of(&principal, &slope.tensor()).change;
+        for (k, (moment, angle)) in seconds.iter().enumerate() {
+            let mean = |of: fn(&Stepped) -> [f64; 3]| 0.5 * (of(&ends[0])[k] + of(&ends[1])[k]);
+            let closed = moment.of(&change);
+            evens[0][k].add(mean(|end| end.moments), closed);
+            evens[1][k].add(mean(|end| end.angles), angle.of(&change));
+            evens[2][k].add(mean(|end| end.radii), of_radius[k] * closed);
+        }
     }
-    for k in 0..3 {
-        moments[k].odd = third.of_moment(k);
-        axes[k].odd = third.of_angle(k);
+    for (own, bend) in own.iter_mut().zip(bends) {
+        own.even = bend.variance(0.0);
+    }
+    for (k, (moment, angle)) in seconds.iter().enumerate() {
+        let (closed, square) = (higher.variance(moment), of_radius[k].powi(2));
+        moments[k].even = evens[0][k].variance(closed);
+        moments[k].odd = higher.of_moment(k);
+        angles[k].even = evens[1][k].variance(higher.variance(angle));
+        angles[k].odd = higher.of_angle(k);
+        lengths[k].even = evens[2][k].variance(square * closed);
+        lengths[k].odd = square * higher.of_radius(k);
     }
     let gaps: [Gap; 3] = std::array::from_fn(|k| {
         let (i, j) = across(k);
         Gap {
             width: principal.moments[j] - principal.moments[i],
             deviation: {
-                let deviation = third.gap(k).sqrt();
+                let deviation = higher.gap(k).sqrt();
                 if deviation > ROUNDING * largest {
                     deviation
                 } else {
@@ -96,6 +130,8 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
     });
     // Where two moments may change places, the other two angles are about other axes.
     let none_changes = gaps.iter().all(|gap| gap.is_wide(GAPS[0]));
+    let beside = |k: usize| [(k + 1) % 3, (k + 2) % 3];
+    let stays = |k: usize| beside(k).iter().all(|&axis| gaps[axis].is_wide(GAPS[0]));
     let is_apart = gaps.map(|gap| gap.width > DEGENERATE_RTOL * largest);
     let radius = (largest / numbers.mass).sqrt() + Vector3::from(numbers.center).norm();
     let size = |k: usize| match k {
@@ -106,20 +142,17 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
     Deviations {
         numbers: own.map(Terms::deviation),
         moments: moments.map(Terms::deviation),
+        radii: lengths.map(Terms::deviation),
         axes: std::array::from_fn(|k| {
-            let sigma = axes[k].deviation();
+            let sigma = angles[k].deviation();
             let is_determined = is_apart[k] && sigma < ANYWHERE;
             if is_determined { sigma } else { f64::NAN }
         }),
         is_linear: std::array::from_fn(|k| own[k].is_linear(size(k))),
-        moments_are_linear: std::array::from_fn(|k| {
-            let beside = (0..3)
-                .filter(|&axis| axis != k)
-                .all(|axis| gaps[axis].is_wide(GAPS[0]));
-            beside && moments[k].is_linear(largest)
-        }),
+        moments_are_linear: std::array::from_fn(|k| stays(k) && moments[k].is_linear(largest)),
+        radii_are_linear: std::array::from_fn(|k| stays(k) && lengths[k].is_linear(radius)),
         axes_are_linear: std::array::from_fn(|k| {
-            is_apart[k] && none_changes && gaps[k].is_wide(GAPS[1]) && axes[k].is_linear(1.0)
+            is_apart[k] && none_changes && gaps[k].is_wide(GAPS[1]) && angles[k].is_linear(1.0)
         }),
     }
 }
@@ -137,7 +170,7 @@ impl Gap {
     }
 }
 
-/// Variance to first order, squares of even terms along the probes, and twice the mean of first- times third-order terms.
+/// Variance to first order, that of even terms, and twice the mean of first- times third-order terms.
 #[derive(Clone, Copy, Debug, Default)]
 struct Terms {
     first: f64,
@@ -154,7 +187,7 @@ impl Terms {
     /// Whether it is enough, for a number of this size.
     fn is_linear(self, size: f64) -> bool {
         let noise = ROUNDING * size;
-        let lacking = self.even / PROBES as f64 + self.odd;
+        let lacking = self.even + self.odd;
         lacking.abs() <= LACKING * self.first + noise * noise
     }
 }
@@ -165,9 +198,52 @@ fn add<const N: usize>(sums: &mut [Terms; N], terms: [f64; N]) {
     }
 }
 
-fn bent<const N: usize>(sums: &mut [Terms; N], terms: [f64; N]) {
-    for (sum, term) in sums.iter_mut().zip(terms) {
-        sum.even += term * term;
+/// An even term along the probes, and the part of it that has a closed form.
+#[derive(Clone, Copy, Debug, Default)]
+struct Even {
+    all: Spread,
+    closed: Spread,
+    rest: Spread,
+}
+
+impl Even {
+    fn add(&mut self, term: f64, closed: f64) {
+        self.all.add(term);
+        self.closed.add(closed);
+        self.rest.add(term - closed);
+    }
+
+    /// The variance of the term, where that of its closed part is this.
+    ///
+    /// Where bends undo the closed part, as for a body that is only turned, what the probes miss of both is as large as either:
+    /// there the term alone is the better witness.
+    fn variance(&self, closed: f64) -> f64 {
+        let all = self.all.variance();
+        if self.rest.variance() < all {
+            let variance = closed + (all - self.closed.variance());
+            if variance < 0.0 { 0.0 } else { variance } // a NaN stays
+        } else {
+            all
+        }
+    }
+}
+
+/// Sums of a term over the probes, and of its square.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spread {
+    sum: f64,
+    squares: f64,
+}
+
+impl Spread {
+    fn add(&mut self, term: f64) {
+        self.sum += term;
+        self.squares += term * term;
+    }
+
+    fn variance(&self) -> f64 {
+        let mean = self.sum / PROBES as f64;
+        self.squares / PROBES as f64 - mean * mean
     }
 }
 
@@ -209,12 +285,14 @@ impl Turned {
 struct Stepped {
     /// By how much the moments are others.
     moments: [f64; 3],
+    /// And the radii of gyration; NaN where a body has none.
+    radii: [f64; 3],
     /// The rotation of the axes, about themselves.
     angles: [f64; 3],
 }
 
 impl Stepped {
-    fn from(start: &PrincipalAxes, end: &PrincipalAxes) -> Self {
+    fn from(start: &PrincipalAxes, radii: [f64; 3], end: &PrincipalAxes, mass: f64) -> Self {
         let mut turn = start.axes.tr_mul(&end.axes);
         // Axes have no sense: each is taken as near as it can be, and the last one right-handed.
         for k in 0..2 {
@@ -226,6 +304,14 @@ impl Stepped {
         turn.set_column(2, &third);
         Self {
             moments: std::array::from_fn(|k| end.moments[k] - start.moments[k]),
+            radii: std::array::from_fn(|k| {
+                let square = end.moments[k] / mass;
+                if radii[k] > 0.0 {
+                    square.sqrt() - radii[k]
+                } else {
+                    0.0
+                }
+            }),
             angles: Rotation3::from_matrix_unchecked(turn).scaled_axis().into(),
         }
     }
@@ -260,8 +346,14 @@ mod tests {
         let first = Turned::of(&principal, &slope);
         let h = 1e-4;
         let tensor = Matrix3::from_diagonal(&Vector3::from(principal.moments));
-        let [above, below] =
-            [h, -h].map(|h| Stepped::from(&principal, &principal_axes(&(tensor + slope * h))));
+        let [above, below] = [h, -h].map(|h| {
+            Stepped::from(
+                &principal,
+                [1.0; 3],
+                &principal_axes(&(tensor + slope * h)),
+                1.0,
+            )
+        });
         for k in 0..3 {
             let moment = (above.moments[k] - below.moments[k]) / (2.0 * h);
             let angle = (above.angles[k] - below.angles[k]) / (2.0 * h);
@@ -305,7 +397,7 @@ mod tests {
     fn what_is_linear_is_told_on_both_sides_of_the_limits() {
         let terms = |even: f64, odd: f64| Terms {
             first: 1.0,
-            even: PROBES as f64 * even,
+            even,
             odd,
         };
         for (near, is_linear) in [(0.99, true), (1.01, false)] {
@@ -321,5 +413,28 @@ mod tests {
             };
             assert_eq!(none.is_linear(1.0), is_linear);
         }
+    }
+
+    #[test]
+    fn even_terms_are_seen_by_the_better_witness() {
+        let of = |terms: &dyn Fn(f64) -> (f64, f64)| {
+            let mut even = Even::default();
+            for probe in 0..PROBES {
+                let (all, closed) = terms(probe as f64);
+                even.add(all, closed);
+            }
+            even.variance(7.0)
+        };
+        // A closed term and nothing else: its variance.
+        assert_eq!(of(&|x| (x, x)), 7.0);
+        // A closed term that the rest undoes: none.
+        assert_eq!(of(&|x| (0.0, x)), 0.0);
+        // The rest alone: its own, about its mean.
+        let alone = of(&|x| (1.0 + x % 2.0, 0.0));
+        assert_eq!(alone, 0.25);
+        // What is more than the closed one: 1.21 − 1 of what the probes see.
+        let seen = ((PROBES * PROBES) as f64 - 1.0) / 12.0;
+        assert!((of(&|x| (1.1 * x, x)) - (7.0 + 0.21 * seen)).abs() < 1e-12);
+        assert!(of(&|x| (x * f64::NAN, x)).is_nan());
     }
 }

@@ -68,16 +68,7 @@ impl Doubt {
     /// The first-order terms along each probe.
     #[must_use]
     pub fn slopes(&self) -> [Tangent; PROBES] {
-        let mut slopes = [[0.0; 10]; PROBES];
-        for (variable, tangent) in &self.tangents {
-            let tangent = tangent.to_array();
-            for (slope, step) in slopes.iter_mut().zip(variable.steps()) {
-                for (sum, t) in slope.iter_mut().zip(tangent) {
-                    *sum += step * t;
-                }
-            }
-        }
-        slopes.map(|slope| Tangent::from_array(&slope))
+        slopes(&self.tangents)
     }
 
     /// The ten numbers along each probe, to second order.
@@ -104,6 +95,21 @@ impl Doubt {
             bends: self.bends.map(|bend| linear(&bend)),
         }
     }
+}
+
+/// What tangents come to along each of the probes.
+#[must_use]
+pub fn slopes(tangents: &[(Variable, Tangent)]) -> [Tangent; PROBES] {
+    let mut slopes = [[0.0; 10]; PROBES];
+    for (variable, tangent) in tangents {
+        let tangent = tangent.to_array();
+        for (slope, step) in slopes.iter_mut().zip(variable.steps()) {
+            for (sum, t) in slope.iter_mut().zip(tangent) {
+                *sum += step * t;
+            }
+        }
+    }
+    slopes.map(|slope| Tangent::from_array(&slope))
 }
 
 /// The sum of two changes.

@@ -4,13 +4,15 @@
 //! it makes with each face: a face is asked for its nine derivatives alone, whatever the number of vertices.
 
 use super::doubt::{Doubt, Tangent};
-use super::follow::line;
 use super::given::Form;
 use super::variable::PROBES;
+use crate::error::Error;
 use crate::mass::Index;
 use crate::mass::ten::Ten;
 use crate::numerics::jet::Jet;
 use crate::numerics::number::Real;
+use crate::numerics::parabola::Parabola;
+use crate::numerics::threads::Watch;
 
 /// Volume, `∫ r dV` and `∫ r rᵀ dV` (xx, yy, zz, xy, xz, yz).
 type Moments<X> = [X; 10];
@@ -18,24 +20,28 @@ type Moments<X> = [X; 10];
 /// The places of the second moments.
 const SECOND: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
+/// Faces between two looks at whether to go on.
+const BLOCK: usize = 4096;
+
 /// The doubts of a homogeneous solid with these numbers: three forms for each vertex. Of a solid whose mass was given the
 /// density changes with the volume.
-#[must_use]
+///
+/// # Errors
+/// [`Error::Stopped`] when `watch` asks for it.
 pub fn of_mesh<I: Index>(
     solid: &Ten<f64>,
     vertices: &[[f64; 3]],
     faces: &[[I; 3]],
     forms: &[Form],
     mass_is_given: bool,
-) -> Doubt {
-    let corners = |face: &[I; 3]| face.map(Index::position);
+    watch: &mut Watch<'_>,
+) -> Result<Doubt, Error> {
     let from = |corner: usize| -> [f64; 3] {
         std::array::from_fn(|k| vertices[corner][k] - solid.center[k])
     };
     let mut moments = [0.0; 10];
     let mut by_coordinate = vec![[0.0; 10]; 3 * vertices.len()];
-    for face in faces {
-        let corners = corners(face);
+    each(faces, watch, |corners| {
         let place = |n: usize, k: usize| Jet::<9>::variable(from(corners[n])[k], 3 * n + k);
         let found = tetrahedron(std::array::from_fn(|n| {
             std::array::from_fn(|k| place(n, k))
@@ -50,35 +56,55 @@ pub fn of_mesh<I: Index>(
                 }
             }
         }
+    })?;
+    let mut tangents = Vec::new();
+    for (form, slopes) in forms.iter().zip(&by_coordinate) {
+        let along = std::array::from_fn(|k| Jet {
+            value: moments[k],
+            slopes: [slopes[k]],
+        });
+        let change = body(solid, &along, mass_is_given).map(|number: Jet<1>| number.slopes[0]);
+        tangents
+            .extend((form.iter()).map(|&(variable, step)| (variable, change.map(|x| x * step))));
     }
-    let tangents = (forms.iter().zip(&by_coordinate))
-        .flat_map(|(form, slopes)| {
-            let along = std::array::from_fn(|k| Jet {
-                value: moments[k],
-                slopes: [slopes[k]],
-            });
-            let change = body(solid, &along, mass_is_given).map(|number: Jet<1>| number.slopes[0]);
+    let mut bends = [Tangent::default(); PROBES];
+    for (probe, bend) in bends.iter_mut().enumerate() {
+        let slope = |form: &Form| -> f64 {
             form.iter()
-                .map(move |&(variable, step)| (variable, change.map(|x| x * step)))
-        })
-        .collect();
-    let lines: Vec<_> = (forms.iter().enumerate())
-        .map(|(place, form)| line(from(place / 3)[place % 3], form))
-        .collect();
-    let bends: [Tangent; PROBES] = std::array::from_fn(|probe| {
-        let mut along = [crate::numerics::parabola::Parabola::default(); 10];
-        for face in faces {
-            let corners = corners(face);
-            let found = tetrahedron(
-                corners.map(|corner| std::array::from_fn(|k| lines[3 * corner + k][probe])),
-            );
+                .map(|(variable, step)| step * variable.steps()[probe])
+                .sum()
+        };
+        let slopes: Vec<f64> = forms.iter().map(slope).collect();
+        let mut along = [Parabola::default(); 10];
+        each(faces, watch, |corners| {
+            let found = tetrahedron(corners.map(|corner| {
+                let place = from(corner);
+                std::array::from_fn(|k| Parabola::line(place[k], slopes[3 * corner + k]))
+            }));
             for (sum, term) in along.iter_mut().zip(found) {
                 *sum += term;
             }
+        })?;
+        *bend = body(solid, &along, mass_is_given).map(|number| number.bend);
+    }
+    Ok(Doubt::of(tangents, bends))
+}
+
+/// Goes through the corners of all faces, and now and then asks whether to go on.
+fn each<I: Index>(
+    faces: &[[I; 3]],
+    watch: &mut Watch<'_>,
+    mut f: impl FnMut([usize; 3]),
+) -> Result<(), Error> {
+    for block in faces.chunks(BLOCK) {
+        if watch(0.0).is_break() {
+            return Err(Error::Stopped);
         }
-        body(solid, &along, mass_is_given).map(|number| number.bend)
-    });
-    Doubt::of(tangents, bends)
+        for face in block {
+            f(face.map(Index::position));
+        }
+    }
+    Ok(())
 }
 
 /// The moments of the tetrahedron between the origin and a face.

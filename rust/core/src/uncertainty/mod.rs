@@ -17,7 +17,7 @@
 //! | through the corners of a polygon | [`polygon`] |
 //! | through sums, where parts are many | [`composites`] |
 //! | which covariances no body can have | [`possible`] |
-//! | third-order terms of moments and axes | `third` |
+//! | terms of higher order of moments and axes | `higher` |
 //! | standard deviations of all that a body has, and where they are not to be trusted | [`deviations`](mod@deviations) |
 
 pub mod changes;
@@ -26,11 +26,11 @@ pub mod deviations;
 pub mod doubt;
 pub mod follow;
 pub mod given;
+mod higher;
 pub mod mesh;
 pub mod particles;
 pub mod polygon;
 pub mod possible;
-mod third;
 pub mod variable;
 
 pub use changes::{

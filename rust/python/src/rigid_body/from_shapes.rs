@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::read_list;
 use crate::body::PyRigidBody;
+use crate::errors::to_py;
 use crate::interrupt::Interrupt;
 use crate::meshes::{finish, read_mesh, with_mesh};
 use crate::shapes::amount;
@@ -118,18 +119,20 @@ impl PyRigidBody {
             }
         };
         let body = finish(py, interrupt, outcome)?;
-        let doubts = uncertain.as_ref().map(|uncertain| {
-            let forms = uncertain.get().forms();
-            let doubt = with_mesh!(mesh, |vertices, faces| of_mesh(
-                &Ten::of(&body),
-                vertices,
-                faces,
-                forms,
-                mass.is_some()
-            ));
-            PyResult::Ok(Arc::new(vec![doubt]))
-        });
-        Self::doubtful(Stack::one(body), doubts.transpose()?).weighed([density, mass, None])
+        let mut doubts = None;
+        if let Some(uncertain) = uncertain {
+            let (solid, forms) = (Ten::of(&body), uncertain.get().forms());
+            let is_of_mass = mass.is_some();
+            let interrupt = Interrupt::new(None);
+            let watch = &mut |_| interrupt.poll(None);
+            let found = with_mesh!(mesh, |vertices, faces| {
+                py.detach(|| of_mesh(&solid, vertices, faces, forms, is_of_mass, watch))
+            });
+            interrupt.finish(py, found.is_ok())?;
+            let doubt = found.map_err(|error| to_py(py, &error))?;
+            doubts = Some(Arc::new(vec![doubt]));
+        }
+        Self::doubtful(Stack::one(body), doubts).weighed([density, mass, None])
     }
 
     /// Shell, thin or of finite thickness, around a triangle mesh, open or closed.

@@ -15,6 +15,7 @@ use pyo3::types::PyTuple;
 use crate::arrays::{Numbers, floats, read, write_numbers_of, write_of};
 use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py, with_prefix};
+use crate::memory;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 
@@ -103,7 +104,7 @@ impl PyRigidBody {
                 return Err(with_prefix(py, name, &to_py(py, &fault)));
             }
         }
-        let mut sigma = Vec::with_capacity(10 * grid.len());
+        let mut sigma = memory::vector("with_sigma", &[&grid.shape[..], &[10]].concat(), 0)?;
         for [_, m, c, i] in grid.rows() {
             sigma.push(mass[m]);
             sigma.extend(center[c]);
@@ -233,13 +234,14 @@ impl PyRigidBody {
         let mut numbers =
             Numbers::of::<[f64; 10]>(py, "covariance", &[&grid.shape[..], &[10]].concat())?;
         numbers.put(grid.rows(), |[a, b], out| {
-            let both = self.row(a).1.covariance_with(self_or(other, b));
+            let both = self.row(a).1.covariance_with(other.row(b).1);
             out.extend(both.transpose().as_slice()); // nalgebra stores columns
         })?;
         numbers.finish::<[f64; 10]>(&[&grid.shape[..], &[10]].concat())
     }
 
-    /// Standard deviations of mass, centre of mass, tensor, principal moments and axes; None where nothing is uncertain.
+    /// Standard deviations of mass, centre of mass, tensor, principal moments and axes, and radii of
+    /// gyration; None where nothing is uncertain.
     ///
     /// Examples
     /// --------
@@ -268,6 +270,7 @@ impl PyRigidBody {
             })?,
             flags(py, &found, &[3], |d, out| out.extend(d.moments_are_linear))?,
             flags(py, &found, &[3], |d, out| out.extend(d.axes_are_linear))?,
+            flags(py, &found, &[3], |d, out| out.extend(d.radii_are_linear))?,
         ))?;
         results.getattr("Sigma")?.call1((
             write_numbers_of(py, &found, |d| d.numbers[0])?,
@@ -275,13 +278,10 @@ impl PyRigidBody {
             write_of(py, &found, tensor)?,
             write_of(py, &found, |d| d.moments)?,
             write_of(py, &found, |d| d.axes)?,
+            write_of(py, &found, |d| d.radii)?,
             linear,
         ))
     }
-}
-
-fn self_or(body: &PyRigidBody, row: usize) -> &Doubt {
-    body.row(row).1
 }
 
 fn named(source: Option<&str>) -> Source {

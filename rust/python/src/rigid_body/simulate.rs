@@ -19,7 +19,7 @@ use crate::interrupt::Interrupt;
 use crate::loads::PyLoad;
 use crate::stack::Stack;
 use crate::times::read_times;
-use crate::uncertain::value_of;
+use crate::uncertain::{rotation_of, value_of};
 
 /// An optional argument of any array-like kind.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -166,7 +166,7 @@ impl PyRigidBody {
         let (attitude, attitude_doubt) = match attitude {
             None => (None, None),
             Some(attitude) => {
-                let (value, doubt) = value_of(attitude)?;
+                let (value, doubt) = rotation_of(attitude, "attitude")?;
                 (Some(value), doubt)
             }
         };

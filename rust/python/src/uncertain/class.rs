@@ -28,7 +28,8 @@ use crate::shape::tuple;
 ///     Instead of `sigma`: of the n numbers in C order.
 /// source : str, optional
 ///     A name for the draw. Objects with the same name are the same draw: number by number they move together, whatever their
-///     values and sigmas. Without a name each object is a source of its own.
+///     values and sigmas; where a covariance is given, for the same covariance alone. Without a name each object is a source
+///     of its own.
 ///
 /// Raises
 /// ------

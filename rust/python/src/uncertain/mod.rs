@@ -14,5 +14,5 @@ pub(crate) use carried::{carried, of_numbers};
 pub(crate) use class::PyUncertain;
 pub(crate) use quantity::{
     Number, Quantity, Weight, factor, has_ufloats, is_uncertain, known, quantity, quantity_list,
-    quantity_or, rotation_quantity, symmetric, value_of,
+    quantity_or, rotation_of, rotation_quantity, symmetric, value_of,
 };

@@ -86,6 +86,18 @@ impl<'py> FromPyObject<'_, 'py> for Weight {
     }
 }
 
+/// As [`value_of`] for a rotation, which with a sigma must be one of a library's with three small angles.
+pub(crate) fn rotation_of<'py>(
+    object: &Bound<'py, PyAny>,
+    name: &'static str,
+) -> PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyUncertain>>)> {
+    let found = value_of(object)?;
+    if found.1.is_some() {
+        rotation_quantity(object, name)?;
+    }
+    Ok(found)
+}
+
 /// The plain value of an argument, and the argument itself where it has a sigma.
 pub(crate) fn value_of<'py>(
     object: &Bound<'py, PyAny>,
