@@ -194,7 +194,7 @@ impl Div for DoubleDouble {
     }
 }
 
-super::number::assign_operators!([] DoubleDouble);
+super::assign::assign_operators!([] DoubleDouble);
 
 impl Zero for DoubleDouble {
     #[inline]

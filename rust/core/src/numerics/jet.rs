@@ -124,7 +124,7 @@ impl<const N: usize> Div for Jet<N> {
     }
 }
 
-super::number::assign_operators!([const N: usize] Jet<N>);
+super::assign::assign_operators!([const N: usize] Jet<N>);
 
 impl<const N: usize> Default for Jet<N> {
     fn default() -> Self {

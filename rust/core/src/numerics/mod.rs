@@ -18,6 +18,7 @@
 //! | [`turns`] | phases without their whole turns, sines, exponentials in lanes |
 //! | [`jacobi`] | Jacobi's functions of one number, Carlson's integral of the second kind |
 //! | [`jet`] | numbers with their derivatives |
+//! | `assign` | `+=` and its like, by `+` and its like |
 //! | [`parabola`] | numbers to second order along a line |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`sign_changes`] | all places in an interval at which a polynomial changes its sign |
@@ -27,6 +28,7 @@
 //! Same bits everywhere: a row's result does not depend on its neighbours, on the width of the lanes, on the
 //! number of threads, nor on which machine with fused multiply-add computes it.
 
+mod assign;
 pub mod dispatch;
 pub mod double_double;
 pub mod eigen3;

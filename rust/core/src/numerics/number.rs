@@ -12,25 +12,6 @@ use num_traits::{One, Zero};
 use super::double_double::DoubleDouble;
 use super::lane::Lane;
 
-/// `+=`, `-=`, `*=` and `/=` of a number, by its sum, difference, product and quotient.
-macro_rules! assign_operators {
-    ([$($generic:tt)*] $Number:ty) => {
-        $crate::numerics::number::assign_operators!([$($generic)*] $Number, AddAssign add_assign +);
-        $crate::numerics::number::assign_operators!([$($generic)*] $Number, SubAssign sub_assign -);
-        $crate::numerics::number::assign_operators!([$($generic)*] $Number, MulAssign mul_assign *);
-        $crate::numerics::number::assign_operators!([$($generic)*] $Number, DivAssign div_assign /);
-    };
-    ([$($generic:tt)*] $Number:ty, $Operator:ident $method:ident $symbol:tt) => {
-        impl<$($generic)*> std::ops::$Operator for $Number {
-            #[inline(always)]
-            fn $method(&mut self, other: Self) {
-                *self = *self $symbol other;
-            }
-        }
-    };
-}
-pub(super) use assign_operators;
-
 /// A real number, rounded to one precision.
 pub trait Real:
     Scalar

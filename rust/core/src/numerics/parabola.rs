@@ -127,7 +127,7 @@ impl Div<f64> for Parabola {
     }
 }
 
-super::number::assign_operators!([] Parabola);
+super::assign::assign_operators!([] Parabola);
 
 impl Zero for Parabola {
     fn zero() -> Self {
