@@ -206,6 +206,7 @@ OTHERS: dict[str, Callable[[], object]] = {
     "Load.__getitem__": lambda: LOADS[np.broadcast_to(0, ABSURD)],
     "RigidBody.__add__": lambda: COLUMN + COLUMN[:, 0],
     "RigidBody.__sub__": lambda: COLUMN - COLUMN[:, 0],
+    "RigidBody.sigma_about": lambda: BODY.with_sigma(mass=0.1).sigma_about(np.broadcast_to(1.0, (ABSURD, 3))),
     "RigidBody.covariance_with": lambda: COLUMN.covariance_with(COLUMN[:, 0]),
     "RigidBody.with_covariance": lambda: BODY.with_covariance(np.broadcast_to(1.0, (ABSURD, 10))),
     "Uncertain": lambda: _core.Uncertain(np.broadcast_to(1.0, ABSURD), 1.0),

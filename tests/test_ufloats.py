@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from polhode import RigidBody, Uncertain, laminae, solids
-from polhode.uncertainty import from_ufloats, propagate, to_ufloats
+from polhode.uncertainty import joined, propagate, to_ufloats
 from uncertainties import ufloat
 from uncertainties.umath import sqrt
 
@@ -42,7 +42,7 @@ def test_their_arithmetic_and_ours_agree() -> None:
 
 def test_correlated_numbers_stay_correlated() -> None:
     x = ufloat(1.0, 0.1)
-    given: Any = from_ufloats([x, 2 * x, 3.0])
+    given: Any = joined([x, 2 * x, 3.0])
     assert given.covariance == pytest.approx(
         np.array([[0.01, 0.02, 0.0], [0.02, 0.04, 0.0], [0.0, 0.0, 0.0]])
     )
@@ -78,12 +78,12 @@ def test_files_of_meshes_keep_it(tmp_path: Path) -> None:
 
 
 def test_what_has_none_is_none() -> None:
-    assert from_ufloats([1.0, 2.0]) is None
-    assert from_ufloats("text") is None
-    assert from_ufloats([[1.0], [2.0, 3.0]]) is None
+    assert joined([1.0, 2.0]) is None
+    assert joined("text") is None
+    assert joined([[1.0], [2.0, 3.0]]) is None
     itself: list[Any] = [1.0]
     itself += [itself, itself]
-    assert from_ufloats(itself) is None
+    assert joined(itself) is None
     with pytest.raises(TypeError, match="radius"):
         solids.sphere(["a"], mass=1.0)
 

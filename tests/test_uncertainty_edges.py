@@ -98,6 +98,38 @@ class TestLimits:
             assert np.array_equal(found.covariance, np.zeros((3, 3)))
 
 
+class TestWithoutExtent:
+    """Where a moment is zero its radius of gyration is zero for ever; thin is not zero."""
+
+    def test_of_a_dumbbell(self) -> None:
+        body = RigidBody.from_particles(
+            [Uncertain(1.0, 0.1), 2.0], [(0, 0, 0), Uncertain((1.0, 2.0, 3.0), 0.1)]
+        )
+        sigma = body.sigma
+        assert sigma.radii_of_gyration[0] == 0.0
+        assert sigma.principal_moments[0] < 1e-15
+        assert sigma.linear.principal_moments[0]
+        assert sigma.linear.radii_of_gyration[0]
+
+    def test_of_particles_on_a_line_that_may_leave_it(self) -> None:
+        """The least moment leaves zero by the second order of a length, and its radius by the first."""
+        body = RigidBody.from_particles(
+            (1.0, 2.0, 1.5), Uncertain(np.diag([0.0, 1.0, 2.0]) @ np.ones((3, 3)), 0.01)
+        )
+        sigma = body.sigma
+        assert sigma.principal_moments[0] < 1e-15
+        assert np.isnan(sigma.radii_of_gyration[0])
+        assert not sigma.linear.principal_moments[0]
+        assert not sigma.linear.radii_of_gyration[0]
+        assert np.isfinite(sigma.radii_of_gyration[1:]).all()
+
+    @pytest.mark.parametrize("radius", [1e-3, 1e-6, 1e-9, 1e-12])
+    def test_of_a_wire(self, radius: float) -> None:
+        wire = solids.cylinder(radius=Uncertain(radius, 0.01 * radius), height=1.0, mass=2.0)
+        assert wire.sigma.radii_of_gyration[0] == pytest.approx(0.01 * wire.radii_of_gyration[0], rel=1e-6)
+        assert wire.sigma.principal_moments[0] == pytest.approx(0.02 * wire.principal_moments[0], rel=1e-6)
+
+
 class TestStarts:
     def test_a_run_that_goes_on_has_no_covariance_of_its_own(self) -> None:
         body = uncertain_body()

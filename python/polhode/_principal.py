@@ -15,10 +15,46 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["TOP_RTOL", "PrincipalAxes", "PrincipalDerivative"]
+__all__ = ["TOP_RTOL", "PrincipalAxes", "PrincipalDerivative", "PrincipalLinear", "PrincipalSigma"]
 
 TOP_RTOL: Final = 1e-6
 """Moments closer than this, relative to the largest, count as equal unless more is known of them."""
+
+
+class PrincipalLinear(NamedTuple):
+    """Whether standard deviations to first order are enough, as of :class:`polhode.Linear`.
+
+    Attributes
+    ----------
+    moments, axes : numpy.ndarray of bool, shape (..., 3)
+    """
+
+    moments: Any
+    axes: Any
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class PrincipalSigma(NamedTuple):
+    """Standard deviations of principal moments and axes, to first order.
+
+    Attributes
+    ----------
+    moments : numpy.ndarray, shape (..., 3)
+    axes : numpy.ndarray, shape (..., 3)
+        Of the small rotation of the axes about each of them, in radians; NaN where the two other moments are
+        equal, or nearly so.
+    linear : PrincipalLinear
+        Whether the first order is enough for each of them.
+    """
+
+    moments: Any
+    axes: Any
+    linear: PrincipalLinear
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,11 +72,14 @@ class PrincipalAxes:
         At which `top` is decided, relative to the largest moment: 1e-6, or for a molecule from a file of few
         digits one each for I1 = 0, I1 = I2 and I2 = I3, as much as the rounding of its coordinates can make
         and at least 1e-6.
+    sigma : PrincipalSigma or None
+        Their standard deviations, of a body with uncertain numbers.
     """
 
     moments: Floats
     axes: Floats
     top_rtol: Any = TOP_RTOL
+    sigma: PrincipalSigma | None = None
 
     def __repr__(self) -> str:
         shape = self.moments.shape[:-1]
@@ -114,7 +153,7 @@ class PrincipalAxes:
                [ 0.,  0., -1.]])
         """
         axes = _core.canonical_axes(self.moments, self.axes, rtol)
-        return PrincipalAxes(self.moments, axes, self.top_rtol)
+        return PrincipalAxes(self.moments, axes, self.top_rtol, self.sigma)
 
     def derivative(self, tangent: ArrayLike, rtol: float = 1e-12) -> PrincipalDerivative:
         """Change of moments and axes for a change of the tensor.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from polhode._repr import short
@@ -10,12 +11,22 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from polhode import _core
+    from polhode.uncertainty.motions import PeriodsSigma
+
     Floats = NDArray[np.float64]
 
 __all__ = ["Cones", "ErrorBar", "Periods", "Poinsot", "Sensitivity"]
 
 
-class Periods(NamedTuple):
+class _Periods(NamedTuple):
+    rotation: Any
+    precession: Any
+    flip: Any
+    rates: Floats
+
+
+class Periods(_Periods):
     """The periods of a free motion, in the long-axis convention of tumbling asteroids.
 
     The Euler angles (ZXZ) refer to axis 1, of the least moment, with L along z.
@@ -37,10 +48,26 @@ class Periods(NamedTuple):
         without angular momentum.
     """
 
-    rotation: Any
-    precession: Any
-    flip: Any
-    rates: Floats
+    _motion: _core.FreeMotion | None = None
+    """Of an uncertain motion, that motion."""
+
+    @cached_property
+    def sigma(self) -> PeriodsSigma | None:
+        """Standard deviations, from those of the body and of the angular velocity; None where there are none.
+
+        Examples
+        --------
+        >>> from polhode import RigidBody, Uncertain
+        >>> brick = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        >>> periods = brick.free_motion(Uncertain((0.3, 0.2, 1.1), sigma=0.001)).periods
+        >>> round(periods.rotation, 3), round(periods.sigma.rotation, 3)
+        (10.884, 0.012)
+        """
+        if self._motion is None:
+            return None
+        from polhode.uncertainty.motions import periods_sigma
+
+        return periods_sigma(self._motion)
 
     def __repr__(self) -> str:
         return short(self)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from polhode._principal import TOP_RTOL, PrincipalAxes, PrincipalDerivative
+from polhode._principal import TOP_RTOL, PrincipalAxes, PrincipalDerivative, PrincipalLinear, PrincipalSigma
 from polhode._repr import one_line, short
 
 if TYPE_CHECKING:
@@ -29,6 +29,8 @@ __all__ = [
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",
+    "PrincipalLinear",
+    "PrincipalSigma",
     "Provenance",
     "Sigma",
     "State",
@@ -135,7 +137,7 @@ class Sigma(NamedTuple):
         Of the small rotation of the principal axes about each of them, in radians; NaN where the two other
         moments are equal, or nearly so: there the axes are not determined.
     radii_of_gyration : numpy.ndarray, shape (..., 3)
-        About the principal axes.
+        About the principal axes. NaN where a moment is zero and may leave zero.
     linear : Linear
         Whether the first order is enough for each of them.
     """

@@ -1,18 +1,32 @@
 """Uncertainty beyond a body's own sigma: of any function of a body, and of a whole tree of parts."""
 
+from polhode.uncertainty.joined import joined
 from polhode.uncertainty.ledger import Ledger, Part, Shares, Sigmas, ledger
+from polhode.uncertainty.motions import PeriodsLinear, PeriodsSigma
+from polhode.uncertainty.probabilities import (
+    AxisProbabilities,
+    ModeProbabilities,
+    axis_probabilities,
+    mode_probabilities,
+)
 from polhode.uncertainty.propagation import Propagated, propagate
-from polhode.uncertainty.ufloats import TenNumbers, from_ufloats, to_ufloats
+from polhode.uncertainty.ufloats import TenNumbers, to_ufloats
 
 __all__ = [
+    "AxisProbabilities",
     "Ledger",
+    "ModeProbabilities",
     "Part",
+    "PeriodsLinear",
+    "PeriodsSigma",
     "Propagated",
     "Shares",
     "Sigmas",
     "TenNumbers",
-    "from_ufloats",
+    "axis_probabilities",
+    "joined",
     "ledger",
+    "mode_probabilities",
     "propagate",
     "to_ufloats",
 ]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from polhode import RigidBody
 
-__all__ = ["TenNumbers", "from_ufloats", "to_ufloats"]
+__all__ = ["TenNumbers", "kinds", "terms", "to_ufloats"]
 
 _WORDS: Final[dict[Any, tuple[int, int]]] = {}
 """The variable of this package for each variable of `uncertainties` that was met. These cannot be referred to
@@ -44,65 +44,22 @@ class TenNumbers(NamedTuple):
         return short(self)
 
 
-def from_ufloats(values: Any) -> Any:
-    """Numbers of the package `uncertainties` as an :class:`Uncertain`; None when there are none among them.
-
-    Parameters
-    ----------
-    values : uncertainties.UFloat, or array_like of them
-        Plain numbers may stand among them.
-
-    Returns
-    -------
-    Uncertain or None
-        What depends on one variable there depends on one variable here, in all calls.
-
-    Examples
-    --------
-    >>> from uncertainties import ufloat  # doctest: +SKIP
-    >>> from polhode.uncertainty import from_ufloats
-    >>> from_ufloats([ufloat(1.0, 0.1), 2.0])  # doctest: +SKIP
-    Uncertain([1.0, 2.0], sigma=[0.1, 0.0])
-    """
+def kinds() -> tuple[type, ...]:
+    """Give the class of their numbers, where somebody has loaded the package."""
     module = sys.modules.get("uncertainties")
-    if module is None:  # nobody has made one
-        return None
-    if not _holds(values, module.UFloat):
-        return None
-    array = np.asarray(values, dtype=object)
-    flat = array.ravel().tolist()
-    numbers, sigmas, forms = [], [], []
-    for value in flat:
-        is_uncertain = isinstance(value, module.UFloat)
-        number = value.nominal_value if is_uncertain else value
-        numbers.append(float(number))
-        terms: dict[tuple[int, int], float] = {}
-        if is_uncertain:
-            for variable, slope in value.derivatives.items():
-                if slope * variable.std_dev != 0.0:
-                    terms[_words(variable)] = float(slope * variable.std_dev)
-        sigmas.append(float(np.sqrt(sum(step * step for step in terms.values()))))
-        forms.append(sorted(terms.items()))
-    shape = array.shape
-    return _core.Uncertain._restored(
-        np.array(numbers).reshape(shape), np.array(sigmas).reshape(shape), None, None, forms, False
-    )
+    return () if module is None else (module.UFloat,)
 
 
-def _holds(values: Any, kind: type) -> bool:
-    """Whether there is one: nothing is asked of other objects, which may call the package anew."""
-    rest: list[Any] = [values]
-    seen: dict[int, Any] = {}  # a list may hold itself
-    while rest:
-        one = rest.pop()
-        if isinstance(one, kind):
-            return True
-        if isinstance(one, np.ndarray) and one.dtype == object:
-            one = one.ravel().tolist()
-        if isinstance(one, list | tuple) and id(one) not in seen:
-            seen[id(one)] = one
-            rest.extend(one)
-    return False
+def terms(number: Any) -> dict[tuple[int, int], float]:
+    """Give the change of one of their numbers by one standard deviation of each of our variables.
+
+    What depends on one variable there depends on one variable here, in all calls.
+    """
+    return {
+        _words(variable): float(slope * variable.std_dev)
+        for variable, slope in number.derivatives.items()
+        if slope * variable.std_dev != 0.0
+    }
 
 
 def _words(variable: Any) -> tuple[int, int]:

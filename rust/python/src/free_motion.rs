@@ -18,6 +18,7 @@ use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
+use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
 
 /// The motion of a body, or of a stack of bodies, on which no torque acts about its centre of mass.
 ///
@@ -32,6 +33,8 @@ use crate::stack::{Broadcast, Stack};
 ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
 /// quaternion : numpy.ndarray, shape (..., 4)
 ///     R_NB at t = 0 as (x, y, z, w).
+/// uncertain_start : tuple of Uncertain or None
+///     Angular velocity and attitude at t = 0 where they were given with a sigma.
 /// shape : tuple of int
 ///     Of the stack of motions: bodies, angular velocities and attitudes broadcast together.
 ///
@@ -49,6 +52,7 @@ pub(crate) struct PyFreeMotion {
     #[pyo3(get)]
     body: Py<PyRigidBody>,
     pub(crate) motions: Stack<FreeMotion>,
+    uncertain: UncertainStart,
 }
 
 impl PyFreeMotion {
@@ -57,6 +61,7 @@ impl PyFreeMotion {
         body: Py<PyRigidBody>,
         omega: &Stack<Vector3<f64>>,
         attitude: &Stack<UnitQuaternion<f64>>,
+        uncertain: UncertainStart,
     ) -> PyResult<Self> {
         let bodies = &body.get().bodies;
         let shapes = [&bodies.shape[..], &omega.shape, &attitude.shape];
@@ -73,7 +78,16 @@ impl PyFreeMotion {
                 FreeMotion::refined(&refined[b], &omega[w], &attitude[q])
             })?
         };
-        Ok(Self { body, motions })
+        Ok(Self {
+            body,
+            motions,
+            uncertain,
+        })
+    }
+
+    /// Whether the body or the start has a sigma.
+    fn is_uncertain(&self) -> bool {
+        self.body.get().doubts.is_some() || self.uncertain.is_any()
     }
 
     fn centers(&self, py: Python<'_>) -> PyResult<Stack<Vector3<f64>>> {
@@ -87,9 +101,9 @@ impl PyRigidBody {
     ///
     /// Parameters
     /// ----------
-    /// omega : array_like, shape (..., 3)
+    /// omega : array_like, shape (..., 3), or Uncertain
     ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
-    /// attitude : array_like, shape (..., 4), or rotation, optional
+    /// attitude : array_like, shape (..., 4), rotation or Uncertain, optional
     ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as SciPy's
     ///     Rotation. The identity by default.
     ///
@@ -125,8 +139,10 @@ impl PyRigidBody {
         omega: &Bound<'_, PyAny>,
         attitude: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyFreeMotion> {
-        let (omega, attitude) = (read(omega, "omega")?, read_attitude(attitude, "attitude")?);
-        PyFreeMotion::new(py, slf, &omega, &attitude)
+        let given = StartGiven::read(omega, attitude)?;
+        let attitude = read_attitude(given.attitude.as_ref(), "attitude")?;
+        let omega = read(&given.omega, "omega")?;
+        PyFreeMotion::new(py, slf, &omega, &attitude, given.uncertain)
     }
 }
 
@@ -144,6 +160,12 @@ impl PyFreeMotion {
     fn quaternion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let attitude = |motion: &FreeMotion| components(&motion.initial.attitude);
         Ok(write_of(py, &self.motions, attitude)?.into_any())
+    }
+
+    /// Angular velocity and attitude at t = 0 as `Uncertain`, each None where it was given without a sigma.
+    #[getter]
+    fn uncertain_start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        self.uncertain.to_python(py)
     }
 
     /// The shape of the stack of motions.
@@ -185,7 +207,9 @@ impl PyFreeMotion {
     ///        [-0.1,  0. , 10. ]])
     fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let fields = PyDict::new(py);
-        trajectory(py, &self.body, &self.motions, t, &self.centers(py)?, fields)
+        let centers = self.centers(py)?;
+        let (body, uncertain) = (&self.body, &self.uncertain);
+        trajectory(py, body, &self.motions, t, &centers, uncertain, fields)
     }
 
     fn __reduce__<'py>(
@@ -194,7 +218,8 @@ impl PyFreeMotion {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = py.get_type::<Self>().getattr("_from_start")?;
         let body = self.body.bind(py).clone().into_any();
-        let parts = [body, self.omega(py)?, self.quaternion(py)?];
+        let uncertain = self.uncertain_start(py)?.into_any();
+        let parts = [body, self.omega(py)?, self.quaternion(py)?, uncertain];
         Ok((restore, PyTuple::new(py, parts)?))
     }
 
@@ -205,12 +230,14 @@ impl PyFreeMotion {
         body: Py<PyRigidBody>,
         omega: &Bound<'_, PyAny>,
         quaternion: &Bound<'_, PyAny>,
+        uncertain_start: (Option<Py<PyUncertain>>, Option<Py<PyUncertain>>),
     ) -> PyResult<Self> {
         let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
         let attitude = quaternion.map(py, |&[x, y, z, w]| {
             UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
         })?;
-        Self::new(py, body, &read(omega, "omega")?, &attitude)
+        let uncertain = UncertainStart::restored(uncertain_start);
+        Self::new(py, body, &read(omega, "omega")?, &attitude, uncertain)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

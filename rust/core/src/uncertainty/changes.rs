@@ -127,6 +127,19 @@ impl Change for Scaled {
     }
 }
 
+/// A body with its tensor taken about a point of the body frame in place of C.
+#[derive(Clone, Copy, Debug)]
+pub struct TensorAbout(pub [f64; 3]);
+
+impl Change for TensorAbout {
+    fn of<X: Size<Body = Ten<X>>>(&self, bodies: &[Ten<X>], _: &[X]) -> Result<Ten<X>, Error> {
+        Ok(Ten {
+            inertia: bodies[0].about(self.0.map(X::from)),
+            ..bodies[0]
+        })
+    }
+}
+
 /// A homogeneous shape with N lengths.
 pub trait Shape<const N: usize> {
     /// What has these lengths and this amount of matter.

@@ -12,9 +12,12 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+use super::changes::TensorAbout;
 use super::doubt::Doubt;
+use super::follow::{Follow, follow};
 use super::higher::{Higher, Second, across};
 use super::variable::PROBES;
+use crate::error::Error;
 use crate::mass::body::RigidBody;
 use crate::mass::ten::Ten;
 use crate::principal::derivative::DEGENERATE_RTOL;
@@ -53,11 +56,36 @@ pub struct Deviations {
 /// Standard deviations of mass, centre and tensor, of the principal moments and axes about C, and of the radii of gyration.
 #[must_use]
 pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
+    of(&Ten::of(body), &body.principal(), doubt)
+}
+
+/// As [`deviations`], with tensor, moments, axes and radii about a point of the body frame.
+///
+/// # Errors
+/// None: those of [`follow`], which has none here.
+pub fn deviations_about(
+    body: &RigidBody,
+    doubt: &Doubt,
+    point: &Vector3<f64>,
+) -> Result<Deviations, Error> {
     let numbers = Ten::of(body);
-    let principal = body.principal();
+    let from = Follow {
+        bodies: &[(numbers, doubt)],
+        numbers: &[],
+    };
+    let doubt = follow(&TensorAbout((*point).into()), from)?;
+    let about = Ten {
+        inertia: numbers.about((*point).into()),
+        ..numbers
+    };
+    Ok(of(&about, &body.principal_about(point), &doubt))
+}
+
+/// Of ten numbers with the principal moments and axes of their tensor.
+fn of(numbers: &Ten<f64>, principal: &PrincipalAxes, doubt: &Doubt) -> Deviations {
     let largest = principal.moments[2];
-    let radii = body.radii_of_gyration();
-    // Of a radius k: `δk = m (k²)′/(2 m k)`; of none where a moment is zero, since what is never negative has no deviation there.
+    let radii = (principal.moments).map(|moment| (moment / numbers.mass).sqrt());
+    // Of a radius k: `δk = m (k²)′/(2 m k)`.
     let of_radius = radii.map(|k| {
         if k > 0.0 {
             0.5 / (numbers.mass * k)
@@ -70,7 +98,7 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
     let mut higher = Higher::new(principal.moments, radii);
     for (_, change) in &doubt.tangents {
         add(&mut own, change.to_array());
-        let turned = Turned::of(&principal, &change.tensor());
+        let turned = Turned::of(principal, &change.tensor());
         add(&mut moments, turned.moments());
         add(&mut angles, turned.angles());
         let of_mass = |k: usize| turned.change[(k, k)] - radii[k].powi(2) * change.mass;
@@ -84,6 +112,7 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
         std::array::from_fn(|k| (higher.second_of_moment(k), higher.second_of_angle(k)));
     let mut bends = [Even::default(); 10];
     let mut evens = [[Even::default(); 3]; 3];
+    let mut to_second_order = [Spread::default(); 3];
     for (slope, bend) in doubt.slopes().iter().zip(&doubt.bends) {
         for (even, bend) in bends.iter_mut().zip(bend.to_array()) {
             even.add(bend, 0.0);
@@ -91,12 +120,14 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
         let ends = [1.0, -1.0].map(|sign| {
             let tensor = numbers.tensor() + slope.tensor() * sign + bend.tensor();
             let mass = numbers.mass + slope.mass * sign + bend.mass;
-            Stepped::from(&principal, radii, &principal_axes(&tensor), mass)
+            Stepped::from(principal, radii, &principal_axes(&tensor), mass)
         });
-        let change = Turned::of(&principal, &slope.tensor()).change;
+        let change = Turned::of(principal, &slope.tensor()).change;
+        let bend_of_moments = Turned::of(principal, &bend.tensor()).moments();
         for (k, (moment, angle)) in seconds.iter().enumerate() {
             let mean = |of: fn(&Stepped) -> [f64; 3]| 0.5 * (of(&ends[0])[k] + of(&ends[1])[k]);
             let closed = moment.of(&change);
+            to_second_order[k].add(closed + bend_of_moments[k]);
             evens[0][k].add(mean(|end| end.moments), closed);
             evens[1][k].add(mean(|end| end.angles), angle.of(&change));
             evens[2][k].add(mean(|end| end.radii), of_radius[k] * closed);
@@ -133,6 +164,14 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
     let beside = |k: usize| [(k + 1) % 3, (k + 2) % 3];
     let stays = |k: usize| beside(k).iter().all(|&axis| gaps[axis].is_wide(GAPS[0]));
     let is_apart = gaps.map(|gap| gap.width > DEGENERATE_RTOL * largest);
+    // A moment that is zero has no deviation but rounding. Where it has no second order either it is zero for ever, and so is
+    // its radius of gyration; else the radius leaves zero by the first order of a length, which has no derivative there.
+    let is_zero = |k: usize| {
+        let deviation = moments[k].deviation();
+        deviation >= principal.moments[k] && deviation <= ROUNDING * largest
+    };
+    let is_zero_for_ever =
+        |k: usize| is_zero(k) && to_second_order[k].mean_square().sqrt() <= ROUNDING * largest;
     let radius = (largest / numbers.mass).sqrt() + Vector3::from(numbers.center).norm();
     let size = |k: usize| match k {
         0 => numbers.mass,
@@ -142,15 +181,23 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
     Deviations {
         numbers: own.map(Terms::deviation),
         moments: moments.map(Terms::deviation),
-        radii: lengths.map(Terms::deviation),
+        radii: std::array::from_fn(|k| match (is_zero(k), is_zero_for_ever(k)) {
+            (true, true) => 0.0,
+            (true, false) => f64::NAN,
+            (false, _) => lengths[k].deviation(),
+        }),
         axes: std::array::from_fn(|k| {
             let sigma = angles[k].deviation();
             let is_determined = is_apart[k] && sigma < ANYWHERE;
             if is_determined { sigma } else { f64::NAN }
         }),
         is_linear: std::array::from_fn(|k| own[k].is_linear(size(k))),
-        moments_are_linear: std::array::from_fn(|k| stays(k) && moments[k].is_linear(largest)),
-        radii_are_linear: std::array::from_fn(|k| stays(k) && lengths[k].is_linear(radius)),
+        moments_are_linear: std::array::from_fn(|k| {
+            stays(k) && (is_zero_for_ever(k) || moments[k].is_linear(largest))
+        }),
+        radii_are_linear: std::array::from_fn(|k| {
+            stays(k) && (is_zero_for_ever(k) || (!is_zero(k) && lengths[k].is_linear(radius)))
+        }),
         axes_are_linear: std::array::from_fn(|k| {
             is_apart[k] && none_changes && gaps[k].is_wide(GAPS[1]) && angles[k].is_linear(1.0)
         }),
@@ -187,8 +234,13 @@ impl Terms {
     /// Whether it is enough, for a number of this size.
     fn is_linear(self, size: f64) -> bool {
         let noise = ROUNDING * size;
-        let lacking = self.even + self.odd;
-        lacking.abs() <= LACKING * self.first + noise * noise
+        // A deviation that is rounding has no part in a mean of products.
+        let odd = if self.first > noise * noise {
+            self.odd
+        } else {
+            0.0
+        };
+        (self.even + odd).abs() <= LACKING * self.first + noise * noise
     }
 }
 
@@ -241,9 +293,13 @@ impl Spread {
         self.squares += term * term;
     }
 
+    fn mean_square(&self) -> f64 {
+        self.squares / PROBES as f64
+    }
+
     fn variance(&self) -> f64 {
         let mean = self.sum / PROBES as f64;
-        self.squares / PROBES as f64 - mean * mean
+        self.mean_square() - mean * mean
     }
 }
 

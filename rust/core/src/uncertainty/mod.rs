@@ -38,7 +38,7 @@ pub use changes::{
     Scaled, Shape, Translated,
 };
 pub use composites::together;
-pub use deviations::{Deviations, deviations};
+pub use deviations::{Deviations, deviations, deviations_about};
 pub use doubt::{Doubt, Tangent};
 pub use follow::{Change, Follow, follow};
 pub use given::{Form, Given};

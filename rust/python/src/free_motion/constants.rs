@@ -130,15 +130,20 @@ impl PyFreeMotion {
     /// >>> round(nut.free_motion(omega=(0.001, 6.0, 0.0)).periods.flip, 3)
     /// 7.366
     #[getter]
-    fn periods<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let periods = self.invariants(py)?.map(py, Invariants::periods)?;
+    fn periods<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, this) = (slf.py(), slf.get());
+        let periods = this.invariants(py)?.map(py, Invariants::periods)?;
         let parts = (
             write_numbers_of(py, &periods, |periods| periods.rotation)?,
             write_numbers_of(py, &periods, |periods| periods.precession)?,
             write_numbers_of(py, &periods, |periods| periods.flip)?,
             write_of(py, &periods, |periods| periods.rates)?,
         );
-        tuple(py, "Periods", parts)
+        let found = tuple(py, "Periods", parts)?;
+        if this.is_uncertain() {
+            found.setattr("_motion", slf)?;
+        }
+        Ok(found)
     }
 
     /// Least and greatest angle between each principal axis and L, in radians, shape (..., 3, 2).

@@ -10,6 +10,7 @@ use super::PyFreeMotion;
 use crate::arrays::{Argument, read, read_or};
 use crate::body::PyRigidBody;
 use crate::stack::{Broadcast, Stack};
+use crate::uncertain::UncertainStart;
 
 #[pymethods]
 impl PyRigidBody {
@@ -122,6 +123,6 @@ impl PyRigidBody {
         })?;
         let omega = starts.map(py, |start| start.0)?;
         let attitude = starts.map(py, |start| start.1)?;
-        PyFreeMotion::new(py, slf, &omega, &attitude)
+        PyFreeMotion::new(py, slf, &omega, &attitude, UncertainStart::default())
     }
 }

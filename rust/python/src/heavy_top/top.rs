@@ -14,6 +14,7 @@ use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
+use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
 
 pub(super) type Array<'py> = PyResult<Bound<'py, PyAny>>;
 
@@ -41,6 +42,8 @@ pub(super) struct Start {
 ///     R_NB at t = 0 as (x, y, z, w).
 /// gravity : numpy.ndarray, shape (..., 3)
 ///     The acceleration of free fall, components in space.
+/// uncertain_start : tuple of Uncertain or None
+///     Angular velocity and attitude at t = 0 where they were given with a sigma.
 /// shape : tuple of int
 ///     Of the stack of motions: bodies, angular velocities, attitudes and gravities broadcast together.
 /// path : str or numpy.ndarray of str, shape (...)
@@ -78,6 +81,7 @@ pub(crate) struct PyHeavyTop {
     pub(super) starts: Stack<Start>,
     pub(super) motions: Stack<HeavyTop>,
     rtol: f64,
+    uncertain: UncertainStart,
 }
 
 impl PyHeavyTop {
@@ -88,6 +92,7 @@ impl PyHeavyTop {
         attitude: &Stack<UnitQuaternion<f64>>,
         gravity: &Stack<Vector3<f64>>,
         rtol: f64,
+        uncertain: UncertainStart,
     ) -> PyResult<Self> {
         let bodies = &body.get().bodies;
         let tops = Broadcast::of(["body"], [&bodies.shape])?
@@ -120,6 +125,7 @@ impl PyHeavyTop {
             starts,
             motions,
             rtol,
+            uncertain,
         })
     }
 }
@@ -133,9 +139,9 @@ impl PyRigidBody {
     ///
     /// Parameters
     /// ----------
-    /// omega : array_like, shape (..., 3)
+    /// omega : array_like, shape (..., 3), or Uncertain
     ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
-    /// attitude : array_like, shape (..., 4), or rotation
+    /// attitude : array_like, shape (..., 4), rotation or Uncertain
     ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as SciPy's
     ///     Rotation. None is the identity.
     /// gravity : array_like, shape (..., 3)
@@ -177,9 +183,10 @@ impl PyRigidBody {
         gravity: &Bound<'_, PyAny>,
         rtol: f64,
     ) -> PyResult<PyHeavyTop> {
-        let (omega, gravity) = (read(omega, "omega")?, read(gravity, "gravity")?);
-        let attitude = read_attitude_exactly(attitude, "attitude")?;
-        PyHeavyTop::new(py, slf, &omega, &attitude, &gravity, rtol)
+        let given = StartGiven::read(omega, attitude)?;
+        let (omega, gravity) = (read(&given.omega, "omega")?, read(gravity, "gravity")?);
+        let attitude = read_attitude_exactly(given.attitude.as_ref(), "attitude")?;
+        PyHeavyTop::new(py, slf, &omega, &attitude, &gravity, rtol, given.uncertain)
     }
 }
 
@@ -202,6 +209,12 @@ impl PyHeavyTop {
     #[getter]
     fn gravity<'py>(&self, py: Python<'py>) -> Array<'py> {
         Ok(write_of(py, &self.starts, |start| start.gravity)?.into_any())
+    }
+
+    /// Angular velocity and attitude at t = 0 as `Uncertain`, each None where it was given without a sigma.
+    #[getter]
+    fn uncertain_start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        self.uncertain.to_python(py)
     }
 
     /// The shape of the stack of motions.
@@ -248,7 +261,8 @@ impl PyHeavyTop {
         fields.set_item("load", gravity)?;
         fields.set_item("pivoted", true)?;
         let origins = (self.body.get().bodies).map(py, |_: &RigidBody| Vector3::zeros())?;
-        trajectory(py, &self.body, &self.motions, t, &origins, fields)
+        let (body, uncertain) = (&self.body, &self.uncertain);
+        trajectory(py, body, &self.motions, t, &origins, uncertain, fields)
     }
 
     fn __reduce__<'py>(
@@ -264,6 +278,7 @@ impl PyHeavyTop {
             self.quaternion(py)?,
             self.gravity(py)?,
             rtol,
+            self.uncertain_start(py)?.into_any(),
         ];
         Ok((restore, PyTuple::new(py, parts)?))
     }
@@ -277,13 +292,15 @@ impl PyHeavyTop {
         quaternion: &Bound<'_, PyAny>,
         gravity: &Bound<'_, PyAny>,
         rtol: f64,
+        uncertain_start: (Option<Py<PyUncertain>>, Option<Py<PyUncertain>>),
     ) -> PyResult<Self> {
         let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
         let attitude = quaternion.map(py, |&[x, y, z, w]| {
             UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
         })?;
         let (omega, gravity) = (read(omega, "omega")?, read(gravity, "gravity")?);
-        Self::new(py, body, &omega, &attitude, &gravity, rtol)
+        let uncertain = UncertainStart::restored(uncertain_start);
+        Self::new(py, body, &omega, &attitude, &gravity, rtol, uncertain)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

@@ -13,7 +13,7 @@ use crate::errors::{at_row, to_py};
 use crate::particles::{ParticleArrays, read_labels, watched};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
-use crate::uncertain::{Quantity, carried, has_ufloats, is_uncertain, quantity_list};
+use crate::uncertain::{Quantity, carried, holds_uncertain, is_uncertain, quantity_list};
 
 #[pymethods]
 impl PyRigidBody {
@@ -72,7 +72,7 @@ impl PyRigidBody {
         }
         let arrays = match ParticleArrays::read(masses, positions, "..., n") {
             Ok(arrays) => arrays,
-            Err(_) if has_ufloats(masses)? || has_ufloats(positions)? => {
+            Err(_) if holds_uncertain(masses)? || holds_uncertain(positions)? => {
                 return of_uncertain_particles(py, masses, positions);
             }
             Err(fault) => return Err(fault),

@@ -4,6 +4,7 @@ mod composites;
 mod construct;
 mod container;
 mod continuum;
+mod deviations;
 mod dynamics;
 mod ensemble;
 mod from_shapes;

@@ -56,7 +56,7 @@ impl PyRigidBody {
     /// 'prolate'
     #[getter]
     fn principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_bodies(py, &self.bodies)
+        self.with_sigma_of_axes(of_bodies(py, &self.bodies)?, None)
     }
 
     /// Radii of gyration √(I/m) about the principal axes through C, ascending, shape (..., 3).
@@ -156,14 +156,12 @@ impl PyRigidBody {
     ) -> PyResult<Bound<'py, PyAny>> {
         let points = points(py, &self.bodies, Some(point), "point")?;
         let grid = self.with("point", &points)?;
-        with_rtols(
-            py,
-            &grid.try_map(py, |[b, p]| {
-                self.bodies[b].check_about(&points[p])?;
-                let found = self.bodies[b].principal_about(&points[p]);
-                Ok((found, self.bodies[b].top_rtols(&found.moments)))
-            })?,
-        )
+        let found = grid.try_map(py, |[b, p]| {
+            self.bodies[b].check_about(&points[p])?;
+            let found = self.bodies[b].principal_about(&points[p]);
+            Ok((found, self.bodies[b].top_rtols(&found.moments)))
+        })?;
+        self.with_sigma_of_axes(with_rtols(py, &found)?, Some(&points))
     }
 
     /// The body moved: C → C + displacement.
@@ -374,7 +372,11 @@ impl PyRigidBody {
 
 impl PyRigidBody {
     /// The bodies lined up with one other argument.
-    fn with<'a, T>(&self, name: &'a str, other: &Stack<T>) -> PyResult<Broadcast<'a, 2>> {
+    pub(super) fn with<'a, T>(
+        &self,
+        name: &'a str,
+        other: &Stack<T>,
+    ) -> PyResult<Broadcast<'a, 2>> {
         Broadcast::of(["body", name], [&self.bodies.shape, &other.shape])
     }
 

@@ -1,18 +1,16 @@
-//! Sigmas given to bodies, and what they are worth: covariances and standard deviations.
+//! Sigmas and covariances given to bodies, and the covariances of their numbers.
 
 use std::sync::Arc;
 
 use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
-use polhode::mass::ten::place;
 use polhode::uncertainty::doubt::plus;
 use polhode::uncertainty::follow::directly;
-use polhode::uncertainty::{Deviations, Doubt, Given, Source, check_possible, deviations};
+use polhode::uncertainty::{Doubt, Given, Source, check_possible};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
 
-use crate::arrays::{Numbers, floats, read, write_numbers_of, write_of};
+use crate::arrays::{Numbers, floats, read};
 use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py, with_prefix};
 use crate::memory;
@@ -239,69 +237,10 @@ impl PyRigidBody {
         })?;
         numbers.finish::<[f64; 10]>(&[&grid.shape[..], &[10]].concat())
     }
-
-    /// Standard deviations of mass, centre of mass, tensor, principal moments and axes, and radii of
-    /// gyration; None where nothing is uncertain.
-    ///
-    /// Examples
-    /// --------
-    /// >>> from polhode import Uncertain, solids
-    /// >>> brick = solids.box(Uncertain((1, 2, 3), sigma=0.01), density=2.0)
-    /// >>> round(brick.sigma.mass, 4), brick.sigma.principal_moments.round(4)
-    /// (0.14, array([0.097 , 0.16  , 0.1965]))
-    #[getter]
-    fn sigma<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        if self.doubts.is_none() {
-            return Ok(py.None().into_bound(py));
-        }
-        let shape = &self.bodies.shape;
-        let grid = Broadcast::of(["body"], [shape])?;
-        let found = grid.try_map(py, |[row]| {
-            Ok(deviations(&self.bodies[row], self.row(row).1))
-        })?;
-        let center = |d: &Deviations| -> [f64; 3] { std::array::from_fn(|k| d.numbers[1 + k]) };
-        let tensor = |d: &Deviations| Matrix3::from_fn(|i, j| d.numbers[4 + place(i, j)]);
-        let results = py.import("polhode.results")?;
-        let linear = results.getattr("Linear")?.call1((
-            flags(py, &found, &[], |d, out| out.push(d.is_linear[0]))?,
-            flags(py, &found, &[3], |d, out| out.extend(&d.is_linear[1..4]))?,
-            flags(py, &found, &[3, 3], |d, out| {
-                out.extend((0..9).map(|k| d.is_linear[4 + place(k / 3, k % 3)]));
-            })?,
-            flags(py, &found, &[3], |d, out| out.extend(d.moments_are_linear))?,
-            flags(py, &found, &[3], |d, out| out.extend(d.axes_are_linear))?,
-            flags(py, &found, &[3], |d, out| out.extend(d.radii_are_linear))?,
-        ))?;
-        results.getattr("Sigma")?.call1((
-            write_numbers_of(py, &found, |d| d.numbers[0])?,
-            write_of(py, &found, center)?,
-            write_of(py, &found, tensor)?,
-            write_of(py, &found, |d| d.moments)?,
-            write_of(py, &found, |d| d.axes)?,
-            write_of(py, &found, |d| d.radii)?,
-            linear,
-        ))
-    }
 }
 
 fn named(source: Option<&str>) -> Source {
     source.map_or_else(Source::fresh, Source::named)
-}
-
-/// An array of flags; one flag for one value without axes.
-fn flags<'py>(
-    py: Python<'py>,
-    found: &Stack<Deviations>,
-    tail: &[usize],
-    of: impl Fn(&Deviations, &mut Vec<bool>),
-) -> PyResult<Bound<'py, PyAny>> {
-    let mut all = Vec::new();
-    found.rows.iter().for_each(|d| of(d, &mut all));
-    let shape = [&found.shape[..], tail].concat();
-    if shape.is_empty() {
-        return Ok(all[0].into_pyobject(py)?.to_owned().into_any());
-    }
-    numpy::PyArray1::from_vec(py, all).call_method1("reshape", (PyTuple::new(py, shape)?,))
 }
 
 impl PyRigidBody {

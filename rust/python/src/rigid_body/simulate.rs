@@ -19,7 +19,7 @@ use crate::interrupt::Interrupt;
 use crate::loads::PyLoad;
 use crate::stack::Stack;
 use crate::times::read_times;
-use crate::uncertain::{rotation_of, value_of};
+use crate::uncertain::StartGiven;
 
 /// An optional argument of any array-like kind.
 type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
@@ -162,18 +162,11 @@ impl PyRigidBody {
                 .map_err(|_| hints::not_a_load(load))?
                 .get(),
         };
-        let (omega, omega_doubt) = value_of(omega)?;
-        let (attitude, attitude_doubt) = match attitude {
-            None => (None, None),
-            Some(attitude) => {
-                let (value, doubt) = rotation_of(attitude, "attitude")?;
-                (Some(value), doubt)
-            }
-        };
+        let given = StartGiven::read(omega, attitude)?;
         let start = Start {
             bodies: &slf.get().bodies,
-            omega: read(&omega, "omega")?,
-            attitude: read_attitude_exactly(attitude.as_ref(), "attitude")?,
+            omega: read(&given.omega, "omega")?,
+            attitude: read_attitude_exactly(given.attitude.as_ref(), "attitude")?,
             position: at_start(position, "position")?,
             velocity: at_start(velocity, "velocity")?,
             terms: acts.terms(py)?,
@@ -207,9 +200,9 @@ impl PyRigidBody {
         };
         ensemble.check(py)?;
         let (trajectory, has_failures) = ensemble.run(py, slf, load, &interrupt)?;
-        if omega_doubt.is_some() || attitude_doubt.is_some() {
+        if given.uncertain.is_any() {
             let known = trajectory.getattr("__dict__")?;
-            known.set_item("uncertain_start", (omega_doubt, attitude_doubt))?;
+            known.set_item("uncertain_start", given.uncertain.to_python(py)?)?;
         }
         let failure = raises && has_failures;
         if let Err(stop) = interrupt.finish(py, !failure) {

@@ -9,10 +9,12 @@
 mod carried;
 mod class;
 mod quantity;
+mod start;
 
 pub(crate) use carried::{carried, of_numbers};
 pub(crate) use class::PyUncertain;
 pub(crate) use quantity::{
-    Number, Quantity, Weight, factor, has_ufloats, is_uncertain, known, quantity, quantity_list,
-    quantity_or, rotation_of, rotation_quantity, symmetric, value_of,
+    Number, Quantity, Weight, factor, holds_uncertain, is_uncertain, known, quantity,
+    quantity_list, quantity_or, rotation_quantity, symmetric, value_of,
 };
+pub(crate) use start::{StartGiven, UncertainStart};

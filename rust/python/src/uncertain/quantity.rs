@@ -1,12 +1,14 @@
 //! Arguments that may be numbers with a sigma.
 
 use nalgebra::Matrix3;
+use numpy::{PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use polhode::Error;
 use polhode::error::UncertaintyFault;
 use polhode::mass::ten::ELEMENTS;
 use polhode::uncertainty::{Form, Variable};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
 
 use super::class::PyUncertain;
 use crate::arrays::{Argument, Item, read, read_list};
@@ -74,7 +76,7 @@ impl<'py> FromPyObject<'_, 'py> for Weight {
             }
             Err(fault) => match object.cast::<PyUncertain>() {
                 Ok(uncertain) => uncertain.to_owned(),
-                Err(_) => of_ufloats(&object)?.ok_or(fault)?,
+                Err(_) => joined(&object)?.ok_or(fault)?,
             },
         };
         let value: f64 = uncertain.get().value(object.py())?.extract()?;
@@ -87,7 +89,7 @@ impl<'py> FromPyObject<'_, 'py> for Weight {
 }
 
 /// As [`value_of`] for a rotation, which with a sigma must be one of a library's with three small angles.
-pub(crate) fn rotation_of<'py>(
+pub(super) fn rotation_of<'py>(
     object: &Bound<'py, PyAny>,
     name: &'static str,
 ) -> PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyUncertain>>)> {
@@ -98,13 +100,35 @@ pub(crate) fn rotation_of<'py>(
     Ok(found)
 }
 
-/// The plain value of an argument, and the argument itself where it has a sigma.
+/// The plain value of an argument, and where it has a sigma the `Uncertain` that it is.
 pub(crate) fn value_of<'py>(
     object: &Bound<'py, PyAny>,
 ) -> PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyUncertain>>)> {
-    match object.cast::<PyUncertain>() {
-        Ok(uncertain) => Ok((uncertain.get().value(object.py())?, Some(uncertain.clone()))),
-        Err(_) => Ok((object.clone(), None)),
+    let found = match object.cast::<PyUncertain>() {
+        Ok(uncertain) => Some(uncertain.clone()),
+        Err(_) if is_plain(object, NESTED) => None,
+        Err(_) => joined(object)?,
+    };
+    match found {
+        Some(uncertain) => Ok((uncertain.get().value(object.py())?, Some(uncertain))),
+        None => Ok((object.clone(), None)),
+    }
+}
+
+/// Deeper lists are looked at by `joined`.
+const NESTED: usize = 4;
+
+/// Whether an argument is an array, a number, or lists of such.
+fn is_plain(object: &Bound<'_, PyAny>, depth: usize) -> bool {
+    let inside = |item: Bound<'_, PyAny>| depth > 0 && is_plain(&item, depth - 1);
+    if let Ok(list) = object.cast_exact::<PyList>() {
+        list.iter().all(inside)
+    } else if let Ok(tuple) = object.cast_exact::<PyTuple>() {
+        tuple.iter().all(inside)
+    } else {
+        object.is_exact_instance_of::<PyFloat>()
+            || object.is_exact_instance_of::<PyInt>()
+            || (object.cast::<PyUntypedArray>()).is_ok_and(|array| array.dtype().kind() != b'O')
     }
 }
 
@@ -113,12 +137,12 @@ pub(crate) fn is_uncertain(object: &Bound<'_, PyAny>) -> bool {
     object.is_instance_of::<PyUncertain>()
 }
 
-/// Whether an argument has numbers of the package `uncertainties`.
-pub(crate) fn has_ufloats(object: &Bound<'_, PyAny>) -> PyResult<bool> {
-    Ok(of_ufloats(object)?.is_some())
+/// Whether numbers of an argument are uncertain.
+pub(crate) fn holds_uncertain(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(joined(object)?.is_some())
 }
 
-/// Reads an argument that may be an `Uncertain`, or numbers of the package `uncertainties`.
+/// Reads an argument that may be an `Uncertain`, or hold such or numbers of the package `uncertainties`.
 pub(crate) fn quantity<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Quantity<T>> {
     if let Ok(uncertain) = object.cast::<PyUncertain>() {
         return with_forms(uncertain, name);
@@ -126,7 +150,7 @@ pub(crate) fn quantity<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResu
     // Plain numbers are not asked: what has a sigma is refused first.
     match read(object, name) {
         Ok(values) => Ok(Quantity::known(values)),
-        Err(fault) => match of_ufloats(object)? {
+        Err(fault) => match joined(object)? {
             Some(uncertain) => with_forms(&uncertain, name),
             None => Err(fault),
         },
@@ -164,7 +188,7 @@ pub(crate) fn quantity_list<T: Item>(
         }
         Err(_) => match read_list(object, name, leading) {
             Ok(values) => Ok(Quantity::known(values)),
-            Err(fault) => match of_ufloats(object)? {
+            Err(fault) => match joined(object)? {
                 Some(uncertain) => quantity_list(uncertain.as_any(), name, leading),
                 None => Err(fault),
             },
@@ -184,12 +208,13 @@ pub(crate) fn quantity_or<T: Item>(
     )
 }
 
-/// The `Uncertain` that numbers of the package `uncertainties` become, or an array of such; nothing of what else was refused.
-fn of_ufloats<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyUncertain>>> {
+/// The `Uncertain` that numbers of the package `uncertainties` become, or a list of numbers among which some are uncertain;
+/// nothing of what else was refused.
+fn joined<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyUncertain>>> {
     let found = object
         .py()
         .import("polhode.uncertainty")?
-        .call_method1("from_ufloats", (object,))?;
+        .call_method1("joined", (object,))?;
     Ok(found.cast_into::<PyUncertain>().ok())
 }
 

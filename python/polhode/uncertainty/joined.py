@@ -1,0 +1,111 @@
+"""Uncertain numbers that stand in a list, beside others or alone, as one object."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from polhode import _core
+from polhode.uncertainty import ufloats
+
+__all__ = ["joined"]
+
+
+def joined(values: Any) -> Any:
+    """Make one `Uncertain` of numbers among which some are uncertain; None when none is.
+
+    Each argument that may be uncertain takes such a list too; this is what it becomes there.
+
+    Parameters
+    ----------
+    values : Uncertain, uncertainties.UFloat, or nested sequences of them
+        Plain numbers and arrays may stand among them. What is an `Uncertain` of an array counts as its rows.
+
+    Returns
+    -------
+    Uncertain or None
+        Each number depends on what it depended on before: numbers of one source stay correlated.
+
+    Raises
+    ------
+    TypeError
+        For a rotation among the numbers.
+    ValueError
+        For rows of different lengths, or a list that holds itself.
+
+    Examples
+    --------
+    >>> from polhode import Uncertain, solids
+    >>> from polhode.uncertainty import joined
+    >>> edge = Uncertain(1.0, 0.01)
+    >>> joined([edge, 2.0, edge]).covariance.round(6)
+    array([[0.0001, 0.    , 0.0001],
+           [0.    , 0.    , 0.    ],
+           [0.0001, 0.    , 0.0001]])
+    >>> round(solids.box([edge, edge, 3.0], density=1.0).sigma.mass, 6)
+    0.06
+    """
+    kinds = (_core.Uncertain, *ufloats.kinds())
+    if not _holds(values, kinds):
+        return None
+    cells = np.array(_cells(values, kinds, ()), dtype=object)
+    flat = cells.ravel().tolist()
+    if not all(isinstance(cell, _Number) for cell in flat):
+        raise ValueError("numbers with a sigma: rows of different lengths; give each as many numbers")
+    forms = [sorted(cell.terms.items()) for cell in flat]
+    sigma = np.array([np.sqrt(sum(step * step for _, step in form)) for form in forms])
+    value = np.array([cell.value for cell in flat])
+    return _core.Uncertain._restored(
+        value.reshape(cells.shape), sigma.reshape(cells.shape), None, None, forms, False
+    )
+
+
+class _Number:
+    """A number with its change by one standard deviation of each variable; to numpy an object, no list."""
+
+    def __init__(self, value: Any, terms: dict[tuple[int, int], float]) -> None:
+        self.value = float(value)
+        self.terms = terms
+
+
+def _holds(values: Any, kinds: tuple[type, ...]) -> bool:
+    """Whether there is one: nothing is asked of other objects, which may call the package anew."""
+    rest: list[Any] = [values]
+    seen: dict[int, Any] = {}  # a list may hold itself
+    while rest:
+        one = rest.pop()
+        if isinstance(one, kinds):
+            return True
+        if isinstance(one, np.ndarray) and one.dtype == object:
+            one = one.ravel().tolist()
+        if isinstance(one, list | tuple) and id(one) not in seen:
+            seen[id(one)] = one
+            rest.extend(one)
+    return False
+
+
+def _cells(values: Any, kinds: tuple[type, ...], above: tuple[int, ...]) -> Any:
+    """Give the same nest of lists with a `_Number` in place of each."""
+    if isinstance(values, _core.Uncertain):
+        if hasattr(values.value, "as_quat"):
+            raise TypeError(
+                "a rotation with a sigma stands among numbers; give it alone, where a rotation is asked for"
+            )
+        numbers = np.ravel(values.value).tolist()
+        cells = np.empty(len(numbers), dtype=object)
+        cells[:] = [
+            _Number(x, {(high, low): step for (high, low), step in form})
+            for x, form in zip(numbers, values._forms(), strict=True)
+        ]
+        return cells.reshape(np.shape(values.value)).tolist()
+    if isinstance(values, kinds):
+        theirs: Any = values
+        return _Number(theirs.nominal_value, ufloats.terms(theirs))
+    if isinstance(values, np.ndarray):
+        values = values.tolist()
+    if isinstance(values, list | tuple):
+        if id(values) in above:
+            raise ValueError("numbers with a sigma: a list holds itself")
+        return [_cells(one, kinds, (*above, id(values))) for one in values]
+    return _Number(values, {})

@@ -1,0 +1,204 @@
+"""How probable it is that an axis keeps its rank, and that a free body keeps its mode."""
+
+from __future__ import annotations
+
+import math
+from itertools import permutations
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from polhode._repr import short
+from polhode.uncertainty.motions import each_motion
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode import FreeMotion, RigidBody
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["AxisProbabilities", "ModeProbabilities", "axis_probabilities", "mode_probabilities"]
+
+NODES: Final = np.polynomial.legendre.leggauss(16)
+FAR: Final = 39.0
+"""Deviations beyond which a normal density is zero in numbers of this precision."""
+AROUND: Final = np.array([-9.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 9.0])
+"""Where a step that is one wide is cut for the quadrature."""
+
+
+class AxisProbabilities(NamedTuple):
+    """How probable it is for each principal axis to be the one of the least, middle or greatest moment.
+
+    Attributes
+    ----------
+    least, intermediate, greatest : numpy.ndarray, shape (..., 3)
+        Of the axes of ``body.principal``, as they are; the three of one axis add up to one.
+    stable : numpy.ndarray, shape (..., 3)
+        That a steady spin about the axis is stable: that its moment is not the intermediate one.
+    """
+
+    least: Floats
+    intermediate: Floats
+    greatest: Floats
+    stable: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class ModeProbabilities(NamedTuple):
+    """How probable the two modes of a free motion are.
+
+    Attributes
+    ----------
+    long_axis, short_axis : float or numpy.ndarray, shape (...)
+        That the angular velocity circles axis 1, of the least moment, or axis 3; together one.
+    linear : bool or numpy.ndarray, shape (...)
+        Whether the first order is enough, by which they are found.
+    """
+
+    long_axis: Any
+    short_axis: Any
+    linear: Any
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+def axis_probabilities(body: RigidBody) -> AxisProbabilities:
+    """Tell how probable it is for each principal axis to be the one of the least, middle and greatest moment.
+
+    The moments about the body's principal axes are taken as jointly normal, to first order.
+
+    Parameters
+    ----------
+    body : RigidBody
+        With a covariance; or a stack.
+
+    Returns
+    -------
+    AxisProbabilities
+
+    Raises
+    ------
+    ValueError
+        For a body without one.
+
+    Examples
+    --------
+    >>> from polhode import RigidBody
+    >>> from polhode.uncertainty import axis_probabilities
+    >>> wheel = RigidBody.from_principal(5.0, (1.0, 1.04, 1.9))
+    >>> weighed = wheel.with_sigma(inertia=[[0.02, 0, 0], [0, 0.02, 0], [0, 0, 0.02]])
+    >>> axis_probabilities(weighed).intermediate.round(3)
+    array([0.079, 0.921, 0.   ])
+    """
+    state = body._doubts()
+    if state is None:
+        message = "body: it carries no covariance; give it one by with_sigma, with_covariance or Uncertain"
+        raise ValueError(message)
+    principal, ends = body.principal, np.cumsum(state["counts"]).tolist()
+    moments, axes = principal.moments.reshape(-1, 3), principal.axes.reshape(-1, 3, 3)
+    ranks = np.zeros((len(moments), 3, 3))  # row, axis, rank
+    for row, (means, own) in enumerate(zip(moments, axes, strict=True)):
+        changes = state["tangents"][ends[row] - int(state["counts"][row]) : ends[row], 4:]
+        slopes = np.array([np.diagonal(own.T @ _symmetric(change) @ own) for change in changes]).reshape(
+            -1, 3
+        )
+        for order in permutations(range(3)):
+            low, middle, high = order
+            found = both_positive(
+                (means[middle] - means[low], means[high] - means[middle]),
+                (slopes[:, middle] - slopes[:, low], slopes[:, high] - slopes[:, middle]),
+            )
+            for rank, axis in enumerate(order):
+                ranks[row, axis, rank] += found
+    # Equal moments that stay equal have no order: each order of theirs was counted.
+    ranks /= ranks.sum(axis=2, keepdims=True)
+    least, intermediate, greatest = np.moveaxis(ranks.reshape(*body.shape, 3, 3), -1, 0)
+    return AxisProbabilities(least, intermediate, greatest, 1.0 - intermediate)
+
+
+def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
+    """Tell how probable it is that a free body rotates about its long or its short axis.
+
+    By the sign of ``1 − 2T I₂/L²``, which is taken as normal.
+
+    Parameters
+    ----------
+    motion : FreeMotion
+        Of a body with a covariance, or from an `Uncertain` angular velocity; or a stack.
+
+    Returns
+    -------
+    ModeProbabilities
+
+    Raises
+    ------
+    ValueError
+        Where nothing is uncertain.
+
+    Examples
+    --------
+    >>> from polhode import RigidBody, Uncertain
+    >>> from polhode.uncertainty import mode_probabilities
+    >>> brick = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+    >>> omega = Uncertain((0.5, 1.0, 0.6), sigma=0.05)
+    >>> round(mode_probabilities(brick.free_motion(omega)).short_axis, 2)
+    0.89
+    """
+
+    def excess(body: RigidBody, omega: Any) -> Any:
+        momentum = body.inertia @ omega
+        return 1.0 - body.principal_moments[1] * (omega @ momentum) / (momentum @ momentum)
+
+    found = each_motion(motion, excess)
+    with np.errstate(divide="ignore"):
+        ratio = np.asarray(found.value) / np.asarray(found.sigma)
+    short_axis = np.vectorize(_below, otypes=[float])(ratio)[()]
+    return ModeProbabilities(1.0 - short_axis, short_axis, found.linear)
+
+
+def both_positive(means: tuple[float, float], slopes: tuple[Floats, Floats]) -> float:
+    """Give the probability that two numbers are positive, jointly normal with these means.
+
+    Parameters
+    ----------
+    means : tuple of float
+    slopes : tuple of numpy.ndarray, shape (k,)
+        By one standard deviation of each of k independent variables.
+    """
+    sizes = [float(np.linalg.norm(slope)) for slope in slopes]
+    if sizes[0] == 0.0 or sizes[1] == 0.0:  # a number that is known; zero counts as either
+        return math.prod(
+            _below(mean / size) if size > 0.0 else float(mean >= 0.0)
+            for mean, size in zip(means, sizes, strict=True)
+        )
+    one, other = (slope / size for slope, size in zip(slopes, sizes, strict=True))
+    a, b = (mean / size for mean, size in zip(means, sizes, strict=True))
+    cosine = float(one @ other)
+    sine = 0.5 * float(np.linalg.norm(one - other)) * float(np.linalg.norm(one + other))
+    if sine < 1e-14:
+        return _below(min(a, b)) if cosine > 0.0 else max(0.0, _below(a) - _below(-b))
+    # The first is a + x with a normal x; given that, the other is b + x cos + y sin with a y of its own.
+    step = np.clip(-b / cosine if cosine != 0.0 else 0.0, -FAR, FAR)
+    around = step + AROUND * sine / max(abs(cosine), sine)
+    start = min(max(-a, -FAR), FAR)
+    edges = np.unique(np.clip([start, *np.arange(-FAR, FAR + 1), *around], start, FAR))
+    nodes, weights = NODES
+    half = 0.5 * np.diff(edges)
+    x = 0.5 * (edges[:-1] + edges[1:])[:, None] + half[:, None] * nodes
+    given = np.vectorize(_below, otypes=[float])((b + x * cosine) / sine) if x.size else x
+    density = np.exp(-0.5 * x**2) / math.sqrt(2.0 * math.pi)
+    return min(1.0, float((density * given) @ weights @ half))
+
+
+def _below(x: float) -> float:
+    """Give the probability that a standard normal variable is below x."""
+    return 0.5 * math.erfc(-x / math.sqrt(2.0))
+
+
+def _symmetric(six: Floats) -> Floats:
+    xx, yy, zz, xy, xz, yz = six
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
