@@ -101,3 +101,46 @@ class TestRuns:
         run = body.simulate([0.0, 3.0], (0.1, 0.2, 1.0))
         assert run.covariance is not None
         assert np.abs(run.covariance).max() < 1e-28
+
+
+class TestLinear:
+    """What is not flagged is right within a percent; of what is flagged at least half is not."""
+
+    def test_against_draws(self) -> None:
+        outputs = flagged = rightly = 0
+        for seed in (1, 2, 4):
+            for share, time in ((0.002, 6.0), (0.01, 6.0), (0.03, 4.0), (0.06, 4.0)):
+                node, omega, turn = spun(seed, share)
+                body = Bodies(label=f"linear {seed}").body(node)
+                run = body.simulate([0.0, time], **started(omega, turn))
+                by_draw = by_draws(node, omega, turn, time, np.zeros(3), 0.0, 1000)
+                sigma = np.concatenate([run.sigma.attitude[-1], run.sigma.omega[-1]])
+                linear = np.concatenate([run.sigma.linear.attitude[-1], run.sigma.linear.omega[-1]])
+                off = np.abs(sigma / by_draw.sigma - 1)
+                assert (off <= 0.01 + 3 * by_draw.error / by_draw.sigma)[linear].all(), (seed, share, off)
+                outputs, flagged = outputs + 6, flagged + int((~linear).sum())
+                rightly += int((off > 0.01)[~linear].sum())
+        print(outputs, flagged, rightly)
+        assert 0 < flagged < outputs
+        assert 2 * rightly >= flagged
+
+    def test_of_a_stack_with_a_load_of_each(self) -> None:
+        stack = RigidBody.from_principal(1.0, [(1.0, 2.0, 2.5), (1.0, 1.9, 2.6)]).with_sigma(
+            inertia=1e-4 * np.eye(3), source="scale"
+        )
+        push = loads.constant_torque([(0.0, 0.0, 1e-3), (0.0, 1e-3, 0.0)])
+        times, omega = [0.0, 3.0, 1000.0], Uncertain((0.3, 0.2, 1.1), 1e-3, source="gyro")
+        found = stack.simulate(times, omega, load=push).sigma.linear
+        assert found.attitude.shape == found.omega.shape == (2, 3, 3)
+        alone = stack[1].simulate(times, omega, load=loads.constant_torque((0.0, 1e-3, 0.0))).sigma.linear
+        assert np.array_equal(found.attitude[1], alone.attitude)
+        assert found.attitude[:, :2].all()
+        assert not found.attitude[1, 2].any()
+
+    def test_sigmas_by_themselves_do_not_know(self) -> None:
+        run = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5)).simulate(
+            [0.0, 1.0], Uncertain((0.1, 0.2, 1.0), 0.01)
+        )
+        alone = run.sigma._replace(omega=run.sigma.omega)
+        with pytest.raises(ValueError, match="not of a motion"):
+            _ = alone.linear

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from polhode import _core
 from polhode._repr import short
+from polhode._rows import rows_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode.results import MotionSensitivity
     from polhode.trajectory import Trajectory
+    from polhode.uncertainty.runs import StateLinear
 
     Floats = NDArray[np.float64]
 
@@ -22,7 +25,12 @@ __all__ = ["StateSigma", "covariance", "sigma"]
 ELEMENTS: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
-class StateSigma(NamedTuple):
+class _StateSigma(NamedTuple):
+    attitude: Any
+    omega: Any
+
+
+class StateSigma(_StateSigma):
     """Standard deviations of the states of a motion, to first order.
 
     Attributes
@@ -33,8 +41,28 @@ class StateSigma(NamedTuple):
     omega : numpy.ndarray, shape (..., T, 3)
     """
 
-    attitude: Any
-    omega: Any
+    _run: Trajectory | None = None
+    """The motion they are of."""
+
+    @cached_property
+    def linear(self) -> StateLinear:
+        """Whether the first order is enough, at every time.
+
+        It is found when it is first asked for, by 256 runs of neighbours of the motion.
+
+        Examples
+        --------
+        >>> from polhode import RigidBody, Uncertain
+        >>> brick = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        >>> run = brick.simulate([0, 10, 1000], omega=Uncertain((0.3, 0.2, 1.1), sigma=0.001))
+        >>> run.sigma.linear.attitude.all(axis=1)
+        array([ True,  True, False])
+        """
+        if self._run is None:
+            raise ValueError("linear: these sigmas are not of a motion; ask those of Trajectory.sigma")
+        from polhode.uncertainty.runs import state_linear
+
+        return state_linear(self._run)
 
     def __repr__(self) -> str:
         return short(self)
@@ -68,7 +96,9 @@ def sigma(self: Trajectory) -> StateSigma | None:
     if found is None:
         return None
     deviations = np.sqrt(np.diagonal(found, axis1=-2, axis2=-1))
-    return StateSigma(deviations[..., :3], deviations[..., 3:])
+    both = StateSigma(deviations[..., :3], deviations[..., 3:])
+    both._run = self
+    return both
 
 
 def _forms(self: Trajectory) -> Floats | None:
@@ -89,14 +119,14 @@ def _forms(self: Trajectory) -> Floats | None:
     if doubts is not None:
         by_numbers = _by_numbers(self, slopes).reshape(-1, times, 6, 10)
         ends = np.cumsum(doubts["counts"]).tolist()
-        for k, row in enumerate(_rows(self.body.shape, stack)):
+        for k, row in enumerate(rows_of(self.body.shape, stack)):
             for entry in range(ends[row] - int(doubts["counts"][row]), ends[row]):
                 column = columns.setdefault(tuple(doubts["variables"][entry].tolist()), len(columns))
                 terms.append((k, column, by_numbers[k] @ doubts["tangents"][entry]))
     by_state = slopes.state.reshape(-1, times, 6, 6)
     if omega is not None:
         forms, shape = omega._forms(), np.shape(omega.value)
-        for k, row in enumerate(_rows(shape[:-1], stack)):
+        for k, row in enumerate(rows_of(shape[:-1], stack)):
             for place, form in enumerate(forms[3 * row : 3 * row + 3]):
                 for words, step in form:
                     column = columns.setdefault(tuple(words), len(columns))
@@ -113,14 +143,6 @@ def _forms(self: Trajectory) -> Floats | None:
     for k, column, term in terms:
         out[k, :, :, column] += term
     return out.reshape(*stack, times, 6, len(columns))
-
-
-def _rows(shape: tuple[int, ...], stack: tuple[int, ...]) -> list[int]:
-    """Which row of what has one shape each row of a stack takes."""
-    rows: list[int] = (
-        np.broadcast_to(np.arange(np.prod(shape, dtype=int)).reshape(shape), stack).ravel().tolist()
-    )
-    return rows
 
 
 def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:

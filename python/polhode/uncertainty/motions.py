@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._repr import short
+from polhode._rows import rows_of
 from polhode.uncertainty.propagation import Propagated, propagate
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
     from polhode import FreeMotion
 
-__all__ = ["PeriodsLinear", "PeriodsSigma", "each_motion", "periods_sigma"]
+__all__ = ["PeriodsLinear", "PeriodsSigma", "each_motion", "periods_sigma", "row_of"]
 
 
 class PeriodsLinear(NamedTuple):
@@ -80,8 +81,8 @@ def each_motion(motion: FreeMotion, f: Callable[..., Any]) -> Propagated:
     """Propagate ``f(body, omega)`` to first order, for each motion of a stack by itself."""
     shape = motion.shape
     omega, of_omega = motion.omega.reshape(-1, 3), motion.uncertain_start[0]
-    bodies = _rows(motion.body.shape, shape)
-    doubts = [] if of_omega is None else _rows(np.shape(of_omega.value)[:-1], shape)
+    bodies = rows_of(motion.body.shape, shape)
+    doubts = [] if of_omega is None else rows_of(np.shape(of_omega.value)[:-1], shape)
     found = []
     for row, rates in enumerate(omega):
         place = np.unravel_index(bodies[row], motion.body.shape)
@@ -90,19 +91,12 @@ def each_motion(motion: FreeMotion, f: Callable[..., Any]) -> Propagated:
             if of_omega is None:
                 found.append(propagate(lambda body, rates=rates: f(body, rates), body))
             else:
-                found.append(propagate(f, body, arguments=[_row_of(of_omega, doubts[row])]))
+                found.append(propagate(f, body, arguments=[row_of(of_omega, doubts[row])]))
     joined = [np.array([getattr(one, name) for one in found]) for name in Propagated._fields]
     return Propagated(*(part.reshape((*shape, *part.shape[1:]))[()] for part in joined))
 
 
-def _rows(shape: tuple[int, ...], stack: tuple[int, ...]) -> list[int]:
-    """Which row of what has one shape each row of a stack takes."""
-    rows = np.arange(np.prod(shape, dtype=int)).reshape(shape)
-    taken: list[int] = np.broadcast_to(rows, stack).ravel().tolist()
-    return taken
-
-
-def _row_of(given: _core.Uncertain, row: int) -> _core.Uncertain:
+def row_of(given: _core.Uncertain, row: int) -> _core.Uncertain:
     """One row of vectors with a sigma."""
     value, sigma = (np.reshape(part, (-1, 3))[row] for part in (given.value, given.sigma))
     forms = given._forms()[3 * row : 3 * row + 3]
