@@ -237,3 +237,22 @@ class TestCovariancesOfRuns:
             numbers = np.concatenate([np.zeros(3), SPIN, np.zeros(3)])
             sigma = np.array([0.02] * 6 + [0.01, 0.02, 0.03])
             compared(run.covariance[row, -1], by_differences(run_of, numbers, sigma))
+
+
+class TestFlags:
+    def test_do_not_depend_on_how_many_sources_there_were(self) -> None:
+        """Sources without a name differ in every body; the angle about the first axis has no first order in any."""
+        batch = Uncertain(2700.0, sigma=20.0)
+        for _ in range(100):
+            bus = solids.box(Uncertain((1.0, 1.2, 1.5), sigma=0.002), mass=Uncertain(180.0, sigma=0.5))
+            panel = solids.box((2.0, 0.02, 1.0), density=batch)
+            moved = Uncertain((1.5, 0, 0), sigma=0.01)
+            satellite = bus + panel.translated(moved) + panel.translated((-1.5, 0, 0))
+            assert satellite.sigma.linear.axes.tolist() == [False, True, True]
+
+    def test_what_is_zero_but_for_rounding_is_no_nonlinear_number(self) -> None:
+        body = RigidBody.from_principal(2.0, (3.0, 4.0, 5.0)).with_sigma(mass=0.01)
+        about = propagate(lambda b: b.inertia_about((0.1, 0.2, 0.3)), body)
+        assert about.linear.all()
+        turned = propagate(lambda b: b.rotated(START).rotated(START.inv()).inertia_about((0.0, 0.0, 0.5)), body)
+        assert turned.linear.all()

@@ -21,6 +21,7 @@ from polhode.results import (
     Sigma,
 )
 from polhode.trajectory import Trajectory
+from polhode.uncertainty.motions import PeriodsSigma
 
 __all__ = [
     "FreeMotion",
@@ -149,6 +150,7 @@ class FreeMotion:
     def complementary_modulus(self) -> Any: ...
     @property
     def periods(self) -> Periods: ...
+    def _periods_sigma(self) -> PeriodsSigma | None: ...
     @property
     def nutation(self) -> _Floats: ...
     @property

@@ -63,11 +63,7 @@ class Periods(_Periods):
         >>> round(periods.rotation, 3), round(periods.sigma.rotation, 3)
         (10.884, 0.012)
         """
-        if self._motion is None:
-            return None
-        from polhode.uncertainty.motions import periods_sigma
-
-        return periods_sigma(self._motion)
+        return None if self._motion is None else self._motion._periods_sigma()
 
     def __repr__(self) -> str:
         return short(self)

@@ -30,6 +30,9 @@ NEAR: Final = 0.25
 PROBES: Final = 32
 """Directions in which second- and third-order terms are looked for."""
 ROUNDING: Final = 1e-9
+"""Of a number, by which a function may err."""
+RELATIVE: Final = 1e-11
+"""Of the largest deviation of an array: smaller ones are rounding of its other numbers."""
 
 
 class Propagated(NamedTuple):
@@ -173,7 +176,7 @@ def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -
         even.append(0.5 * (above + below) - value.ravel())
         odd += first * (0.5 * (above - below) - first)
     variance = (slopes**2).sum(axis=0)
-    sigma, noise = np.sqrt(variance), ROUNDING * np.abs(value.ravel())
+    sigma, noise = np.sqrt(variance), _noise(value, variance)
     lacking = np.var(even, axis=0) + 2 * odd / PROBES
     fits = np.abs(lacking) <= LACKING * variance + 2 * noise * sigma + noise**2
     return np.asarray(fits & _follows(f, around, value, variance))
@@ -186,8 +189,14 @@ def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -
         here, there = (sum(_numbers(f, given, value.shape).ravel() for given in pair) / 2 for pair in probe)
         missed += ((here - there) / NEAR**2) ** 2
         count += 1
-    noise = ROUNDING * np.abs(value.ravel()) / NEAR**2
+    noise = _noise(value, variance) / NEAR**2
     return np.asarray(missed / max(count, 1) <= LACKING * variance + noise**2)
+
+
+def _noise(value: Floats, variance: Floats) -> Floats:
+    """Give what is rounding of each number."""
+    largest = np.sqrt(np.nanmax(variance, initial=0.0))
+    return np.asarray(ROUNDING * np.abs(value.ravel()) + RELATIVE * largest)
 
 
 def _linear(f: Function, around: Neighbours) -> Propagated:

@@ -29,6 +29,8 @@ const LACKING: f64 = 0.015;
 const GAPS: [f64; 2] = [2.0, 3.5];
 /// Relative to the size of what is deviated from: smaller terms are rounding.
 const ROUNDING: f64 = 1e-13;
+/// Beside a closed part of an even term: the rest, by its variance, with which the closed part still helps.
+const REST: f64 = 0.25;
 /// An angle of more than this deviation, in radians, says nothing of where an axis is.
 const ANYWHERE: f64 = 1.0;
 
@@ -267,13 +269,13 @@ impl Even {
 
     /// The variance of the term, where that of its closed part is this.
     ///
-    /// Where bends undo the closed part, as for a body that is only turned, what the probes miss of both is as large as either:
-    /// there the term alone is the better witness.
+    /// The closed part helps where it is nearly all there is. Where bends undo it, as for a body that is only turned, what the
+    /// probes miss of both is as large as either: there the term alone is the better witness.
     fn variance(&self, closed: f64) -> f64 {
         let all = self.all.variance();
-        if self.rest.variance() < all {
-            let variance = closed + (all - self.closed.variance());
-            if variance < 0.0 { 0.0 } else { variance } // a NaN stays
+        let corrected = closed + (all - self.closed.variance());
+        if corrected >= 0.0 && self.rest.variance() < REST * all {
+            corrected
         } else {
             all
         }

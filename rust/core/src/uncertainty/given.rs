@@ -107,7 +107,7 @@ impl Given {
                     .ok()?;
                 Some(a * other[place].1)
             })
-            .sum()
+            .fold(0.0, |sum, product| sum + product)
     }
 }
 

@@ -146,6 +146,11 @@ impl PyFreeMotion {
         Ok(found)
     }
 
+    /// The standard deviations of `periods`.
+    fn _periods_sigma<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        (slf.py().import("polhode.uncertainty.motions")?).call_method1("periods_sigma", (slf,))
+    }
+
     /// Least and greatest angle between each principal axis and L, in radians, shape (..., 3, 2).
     ///
     /// The range of the Euler angle θ of that axis, with L along z. NaN without angular momentum; on the
