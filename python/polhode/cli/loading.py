@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode.cli.progress import reading_progress
-from polhode.cli.quantities import has_unit, quantity
+from polhode.cli.quantities import amount, has_unit, quantity
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
 from polhode.files.content import MOLECULE_SUFFIX
@@ -20,7 +20,7 @@ from polhode.units import METRES, metres_per
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from polhode import RigidBody
+    from polhode import RigidBody, Uncertain
     from polhode.cli.options import BodyOptions
     from polhode.files.loaded import Loaded
     from polhode.files.mesh import Mesh
@@ -113,7 +113,7 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody
         source=solid,
         mass_unit="kg" if unit is not None else "mass",
         length="m" if unit is not None else "unit",
-        density=float(solid.body.mass) / solid.volume if density is None else density,
+        density=float(solid.body.mass) / solid.volume if density is None else _value(density),
         volume=solid.volume,
         assumed=assumed,
         notes=tuple(notes),
@@ -130,8 +130,8 @@ def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh:
 def _solid(
     loaded: Loaded,
     options: BodyOptions,
-    density: float | None,
-    mass: float | None,
+    density: float | Uncertain | None,
+    mass: float | Uncertain | None,
     scale: float,
     weld: float,
 ) -> MeshSolid:
@@ -180,14 +180,18 @@ def in_file_unit(text: str, option: str, unit: str | None) -> float:
     return quantity(text, "m", option) / metres_per(unit)
 
 
-def _amount(text: str | None, si: str, option: str, unit: str | None) -> float | None:
+def _value(number: float | Uncertain) -> float:
+    return number if isinstance(number, float) else float(number.value)
+
+
+def _amount(text: str | None, si: str, option: str, unit: str | None) -> float | Uncertain | None:
     if text is None:
         return None
     if unit is None and has_unit(text):
         raise PolhodeError(
             f"{option}: {text!r} has a unit, but the file's coordinates have none; state --length-unit too"
         )
-    return quantity(text, si, option)
+    return amount(text, si, option)
 
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:

@@ -127,7 +127,8 @@ def amount(text: str, unit: str, option: str) -> float | _core.Uncertain:
         return quantity(text, unit, option)
     if typed.unit is not None and typed.sigma_unit is None:
         raise PolhodeError(
-            f"{option}: {text!r}: the sigma has no unit, but its number has one; write {_sigma_examples(unit)}"
+            f"{option}: {text!r}: the sigma has no unit, but its number has one; "
+            f"write {_sigma_examples(unit)}"
         )
     value, sigma = _converted(text, typed, unit, option), typed.sigma
     if typed.sigma_unit not in (None, unit):
