@@ -230,8 +230,8 @@ def _rows(item: Field) -> Iterator[list[str]]:
 
 def _rows_with_sigma(item: Field, matrix: NDArray[Any]) -> Iterator[list[str]]:
     """Numbers beside their sigmas; those for which the first order is not enough are marked."""
-    sigmas = np.broadcast_to(item.sigma, np.shape(item.value)).reshape(matrix.shape)
-    linear = np.broadcast_to(True if item.linear is None else item.linear, np.shape(item.value))
+    sigmas = np.asarray(item.sigma, dtype=np.float64).reshape(matrix.shape)
+    linear = np.broadcast_to(np.asarray(True if item.linear is None else item.linear).ravel(), matrix.size)
     for row, deviations, flags in zip(matrix, sigmas, linear.reshape(matrix.shape), strict=True):
         cells = []
         for x, sigma, is_linear in zip(row.tolist(), deviations.tolist(), flags.tolist(), strict=True):

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from polhode.files.mesh import Mesh
     from polhode.molecules import Isotope
 
-__all__ = ["LoadedBody", "in_file_unit", "load_body"]
+__all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body"]
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,8 @@ class LoadedBody:
         How what was asked for was understood, and what was done to the mesh.
     shape : Mesh or None
         The mesh in the unit of `body`, where it was asked for.
+    has_mass_sigmas : bool
+        Whether the masses of a molecule's isotopes have sigmas.
     """
 
     body: RigidBody
@@ -65,6 +67,7 @@ class LoadedBody:
     assumed: bool = False
     notes: tuple[str, ...] = ()
     shape: Mesh | None = None
+    has_mass_sigmas: bool = False
 
     @property
     def moment_unit(self) -> str:
@@ -86,6 +89,9 @@ def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> 
 
 
 def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody:
+    for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
+        if is_given:
+            raise PolhodeError(f"{option}: {file} is a mesh, not a molecule; leave it out")
     if options.density is not None and options.mass is not None:
         raise PolhodeError(
             "--density and --mass: give one of the two, since the other follows from the volume"
@@ -195,8 +201,8 @@ def _amount(text: str | None, si: str, option: str, unit: str | None) -> float |
 
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
+    from polhode.cli.atoms import atoms_of
     from polhode.files.body import check_molecule_options, molecule_isotopes
-    from polhode.molecules import body_of_atoms
 
     check_molecule_options(
         file,
@@ -210,10 +216,34 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
     )
     molecule = load(file).molecule
     atoms = molecule_isotopes(file, molecule)
-    in_angstrom = metres_per(options.length_unit or "angstrom") / METRES["angstrom"]
-    body = body_of_atoms(
-        [atom.mass for atom in atoms],
-        molecule.positions * in_angstrom,
-        rounding=molecule.rounding * in_angstrom,
+    unit = options.length_unit or "angstrom"
+    in_angstrom = metres_per(unit) / METRES["angstrom"]
+    molecule = molecule._replace(
+        positions=molecule.positions * in_angstrom, rounding=molecule.rounding * in_angstrom
     )
-    return LoadedBody(body=body, source=atoms, mass_unit="u", length="angstrom", comment=molecule.comment)
+    at = atoms_of(
+        file,
+        atoms,
+        molecule,
+        bond_sigma=bond_sigma(options.bond_sigma, unit),
+        mass_sigmas=options.mass_sigmas,
+    )
+    return LoadedBody(
+        body=at.body(atoms),
+        source=atoms,
+        mass_unit="u",
+        length="angstrom",
+        comment=molecule.comment,
+        notes=at.notes,
+        has_mass_sigmas=options.mass_sigmas,
+    )
+
+
+def bond_sigma(text: str | None, unit: str) -> float | None:
+    """Read the sigma of bond lengths, in angstrom; a bare number is in the unit of the file."""
+    if text is None:
+        return None
+    sigma = in_file_unit(text, "--bond-sigma", unit) * (metres_per(unit) / METRES["angstrom"])
+    if sigma < 0.0:
+        raise PolhodeError(f"--bond-sigma: {text!r} is negative; a standard deviation is not")
+    return sigma

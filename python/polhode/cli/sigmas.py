@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Told", "about_point", "angle_field", "note_linear", "squared", "told"]
+__all__ = ["Told", "about_point", "angle_field", "moments_slopes", "note_linear", "squared", "told"]
 
 _LACKING: Final = 0.015
 """Largest part of a variance that the first order may lack, as that of a body's own sigmas."""
@@ -58,7 +58,8 @@ def about_point(body: RigidBody, point: Floats) -> Told:
     and T of an element and the covariance S its variance is g S g + tr(H S H S)/2 + g S (T : S) and less.
     The first term is reported, the others tell whether it is enough.
     """
-    covariance, sigma = body.covariance, body.sigma
+    sigma = body.sigma
+    covariance: Any = body.covariance
     if covariance is None or sigma is None:
         return {}
     m, d = float(body.mass), body.center_of_mass - point
@@ -83,11 +84,26 @@ def about_point(body: RigidBody, point: Floats) -> Told:
         first = gradient @ covariance @ gradient
         product = bend @ covariance
         lacking = 0.5 * np.sum(product * product.T) + gradient @ covariance @ third
-        deviations[i, j] = deviations[j, i] = np.sqrt(max(first, 0.0))
+        deviations[i, j] = deviations[j, i] = math.sqrt(max(float(first), 0.0))
         by_center = np.where(sigma.linear.center_of_mass, 0.0, gradient[1:4] * sigma.center_of_mass)
-        lacking = abs(lacking) + by_center @ by_center
-        flags[i, j] = flags[j, i] = own[i, j] and lacking <= _LACKING * first + noise**2
+        missing = abs(lacking) + by_center @ by_center
+        flags[i, j] = flags[j, i] = own[i, j] and missing <= _LACKING * first + noise**2
     return {"sigma": deviations, "linear": flags}
+
+
+def moments_slopes(body: RigidBody) -> Floats | None:
+    """Give what one sigma of each variable does to the principal moments, shape (k, 3).
+
+    Each moment is e·I e, and turning the axes e adds nothing to it at first. Sums of these cancel to
+    rounding, those of a covariance to its root.
+    """
+    state = body._doubts()
+    if state is None:
+        return None
+    axes = body.principal.axes
+    by_element = [axes[i] * axes[j] * (1.0 if i == j else 2.0) for i, j in _ELEMENTS]
+    found: Floats = state["tangents"][:, 4:] @ np.array(by_element)
+    return found
 
 
 def angle_field(body: RigidBody) -> list[Field]:
@@ -109,12 +125,14 @@ def _angle(degrees: float) -> str:
 
 def note_linear(report: Report) -> None:
     """Say what ± is, and what to do about marked numbers."""
-    fields: list[Any] = [item for _, items in report.sections for item in items]
-    flags = [item.linear for item in fields if isinstance(item, Field) and item.linear is not None]
-    if not flags:
+    fields = [item for _, items in report.sections for item in items if isinstance(item, Field)]
+    told = [item for item in fields if item.sigma is not None]
+    if not told:
         return
     report.notes.append("± is one standard deviation, to first order")
-    if not all(np.all(flag) for flag in flags):
+    if any(
+        np.any(~np.asarray(item.linear, bool) & ~np.isnan(np.asarray(item.sigma, float))) for item in told
+    ):
         report.notes.append(
             f"{NOT_LINEAR}: the first order is not enough; in Python "
             'polhode.uncertainty.propagate(f, body, method="monte-carlo", seed=1) tells what is right'

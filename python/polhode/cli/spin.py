@@ -143,6 +143,9 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
         if spin.center:
             raise PolhodeError("--center: the file tells where the centre of mass is; leave it out")
         return load_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
+    for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
+        if is_given:
+            raise PolhodeError(f"{option}: --moments are of no molecule; leave it out")
     if spin.gravity is not None and (options.mass is None or not spin.center):
         raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
     moments = vector(spin.moments, "kg m^2", "--moments")
