@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from operator import index
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,7 +13,7 @@ from polhode._nuclides import names_of
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -74,7 +73,7 @@ def uncertain_positions(
     labels: Sequence[str | Isotope],
     positions: ArrayLike,
     sigma: ArrayLike,
-    bonds: Sequence[tuple[int, int]] | None = None,
+    bonds: ArrayLike | None = None,
 ) -> _core.Uncertain:
     """Positions of atoms whose bond lengths are uncertain.
 
@@ -90,7 +89,7 @@ def uncertain_positions(
         In angstrom, where bonds are to be found; else in any unit.
     sigma : array_like, shape () or (bonds,)
         Of the length of each bond, in the unit of the positions.
-    bonds : sequence of tuple of int, optional
+    bonds : array_like of int, shape (bonds, 2), optional
         Pairs of indices; by default those that :func:`bonds` finds. Parts between which there is no bond are
         at places that are known exactly.
 
@@ -161,9 +160,7 @@ def _bonded(radii: Floats, positions: Floats) -> list[tuple[int, int]]:
     return found
 
 
-def _moved_along(
-    names: Sequence[str], positions: Floats, bonds: Iterable[tuple[int, int]], sigma: Floats
-) -> list[Floats]:
+def _moved_along(names: Sequence[str], positions: Floats, bonds: ArrayLike, sigma: Floats) -> Iterator[Floats]:
     """For each bond whose length is uncertain, what one sigma of it does to the positions.
 
     Parameters
@@ -172,14 +169,14 @@ def _moved_along(
         Of the atoms; for errors.
     positions : numpy.ndarray, shape (n, 3)
         Of the atoms.
-    bonds : iterable of tuple of int
+    bonds : array_like of int, shape (bonds, 2)
         Pairs of indices; the part with the second atom moves.
     sigma : numpy.ndarray, shape () or (bonds,)
         Of the lengths.
 
-    Returns
-    -------
-    list of numpy.ndarray, shape (n, 3)
+    Yields
+    ------
+    numpy.ndarray, shape (n, 3)
         In the order of the bonds; none for a sigma of zero.
     """
     pairs = _checked(names, bonds)
@@ -192,7 +189,6 @@ def _moved_along(
     for i, j in pairs:
         neighbours[i].append(j)
         neighbours[j].append(i)
-    steps = []
     for (i, j), deviation in zip(pairs, np.broadcast_to(sigma, len(pairs)).tolist(), strict=True):
         if deviation == 0.0:
             continue
@@ -204,19 +200,21 @@ def _moved_along(
             )
         step = np.zeros_like(positions)
         step[_beyond(names, neighbours, i, j)] = deviation * along / length
-        steps.append(step)
-    return steps
+        yield step
 
 
-def _checked(names: Sequence[str], bonds: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+def _checked(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
+    array = np.asarray(_core.real_numbers(bonds, "bonds"))
+    if array.size == 0:
+        return []
+    if array.ndim != 2 or array.shape[1] != 2:
+        message = f"bonds: expected pairs of indices of atoms, shape (n, 2), got {array.shape}"
+        raise ValueError(message)
+    if not (array == np.floor(array)).all():
+        raise PolhodeError("bonds: an index of an atom is a whole number")
     pairs: list[tuple[int, int]] = []
     known: set[frozenset[int]] = set()
-    for bond in bonds:
-        try:
-            i, j = (index(end) for end in bond)
-        except (TypeError, ValueError):
-            message = f"bonds: expected pairs of indices of atoms, got {bond!r}"
-            raise TypeError(message) from None
+    for i, j in ((int(one), int(other)) for one, other in array.tolist()):
         for end in (i, j):
             if not 0 <= end < len(names):
                 raise PolhodeError(

@@ -28,6 +28,9 @@ _NOT_COMPARED: Final = frozenset(
     | {"linear", "sigma"}
 )
 
+_ROUNDING: Final = 1e-9
+"""Of the largest difference of a field: smaller ones are rounding, and so are their sigmas."""
+
 
 def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, Any]]:
     """Compare the numbers of a report with those of a file, and add what was found to the report.
@@ -104,14 +107,16 @@ def _beside_sigma(ours: Any, theirs: Any, sigma: Any, other: Any) -> dict[str, A
     if sigma is None and other is None:
         return {}
     try:
-        difference = np.asarray(ours, float) - np.asarray(theirs, float)
+        difference = np.atleast_1d(np.asarray(ours, float) - np.asarray(theirs, float))
         zero = np.zeros_like(difference)
         deviations = [zero if one is None else np.asarray(one, float) for one in (sigma, other)]
         joint = np.broadcast_to(np.hypot(*deviations), difference.shape)
     except (TypeError, ValueError, OverflowError):
         return {}
+    sizes = np.abs(difference)
+    sizes[sizes < _ROUNDING * sizes.max(initial=0.0)] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        worst = int(np.argmax(np.nan_to_num(np.abs(difference) / joint).ravel()))
+        worst = int(np.argmax(np.nan_to_num(sizes / joint).ravel()))
     d, s = float(difference.flat[worst]), float(joint.flat[worst])
     return {"in_sigmas": Cell(with_sigma(d, s), {"difference": d, "sigma": s})}
 
