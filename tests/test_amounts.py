@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 LB = Fraction("0.45359237")
-WAYS = {
+WAYS: dict[str, tuple[Fraction | int, Fraction | int]] = {
     "5.0 ± 0.1 kg": (5, Fraction(1, 10)),
     "5.0±0.1kg": (5, Fraction(1, 10)),
     "5.0 +- 0.1 kg": (5, Fraction(1, 10)),

@@ -260,7 +260,7 @@ def test_sigmas_of_masses() -> None:
 
 def test_equal_nuclides_are_one_source() -> None:
     """In one call and in several, as labels and as what `isotopes` gave."""
-    sigma = {isotope.name: isotope.sigma for isotope in isotopes(["H", "O", "D"])}
+    sigma: Any = {isotope.name: isotope.sigma for isotope in isotopes(["H", "O", "D"])}
     light = RigidBody.from_particles(uncertain_masses(["O", "H", "H"]), WATER)
     heavy = RigidBody.from_particles(uncertain_masses(isotopes(["O", "D", "H"])), WATER)
     hydrogen, oxygen, deuterium = (sigma[name] for name in ("1H", "16O", "2H"))

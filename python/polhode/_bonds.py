@@ -160,8 +160,10 @@ def _bonded(radii: Floats, positions: Floats) -> list[tuple[int, int]]:
     return found
 
 
-def _moved_along(names: Sequence[str], positions: Floats, bonds: ArrayLike, sigma: Floats) -> Iterator[Floats]:
-    """For each bond whose length is uncertain, what one sigma of it does to the positions.
+def _moved_along(
+    names: Sequence[str], positions: Floats, bonds: ArrayLike, sigma: Floats
+) -> Iterator[Floats]:
+    """Tell for each bond whose length is uncertain what one sigma of it does to the positions.
 
     Parameters
     ----------
