@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from polhode._rounding import with_sigma
 from polhode._scene.ellipsoid import inertia_semi_axes
 from polhode._scene.style import AXIS_COLORS
 
@@ -39,13 +40,20 @@ def body_html(body: RigidBody) -> str:
     """
     if body.shape:
         return f"<pre>{html.escape(repr(body))}</pre>"
-    principal = body.principal
+    principal, sigma = body.principal, body.sigma
+    centers = np.zeros(3) if sigma is None else sigma.center_of_mass
+    deviations = np.zeros(3) if sigma is None else sigma.principal_moments
     rows = [
-        ("mass", f"{body.mass:.6g}"),
-        ("center of mass", _vector(body.center_of_mass)),
+        ("mass", _number(body.mass, 0.0 if sigma is None else sigma.mass)),
+        (
+            "center of mass",
+            "(" + ", ".join(_number(*one) for one in zip(body.center_of_mass, centers, strict=True)) + ")",
+        ),
         *(
-            (f'<span style="color:{color}">principal moment {k + 1}</span>', f"{moment:.6g}")
-            for k, (color, moment) in enumerate(zip(AXIS_COLORS, principal.moments, strict=True))
+            (f'<span style="color:{color}">principal moment {k + 1}</span>', _number(moment, deviation))
+            for k, (color, moment, deviation) in enumerate(
+                zip(AXIS_COLORS, principal.moments, deviations, strict=True)
+            )
         ),
         *(
             (f'<span style="color:{color}">axis {k + 1}</span>', _vector(axis))
@@ -141,6 +149,11 @@ def _name(tip: Floats, name: str, color: str) -> str:
     """Write a name beyond the tip of a line from the middle."""
     x, y = tip[:2] * (1.0 + 9.0 / (float(np.hypot(*tip[:2])) or 1.0))
     return f'<text x="{x:.2f}" y="{-y + 4.0:.2f}" fill="{color}">{name}</text>'
+
+
+def _number(value: float, sigma: float) -> str:
+    # Adding zero makes a plain zero of a negative one.
+    return with_sigma(value, sigma) if sigma > 0.0 else f"{value + 0.0:.6g}"
 
 
 def _vector(components: Floats) -> str:

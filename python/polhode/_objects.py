@@ -10,7 +10,7 @@ from polhode import _core
 from polhode.molecules import body_of_atoms, isotopes
 
 if TYPE_CHECKING:
-    from polhode.molecules import Masses
+    from polhode._nuclides import Masses
 
 __all__ = ["body_from_atoms", "body_from_mesh"]
 

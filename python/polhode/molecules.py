@@ -6,18 +6,15 @@ moment of inertia is then in u angstrom^2.
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
 from polhode import _core
-from polhode._extras import require
-from polhode.errors import PolhodeError
+from polhode._bonds import bonds, uncertain_positions
+from polhode._nuclides import Isotope, Masses, isotopes, uncertain_masses
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
@@ -27,11 +24,15 @@ __all__ = [
     "PLANCK_CONSTANT",
     "SPEED_OF_LIGHT",
     "Isotope",
+    "bonds",
     "inertial_defect",
     "isotopes",
     "planar_moments",
     "ray_kappa",
     "rotational_constants",
+    "rotational_constants_sigma",
+    "uncertain_masses",
+    "uncertain_positions",
 ]
 
 # CODATA 2022 (Mohr, Newell, Taylor, Tiesinga, "CODATA recommended values of the fundamental physical
@@ -43,58 +44,10 @@ SPEED_OF_LIGHT: Final = 299792458.0
 ATOMIC_MASS_CONSTANT: Final = 1.66053906892e-27
 """One u in kg; standard uncertainty 0.00000000052e-27."""
 
-Masses: TypeAlias = Literal["most_common", "average"]
+_SIGMA_OF_U: Final = 0.00000000052e-27 / ATOMIC_MASS_CONSTANT
+"""Relative."""
 
 _ANGSTROM: Final = 1e-10
-_LABEL: Final = re.compile(r"(?P<mass_number>\d+)?(?P<symbol>[A-Za-z]{1,2})|(?P<number>\d+)")
-_HYDROGEN: Final = {"D": 2, "T": 3}
-
-
-class Isotope(NamedTuple):
-    """A nuclide: its name as ``"16O"``, or ``"O"`` for the average of an element, and its mass in u."""
-
-    name: str
-    mass: float
-
-
-def isotopes(labels: Sequence[str], masses: Masses = "most_common") -> list[Isotope]:
-    """Find the nuclide each label stands for.
-
-    Parameters
-    ----------
-    labels : sequence of str
-        Element symbols (``"O"``) or atomic numbers (``"8"``) stand for the most abundant isotope, as
-        spectroscopists read them; ``"18O"``, ``"D"`` and ``"T"`` for themselves.
-    masses : {"most_common", "average"}
-        Give an element its average mass over its isotopes instead, as in a bottle; its name is then the
-        symbol alone.
-
-    Returns
-    -------
-    list of Isotope
-        In the order of `labels`.
-
-    Raises
-    ------
-    PolhodeError
-        If a label names no element or isotope, or an element without natural isotopes.
-    ModuleNotFoundError
-        If periodictable is not installed.
-
-    Examples
-    --------
-    >>> from polhode.molecules import isotopes
-    >>> [isotope.name for isotope in isotopes(["C", "O", "18O", "D"])]
-    ['12C', '16O', '18O', '2H']
-    """
-    table = require("periodictable", extra="chem", purpose="reading isotope masses").elements
-    if masses not in ("most_common", "average"):
-        raise ValueError(f"masses: expected 'most_common' or 'average', got {masses!r}")
-    known: dict[str, Isotope] = {}
-    for label in labels:
-        if label not in known:
-            known[label] = _isotope(table, label, masses)
-    return [known[label] for label in labels]
 
 
 def body_of_atoms(
@@ -124,37 +77,6 @@ def body_of_atoms(
     """
     body = _core.RigidBody.from_particles(masses, positions)
     return body._of_atoms(source, rounding)
-
-
-def _isotope(table: Any, label: str, masses: Masses) -> Isotope:
-    match = _LABEL.fullmatch(label)
-    if match is None:
-        raise PolhodeError(f"{label!r} is not an element; write a symbol (O), isotope (18O) or number (8)")
-    mass_number = int(match["mass_number"]) if match["mass_number"] else None
-    symbol = (match["symbol"] or "").capitalize()
-    if symbol in _HYDROGEN and mass_number is None:
-        symbol, mass_number = "H", _HYDROGEN[symbol]
-    try:
-        element = table[int(match["number"])] if match["number"] else table.symbol(symbol)
-    except (KeyError, ValueError):
-        element = None
-    # Entry 0 of the table is the neutron; "D" and "T" are its names of nuclides, not of elements.
-    if element is None or element.number == 0 or symbol in _HYDROGEN:
-        raise PolhodeError(f"{label!r} is not an element; check the symbol")
-    if mass_number is None and masses == "average":
-        return Isotope(element.symbol, float(element.mass))
-    if mass_number is None:
-        # Of equal abundances (none exists in nature) the lightest, so that the choice never wavers.
-        mass_number = max(element.isotopes, key=lambda a: (element[a].abundance, -a))
-        if not element[mass_number].abundance > 0.0:
-            usual = min(element.isotopes, key=lambda a: abs(a - element.mass))
-            raise PolhodeError(
-                f"{element.symbol} has no natural abundance on record, so no most abundant isotope; "
-                f"write the mass number too, as in {usual}{element.symbol}"
-            )
-    elif mass_number not in element.isotopes:
-        raise PolhodeError(f"{label!r}: no isotope {mass_number} of {element.symbol} is on record")
-    return Isotope(f"{mass_number}{element.symbol}", float(element[mass_number].mass))
 
 
 def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MHz") -> Floats:
@@ -192,6 +114,45 @@ def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MH
     with np.errstate(divide="ignore"):
         constants: Floats = np.divide(numerator, inertia)
     return constants
+
+
+def rotational_constants_sigma(
+    moments: ArrayLike, sigma: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MHz"
+) -> Floats:
+    r"""Compute the standard deviations of rotational constants, to first order.
+
+    .. math:: \frac{\sigma_A}{A} = \sqrt{\left(\frac{\sigma_{I_1}}{I_1}\right)^2
+              + \left(\frac{\sigma_\mathrm{u}}{\mathrm{u}}\right)^2}
+
+    Parameters
+    ----------
+    moments : array_like, shape (..., 3)
+        Principal moments in u angstrom^2, ascending.
+    sigma : array_like, shape (..., 3)
+        Their standard deviations, as :attr:`polhode.RigidBody.sigma` has them.
+    unit : {"MHz", "cm^-1"}
+        Frequency or wave number.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 3)
+        Not a number where the constant is infinite. That of the atomic mass constant, 3.1e-10 of each
+        constant, is part of it; all constants of all molecules share it.
+
+    Examples
+    --------
+    >>> from polhode.molecules import rotational_constants_sigma
+    >>> rotational_constants_sigma([1.0, 2.0, 3.0], [0.01, 0.01, 0.02]).round(1)
+    array([5053.8, 1263.4, 1123.1])
+    """
+    constants = rotational_constants(moments, unit)
+    inertia = np.moveaxis(_components(moments), 0, -1)
+    deviations = _core.real_numbers(sigma, "sigma")
+    if deviations.shape[-1:] != (3,):
+        raise ValueError(f"sigma: expected shape (..., 3), got {deviations.shape}")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found: Floats = constants * np.hypot(deviations / inertia, _SIGMA_OF_U)
+    return np.where(np.isfinite(constants), found, np.nan)
 
 
 def ray_kappa(constants: ArrayLike) -> Any:

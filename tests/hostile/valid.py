@@ -58,6 +58,8 @@ def passage(t: float, omega: Any, *_: Any) -> float:  # noqa: ARG001
     return float(omega[0])
 
 
+WATER = [[0.0, 0.0, 0.0], [0.75, 0.0, 0.5], [-0.75, 0.0, 0.5]]
+
 VALUES: dict[str, Any] = {
     "mass": 2.0, "density": 1.5, "inertia": TENSOR, "inertia_about_origin": TENSOR,
     "center_of_mass": [0.25, 0.0, 0.5], "rtol": 1e-6, "atol": 1e-9, "moments": [1.0, 2.0, 2.5],
@@ -159,6 +161,15 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Trajectory.invariants": {},
     "molecules.isotopes": {"labels": ["C", "D", "O"], "masses": "most_common"},
     "molecules.ray_kappa": {"constants": [3.0, 2.0, 1.0]},
+    "molecules.rotational_constants_sigma": {"sigma": [0.125, 0.25, 0.125]},
+    "molecules.uncertain_masses": {"labels": ["C", "D", "O"], "masses": "most_common"},
+    "molecules.bonds": {"labels": ["O", "H", "H"], "positions": WATER},
+    "molecules.uncertain_positions": {
+        "labels": ["O", "H", "H"],
+        "positions": WATER,
+        "sigma": 0.125,
+        "bonds": [[0, 1], [0, 2]],
+    },
 }
 """What some of them take instead, and on what: `self` lists the receivers."""
 

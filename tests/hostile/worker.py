@@ -29,6 +29,7 @@ LONGEST, SLACK = 1.0, 2.0
 """Seconds that a call may last, and those it may take to hear that it is over, on a busy machine."""
 MAY_BE_UNKNOWN = frozenset({
     "HeavyTop", "RigidBody.heavy_top", "ray_kappa", "molecules.ray_kappa", "molecules.rotational_constants",
+    "molecules.rotational_constants_sigma",
     "PrincipalAxes.kappa",
     "steady_precession", "validity.nearest_valid", "nearest_valid", "free_precession",
     "FreeMotion.sensitivity",

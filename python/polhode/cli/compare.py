@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode.cli.layout import Column, Table
+from polhode._rounding import with_sigma
+from polhode.cli.layout import Cell, Column, Table
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.reading import read_text
 
@@ -24,7 +25,11 @@ __all__ = ["held_against"]
 # What says how the numbers came about, or follows from them but wavers where two moments are nearly equal.
 _NOT_COMPARED: Final = frozenset(
     {"axes", "comment", "error_bound", "expected", "file", "format", "gaps", "notes", "provenance", "units"}
+    | {"linear", "sigma"}
 )
+
+_ROUNDING: Final = 1e-9
+"""Of the largest difference of a field: smaller ones are rounding, and so are their sigmas."""
 
 
 def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, Any]]:
@@ -52,6 +57,7 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
     length = max(ours["radii_of_gyration"])
     found, compared = [], 0
     flat = dict(_leaves(ours))
+    our_sigmas, known_sigmas = (dict(_leaves(_object(one, "sigma"))) for one in (ours, known))
     for key, value in _leaves(known):
         if key.partition(".")[0] in _NOT_COMPARED:
             continue
@@ -68,22 +74,51 @@ def held_against(report: Report, expected: Path, rtol: float) -> list[dict[str, 
         compared += 1
         difference = _difference(flat[key], value, length if key == "center_of_mass" else 0.0)
         if not difference <= rtol:
-            found.append(
-                {"field": key, "found": flat[key], "expected": _shown(value), "difference": difference}
-            )
+            row = {"field": key, "found": flat[key], "expected": _shown(value), "difference": difference}
+            found.append(row | _beside_sigma(flat[key], value, our_sigmas.get(key), known_sigmas.get(key)))
     if not compared:
         raise PolhodeError(f"--expect: {expected} holds no field of the report; save one with --format json")
-    columns = (
+    columns = [
         Column("field", "field"),
         Column("found", "found"),
         Column("expected", "expected"),
         Column("difference", "relative difference"),
-    )
+    ]
+    if any("in_sigmas" in row for row in found):
+        columns.append(Column("in_sigmas", "difference ± its sigma"))
+        report.notes.append(
+            "the sigma of a difference takes those of the two reports as independent: what comes from one "
+            "source in both is not in a saved report; RigidBody.covariance_with tells it in Python"
+        )
     if found:
         report.section("differs from what was expected", Table("differences", columns, found))
     verdict = f"{len(found)} of {compared} fields differ" if found else f"{compared} fields agree"
     report.notes.append(f"{verdict} with {expected} within {rtol:g}")
     return found
+
+
+def _object(document: dict[str, Any], key: str) -> dict[str, Any]:
+    value = document.get(key, {})
+    return value if isinstance(value, dict) else {}
+
+
+def _beside_sigma(ours: Any, theirs: Any, sigma: Any, other: Any) -> dict[str, Any]:
+    """Give the component that differs by the most of its sigmas, where one of the two reports has sigmas."""
+    if sigma is None and other is None:
+        return {}
+    try:
+        difference = np.atleast_1d(np.asarray(ours, float) - np.asarray(theirs, float))
+        zero = np.zeros_like(difference)
+        deviations = [zero if one is None else np.asarray(one, float) for one in (sigma, other)]
+        joint = np.broadcast_to(np.hypot(*deviations), difference.shape)
+    except (TypeError, ValueError, OverflowError):
+        return {}
+    sizes = np.abs(difference)
+    sizes[sizes < _ROUNDING * sizes.max(initial=0.0)] = 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        worst = int(np.argmax(np.nan_to_num(sizes / joint).ravel()))
+    d, s = float(difference.flat[worst]), float(joint.flat[worst])
+    return {"in_sigmas": Cell(with_sigma(d, s), {"difference": d, "sigma": s})}
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._rounding import with_sigma
 from polhode.cli.text import printable, write
 
 if TYPE_CHECKING:
@@ -17,12 +18,14 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from rich.console import Console
 
-__all__ = ["Cell", "Column", "Field", "Report", "Table", "number"]
+__all__ = ["NOT_LINEAR", "Cell", "Column", "Field", "Report", "Table", "number"]
 
 DIGITS: Final = 7
 LABEL_WIDTH: Final = 20
 CELL_WIDTH: Final = 14
 ROUNDING: Final = 1e-15
+NOT_LINEAR: Final = "*"
+"""Behind a number for which the first order is not enough."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +38,8 @@ class Field:
         Its name in JSON; a dot makes an object: ``"in_file_unit.volume"``.
     label : str
         Its name in the table; "" continues the field above.
-    value : str, int, float or array_like
-        Text, a number, three numbers or a 3 x 3 matrix.
+    value : str, int, float, array_like or None
+        Text, a number, three numbers or a 3 x 3 matrix; None where there is a sigma alone.
     unit : str
         "" for a pure number or text.
     hint : str
@@ -46,15 +49,25 @@ class Field:
     scale : float, optional
         Size of what the numbers are components of: those below 1e-15 of it are rounding, and the table
         (not the JSON) prints them as 0.
+    sigma : float or array_like, optional
+        Standard deviations, of the shape of `value`; in JSON under the same key in the object "sigma".
+    linear : bool or array_like of bool, optional
+        Whether the first order is enough for them; in JSON under the same key in the object "linear", and
+        marked in the table where it is not.
+    cells : sequence of str, optional
+        What the table shows in one row instead of the numbers.
     """
 
     key: str
     label: str
-    value: str | float | ArrayLike
+    value: str | float | ArrayLike | None
     unit: str = ""
     hint: str = ""
     decimals: int | None = None
     scale: float = 0.0
+    sigma: ArrayLike | None = None
+    linear: ArrayLike | None = None
+    cells: Sequence[str] | None = None
 
 
 @dataclass(frozen=True)
@@ -107,9 +120,15 @@ class Report:
         self.sections.append((title, list(fields)))
 
     def as_dict(self) -> dict[str, Any]:
-        """Every field by its key, ``"units"`` of those that have one, and ``"notes"``."""
+        """Every field by its key, ``"units"`` of those that have one, and ``"notes"``.
+
+        Where numbers have sigmas these stand in ``"sigma"`` by the same keys, and in ``"linear"`` whether the
+        first order is enough for them.
+        """
         values: dict[str, Any] = {}
         units: dict[str, Any] = {}
+        sigmas: dict[str, Any] = {}
+        linear: dict[str, Any] = {}
         for _, fields in self.sections:
             for item in fields:
                 if isinstance(item, Table):
@@ -118,10 +137,16 @@ class Report:
                         if column.unit:
                             _put(units, f"{item.key}.{column.key}", column.unit)
                     continue
-                _put(values, item.key, _plain(item.value))
+                if item.value is not None:
+                    _put(values, item.key, _plain(item.value))
+                if item.sigma is not None:
+                    _put(sigmas, item.key, _plain(item.sigma))
+                if item.linear is not None:
+                    _put(linear, item.key, _plain(item.linear))
                 if item.unit:
-                    _put(units, item.key, item.unit)
-        return {**values, "units": units, "notes": list(self.notes)}
+                    _put(units, item.key if item.value is not None else f"sigma.{item.key}", item.unit)
+        of_sigmas = {"sigma": sigmas, "linear": linear} if sigmas else {}
+        return {**values, **of_sigmas, "units": units, "notes": list(self.notes)}
 
     def as_json(self) -> str:
         """Write the same as text; infinity is the string "Infinity", not-a-number is null."""
@@ -156,9 +181,13 @@ def _lines(item: Field) -> Iterator[str]:
         yield f"{label}  {printable(item.value)}  {item.hint}".rstrip()
         return
     unit = "".join(f"  {text}" for text in (item.unit, item.hint) if text)
-    for row in _rows(item):
-        cells = "".join(cell.rjust(CELL_WIDTH) for cell in row)
-        yield f"{label}{cells}{' ' * CELL_WIDTH * (3 - len(row))}{unit}".rstrip()
+    rows = list(_rows(item))
+    width = CELL_WIDTH
+    if item.sigma is not None or item.cells is not None:
+        width = max(width, *(len(cell) + 2 for row in rows for cell in row))
+    for row in rows:
+        cells = "".join(cell.rjust(width) for cell in row)
+        yield f"{label}{cells}{' ' * max(0, CELL_WIDTH * 3 - width * len(row))}{unit}".rstrip()
         label, unit = " " * LABEL_WIDTH, ""
 
 
@@ -184,13 +213,32 @@ def _cell(value: Any, decimals: int | None) -> str:
 
 
 def _rows(item: Field) -> Iterator[list[str]]:
+    if item.cells is not None:
+        yield list(item.cells)
+        return
     array: NDArray[Any] = np.asarray(item.value)
     matrix = array.reshape((-1, array.shape[-1]) if array.ndim else (1, 1))
     if np.issubdtype(matrix.dtype, np.integer):
         yield from ([str(x) for x in row] for row in matrix)
         return
     matrix = np.where(np.abs(matrix) < ROUNDING * item.scale, 0.0, matrix)
+    if item.sigma is not None:
+        yield from _rows_with_sigma(item, matrix)
+        return
     yield from ([number(float(x), item.decimals) for x in row] for row in matrix)
+
+
+def _rows_with_sigma(item: Field, matrix: NDArray[Any]) -> Iterator[list[str]]:
+    """Numbers beside their sigmas; those for which the first order is not enough are marked."""
+    sigmas = np.asarray(item.sigma, dtype=np.float64).reshape(matrix.shape)
+    linear = np.broadcast_to(np.asarray(True if item.linear is None else item.linear).ravel(), matrix.size)
+    for row, deviations, flags in zip(matrix, sigmas, linear.reshape(matrix.shape), strict=True):
+        cells = []
+        for x, sigma, is_linear in zip(row.tolist(), deviations.tolist(), flags.tolist(), strict=True):
+            is_exact = not sigma > ROUNDING * max(abs(x), item.scale)
+            text = number(x, item.decimals) if is_exact else with_sigma(x, sigma)
+            cells.append(text if is_linear else f"{text}{NOT_LINEAR}")
+        yield cells
 
 
 def _plain(value: object) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode.cli.progress import reading_progress
-from polhode.cli.quantities import has_unit, quantity
+from polhode.cli.quantities import amount, has_unit, quantity
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
 from polhode.files.content import MOLECULE_SUFFIX
@@ -20,13 +20,13 @@ from polhode.units import METRES, metres_per
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from polhode import RigidBody
+    from polhode import RigidBody, Uncertain
     from polhode.cli.options import BodyOptions
     from polhode.files.loaded import Loaded
     from polhode.files.mesh import Mesh
     from polhode.molecules import Isotope
 
-__all__ = ["LoadedBody", "in_file_unit", "load_body"]
+__all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body"]
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,8 @@ class LoadedBody:
         How what was asked for was understood, and what was done to the mesh.
     shape : Mesh or None
         The mesh in the unit of `body`, where it was asked for.
+    has_mass_sigmas : bool
+        Whether the masses of a molecule's isotopes have sigmas.
     """
 
     body: RigidBody
@@ -65,6 +67,7 @@ class LoadedBody:
     assumed: bool = False
     notes: tuple[str, ...] = ()
     shape: Mesh | None = None
+    has_mass_sigmas: bool = False
 
     @property
     def moment_unit(self) -> str:
@@ -86,6 +89,9 @@ def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> 
 
 
 def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody:
+    for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
+        if is_given:
+            raise PolhodeError(f"{option}: {file} is a mesh, not a molecule; leave it out")
     if options.density is not None and options.mass is not None:
         raise PolhodeError(
             "--density and --mass: give one of the two, since the other follows from the volume"
@@ -113,7 +119,7 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody
         source=solid,
         mass_unit="kg" if unit is not None else "mass",
         length="m" if unit is not None else "unit",
-        density=float(solid.body.mass) / solid.volume if density is None else density,
+        density=float(solid.body.mass) / solid.volume if density is None else _value(density),
         volume=solid.volume,
         assumed=assumed,
         notes=tuple(notes),
@@ -130,8 +136,8 @@ def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh:
 def _solid(
     loaded: Loaded,
     options: BodyOptions,
-    density: float | None,
-    mass: float | None,
+    density: float | Uncertain | None,
+    mass: float | Uncertain | None,
     scale: float,
     weld: float,
 ) -> MeshSolid:
@@ -180,19 +186,23 @@ def in_file_unit(text: str, option: str, unit: str | None) -> float:
     return quantity(text, "m", option) / metres_per(unit)
 
 
-def _amount(text: str | None, si: str, option: str, unit: str | None) -> float | None:
+def _value(number: float | Uncertain) -> float:
+    return number if isinstance(number, float) else float(number.value)
+
+
+def _amount(text: str | None, si: str, option: str, unit: str | None) -> float | Uncertain | None:
     if text is None:
         return None
     if unit is None and has_unit(text):
         raise PolhodeError(
             f"{option}: {text!r} has a unit, but the file's coordinates have none; state --length-unit too"
         )
-    return quantity(text, si, option)
+    return amount(text, si, option)
 
 
 def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
+    from polhode.cli.atoms import atoms_of
     from polhode.files.body import check_molecule_options, molecule_isotopes
-    from polhode.molecules import body_of_atoms
 
     check_molecule_options(
         file,
@@ -206,10 +216,34 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
     )
     molecule = load(file).molecule
     atoms = molecule_isotopes(file, molecule)
-    in_angstrom = metres_per(options.length_unit or "angstrom") / METRES["angstrom"]
-    body = body_of_atoms(
-        [atom.mass for atom in atoms],
-        molecule.positions * in_angstrom,
-        rounding=molecule.rounding * in_angstrom,
+    unit = options.length_unit or "angstrom"
+    in_angstrom = metres_per(unit) / METRES["angstrom"]
+    molecule = molecule._replace(
+        positions=molecule.positions * in_angstrom, rounding=molecule.rounding * in_angstrom
     )
-    return LoadedBody(body=body, source=atoms, mass_unit="u", length="angstrom", comment=molecule.comment)
+    at = atoms_of(
+        file,
+        atoms,
+        molecule,
+        bond_sigma=bond_sigma(options.bond_sigma, unit),
+        mass_sigmas=options.mass_sigmas,
+    )
+    return LoadedBody(
+        body=at.body(atoms),
+        source=atoms,
+        mass_unit="u",
+        length="angstrom",
+        comment=molecule.comment,
+        notes=at.notes,
+        has_mass_sigmas=options.mass_sigmas,
+    )
+
+
+def bond_sigma(text: str | None, unit: str) -> float | None:
+    """Read the sigma of bond lengths, in angstrom; a bare number is in the unit of the file."""
+    if text is None:
+        return None
+    sigma = in_file_unit(text, "--bond-sigma", unit) * (metres_per(unit) / METRES["angstrom"])
+    if sigma < 0.0:
+        raise PolhodeError(f"--bond-sigma: {text!r} is negative; a standard deviation is not")
+    return sigma

@@ -4,33 +4,25 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
+from polhode.cli.atoms import Atoms, atoms_of
+from polhode.cli.constants import constant_fields, isotopologue_row, rotation_fields, straightened
 from polhode.cli.layout import Column, Field, Report, Table
-from polhode.cli.loading import LoadedBody
+from polhode.cli.loading import LoadedBody, bond_sigma
+from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import as_file, shown
-from polhode.cli.tables import FileUnits, body_fields, tensor_fields, top_fields, trust_fields
+from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
 from polhode.errors import PolhodeError
 from polhode.files.body import molecule_isotopes
 from polhode.files.content import MOLECULE_SUFFIX
 from polhode.files.loaded import load
-from polhode.molecules import (
-    Isotope,
-    body_of_atoms,
-    inertial_defect,
-    isotopes,
-    planar_moments,
-    ray_kappa,
-    rotational_constants,
-)
+from polhode.molecules import Isotope, isotopes
 from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from polhode import RigidBody
     from polhode.cli.options import MoleculeOptions
     from polhode.files.xyz import Molecule
 
@@ -50,15 +42,17 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
     molecule = molecule._replace(
         positions=molecule.positions * to_angstrom, rounding=molecule.rounding * to_angstrom
     )
-    loaded = _loaded(atoms, molecule, options)
+    sigma = bond_sigma(options.bond_sigma, options.length_unit)
+    at = atoms_of(file, atoms, molecule, bond_sigma=sigma, mass_sigmas=options.mass_sigmas)
+    loaded = _loaded(atoms, molecule, at, options)
     report = Report()
     _head(report, file, atoms, loaded)
-    report.section("rotation", *_rotation_fields(loaded, options.rtol))
+    report.section("rotation", *rotation_fields(loaded, options.rtol))
     if options.isotopes:
-        rows = [_row("as above", loaded.body, options.rtol)]
+        rows = [isotopologue_row("as above", loaded.body, options.rtol)]
         for text in options.isotopes:
             changed = _substituted(atoms, text)
-            rows.append(_row(_formula(changed), _loaded(changed, molecule, options).body, options.rtol))
+            rows.append(isotopologue_row(_formula(changed), at.body(changed, options.masses), options.rtol))
         columns = (
             Column("isotopes", "isotopes"),
             Column("rotational_constants_MHz", "A  B  C", "MHz", 3),
@@ -67,11 +61,13 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
             Column("top", "top"),
         )
         report.section("isotopologues", Table("isotopologues", columns, rows))
-    report.notes += _straightened(loaded.body, options.rtol)
+    report.notes += straightened(loaded.body, options.rtol)
     masses = "masses of isotopes, not averages"
     if options.masses == "average":
         masses = "masses are averages over the isotopes of an element, which no single molecule has"
     report.notes.append(f"{masses}; moments of the geometry as it stands, without zero-point motion")
+    report.notes += loaded.notes
+    note_linear(report)
     return report
 
 
@@ -83,16 +79,23 @@ def atoms_report(
     _head(report, file, atoms, loaded)
     report.section("inertia, file axes", *tensor_fields(loaded, FileUnits(), about))
     report.section("principal axes", *body_fields(loaded, FileUnits()))
-    report.section("rotational constants", *_constant_fields(loaded.body))
+    report.section("rotational constants", *constant_fields(loaded.body))
     report.section("trust", *trust_fields(loaded))
-    report.notes += _straightened(loaded.body)
+    report.notes += [*straightened(loaded.body), *loaded.notes]
+    note_linear(report)
     return report
 
 
-def _loaded(atoms: list[Isotope], molecule: Molecule, options: MoleculeOptions) -> LoadedBody:
-    masses = [atom.mass for atom in atoms]
-    body = body_of_atoms(masses, molecule.positions, source=options.masses, rounding=molecule.rounding)
-    return LoadedBody(body=body, source=atoms, mass_unit="u", length="angstrom", comment=molecule.comment)
+def _loaded(atoms: list[Isotope], molecule: Molecule, at: Atoms, options: MoleculeOptions) -> LoadedBody:
+    return LoadedBody(
+        body=at.body(atoms, options.masses),
+        source=atoms,
+        mass_unit="u",
+        length="angstrom",
+        comment=molecule.comment,
+        notes=at.notes,
+        has_mass_sigmas=options.mass_sigmas,
+    )
 
 
 def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) -> None:
@@ -107,81 +110,26 @@ def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) 
         "mass",
         Field("atoms", "atoms", len(atoms)),
         *(
-            Field(f"isotope_masses.{atom.name}", f"mass of {atom.name}", atom.mass, "u", decimals=9)
+            Field(
+                f"isotope_masses.{atom.name}",
+                f"mass of {atom.name}",
+                atom.mass,
+                "u",
+                decimals=9,
+                **(Told(sigma=atom.sigma, linear=True) if loaded.has_mass_sigmas else {}),
+            )
             for atom in counts
         ),
-        Field("mass", "mass", body.mass, "u", decimals=9),
-        Field("center_of_mass", "centre of mass", body.center_of_mass, "angstrom", scale=loaded.extent),
-    )
-
-
-def _moments(body: RigidBody, rtol: float | None = None) -> Any:
-    """Principal moments; of a linear molecule, from the positions of its atoms along the axis alone.
-
-    By the last digits of its file it may be bent. Then Ia is 0 and Ib = Ic is Paa, the sum of m a^2, which is
-    what one straight line has; Ia = 0 beside the other two as they stand would be no body's.
-    """
-    moments = body.principal_moments
-    if body.principal.classify(rtol) != "linear":
-        return moments
-    along = planar_moments(moments)[0]
-    return np.array([0.0, along, along])
-
-
-def _straightened(body: RigidBody, rtol: float | None = None) -> list[str]:
-    """Give a note where a molecule counts as linear although the last digits of its file bend it."""
-    least = body.principal_moments[0]
-    if least == 0.0 or body.principal.classify(rtol) != "linear":
-        return []
-    return [
-        f"by its last digits not quite straight, Ia = {least:.3g} u angstrom^2; the constants are those of "
-        "the atoms' places along the axis, Ia = 0 and Ib = Ic = Paa"
-    ]
-
-
-def _constant_fields(body: RigidBody, rtol: float | None = None) -> list[Field]:
-    moments = _moments(body, rtol)
-    frequencies = rotational_constants(moments, "MHz")
-    fields = [
-        Field("rotational_constants_MHz", "A  B  C", frequencies, "MHz", decimals=3),
-        Field("rotational_constants_cm^-1", "", rotational_constants(moments, "cm^-1"), "cm^-1", decimals=6),
-    ]
-    if body.principal.classify(rtol) == "asymmetric":
-        fields.append(Field("ray_kappa", "Ray's kappa", ray_kappa(frequencies)))
-    return fields
-
-
-def _rotation_fields(loaded: LoadedBody, rtol: float | None) -> list[Field]:
-    body = loaded.body
-    moments = _moments(body, rtol)
-    unit, scale = "u angstrom^2", float(moments[2])
-    return [
-        *top_fields(loaded, rtol),
-        Field("principal_moments", "Ia Ib Ic", moments, unit),
-        Field("axes", "axes a b c", body.principal.axes, hint="columns", scale=1.0),
-        *_constant_fields(body, rtol),
+        Field("mass", "mass", body.mass, "u", decimals=9, **told(body, "mass")),
         Field(
-            "inertial_defect", "inertial defect", inertial_defect(moments), unit, "Ic - Ia - Ib", scale=scale
+            "center_of_mass",
+            "centre of mass",
+            body.center_of_mass,
+            "angstrom",
+            scale=loaded.extent,
+            **told(body, "center_of_mass"),
         ),
-        Field("planar_moments", "planar Paa Pbb Pcc", planar_moments(moments), unit, scale=scale),
-    ]
-
-
-def _row(name: str, body: RigidBody, rtol: float | None) -> dict[str, Any]:
-    moments = _moments(body, rtol)
-    constants = rotational_constants(moments, "MHz")
-    top = str(body.principal.classify(rtol))
-    return {
-        "isotopes": name,
-        "mass": float(body.mass),
-        "principal_moments": moments,
-        "rotational_constants_MHz": constants,
-        "rotational_constants_cm^-1": rotational_constants(moments, "cm^-1"),
-        "inertial_defect": float(inertial_defect(moments)),
-        "planar_moments": planar_moments(moments),
-        "ray_kappa": float(ray_kappa(constants)) if top == "asymmetric" else None,
-        "top": top,
-    }
+    )
 
 
 def _formula(atoms: list[Isotope]) -> str:

@@ -48,9 +48,10 @@ class BodyOptions:
     ----------
     density
         Density, as in "2.7 g/cm^3"; a bare number is kg/m^3 where --length-unit is given, which the report
-        says, else per the file's own unit of volume.
+        says, else per the file's own unit of volume. It may have a sigma, as in "2.70 ± 0.02 g/cm^3".
     mass
-        Mass instead of density, as in "0.3 lb"; a bare number is kg where --length-unit is given.
+        Mass instead of density, as in "0.3 lb"; a bare number is kg where --length-unit is given. It may have
+        a sigma: "5.0 ± 0.1 kg", with +- as well, "5.0(1) kg" or "5.0 kg ± 2 %".
     length_unit
         Unit of the file's coordinates; results are then in SI units. Without it all results are in
         the file's own unit, and numbers on the command line carry none.
@@ -64,6 +65,11 @@ class BodyOptions:
         Turn triangles that face inward; without it they are an error.
     index_base
         What the faces of an OBJ or plate file count vertices from: 1 (OBJ) or 0.
+    bond_sigma
+        Of a molecule: sigma of the length of each bond, as in 0.003 or "0.3 pm"; a bare number is in the unit
+        of the file. Bonds are found by covalent radii; one in a ring cannot be stretched alone: an error.
+    mass_sigmas
+        Of a molecule: the masses of its isotopes have the sigmas that are on record.
     """
 
     density: Annotated[str | None, Parameter(name="--density")] = None
@@ -73,6 +79,8 @@ class BodyOptions:
     closure: Annotated[Literal["caps", "hull"] | None, Parameter(name="--closure")] = None
     orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
     index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
+    bond_sigma: Annotated[str | None, Parameter(name="--bond-sigma")] = None
+    mass_sigmas: Annotated[bool, Parameter(name="--mass-sigmas", negative="")] = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,12 +148,19 @@ class MoleculeOptions:
     rtol
         Moments closer than this times the largest count as equal, for the class of the top; by default 1e-6,
         and more where the file has so few digits that their rounding can make more. The report tells which.
+    bond_sigma
+        Sigma of the length of each bond, as in 0.003 or "0.3 pm"; a bare number is in the unit of the file.
+        Bonds are found by covalent radii; one in a ring cannot be stretched alone and is an error.
+    mass_sigmas
+        The masses of isotopes have the sigmas that are on record.
     """
 
     isotopes: Annotated[Words, Parameter(name="--isotopes", negative="", show_default=False)] = ()
     masses: Annotated[Literal["most_common", "average"], Parameter(name="--masses")] = "most_common"
     length_unit: Annotated[LengthUnit, Parameter(name="--length-unit")] = "angstrom"
     rtol: Annotated[float | None, Parameter(name="--rtol")] = None
+    bond_sigma: Annotated[str | None, Parameter(name="--bond-sigma")] = None
+    mass_sigmas: Annotated[bool, Parameter(name="--mass-sigmas", negative="")] = False
 
 
 @dataclass(frozen=True, kw_only=True)

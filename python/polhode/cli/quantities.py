@@ -1,7 +1,8 @@
 """Numbers with units, as they are typed: ``2700``, ``"2.7 g/cm^3"``, ``0 0 1``, ``"10 20 30 deg/s"``.
 
 A bare number is in the unit that the option states. pint converts, in decimal arithmetic so that 2.7 g/cm^3
-is 2700 kg/m^3 to the last digit, and is only loaded where a unit was typed.
+is 2700 kg/m^3 to the last digit, and is only loaded where a unit was typed. An amount may have a sigma:
+``"5.0 ± 0.1 kg"``, ``"5.0(1) kg"``, ``"5.0 kg ± 2 %"``.
 """
 
 from __future__ import annotations
@@ -10,18 +11,27 @@ import math
 import re
 from decimal import Decimal
 from functools import cache
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from polhode import _core
 from polhode._extras import require
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["has_unit", "quantities", "quantity", "split_vector", "vector"]
+__all__ = ["amount", "has_unit", "quantities", "quantity", "split_vector", "vector"]
 
 _NUMBER: Final = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>\S.*?)?\s*")
+_PLUS_MINUS: Final = re.compile(r"±|\+/-|\+-")
+_SIGMA: Final = re.compile(
+    r"\s*(?P<sigma>\d+\.?\d*(?:[eE][+-]?\d{1,3})?|\.\d+(?:[eE][+-]?\d{1,3})?)\s*(?P<rest>.*?)\s*"
+)
+_IN_BRACKETS: Final = re.compile(r"\s*\((?P<inner>.*)\)\s*(?P<unit>\S.*?)?\s*")
+_LAST_PLACES: Final = re.compile(
+    r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+))\((?P<last>\d+)\)(?P<power>[eE][+-]?\d{1,3})?\s*(?P<unit>\S.*?)?\s*"
+)
 _FACTOR: Final = r"[A-Za-zµμ°Å_]+(?:(?:\^|\*\*)?-?\d)?"
 _BARE_POWER: Final = re.compile(r"(?<=[A-Za-zµμ°Å])(?=-?\d)")
 _UNIT: Final = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/· ]\s*{_FACTOR})*")
@@ -38,10 +48,19 @@ _EXAMPLES: Final = {
 }
 
 
+class _Typed(NamedTuple):
+    """A number as it was typed, its unit, and its sigma with the unit of that; None where there is none."""
+
+    number: str
+    unit: str | None
+    sigma: Decimal | None = None
+    sigma_unit: str | None = None
+
+
 def has_unit(text: str) -> bool:
     """Tell whether the number has a unit."""
-    match = _QUANTITY.fullmatch(text)
-    return match is not None and match["unit"] is not None
+    typed = _typed(text)
+    return typed is not None and typed.unit is not None
 
 
 def quantity(text: str, unit: str, option: str) -> float:
@@ -63,19 +82,62 @@ def quantity(text: str, unit: str, option: str) -> float:
     Raises
     ------
     PolhodeError
-        If it is no number, not finite, of another dimension or in a unit that pint does not know.
+        If it is no number, has a sigma, is not finite, of another dimension or in a unit that pint does not
+        know.
     """
-    match = _QUANTITY.fullmatch(text)
-    if match is None:
+    typed = _typed(text)
+    if typed is None:
         raise PolhodeError(
             f"{option}: {text!r} is not a number with or without a unit; write {_example(unit)}"
         )
-    value = float(match["number"])
-    if match["unit"] not in (None, unit):
-        value = float(Decimal(match["number"]) * _factor(match["unit"], unit, option))
-    if not math.isfinite(value):
-        raise PolhodeError(f"{option}: {text!r} is beyond the range of numbers; check the exponent")
-    return value
+    if typed.sigma is not None:
+        raise PolhodeError(
+            f"{option}: {text!r} has a sigma, which {option} does not take; write the number alone"
+        )
+    return _converted(text, typed, unit, option)
+
+
+def amount(text: str, unit: str, option: str) -> float | _core.Uncertain:
+    """Read a finite number that may have a sigma, both converted to `unit`.
+
+    Parameters
+    ----------
+    text : str
+        As `quantity` takes it, or with a sigma: ``"5.0 ± 0.1 kg"``, with ``+-`` or ``+/-`` as well,
+        ``"5.0 kg ± 2 %"``, or ``"5.0(1) kg"`` with the sigma in units of the last place.
+    unit, option : str
+        See `quantity`.
+
+    Returns
+    -------
+    float or Uncertain
+        The number alone where no sigma was typed.
+
+    Raises
+    ------
+    PolhodeError
+        See `quantity`; also where a sigma has no unit and its number has one.
+    """
+    typed = _typed(text)
+    if typed is None or typed.sigma is None:
+        if typed is None and _has_sigma(text):
+            raise PolhodeError(
+                f"{option}: {text!r} is not a number with a sigma; write {_sigma_examples(unit)}"
+            )
+        return quantity(text, unit, option)
+    if typed.unit is not None and typed.sigma_unit is None:
+        raise PolhodeError(
+            f"{option}: {text!r}: the sigma has no unit, but its number has one; "
+            f"write {_sigma_examples(unit)}"
+        )
+    value, sigma = _converted(text, typed, unit, option), typed.sigma
+    if typed.sigma_unit not in (None, unit):
+        sigma *= _factor(str(typed.sigma_unit), unit, option)
+    if not math.isfinite(float(sigma)):
+        raise PolhodeError(
+            f"{option}: the sigma of {text!r} is beyond the range of numbers; check the exponent"
+        )
+    return _core.Uncertain(value, float(sigma))
 
 
 def quantities(texts: Sequence[str], count: int, unit: str, option: str) -> tuple[float, ...]:
@@ -108,8 +170,56 @@ def split_vector(texts: Sequence[str], unit: str, option: str) -> list[str]:
     return _split(texts, 3, unit, option)
 
 
+def _typed(text: str) -> _Typed | None:
+    """Take a number, its sigma and their units apart; None where it is no number."""
+    if not _has_sigma(text):
+        match = _QUANTITY.fullmatch(text)
+        return None if match is None else _Typed(match["number"], match["unit"])
+    last = _LAST_PLACES.fullmatch(text)
+    if last is not None:
+        number, power = last["number"], last["power"] or ""
+        place = Decimal(number + power).as_tuple().exponent
+        return _Typed(number + power, last["unit"], Decimal(last["last"]).scaleb(int(place)), last["unit"])
+    around = _IN_BRACKETS.fullmatch(text)
+    if around is not None:
+        inner = _typed(around["inner"])
+        if inner is None or inner.unit is not None:
+            return None
+        return inner._replace(unit=around["unit"], sigma_unit=around["unit"])
+    before, *behind = _PLUS_MINUS.split(text)
+    match, sigma = _QUANTITY.fullmatch(before), _SIGMA.fullmatch(behind[0]) if len(behind) == 1 else None
+    if match is None or sigma is None:
+        return None
+    number, size, unit = match["number"], Decimal(sigma["sigma"]), match["unit"]
+    if sigma["rest"].startswith("%"):
+        after = sigma["rest"][1:].strip() or None
+        if unit is not None and after is not None:
+            return None
+        size *= abs(Decimal(number)) / 100
+        return _Typed(number, unit or after, size, unit or after)
+    after = sigma["rest"] or None
+    return _Typed(number, unit or after, size, after)
+
+
+def _has_sigma(text: str) -> bool:
+    return _PLUS_MINUS.search(text) is not None or re.search(r"[\d.]\(", text) is not None
+
+
+def _converted(text: str, typed: _Typed, unit: str, option: str) -> float:
+    value = float(typed.number)
+    if typed.unit not in (None, unit):
+        value = float(Decimal(typed.number) * _factor(str(typed.unit), unit, option))
+    if not math.isfinite(value):
+        raise PolhodeError(f"{option}: {text!r} is beyond the range of numbers; check the exponent")
+    return value
+
+
 def _split(texts: Sequence[str], count: int, unit: str, option: str) -> list[str]:
     text = " ".join(texts)
+    if _has_sigma(text):
+        raise PolhodeError(
+            f"{option}: {text!r} has a sigma, which {option} does not take; write the numbers alone"
+        )
     if "," in text:
         parts = [part.strip() for part in text.strip().strip(",").split(",")]
         last = _QUANTITY.fullmatch(parts[-1])
@@ -130,6 +240,10 @@ def _split(texts: Sequence[str], count: int, unit: str, option: str) -> list[str
 
 def _example(unit: str) -> str:
     return f'"{_EXAMPLES[unit]}"' if unit in _EXAMPLES else f'"1 {unit}"'
+
+
+def _sigma_examples(unit: str) -> str:
+    return f'"5.0 ± 0.1 {unit}" or "5.0 {unit} ± 2 %"'
 
 
 def _factor(text: str, unit: str, option: str) -> Decimal:

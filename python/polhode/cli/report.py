@@ -8,6 +8,7 @@ from polhode.cli.layout import Field, Report
 from polhode.cli.loading import in_file_unit, load_body
 from polhode.cli.options import ReportOptions
 from polhode.cli.quantities import quantity, split_vector
+from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
 from polhode.errors import PolhodeError
@@ -85,14 +86,29 @@ def _mesh_report(
     center, extent = body.center_of_mass, loaded.extent
     report.section(
         "mass",
-        Field("density", "density", loaded.density, f"{loaded.mass_unit}/{volume}"),
-        *units.fields("mass", "mass", body.mass, loaded.mass_unit, mass=1),
-        *units.fields("center_of_mass", "centre of mass", center, loaded.length, length=1, scale=extent),
+        Field(
+            "density",
+            "density",
+            loaded.density,
+            f"{loaded.mass_unit}/{volume}",
+            **({} if body.sigma is None else Told(sigma=body.sigma.mass / loaded.volume, linear=True)),
+        ),
+        *units.fields("mass", "mass", body.mass, loaded.mass_unit, mass=1, **told(body, "mass")),
+        *units.fields(
+            "center_of_mass",
+            "centre of mass",
+            center,
+            loaded.length,
+            length=1,
+            scale=extent,
+            **told(body, "center_of_mass"),
+        ),
     )
     report.section("inertia, file axes", *tensor_fields(loaded, units, about))
     report.section("principal axes", *body_fields(loaded, units))
     report.section("trust", *trust_fields(loaded))
     report.notes += loaded.notes
+    note_linear(report)
     if loaded.assumed:
         report.notes.append(
             "neither density nor mass was given: density 1 was used (state --density or --mass)"

@@ -11,7 +11,8 @@ from polhode import RigidBody
 from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
-from polhode.cli.quantities import quantities, quantity, vector
+from polhode.cli.quantities import amount, quantities, quantity, vector
+from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
@@ -53,8 +54,14 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     rate, rate_unit = (180.0 / np.pi, "deg/s") if spin.degrees else (1.0, "rad/s")
     report.section(
         "body",
-        Field("mass", "mass", body.mass, loaded.mass_unit),
-        Field("principal_moments", "I1 I2 I3", body.principal_moments, loaded.moment_unit),
+        Field("mass", "mass", body.mass, loaded.mass_unit, **told(body, "mass")),
+        Field(
+            "principal_moments",
+            "I1 I2 I3",
+            body.principal_moments,
+            loaded.moment_unit,
+            **told(body, "principal_moments"),
+        ),
         *top_fields(loaded),
     )
     report.section(
@@ -65,6 +72,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report.section("conserved", *kind.constants(loaded.moment_unit))
     report.section("stability", *kind.stability())
     report.notes += _notes(loaded)
+    note_linear(report)
     if until is None:
         return report
     _check_end(motion, until)
@@ -85,9 +93,9 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report.notes += [note] if note else []
     title = "" if file is None else Path(shown(file)).name
     for path in spin.save:
-        told = save(motion, trajectory, path, spin, title=title, part=part)
+        saved = save(motion, trajectory, path, spin, title=title, part=part)
         report.notes.append(f"saved {path}")
-        report.notes += [f"{path.name}: {note}" for note in told]
+        report.notes += [f"{path.name}: {note}" for note in saved]
     return report
 
 
@@ -135,10 +143,13 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
         if spin.center:
             raise PolhodeError("--center: the file tells where the centre of mass is; leave it out")
         return load_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
+    for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
+        if is_given:
+            raise PolhodeError(f"{option}: --moments are of no molecule; leave it out")
     if spin.gravity is not None and (options.mass is None or not spin.center):
         raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
     moments = vector(spin.moments, "kg m^2", "--moments")
-    mass = quantity(options.mass, "kg", "--mass") if options.mass is not None else 1.0
+    mass = amount(options.mass, "kg", "--mass") if options.mass is not None else 1.0
     center = vector(spin.center, "m", "--center") if spin.center else (0.0, 0.0, 0.0)
     body = RigidBody.from_principal(mass, moments, center_of_mass=center)
     return LoadedBody(body=body, source=[], mass_unit="kg", length="m")

@@ -9,6 +9,7 @@ import numpy as np
 
 from polhode.cli.layout import Field
 from polhode.cli.quantities import quantity
+from polhode.cli.sigmas import about_point, angle_field, squared, told
 from polhode.files.mesh_solid import MeshSolid
 from polhode.results import TOP_RTOL
 from polhode.units import metres_per
@@ -38,17 +39,19 @@ class FileUnits:
         length: int = 0,
         mass: int = 0,
         scale: float = 0.0,
+        sigma: ArrayLike | None = None,
+        linear: ArrayLike | None = None,
     ) -> list[Field]:
         """Give powers of length and mass, and where the file has other units also in those.
 
         Parameters
         ----------
-        key, label, value, unit, scale
+        key, label, value, unit, scale, sigma, linear
             See `Field`; the value in kg and m.
         length, mass : int
             The powers.
         """
-        fields = [Field(key, label, value, unit, scale=scale)]
+        fields = [Field(key, label, value, unit, scale=scale, sigma=sigma, linear=linear)]
         if self.length is None or (self.mass is None if mass else self.length == "m"):
             return fields
         one = metres_per(self.length) ** length
@@ -56,7 +59,18 @@ class FileUnits:
         if mass and self.mass is not None:
             one *= quantity(f"1 {self.mass}", "kg", "--mass-unit") ** mass
             name = f"{self.mass} {name}".strip()
-        fields.append(Field(f"in_file_unit.{key}", "", np.divide(value, one), name, scale=scale / one))
+        deviation = None if sigma is None else np.divide(sigma, one)
+        fields.append(
+            Field(
+                f"in_file_unit.{key}",
+                "",
+                np.divide(value, one),
+                name,
+                scale=scale / one,
+                sigma=deviation,
+                linear=linear,
+            )
+        )
         return fields
 
 
@@ -66,18 +80,24 @@ def tensor_fields(
     """Inertia tensors about C, about O and about a point that was asked for."""
     body = loaded.body
     tensors = [
-        ("center_of_mass", "about C", body.inertia),
-        ("origin", "about O", body.inertia_about("origin")),
+        ("center_of_mass", "about C", body.inertia, body.center_of_mass),
+        ("origin", "about O", body.inertia_about("origin"), np.zeros(3)),
     ]
     if about is not None:
-        tensors.append(("point", "about the point", body.inertia_about(about)))
-    fields = [
-        field
-        for name, label, tensor in tensors
-        for field in units.fields(
-            f"inertia_about_{name}", label, tensor, loaded.moment_unit, length=2, mass=1, scale=tensor.max()
+        tensors.append(("point", "about the point", body.inertia_about(about), np.array(about)))
+    fields: list[Field] = []
+    for name, label, tensor, point in tensors:
+        of_tensor = told(body, "inertia") if name == "center_of_mass" else about_point(body, point)
+        fields += units.fields(
+            f"inertia_about_{name}",
+            label,
+            tensor,
+            loaded.moment_unit,
+            length=2,
+            mass=1,
+            scale=tensor.max(),
+            **of_tensor,
         )
-    ]
     if about is not None:
         point = np.array(about)
         fields += units.fields("point", "  the point", point, loaded.length, length=1, scale=loaded.extent)
@@ -90,13 +110,22 @@ def body_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
     principal = body.principal
     per_mass = principal.moments / body.mass
     square, radius = f"{loaded.length}^2", np.sqrt(per_mass)
+    of_moments, of_radii = told(body, "principal_moments"), told(body, "radii_of_gyration")
+    of_squares = squared(radius, of_radii)
     return [
         *units.fields(
-            "principal_moments", "I1 I2 I3", principal.moments, loaded.moment_unit, length=2, mass=1
+            "principal_moments",
+            "I1 I2 I3",
+            principal.moments,
+            loaded.moment_unit,
+            length=2,
+            mass=1,
+            **of_moments,
         ),
-        *units.fields("moments_per_mass", "I1 I2 I3 / mass", per_mass, square, length=2),
-        *units.fields("radii_of_gyration", "radii of gyration", radius, loaded.length, length=1),
+        *units.fields("moments_per_mass", "I1 I2 I3 / mass", per_mass, square, length=2, **of_squares),
+        *units.fields("radii_of_gyration", "radii of gyration", radius, loaded.length, length=1, **of_radii),
         Field("axes", "e1 e2 e3", principal.axes, hint="columns", scale=1.0),
+        *angle_field(body),
         Field("gaps", "gaps 2-1, 3-2", principal.gaps, hint="of I3"),
         *top_fields(loaded),
     ]

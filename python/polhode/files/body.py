@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
     from polhode import _core
     from polhode._core import RigidBody
+    from polhode._nuclides import Masses
     from polhode._typing import SupportsSigma
     from polhode.files.xyz import Molecule
-    from polhode.molecules import Masses
 
 __all__ = ["body_from_file", "check_molecule_options", "molecule_isotopes"]
 
