@@ -254,5 +254,7 @@ class TestFlags:
         body = RigidBody.from_principal(2.0, (3.0, 4.0, 5.0)).with_sigma(mass=0.01)
         about = propagate(lambda b: b.inertia_about((0.1, 0.2, 0.3)), body)
         assert about.linear.all()
-        turned = propagate(lambda b: b.rotated(START).rotated(START.inv()).inertia_about((0.0, 0.0, 0.5)), body)
+        turned = propagate(
+            lambda b: b.rotated(START).rotated(START.inv()).inertia_about((0.0, 0.0, 0.5)), body
+        )
         assert turned.linear.all()

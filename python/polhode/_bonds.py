@@ -8,8 +8,8 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
-from polhode._joined import joined
 from polhode._nuclides import names_of
+from polhode._variables import of_forms
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from polhode._joined import Form
     from polhode._nuclides import Isotope
+    from polhode._variables import Form
 
     Floats = NDArray[np.float64]
 
@@ -122,7 +122,7 @@ def uncertain_positions(
         ((variable, _),) = _core.Uncertain(0.0, 1.0)._forms()[0]
         for place in np.flatnonzero(step).tolist():
             forms[place].append((variable, float(step.flat[place])))
-    return joined(places, forms)
+    return of_forms(places, forms)
 
 
 _found = bonds  # beside a parameter of that name

@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._extras import require
-from polhode._joined import joined
+from polhode._variables import of_forms
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def uncertain_masses(labels: Sequence[str | Isotope], masses: Masses = "most_com
                 "give masses as Uncertain numbers"
             )
         forms.append(_core.Uncertain(0.0, isotope.sigma, source=f"mass of {isotope.name}")._forms()[0])
-    return joined(np.array([isotope.mass for isotope in found]), forms)
+    return of_forms(np.array([isotope.mass for isotope in found]), forms)
 
 
 def names_of(labels: Sequence[str | Isotope]) -> list[str]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _core
+from polhode._variables import of_forms
 from polhode.uncertainty import ufloats
 
 __all__ = ["joined"]
@@ -53,12 +54,8 @@ def joined(values: Any) -> Any:
     flat = cells.ravel().tolist()
     if not all(isinstance(cell, _Number) for cell in flat):
         raise ValueError("numbers with a sigma: rows of different lengths; give each as many numbers")
-    forms = [sorted(cell.terms.items()) for cell in flat]
-    sigma = np.array([np.sqrt(sum(step * step for _, step in form)) for form in forms])
-    value = np.array([cell.value for cell in flat])
-    return _core.Uncertain._restored(
-        value.reshape(cells.shape), sigma.reshape(cells.shape), None, None, forms, False
-    )
+    value = np.array([cell.value for cell in flat]).reshape(cells.shape)
+    return of_forms(value, [sorted(cell.terms.items()) for cell in flat])
 
 
 class _Number:

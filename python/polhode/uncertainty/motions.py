@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from polhode import _core
 from polhode._repr import short
 from polhode._rows import rows_of
+from polhode._variables import of_forms
 from polhode.uncertainty.propagation import Propagated, propagate
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from polhode import FreeMotion
+    from polhode import FreeMotion, _core
 
 __all__ = ["PeriodsLinear", "PeriodsSigma", "each_motion", "periods_sigma", "row_of"]
 
@@ -98,6 +98,5 @@ def each_motion(motion: FreeMotion, f: Callable[..., Any]) -> Propagated:
 
 def row_of(given: _core.Uncertain, row: int) -> _core.Uncertain:
     """One row of vectors with a sigma."""
-    value, sigma = (np.reshape(part, (-1, 3))[row] for part in (given.value, given.sigma))
-    forms = given._forms()[3 * row : 3 * row + 3]
-    return _core.Uncertain._restored(value, sigma, None, None, forms, False)
+    value = np.reshape(given.value, (-1, 3))[row]
+    return of_forms(value, given._forms()[3 * row : 3 * row + 3])

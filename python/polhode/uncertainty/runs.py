@@ -9,6 +9,7 @@ import numpy as np
 from polhode import _core
 from polhode._repr import short
 from polhode._rows import rows_of
+from polhode._variables import of_forms
 from polhode.errors import PolhodeError
 from polhode.uncertainty.motions import row_of
 from polhode.uncertainty.neighbours import Neighbours
@@ -49,8 +50,8 @@ class StateLinear(NamedTuple):
 def state_linear(run: Trajectory) -> StateLinear:
     """Tell at which times the sigmas of an uncertain motion are linear enough.
 
-    Runs of 256 neighbours, along random directions in the space of what is uncertain, show the terms of second
-    and third order. They are run by the defaults of :meth:`polhode.RigidBody.simulate`.
+    Runs of 256 neighbours, along random directions in the space of what is uncertain, show the terms of
+    second and third order. They are run by the defaults of :meth:`polhode.RigidBody.simulate`.
     """
     stack, times = run.omega.shape[:-2], run.omega.shape[-2]
     found = [_row(run, stack, row) for row in range(int(np.prod(stack, dtype=int)))]
@@ -67,8 +68,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     if of_omega is not None:
         arguments.append(row_of(of_omega, rows_of(np.shape(of_omega.value)[:-1], stack)[row]))
     if of_attitude is not None:
-        sigma, forms = of_attitude.sigma, of_attitude._forms()
-        arguments.append(_core.Uncertain._restored(np.zeros(3), sigma, None, None, forms, False))
+        arguments.append(of_forms(np.zeros(3), of_attitude._forms()))
     around = Neighbours(None if body.covariance is None else body, arguments)
     rng = np.random.default_rng(20)
     directions = rng.normal(size=(DIRECTIONS, around.rank))

@@ -1,4 +1,4 @@
-"""Arrays of numbers of which several depend on one variable."""
+"""Numbers that depend on variables, several on one."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
     Form = list[tuple[tuple[int, int], float]]
 
-__all__ = ["joined"]
+__all__ = ["of_forms"]
 
 
-def joined(values: NDArray[np.float64], forms: Sequence[Form]) -> _core.Uncertain:
+def of_forms(values: NDArray[np.float64], forms: Sequence[Form]) -> _core.Uncertain:
     """Make one array of numbers that depend on variables, each by what one sigma of a variable does to it."""
     sigmas = np.array([np.sqrt(sum(step * step for _, step in form)) for form in forms])
     return _core.Uncertain._restored(values, sigmas.reshape(values.shape), None, None, list(forms), False)
