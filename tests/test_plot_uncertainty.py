@@ -214,7 +214,7 @@ def by_differences(quantity: Any) -> np.ndarray:
             omega = np.array([0.3, 0.5, 1.4]) + 3e-4 * z[6:9]
             ends.append(quantity(RigidBody(1.0, tensor).simulate(TIMES, omega, start, rtol=1e-13)))
         total = total + (0.5 * (ends[0] - ends[1])) ** 2
-    return np.sqrt(total)
+    return np.asarray(np.sqrt(total))
 
 
 PICTURES: dict[str, tuple[Any, Any]] = {

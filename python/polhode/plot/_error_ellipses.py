@@ -48,13 +48,13 @@ def error_ellipses(
         raise ValueError(f"coverage: {coverage} is not between 0 and 1; it is a probability, as 0.95")
     if not 0.0 < enlarged < np.inf:
         raise ValueError(f"enlarged: {enlarged} is not positive")
-    covariance = angle_covariance(body)
-    if covariance is None:
+    covariance, sigma = angle_covariance(body), body.sigma
+    if covariance is None or sigma is None:
         return
     # In two dimensions the square of a normal distance is exponential: 2.4477 deviations hold 95 %.
     radius = float(np.sqrt(-2.0 * np.log1p(-coverage)))
     ellipses, loose = _ellipses(covariance, radius)
-    is_linear = np.asarray(body.sigma.linear.axes)
+    is_linear = np.asarray(sigma.linear.axes)
     legend: list[Any] = []
     for k, (half, vectors) in ellipses.items():
         color, others = AXIS_COLORS[k], [(k + 1) % 3, (k + 2) % 3]
@@ -116,12 +116,12 @@ def _free_axes(
     if not loose.any():
         return []
     if loose.sum() > 1:
-        return ax.plot([], [], [], linestyle="none", label="axes not determined: anywhere")
+        return list(ax.plot([], [], [], linestyle="none", label="axes not determined: anywhere"))
     k = int(loose.argmax())
     i, j = sorted({0, 1, 2} - {k})
     _on_ellipsoid(ax, principal_circles()[k], body, semi_axes, center, _INK, linestyle=":", linewidth=2.4)
     label = f"$e_{i + 1}$, $e_{j + 1}$: not determined, anywhere on the circle"
-    return ax.plot([], [], [], color=_INK, linestyle=":", linewidth=2.4, label=label)
+    return list(ax.plot([], [], [], color=_INK, linestyle=":", linewidth=2.4, label=label))
 
 
 def _on_ellipsoid(
