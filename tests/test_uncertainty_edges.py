@@ -241,7 +241,7 @@ class TestCovariancesOfRuns:
 
 class TestFlags:
     def test_do_not_depend_on_how_many_sources_there_were(self) -> None:
-        """Sources without a name differ in every body; the angle about the first axis has no first order in any."""
+        """The angle about the first axis has no first order, whatever the sources of a body are."""
         batch = Uncertain(2700.0, sigma=20.0)
         for _ in range(100):
             bus = solids.box(Uncertain((1.0, 1.2, 1.5), sigma=0.002), mass=Uncertain(180.0, sigma=0.5))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["StateSigma", "covariance", "sigma"]
+__all__ = ["StateSigma", "covariance", "sigma", "spin_covariance"]
 
 ELEMENTS: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
@@ -84,15 +84,13 @@ def covariance(self: Trajectory) -> Floats | None:
     >>> run.covariance.shape, run.sigma.omega[0]
     ((2, 6, 6), array([0.001, 0.001, 0.001]))
     """
-    forms = _forms(self)
-    if forms is None:
-        return None
-    return np.asarray(np.einsum("...ik,...jk->...ij", forms, forms))
+    forms, _ = _forms(self)
+    return None if forms is None else _squares(forms)
 
 
 def sigma(self: Trajectory) -> StateSigma | None:
     """Give standard deviations of attitude and angular velocity at every time, or None as of `covariance`."""
-    found = covariance(self)
+    found = self.covariance
     if found is None:
         return None
     deviations = np.sqrt(np.diagonal(found, axis1=-2, axis2=-1))
@@ -101,17 +99,54 @@ def sigma(self: Trajectory) -> StateSigma | None:
     return both
 
 
-def _forms(self: Trajectory) -> Floats | None:
-    """Give what one standard deviation of each variable does to (δ, ω), shape (..., T, 6, k)."""
+def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats | None:
+    """Give the covariance of L = I_P ω at every time, shape (..., T, 3, 3), or None as of `covariance`.
+
+    δL = δI ω + I δω in the body, and in space what the rotation δ of the body adds, R (δ × L).
+    """
+    forms, columns = _forms(self)
+    if forms is None:
+        return None
+    body = self.body
+    tensor = body.inertia_about(self._about_word())[..., None, :, :]
+    changes: Floats = tensor @ forms[..., 3:, :]
+    doubts, stack = body._doubts(), self.omega.shape[:-2]
+    if doubts is not None:
+        by_numbers = _tensors(self).reshape(-1, 10, 3, 3)
+        flat = changes.reshape(-1, *changes.shape[-3:])  # a view: the changes are new
+        omega = self.omega.reshape(-1, *self.omega.shape[-2:])
+        ends = np.cumsum(doubts["counts"]).tolist()
+        for k, row in enumerate(rows_of(body.shape, stack)):
+            for entry in range(ends[row] - int(doubts["counts"][row]), ends[row]):
+                column = columns[tuple(doubts["variables"][entry].tolist())]
+                change = np.tensordot(doubts["tangents"][entry], by_numbers[row], 1)
+                flat[k, :, :, column] += omega[k] @ change
+    if frame == "space":
+        spin = (tensor @ self.omega[..., None])[..., 0]
+        # Columns (δ × L) of the matrix that belongs to every change of the attitude.
+        changes = changes + np.cross(forms[..., :3, :], spin[..., None], axis=-2)
+        turned = _core.rotate(self.quaternion[..., None, :], np.swapaxes(changes, -1, -2))
+        changes = np.swapaxes(turned, -1, -2)
+    return _squares(changes)
+
+
+def _squares(forms: Floats) -> Floats:
+    """Give the covariance of numbers that depend on independent variables."""
+    return np.asarray(np.einsum("...ik,...jk->...ij", forms, forms))
+
+
+def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
+    """Give what each variable does to (δ, ω) per deviation, shape (..., T, 6, k), and the columns of all."""
     if self.uncertain_start is None:
         raise ValueError(
             "covariance: the state at the first time is uncertain by the motion before it, which is not "
-            "known here; simulate from the start on, or ask uncertainty.propagate"
+            "known here; simulate from the start on, begin the times of a closed form at 0, or ask "
+            "uncertainty.propagate"
         )
     omega, attitude = self.uncertain_start
     doubts = self.body._doubts()
     if doubts is None and omega is None and attitude is None:
-        return None
+        return None, {}
     slopes = self.sensitivity()
     stack, times = self.omega.shape[:-2], self.omega.shape[-2]
     columns: dict[tuple[int, ...], int] = {}
@@ -142,7 +177,7 @@ def _forms(self: Trajectory) -> Floats | None:
     out = np.zeros((int(np.prod(stack, dtype=int)), times, 6, len(columns)))
     for k, column, term in terms:
         out[k, :, :, column] += term
-    return out.reshape(*stack, times, 6, len(columns))
+    return out.reshape(*stack, times, 6, len(columns)), columns
 
 
 def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:
@@ -153,6 +188,21 @@ def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:
     """
     body, about = self.body, self._about_word()
     axes = body.principal_about(about).axes if self.pivoted else body.principal.axes
+    tensors = _tensors(self)
+    turned = np.swapaxes(axes, -1, -2)[..., None, :, :] @ tensors @ axes[..., None, :, :]
+    # By moments, and by the elements 23, 31, 12.
+    places = ((0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1))
+    changes = np.stack([turned[..., i, j] for i, j in places], axis=-2)
+    by_tensor = np.concatenate([slopes.moments, slopes.products], axis=-1)
+    found = by_tensor @ changes[..., None, :, :]
+    found[..., 0] += slopes.mass
+    found[..., 1:4] += slopes.center_of_mass
+    return np.asarray(found)
+
+
+def _tensors(self: Trajectory) -> Floats:
+    """Give the derivatives of the tensor about P by the body's ten numbers, shape (..., 10, 3, 3)."""
+    body = self.body
     d = body.center_of_mass if self.pivoted else np.zeros_like(body.center_of_mass)
     mass = np.asarray(body.mass)[..., None, None]
     one = np.eye(3)
@@ -164,12 +214,4 @@ def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:
             tensors[..., 1 + k, :, :] = mass * (2 * d[..., k, None, None] * one - cross)
     for k, (i, j) in enumerate(ELEMENTS):
         tensors[..., 4 + k, i, j] = tensors[..., 4 + k, j, i] = 1.0
-    turned = np.swapaxes(axes, -1, -2)[..., None, :, :] @ tensors @ axes[..., None, :, :]
-    # By moments, and by the elements 23, 31, 12.
-    places = ((0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1))
-    changes = np.stack([turned[..., i, j] for i, j in places], axis=-2)
-    by_tensor = np.concatenate([slopes.moments, slopes.products], axis=-1)
-    found = by_tensor @ changes[..., None, :, :]
-    found[..., 0] += slopes.mass
-    found[..., 1:4] += slopes.center_of_mass
-    return np.asarray(found)
+    return tensors

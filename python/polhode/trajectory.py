@@ -88,6 +88,7 @@ class Trajectory:
     sensitivity = _going_on.sensitivity
     covariance = cached_property(_doubts.covariance)
     sigma = cached_property(_doubts.sigma)
+    _spin_covariance = _doubts.spin_covariance
     resume = _going_on.resume
     save = _outlets.save
     to_xarray = _outlets.to_xarray

@@ -12,6 +12,7 @@ from polhode._scene.sampling import drawn_times
 from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
 from polhode.plot._bodies import principal_axes
+from polhode.plot._error_ellipses import error_ellipses
 from polhode.plot._style import axes_3d
 from polhode.plot._surfaces import (
     arrow,
@@ -40,8 +41,15 @@ def ellipsoid(
     size: float = 1.0,
     center: ArrayLike | None = None,
     opacity: float = 1.0,
+    coverage: float | None = 0.95,
+    enlarged: float = 1.0,
 ) -> Axes3D:
     """Draw the ellipsoid of inertia about the centre of mass and the principal axes.
+
+    Where the body's tensor has sigmas, each axis ends in an error ellipse: it points into it with the
+    probability `coverage`, to first order. The legend tells its semi-axes as angles. It is dashed where the
+    first order is not enough, as ``sigma.linear.axes`` tells; axes that are not determined, between equal
+    moments, have a dotted circle on which they may lie anywhere.
 
     Parameters
     ----------
@@ -56,6 +64,10 @@ def ellipsoid(
         Where to draw the centre of mass; where it is by default.
     opacity : float
         Of the surface, from 0 to 1.
+    coverage : float or None
+        Probability of the error ellipses, 0.95 for 2.4477 standard deviations; None draws none.
+    enlarged : float
+        How many times larger the ellipses are drawn than they are; the legend says so.
 
     Returns
     -------
@@ -72,6 +84,8 @@ def ellipsoid(
         points, normals = ((ring * s) @ body.principal.axes.T for s in (semi_axes, 1.0 / semi_axes))
         curve_on(ax, points + middle, normals, "#6B7486", linewidth=0.9)
     principal_axes(body, ax, length=1.2 * size, center=middle)
+    if coverage is not None and body.sigma is not None:
+        error_ellipses(ax, body, semi_axes, middle, coverage, enlarged)
     if new:
         plain_frame(ax, middle - 1.1 * size, middle + 1.1 * size)
     return ax

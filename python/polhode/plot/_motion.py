@@ -9,6 +9,7 @@ import numpy as np
 from polhode._drift import changes
 from polhode._lengths import lengths
 from polhode._scene.style import AXIS_COLORS, AXIS_DASHES
+from polhode.plot import _bands
 from polhode.plot._style import axes_2d, tidy
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ def angular_velocity(
     frame: Literal["body", "principal"] = "body",
     degrees: bool = False,
     time_unit: str = "s",
+    coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the components of the angular velocity over time.
 
@@ -44,6 +46,11 @@ def angular_velocity(
         Degrees instead of radians.
     time_unit : str
         Name of the unit of time, for the labels.
+    coverage : float or None
+        Where body or start have sigmas, a band is drawn about each curve: at each time by itself the
+        component lies in it with this probability, 0.95 for 1.96 standard deviations, to first order. Where
+        `Trajectory.covariance` is not known the legend says why there is no band, and where a band is wider
+        than the curve is high it says from when on the first order is not enough. None draws no band.
 
     Returns
     -------
@@ -58,10 +65,15 @@ def angular_velocity(
         labels = [rf"$\omega_{i}$" for i in "xyz"]
     else:
         raise ValueError(f"frame: {frame!r} is not 'body' or 'principal'")
+    half = _bands.of_omega(
+        trajectory, trajectory.body.principal.axes if frame == "principal" else None, coverage
+    )
     if degrees:
         omega = np.rad2deg(omega)
-    _components(ax, trajectory, omega, labels)
-    return _over_time(ax, time_unit, f"angular velocity ({'deg' if degrees else 'rad'}/{time_unit})")
+        half = np.rad2deg(half) if isinstance(half, np.ndarray) else half
+    _components(ax, trajectory, omega, labels, half)
+    note = _bands.name_band(ax, trajectory.t, half, coverage, float(np.nanmax(lengths(omega), initial=0.0)))
+    return _over_time(ax, time_unit, f"angular velocity ({'deg' if degrees else 'rad'}/{time_unit})", *note)
 
 
 def angular_momentum(
@@ -71,6 +83,7 @@ def angular_momentum(
     frame: Literal["space", "body"] = "space",
     unit: str = "kg m²/s",
     time_unit: str = "s",
+    coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the components of the spin angular momentum over time.
 
@@ -84,6 +97,9 @@ def angular_momentum(
         Whose axes the components refer to.
     unit, time_unit : str
         For the labels.
+    coverage : float or None
+        Probability of the bands, as of :func:`angular_velocity`. Correlations of the
+        tensor with the motion count.
 
     Returns
     -------
@@ -91,8 +107,10 @@ def angular_momentum(
     """
     ax = axes_2d(ax)
     spin = trajectory.angular_momentum(frame).spin
-    _components(ax, trajectory, spin, [rf"$L_{i}$" for i in "xyz"])
-    return _over_time(ax, time_unit, f"angular momentum in {frame} ({unit})")
+    half = _bands.of_spin(trajectory, frame, coverage)
+    _components(ax, trajectory, spin, [rf"$L_{i}$" for i in "xyz"], half)
+    note = _bands.name_band(ax, trajectory.t, half, coverage, float(np.nanmax(lengths(spin), initial=0.0)))
+    return _over_time(ax, time_unit, f"angular momentum in {frame} ({unit})", *note)
 
 
 def euler_angles(
@@ -102,6 +120,7 @@ def euler_angles(
     sequence: str = "ZXZ",
     unwrap: bool = False,
     time_unit: str = "s",
+    coverage: float | None = 0.95,
 ) -> Axes:
     """Draw the Euler angles over time, in degrees; where they are not defined there is a gap.
 
@@ -117,6 +136,9 @@ def euler_angles(
         Let the first and third angle run on over many turns. Otherwise the line is broken where they wrap.
     time_unit : str
         For the labels.
+    coverage : float or None
+        Probability of the bands, as of :func:`angular_velocity`. The first and third
+        angle have none where the second, within its own, may be one at which they are not defined.
 
     Returns
     -------
@@ -128,8 +150,11 @@ def euler_angles(
         jumps = np.abs(np.diff(angles, axis=-2)) > 180.0
         angles[..., 1:, :][jumps] = np.nan
     names = [r"$\varphi$", r"$\theta$", r"$\psi$"]
-    _components(ax, trajectory, angles, names)
-    return _over_time(ax, time_unit, f"Euler angles {sequence} (degrees)")
+    half = _bands.of_euler_angles(trajectory, sequence, coverage)
+    half = np.rad2deg(half) if isinstance(half, np.ndarray) else half
+    _components(ax, trajectory, angles, names, half)
+    note = _bands.name_band(ax, trajectory.t, half, coverage, 90.0)
+    return _over_time(ax, time_unit, f"Euler angles {sequence} (degrees)", *note)
 
 
 def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str = "s") -> Axes:
@@ -181,9 +206,15 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
     return _over_time(ax, time_unit, "relative change since the start")
 
 
-def _components(ax: Axes, trajectory: Trajectory, vectors: Floats, labels: list[str]) -> None:
-    """Draw three components over time, of every body of a stack."""
+def _components(
+    ax: Axes, trajectory: Trajectory, vectors: Floats, labels: list[str], half: Floats | str | None
+) -> None:
+    """Draw three components over time, of every body of a stack, with half the widths of their bands."""
     curves = vectors.reshape(-1, len(trajectory), 3)
+    if isinstance(half, np.ndarray):
+        for curve, widths in zip(curves, half.reshape(curves.shape), strict=True):
+            for i in range(3):
+                _bands.draw_band(ax, trajectory.t, curve[:, i], widths[:, i], i)
     opacity = 1.0 if len(curves) == 1 else 0.5
     for number, curve in enumerate(curves):
         for i in range(3):
@@ -197,9 +228,12 @@ def _components(ax: Axes, trajectory: Trajectory, vectors: Floats, labels: list[
             )
 
 
-def _over_time(ax: Axes, time_unit: str, quantity: str) -> Axes:
+def _over_time(ax: Axes, time_unit: str, quantity: str, note: str | None = None, columns: int = 3) -> Axes:
     ax.set_xlabel(f"time ({time_unit})")
     ax.set_ylabel(quantity)
     tidy(ax)
-    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2, ncols=3, frameon=False)
+    ax.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2, ncols=columns, frameon=False,
+        title=note, title_fontsize="small",
+    )  # fmt: skip
     return ax
