@@ -109,7 +109,8 @@ def test_bond_lengths_against_draws(n: int) -> None:
         found = body.sigma
         for drawn, name in ((tensors, "inertia"), (np.linalg.eigvalsh(tensors), "principal_moments")):
             flags, deviations = getattr(found.linear, name), drawn.std(axis=0)
-            close = np.abs(getattr(found, name) - deviations) <= (0.01 + 3 / np.sqrt(2 * n)) * deviations + 1e-12
+            allowed = (0.01 + 3 / np.sqrt(2 * n)) * deviations + 1e-12
+            close = np.abs(getattr(found, name) - deviations) <= allowed
             assert (close | ~flags).all()
             flagged, total = flagged + int((~flags).sum()), total + flags.size
     assert flagged <= 0.1 * total
