@@ -202,11 +202,12 @@ class SpinOptions:
     ----------
     moments
         Three principal moments instead of a file, as in "1 3 3.2" or "2 4 5 g cm^2"; a bare number is kg m^2.
+        With sigmas: "1.00 ± 0.01, 3.00(2), 3.2".
     center
         Position of the centre of mass, from the fixed point, along those axes; a bare number is in m.
     omega
         Angular velocity at the start, its components in the body, as in 0 6 0.01 or "10 20 30 deg/s"; a bare
-        number is rad/s.
+        number is rad/s. With sigmas: "0, 6.00 ± 0.05, 0.010(2)".
     periods
         Instead of --omega, the two periods of a tumbling asteroid: rotation about the long axis and mean
         precession of that axis, as in "5.41 d, 7.35 d"; a bare number is in s.

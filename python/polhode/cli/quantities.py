@@ -20,7 +20,7 @@ from polhode.errors import PolhodeError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["amount", "has_unit", "quantities", "quantity", "split_vector", "vector"]
+__all__ = ["amount", "amounts", "has_unit", "quantities", "quantity", "split_vector", "vector"]
 
 _NUMBER: Final = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>\S.*?)?\s*")
@@ -32,6 +32,7 @@ _IN_BRACKETS: Final = re.compile(r"\s*\((?P<inner>.*)\)\s*(?P<unit>\S.*?)?\s*")
 _LAST_PLACES: Final = re.compile(
     r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+))\((?P<last>\d+)\)(?P<power>[eE][+-]?\d{1,3})?\s*(?P<unit>\S.*?)?\s*"
 )
+_SIGMA_EXAMPLE: Final = "1.00 ± 0.01"
 _FACTOR: Final = r"[A-Za-zµμ°Å_]+(?:(?:\^|\*\*)?-?\d)?"
 _BARE_POWER: Final = re.compile(r"(?<=[A-Za-zµμ°Å])(?=-?\d)")
 _UNIT: Final = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/· ]\s*{_FACTOR})*")
@@ -138,6 +139,32 @@ def amount(text: str, unit: str, option: str) -> float | _core.Uncertain:
             f"{option}: the sigma of {text!r} is beyond the range of numbers; check the exponent"
         )
     return _core.Uncertain(value, float(sigma))
+
+
+def amounts(texts: Sequence[str], count: int, unit: str, option: str) -> list[float | _core.Uncertain]:
+    """Read several numbers that may have sigmas: then with commas between them, and all or none with a unit.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        As `quantities` takes them, or as ``("0, 6.00 ± 0.05, 0.010(2)",)``.
+    count, unit, option : int, str, str
+        See `quantities` and `amount`.
+
+    Returns
+    -------
+    list of float or Uncertain
+    """
+    text = " ".join(texts)
+    if not _has_sigma(text):
+        return list(quantities(texts, count, unit, option))
+    parts = [part.strip() for part in text.strip().strip(",").split(",")]
+    if len(parts) != count or len({has_unit(part) for part in parts}) != 1:
+        raise PolhodeError(
+            f"{option}: expected {count} numbers, with commas between them since {text!r} has a sigma, and "
+            f"all or none of them with a unit; for example {', '.join([_SIGMA_EXAMPLE] * count)!r}"
+        )
+    return [amount(part, unit, option) for part in parts]
 
 
 def quantities(texts: Sequence[str], count: int, unit: str, option: str) -> tuple[float, ...]:

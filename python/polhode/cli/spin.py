@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polhode import RigidBody
+from polhode import RigidBody, Uncertain
 from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
-from polhode.cli.quantities import amount, quantities, quantity, vector
+from polhode.cli.quantities import amount, amounts, quantities, quantity, vector
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
+from polhode.cli.spin_sigmas import attitude_field, of_end, of_start
 from polhode.cli.tables import top_fields
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
@@ -66,7 +67,13 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     )
     report.section(
         "motion",
-        Field("omega_start", "omega, start", motion.omega @ axes * rate, rate_unit),
+        Field(
+            "omega_start",
+            "omega, start",
+            motion.omega @ axes * rate,
+            rate_unit,
+            **of_start(motion, axes, rate),
+        ),
         *kind.fields(rate, rate_unit),
     )
     report.section("conserved", *kind.constants(loaded.moment_unit))
@@ -81,7 +88,14 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report.section(
         "at the end",
         Field("time", "end", until, "s"),
-        Field("omega_end", "omega, end", trajectory.omega[-1] @ axes * rate, rate_unit),
+        Field(
+            "omega_end",
+            "omega, end",
+            trajectory.omega[-1] @ axes * rate,
+            rate_unit,
+            **of_end(motion, until, axes, rate),
+        ),
+        *attitude_field(motion, until),
         Field("euler_angles_end", "Euler angles, end", angles, "deg", "ZXZ phi, theta, psi"),
         *kind.drifts(trajectory),
     )
@@ -148,19 +162,27 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
             raise PolhodeError(f"{option}: --moments are of no molecule; leave it out")
     if spin.gravity is not None and (options.mass is None or not spin.center):
         raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
-    moments = vector(spin.moments, "kg m^2", "--moments")
+    moments = amounts(spin.moments, 3, "kg m^2", "--moments")
     mass = amount(options.mass, "kg", "--mass") if options.mass is not None else 1.0
     center = vector(spin.center, "m", "--center") if spin.center else (0.0, 0.0, 0.0)
     body = RigidBody.from_principal(mass, moments, center_of_mass=center)
     return LoadedBody(body=body, source=[], mass_unit="kg", length="m")
 
 
-def _omega(axes: Floats, spin: SpinOptions) -> Floats:
-    words = spin.omega
-    if spin.degrees and not any(c.isalpha() for word in words for c in word):
-        words = (*words, "deg/s")
-    omega: Floats = axes @ np.array(vector(words, "rad/s", "--omega"))
-    return omega
+def _omega(axes: Floats, spin: SpinOptions) -> Floats | Uncertain:
+    """Read the angular velocity at the start; its components are known independently of one another."""
+    is_bare = not any(c.isalpha() for word in spin.omega for c in word)
+    unit = "deg/s" if spin.degrees and is_bare else "rad/s"
+    given = amounts(spin.omega, 3, unit, "--omega")
+    both = [(part.value, part.sigma) if isinstance(part, Uncertain) else (part, 0.0) for part in given]
+    values, sigma = np.array(both).T
+    omega: Floats = axes @ values
+    if unit == "deg/s":
+        omega, sigma = np.radians(omega), np.radians(sigma)
+    if not sigma.any():
+        return omega
+    covariance = (axes * sigma**2) @ axes.T
+    return Uncertain(omega, covariance=0.5 * (covariance + covariance.T))
 
 
 def _attitude(spin: SpinOptions) -> Floats | None:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode import FreeMotion, HeavyTop, Trajectory
+    from polhode.cli.sigmas import Told
 
     Floats = NDArray[np.float64]
 
@@ -30,15 +31,33 @@ class FreeKind:
         """Tell the mode, the periods and the angles from L."""
         motion = self._motion
         angles, periods = np.rad2deg(motion.nutation), motion.periods
+
+        def told(name: str, factor: float = 1.0) -> Told:
+            found = periods.sigma
+            if found is None:
+                return {}
+            return {"sigma": factor * getattr(found, name), "linear": getattr(found.linear, name)}
+
         return [
             Field("mode", "mode", str(motion.mode)),
-            *_period("rotation_period", "rotation period", periods.rotation, "P_psi, about e1"),
             *_period(
-                "precession_period", "precession period", periods.precession, "P_phi, mean, of e1 about L"
+                "rotation_period", "rotation period", periods.rotation, "P_psi, about e1", told("rotation")
             ),
-            *_period("flip_period", "flips every", periods.flip, "the intermediate axis"),
+            *_period(
+                "precession_period",
+                "precession period",
+                periods.precession,
+                "P_phi, mean, of e1 about L",
+                told("precession"),
+            ),
+            *_period("flip_period", "flips every", periods.flip, "the intermediate axis", told("flip")),
             Field(
-                "mean_precession", "mean precession", periods.rates * rate, rate_unit, "of e1 e2 e3 about L"
+                "mean_precession",
+                "mean precession",
+                periods.rates * rate,
+                rate_unit,
+                "of e1 e2 e3 about L",
+                **told("rates", rate),
             ),
             *(
                 Field(f"angle_from_L.e{k + 1}", f"e{k + 1} from L", angles[k], "deg", "least, greatest")
@@ -100,7 +119,7 @@ class TopKind:
         return [
             Field("path", "path of the axis", str(motion.path)),
             Field("nutation_limits", "axis from vertical", limits, "deg", "least, greatest"),
-            *_period("nutation_period", "nutation period", motion.nutation_period, ""),
+            *_period("nutation_period", "nutation period", motion.nutation_period, "", {}),
             Field(
                 "mean_precession", "mean precession", motion.mean_precession * rate, rate_unit, "mean of phi'"
             ),
@@ -144,9 +163,11 @@ class TopKind:
         return trajectory.kinetic_energy().total, float(trajectory.body.mass) * height
 
 
-def _period(key: str, label: str, seconds: float, hint: str) -> list[Field]:
+def _period(key: str, label: str, seconds: float, hint: str, told: Told) -> list[Field]:
     """Give a period in seconds, and a long one in days too."""
-    fields = [Field(key, label, seconds, "s", hint)]
+    fields = [Field(key, label, seconds, "s", hint, **told)]
     if np.isfinite(seconds) and seconds >= 3600.0:
-        fields.append(Field(f"in_days.{key}", "", seconds / 86400.0, "d"))
+        if "sigma" in told:
+            told = {**told, "sigma": np.asarray(told["sigma"]) / 86400.0}
+        fields.append(Field(f"in_days.{key}", "", seconds / 86400.0, "d", **told))
     return fields
