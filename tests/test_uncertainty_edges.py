@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -153,9 +154,22 @@ class TestStarts:
         assert motion.at([0.0, 5.0]).covariance == pytest.approx(run.covariance, rel=1e-6, abs=1e-12)
         top = solids.cone(0.5, 1.0, mass=Uncertain(2.0, 0.01)).translated((0.0, 0.0, -0.75))
         spun = top.heavy_top((0.0, 0.1, 30.0), Rotation.from_rotvec([0.3, 0.0, 0.0]), (0.0, 0.0, -9.81))
-        for found in (motion.at([5.0, 10.0]), motion.at(5.0), spun.at([1.0, 2.0])):
-            with pytest.raises(ValueError, match="motion before it"):
-                _ = found.covariance
+        for closed in (motion, spun):
+            times = np.array([0.0, 0.5, 1.0, 2.0])
+            forth, back = closed.at(times), closed.at(-times)
+            asked = closed.at(np.array([[2.0, -1.0], [0.5, 0.5], [-2.0, 0.0]]))
+            expected = np.array(
+                [
+                    [forth.covariance[3], back.covariance[2]],
+                    [forth.covariance[1], forth.covariance[1]],
+                    [back.covariance[3], forth.covariance[0]],
+                ]
+            )
+            assert asked.covariance == pytest.approx(expected, rel=1e-9, abs=1e-14)
+            assert asked.sigma.attitude.shape == asked.sigma.linear.omega.shape == (3, 2, 3)
+            assert closed.at(1.0).covariance == pytest.approx(forth.covariance[2], rel=1e-9, abs=1e-14)
+            assert pickle.loads(pickle.dumps(closed.at(1.0))).sigma.omega.shape == (3,)
+        assert polhode.RigidBody(2.0, TENSOR).free_motion(SPIN).at(5.0).covariance is None
 
     def test_files_tell_what_they_do_not_hold(self, tmp_path: Path) -> None:
         body = uncertain_body()

@@ -106,8 +106,6 @@ class TestStarts:
         )
         assert motion.at(self.TIMES).covariance == pytest.approx(run.covariance, rel=1e-5, abs=1e-9)
         assert pickle.loads(pickle.dumps(motion)).uncertain_start[0].value.tolist() == [0.1, 0.2, 20.0]
-        with pytest.raises(ValueError, match="motion before it"):
-            _ = motion.at([1.0, 2.0]).covariance
 
     def test_numbers_in_a_list(self) -> None:
         rate = Uncertain(1.1, 0.01)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode import _core
+from polhode._from_zero import runs_from_zero
 from polhode._repr import short
 from polhode._rows import rows_of
 
@@ -104,6 +105,8 @@ def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats
 
     δL = δI ω + I δω in the body, and in space what the rotation δ of the body adds, R (δ × L).
     """
+    if self.t.ndim != 1:
+        raise ValueError("angular_momentum: its covariance is for times of shape (T,)")
     forms, columns = _forms(self)
     if forms is None:
         return None
@@ -137,12 +140,8 @@ def _squares(forms: Floats) -> Floats:
 
 def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
     """Give what each variable does to (δ, ω) per deviation, shape (..., T, 6, k), and the columns of all."""
-    if self.uncertain_start is None:
-        raise ValueError(
-            "covariance: the state at the first time is uncertain by the motion before it, which is not "
-            "known here; simulate from the start on, begin the times of a closed form at 0, or ask "
-            "uncertainty.propagate"
-        )
+    if not isinstance(self.uncertain_start, tuple):
+        return _forms_from_zero(self)
     omega, attitude = self.uncertain_start
     doubts = self.body._doubts()
     if doubts is None and omega is None and attitude is None:
@@ -178,6 +177,21 @@ def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]
     for k, column, term in terms:
         out[k, :, :, column] += term
     return out.reshape(*stack, times, 6, len(columns)), columns
+
+
+def _forms_from_zero(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
+    """Give it for a closed form at any times."""
+    stack = self.omega.shape[: self.omega.ndim - 1 - self.t.ndim]
+    flat = np.zeros(0)
+    columns: dict[tuple[int, ...], int] = {}
+    for run, which, places in runs_from_zero(self):
+        forms, columns = _forms(run)
+        if forms is None:
+            return None, {}
+        if not flat.size:
+            flat = np.full((*stack, self.t.size, 6, len(columns)), np.nan)
+        flat[..., which, :, :] = forms[..., places, :, :]
+    return flat.reshape(*stack, *self.t.shape, 6, len(columns)), columns
 
 
 def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:

@@ -58,9 +58,10 @@ class Trajectory:
         One for each row that failed, with its ``row``, ``time`` and ``state``.
     pivoted : bool
         Whether the point `about` is fixed in space.
-    uncertain_start : tuple or None
+    uncertain_start : tuple, FreeMotion, HeavyTop or None
         Angular velocity and attitude at the first time as `Uncertain`, each None where it was given without a
-        sigma. None in all where that state follows from an uncertain motion before it.
+        sigma. Of an uncertain closed form at times that do not begin with 0 that motion itself; None for a
+        run that goes on from an uncertain one.
     """
 
     body: _core.RigidBody
@@ -77,7 +78,9 @@ class Trajectory:
     events: Events = field(default_factory=Events.none)
     failures: tuple[IntegrationError | PolhodeError, ...] = ()
     pivoted: bool = False
-    uncertain_start: tuple[_core.Uncertain | None, _core.Uncertain | None] | None = (None, None)
+    uncertain_start: (
+        tuple[_core.Uncertain | None, _core.Uncertain | None] | _core.FreeMotion | _core.HeavyTop | None
+    ) = (None, None)
 
     # Methods that stand in files of their own.
     torque = _acting.torque

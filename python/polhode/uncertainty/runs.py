@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from polhode import _core
+from polhode._from_zero import runs_from_zero
 from polhode._repr import short
 from polhode._rows import rows_of
 from polhode._variables import of_forms
@@ -53,9 +54,17 @@ def state_linear(run: Trajectory) -> StateLinear:
     Runs of 256 neighbours, along random directions in the space of what is uncertain, show the terms of
     second and third order. They are run by the defaults of :meth:`polhode.RigidBody.simulate`.
     """
-    stack, times = run.omega.shape[:-2], run.omega.shape[-2]
-    found = [_row(run, stack, row) for row in range(int(np.prod(stack, dtype=int)))]
-    linear = np.array(found).reshape(*stack, times, 6)
+    if isinstance(run.uncertain_start, tuple):
+        stack, times = run.omega.shape[:-2], run.omega.shape[-2]
+        found = [_row(run, stack, row) for row in range(int(np.prod(stack, dtype=int)))]
+        linear = np.array(found).reshape(*stack, times, 6)
+    else:
+        stack = run.omega.shape[: run.omega.ndim - 1 - run.t.ndim]
+        linear = np.zeros((*stack, run.t.size, 6), dtype=bool)
+        for part, which, places in runs_from_zero(run):
+            of_part = state_linear(part)
+            linear[..., which, :] = np.concatenate(of_part, axis=-1)[..., places, :]
+        linear = linear.reshape(*stack, *run.t.shape, 6)
     return StateLinear(linear[..., :3], linear[..., 3:])
 
 
@@ -63,7 +72,8 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
     """Tell it of one motion of a stack, shape (T, 6)."""
     place = np.unravel_index(row, stack)
     body, load = _taken(run.body, stack, row), _taken(run.load, stack, row)
-    of_omega, of_attitude = run.uncertain_start or (None, None)
+    start = run.uncertain_start
+    of_omega, of_attitude = start if isinstance(start, tuple) else (None, None)
     arguments = []
     if of_omega is not None:
         arguments.append(row_of(of_omega, rows_of(np.shape(of_omega.value)[:-1], stack)[row]))

@@ -35,14 +35,15 @@ fn within_reach<M: ClosedForm>(py: Python<'_>, motions: &Stack<M>, times: &[f64]
 
 /// The trajectory of `body` that moves as `motions` say, through the times `t`, whose axes follow those of the stack.
 ///
-/// `about`: the reference points, in B. `uncertain`: what is, of the state at t = 0. `fields`: what else the trajectory is to know.
+/// `about`: the reference points, in B. `uncertain`: what is, of the state at t = 0, and the motion as
+/// Python has it. `fields`: what else the trajectory is to know.
 pub(crate) fn trajectory<'py, M: ClosedForm>(
     py: Python<'py>,
     body: &Py<PyRigidBody>,
     motions: &Stack<M>,
     t: &Bound<'py, PyAny>,
     about: &Stack<Vector3<f64>>,
-    uncertain: &UncertainStart,
+    uncertain: (&UncertainStart, &Bound<'py, PyAny>),
     fields: Bound<'py, PyDict>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let times = floats(t, "t")?;
@@ -69,11 +70,12 @@ pub(crate) fn trajectory<'py, M: ClosedForm>(
         interrupt.finish(py, outcome.is_ok())?;
     }
     let starts_at_zero = times.ndim() == 1 && times.as_slice()?.first() == Some(&0.0);
+    let (uncertain, motion) = uncertain;
     if starts_at_zero {
         fields.set_item("uncertain_start", uncertain.to_python(py)?)?;
     } else if body.get().doubts.is_some() || uncertain.is_any() {
-        // The motion began at t = 0: how uncertain the first of these states is by what was before is not known.
-        fields.set_item("uncertain_start", py.None())?;
+        // How uncertain the first of these states is the motion knows, which began at t = 0.
+        fields.set_item("uncertain_start", motion)?;
     }
     let np = numpy(py)?;
     let still = array(3)?;

@@ -205,11 +205,20 @@ impl PyFreeMotion {
     /// array([[ 0.1,  0. , 10. ],
     ///        [ 0. ,  0.1, 10. ],
     ///        [-0.1,  0. , 10. ]])
-    fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn at<'py>(slf: &Bound<'py, Self>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, this) = (slf.py(), slf.get());
         let fields = PyDict::new(py);
-        let centers = self.centers(py)?;
-        let (body, uncertain) = (&self.body, &self.uncertain);
-        trajectory(py, body, &self.motions, t, &centers, uncertain, fields)
+        let centers = this.centers(py)?;
+        let uncertain = (&this.uncertain, slf.as_any());
+        trajectory(
+            py,
+            &this.body,
+            &this.motions,
+            t,
+            &centers,
+            uncertain,
+            fields,
+        )
     }
 
     fn __reduce__<'py>(

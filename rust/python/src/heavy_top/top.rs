@@ -254,15 +254,24 @@ impl PyHeavyTop {
     /// >>> swing.at([0.0, swing.nutation_period]).point("center_of_mass").round(6)
     /// array([[ 0.      ,  0.841471, -0.540302],
     ///        [ 0.      , -0.841471, -0.540302]])
-    fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> Array<'py> {
+    fn at<'py>(slf: &Bound<'py, Self>, t: &Bound<'py, PyAny>) -> Array<'py> {
+        let (py, this) = (slf.py(), slf.get());
         let gravity =
-            (py.import("polhode.loads")?).call_method1("uniform_gravity", (self.gravity(py)?,))?;
+            (py.import("polhode.loads")?).call_method1("uniform_gravity", (this.gravity(py)?,))?;
         let fields = PyDict::new(py);
         fields.set_item("load", gravity)?;
         fields.set_item("pivoted", true)?;
-        let origins = (self.body.get().bodies).map(py, |_: &RigidBody| Vector3::zeros())?;
-        let (body, uncertain) = (&self.body, &self.uncertain);
-        trajectory(py, body, &self.motions, t, &origins, uncertain, fields)
+        let origins = (this.body.get().bodies).map(py, |_: &RigidBody| Vector3::zeros())?;
+        let uncertain = (&this.uncertain, slf.as_any());
+        trajectory(
+            py,
+            &this.body,
+            &this.motions,
+            t,
+            &origins,
+            uncertain,
+            fields,
+        )
     }
 
     fn __reduce__<'py>(
