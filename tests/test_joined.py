@@ -45,8 +45,9 @@ class TestNumbers:
             joined([EDGE, PLACE])
         with pytest.raises(TypeError, match="rotation"):
             joined([EDGE, Uncertain(Rotation.identity(), 0.1)])
-        with pytest.raises(ValueError, match="could not convert"):
-            joined([EDGE, "a"])
+        for other in ("2", "a", None, True, 1j):
+            with pytest.raises(TypeError, match="no number"):
+                joined([EDGE, other])
         itself: list[Any] = [EDGE]
         itself.append(itself)
         with pytest.raises(ValueError, match="itself"):

@@ -156,7 +156,8 @@ class TestEllipses:
         ]
 
     def test_where_the_first_order_is_not_enough_they_are_dashed(self) -> None:
-        body = RigidBody(1.0, np.diag([1.0, 1.06, 1.6])).with_sigma(inertia=np.full((3, 3), 0.01))
+        sigma = np.full((3, 3), 0.006)
+        body = RigidBody(1.0, np.diag([1.0, 1.04, 1.6])).with_sigma(inertia=sigma, source="scale")
         assert list(body.sigma.linear.axes) == [True, True, False]
         ax = plot.ellipsoid(body, solid())
         assert ["not enough" in text for text in words(ax)[1:]] == [True, True, False]

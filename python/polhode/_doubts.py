@@ -86,7 +86,11 @@ def covariance(self: Trajectory) -> Floats | None:
     ((2, 6, 6), array([0.001, 0.001, 0.001]))
     """
     forms, _ = _forms(self)
-    return None if forms is None else _squares(forms)
+    if forms is None:
+        return None
+    found = _squares(forms)
+    found[np.isnan(self.omega).any(axis=-1)] = np.nan  # after the end of a run
+    return found
 
 
 def sigma(self: Trajectory) -> StateSigma | None:

@@ -24,13 +24,13 @@ def runs_from_zero(run: Trajectory) -> list[tuple[Trajectory, Places, Places]]:
     Raises
     ------
     ValueError
-        For a run that goes on from another one.
+        For a run that goes on from another one, and for one from a file that does not hold its load.
     """
     motion = run.uncertain_start
     if motion is None or isinstance(motion, tuple):
         raise ValueError(
-            "covariance: the state at the first time is uncertain by the motion before it, which is not "
-            "known here; simulate from the start on, or ask uncertainty.propagate"
+            "covariance: the state at the first time is uncertain by the motion before it, or a load acted "
+            "that a file did not keep; simulate from the start on, or ask uncertainty.propagate"
         )
     times, found = np.ravel(run.t), []
     for sense, is_its in ((1.0, times >= 0.0), (-1.0, times < 0.0)):

@@ -87,7 +87,7 @@ def about_point(body: RigidBody, point: Floats) -> Told:
         deviations[i, j] = deviations[j, i] = math.sqrt(max(float(first), 0.0))
         by_center = np.where(sigma.linear.center_of_mass, 0.0, gradient[1:4] * sigma.center_of_mass)
         missing = abs(lacking) + by_center @ by_center
-        flags[i, j] = flags[j, i] = own[i, j] and missing <= _LACKING * first + noise**2
+        flags[i, j] = flags[j, i] = own[i, j] and missing <= _LACKING * first + noise * noise
     return {"sigma": deviations, "linear": flags}
 
 

@@ -45,7 +45,8 @@ _COUNTS: Final = ("steps", "evaluations")
 _ENDS: Final = ("complete", "stopped", "failed")
 _OFF_UNITY: Final = 1e-6
 _FIELDS: Final = ("about", *_STATES, *_COUNTS, "status", "pivoted")
-_ARRAYS: Final = (*_FIELDS, *BODY_ARRAYS, *(f"body_{name}" for name in BODY_FIELDS))
+_LOADED: Final = "loaded"
+_ARRAYS: Final = (*_FIELDS, _LOADED, *BODY_ARRAYS, *(f"body_{name}" for name in BODY_FIELDS))
 
 TRAJECTORY_SCHEMA: dict[str, object] = {
     "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -57,6 +58,7 @@ TRAJECTORY_SCHEMA: dict[str, object] = {
         "body": BODY_SCHEMA,
         "about": array_schema("the point of reference in the body, shape (..., 3)"),
         "pivoted": {"description": "whether that point is fixed in space", "type": "boolean"},
+        "loaded": {"description": "whether a load acted, which the file does not hold", "type": "boolean"},
         "t": array_schema(
             "times, shape (T,); of a closed form any shape, which stands for (T,) in those below"
         ),
@@ -113,6 +115,7 @@ def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
     fields: dict[str, Any] = {"format": _FORMAT}
     fields["body"] = in_json(body_fields(trajectory.body), path)
     fields |= {name: getattr(trajectory, name) for name in _FIELDS}
+    fields[_LOADED] = trajectory.load is not None
     write_json(path, in_json(fields, path))
 
 
@@ -125,6 +128,7 @@ def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
     path : pathlib.Path
     """
     arrays = {name: getattr(trajectory, name) for name in _FIELDS}
+    arrays[_LOADED] = np.array(trajectory.load is not None)
     arrays |= {name: getattr(trajectory.body, name) for name in BODY_ARRAYS}
     arrays |= {f"body_{name}": value for name, value in body_fields(trajectory.body).items()}
     write_npz(path, _FORMAT, arrays)
@@ -139,7 +143,7 @@ def read_motion(path: str | PathLike[str]) -> dict[str, Any]:
         Ends in ``.json`` or ``.npz``.
     """
     file = Path(path)
-    fields = read_record(file, _FORMAT, (*_FIELDS, "body"), _ARRAYS)
+    fields = read_record(file, _FORMAT, (*_FIELDS, _LOADED, "body"), _ARRAYS)
     if file.suffix.lower() == ".npz":
         fields["body"] = {
             name.removeprefix("body_"): value for name, value in fields.items() if name.startswith("body_")
@@ -162,7 +166,12 @@ def read_motion(path: str | PathLike[str]) -> dict[str, Any]:
     _check_unit(states["quaternion"], file)
     none = np.zeros(body.shape, dtype=np.int64)
     given = {name: counts(fields.get(name, none), name, file, body.shape) for name in _COUNTS}
-    ended = {"status": _status(fields, file, body.shape), "pivoted": _pivoted(fields, file)}
+    ended: dict[str, Any] = {
+        "status": _status(fields, file, body.shape),
+        "pivoted": _flag(fields, "pivoted", file),
+    }
+    if _flag(fields, _LOADED, file) and body._doubts() is not None:
+        ended["uncertain_start"] = None  # what the body's doubts do to the motion the load decides, too
     return {"body": body, **states, **given, **ended}
 
 
@@ -179,13 +188,13 @@ def _status(fields: dict[str, Any], file: Path, shape: tuple[int, ...]) -> Any:
     return status.astype(str) if status.ndim else str(held)
 
 
-def _pivoted(fields: dict[str, Any], file: Path) -> bool:
-    held = fields.get("pivoted", False)
+def _flag(fields: dict[str, Any], name: str, file: Path) -> bool:
+    held = fields.get(name, False)
     if isinstance(held, np.ndarray) and held.dtype == np.bool_ and held.ndim == 0:
         return bool(held)
     if not isinstance(held, bool):
         found = f"{held.dtype} of shape {held.shape}" if isinstance(held, np.ndarray) else repr(held)[:60]
-        raise FileFormatError(f"{file}: pivoted is {found}, expected true or false")
+        raise FileFormatError(f"{file}: {name} is {found}, expected true or false")
     return held
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -105,4 +106,7 @@ def _cells(values: Any, kinds: tuple[type, ...], above: tuple[int, ...]) -> Any:
         if id(values) in above:
             raise ValueError("numbers with a sigma: a list holds itself")
         return [_cells(one, kinds, (*above, id(values))) for one in values]
+    if isinstance(values, bool) or not isinstance(values, Real):
+        message = f"numbers with a sigma: {values!r} among them is no number"
+        raise TypeError(message)
     return _Number(values, {})

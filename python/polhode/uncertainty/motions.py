@@ -68,7 +68,7 @@ def periods_sigma(motion: FreeMotion) -> PeriodsSigma | None:
         periods = body.free_motion(omega).periods
         return np.array([periods.rotation, periods.precession, periods.flip, *periods.rates])
 
-    found = each_motion(motion, numbers)
+    found = each_motion(motion, numbers, (6,))
 
     def parts(numbers: Any) -> tuple[Any, Any, Any, Any]:
         return numbers[..., 0][()], numbers[..., 1][()], numbers[..., 2][()], numbers[..., 3:]
@@ -77,8 +77,8 @@ def periods_sigma(motion: FreeMotion) -> PeriodsSigma | None:
     return PeriodsSigma(*parts(np.asarray(found.sigma)), linear)
 
 
-def each_motion(motion: FreeMotion, f: Callable[..., Any]) -> Propagated:
-    """Propagate ``f(body, omega)`` to first order, for each motion of a stack by itself."""
+def each_motion(motion: FreeMotion, f: Callable[..., Any], tail: tuple[int, ...]) -> Propagated:
+    """Propagate ``f(body, omega)``, of shape `tail`, to first order, for each motion of a stack by itself."""
     shape = motion.shape
     omega, of_omega = motion.omega.reshape(-1, 3), motion.uncertain_start[0]
     bodies = rows_of(motion.body.shape, shape)
@@ -92,8 +92,13 @@ def each_motion(motion: FreeMotion, f: Callable[..., Any]) -> Propagated:
                 found.append(propagate(lambda body, rates=rates: f(body, rates), body))
             else:
                 found.append(propagate(f, body, arguments=[row_of(of_omega, doubts[row])]))
-    joined = [np.array([getattr(one, name) for one in found]) for name in Propagated._fields]
-    return Propagated(*(part.reshape((*shape, *part.shape[1:]))[()] for part in joined))
+    size = int(np.prod(tail, dtype=int))
+    tails = {"value": tail, "sigma": tail, "covariance": (size, size), "linear": tail}
+    joined = {
+        name: np.array([getattr(one, name) for one in found], dtype=bool if name == "linear" else float)
+        for name in tails
+    }
+    return Propagated(**{name: joined[name].reshape((*shape, *of))[()] for name, of in tails.items()})
 
 
 def row_of(given: _core.Uncertain, row: int) -> _core.Uncertain:

@@ -9,6 +9,7 @@ import numpy as np
 
 from polhode import _core
 from polhode.errors import PolhodeError
+from polhode.uncertainty.joined import joined
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -47,7 +48,7 @@ class Neighbours:
         Other numbers.
     """
 
-    def __init__(self, body: RigidBody | None, arguments: Sequence[Uncertain] = ()) -> None:
+    def __init__(self, body: RigidBody | None, arguments: Sequence[Any] = ()) -> None:
         if body is not None and body.shape != ():
             message = f"body: expected one body, got a stack of shape {body.shape}; take one after the other"
             raise ValueError(message)
@@ -56,6 +57,7 @@ class Neighbours:
                 "body: it carries no covariance; give it one by with_sigma, with_covariance or Uncertain"
             )
             raise ValueError(message)
+        arguments = [_number(argument, place) for place, argument in enumerate(arguments)]
         self.body = body
         self._values = [np.asarray(argument.value, dtype=float) for argument in arguments]
         covariance = _joint_covariance(body, arguments)
@@ -194,6 +196,24 @@ class _Way:
                 gap = abs(self._moments[j] - self._moments[i])
                 apart[i, j] = i != j and gap > CLOSE * np.sqrt(spread.sum()) and gap > 1e-9 * self._moments[2]
         return apart
+
+
+def _number(argument: Any, place: int) -> Uncertain:
+    """Take an argument as `Uncertain`."""
+    number = argument if isinstance(argument, _core.Uncertain) else joined(argument)
+    if number is None:
+        message = (
+            f"arguments: number {place} is {type(argument).__name__} without a sigma; let the function know "
+            "it, and give those with a sigma alone"
+        )
+        raise TypeError(message)
+    if hasattr(number.value, "as_quat"):
+        message = (
+            f"arguments: number {place} is a rotation; give its three small angles as Uncertain, and let the "
+            "function turn by them"
+        )
+        raise TypeError(message)
+    return number
 
 
 def _body(numbers: Floats) -> RigidBody:

@@ -153,11 +153,11 @@ def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
         momentum = body.inertia @ omega
         return 1.0 - body.principal_moments[1] * (omega @ momentum) / (momentum @ momentum)
 
-    found = each_motion(motion, excess)
-    with np.errstate(divide="ignore"):
+    found = each_motion(motion, excess, ())
+    with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.asarray(found.value) / np.asarray(found.sigma)
     short_axis = np.vectorize(_below, otypes=[float])(ratio)[()]
-    return ModeProbabilities(1.0 - short_axis, short_axis, found.linear)
+    return ModeProbabilities(1.0 - short_axis, short_axis, found.linear & ~np.isnan(short_axis))
 
 
 def both_positive(means: tuple[float, float], slopes: tuple[Floats, Floats]) -> float:

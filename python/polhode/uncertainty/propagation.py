@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode import RigidBody, Uncertain
+    from polhode import RigidBody
 
     Floats = NDArray[np.float64]
     Function = Callable[..., Any]
@@ -29,10 +29,10 @@ NEAR: Final = 0.25
 """Steps along a body's own probes, in deviations: so short that the second order is all that is seen."""
 PROBES: Final = 32
 """Directions in which second- and third-order terms are looked for."""
-ROUNDING: Final = 1e-9
+ROUNDING: Final = 1e-13
 """Of a number, by which a function may err."""
-RELATIVE: Final = 1e-11
-"""Of the largest deviation of an array: smaller ones are rounding of its other numbers."""
+SMALL: Final = 1e-12
+"""Beside the largest of an array: such a number may be what is left of zero."""
 
 
 class Propagated(NamedTuple):
@@ -65,7 +65,7 @@ def propagate(
     body: RigidBody | None,
     method: Literal["linear", "second-order", "monte-carlo"] = "linear",
     *,
-    arguments: Sequence[Uncertain] = (),
+    arguments: Sequence[Any] = (),
     n: int = 10_000,
     seed: int | None = None,
 ) -> Propagated:
@@ -101,8 +101,8 @@ def propagate(
     Notes
     -----
     The function is asked about 4 k + 130 times to first order, k the rank of the covariance, at most 10 for
-    a body alone; 2 k² + 6 k + 130 times to second order; n + 65 times by draws. Draws are normal in the ten
-    numbers, and drawn again where no body has them; or, where the body's own second order is nearer to
+    a body alone; 2 k² + 6 k + 130 times to second order; n + 4 k + 65 times by draws. Draws are normal in the
+    ten numbers, and drawn again where no body has them; or, where the body's own second order is nearer to
     that, as of a body that is turned or has no extent along an axis, in principal moments and small angles
     of the axes. For draws of what a body is made of, make it inside of `f`, and give those numbers as
     `arguments` and None as `body`.
@@ -122,6 +122,9 @@ def propagate(
     >>> bool(found.linear), round(float(found.value), 4), round(float(found.sigma), 6)
     (True, 1.6379, 0.000409)
     """
+    if not isinstance(arguments, list | tuple):
+        message = f"arguments: expected a list of numbers with a sigma, got {type(arguments).__name__}"
+        raise TypeError(message)
     around = Neighbours(body, arguments)
     if method == "linear":
         return _linear(f, around)
@@ -166,20 +169,30 @@ def _slopes(f: Function, around: Neighbours, shape: tuple[int, ...]) -> Floats:
 def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -> NDArray[np.bool_]:
     """Whether terms of higher order stay small along some directions, those of the body itself among them."""
     directions = np.random.default_rng(20).normal(size=(PROBES, around.rank))
-    even, odd = [], np.zeros(value.size)
+    even, firsts, changes = [], [], []
     for direction in directions:
         try:
             above, below = (_numbers(f, around.at(s * direction), value.shape).ravel() for s in (1.0, -1.0))
         except PolhodeError:  # beyond what bodies have
             return np.zeros(value.size, dtype=bool)
-        first = direction @ slopes
         even.append(0.5 * (above + below) - value.ravel())
-        odd += first * (0.5 * (above - below) - first)
+        firsts.append(direction @ slopes)
+        changes.append(0.5 * (above - below))
+    first, change = np.array(firsts), np.array(changes)
     variance = (slopes**2).sum(axis=0)
-    sigma, noise = np.sqrt(variance), _noise(value, variance)
-    lacking = np.var(even, axis=0) + 2 * odd / PROBES
+    sigma, noise = np.sqrt(variance), ROUNDING * np.abs(value.ravel())
+    lacking = np.var(even, axis=0) + 2 * (first * (change - first)).mean(axis=0)
     fits = np.abs(lacking) <= LACKING * variance + 2 * noise * sigma + noise**2
-    return np.asarray(fits & _follows(f, around, value, variance))
+    return np.asarray((fits & _follows(f, around, value, variance)) | _is_rounding(value, first, change))
+
+
+def _is_rounding(value: Floats, first: Floats, change: Floats) -> NDArray[np.bool_]:
+    """Whether a number of an array is zero but for rounding of the others: its changes follow no slopes."""
+    size = SMALL * np.abs(value[np.isfinite(value)]).max(initial=0.0)
+    products = np.abs((first * change).sum(axis=0))
+    follows = products**2 > 0.25 * (first**2).sum(axis=0) * (change**2).sum(axis=0)
+    is_small = np.abs(value.ravel()) + np.abs(change).max(axis=0, initial=0.0) <= size
+    return np.asarray(is_small & ~follows)
 
 
 def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -> NDArray[np.bool_]:
@@ -189,14 +202,8 @@ def _follows(f: Function, around: Neighbours, value: Floats, variance: Floats) -
         here, there = (sum(_numbers(f, given, value.shape).ravel() for given in pair) / 2 for pair in probe)
         missed += ((here - there) / NEAR**2) ** 2
         count += 1
-    noise = _noise(value, variance) / NEAR**2
+    noise = ROUNDING * np.abs(value.ravel()) / NEAR**2
     return np.asarray(missed / max(count, 1) <= LACKING * variance + noise**2)
-
-
-def _noise(value: Floats, variance: Floats) -> Floats:
-    """Give what is rounding of each number."""
-    largest = np.sqrt(np.nanmax(variance, initial=0.0))
-    return np.asarray(ROUNDING * np.abs(value.ravel()) + RELATIVE * largest)
 
 
 def _linear(f: Function, around: Neighbours) -> Propagated:
@@ -229,7 +236,10 @@ def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int) -> Propagat
     draws = np.array([_numbers(f, given, value.shape).ravel() for given in around.draws(n, seed)])
     mean = draws.mean(axis=0)
     covariance = np.atleast_2d(np.cov(draws, rowvar=False))
-    follows = _follows(f, around, value, np.diagonal(covariance))
+    # By the first order: where the ways lead elsewhere the draws may have any variance. What ways miss in the
+    # second order is seen; in the third, of a quotient, it may be twice as much.
+    first = (_slopes(f, around, value.shape) ** 2).sum(axis=0)
+    follows = _follows(f, around, value, np.minimum(first, np.diagonal(covariance)) / 3)
     return _told(mean.reshape(value.shape), covariance, follows)
 
 

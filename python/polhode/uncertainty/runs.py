@@ -115,7 +115,7 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
         [_logarithm(_product(back, beside.quaternion)), beside.omega - run.omega[place]], axis=-1
     )
     above, below, near, beyond = moved.reshape(4, DIRECTIONS, len(run.t), 6)
-    return _is_linear(above, below, near, beyond, float(np.abs(run.omega[place]).max()))
+    return _is_linear(above, below, near, beyond, float(np.nanmax(np.abs(run.omega[place]), initial=0.0)))
 
 
 def _taken(many: Any, stack: tuple[int, ...], row: int) -> Any:

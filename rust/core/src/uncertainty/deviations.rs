@@ -111,8 +111,11 @@ fn of(numbers: &Ten<f64>, principal: &PrincipalAxes, doubt: &Doubt) -> Deviation
         let deviation = moments[k].deviation();
         deviation >= principal.moments[k] && deviation <= ROUNDING * largest
     };
-    let is_zero_for_ever =
-        |k: usize| is_zero(k) && to_second_order[k].mean_square().sqrt() <= ROUNDING * largest;
+    // Neither order moves it: what is left of a body that is only turned is beyond them.
+    let rests = |k: usize| {
+        let moved = moments[k].first.max(to_second_order[k].mean_square());
+        moved.sqrt() <= ROUNDING * largest
+    };
     let radius = (largest / numbers.mass).sqrt() + Vector3::from(numbers.center).norm();
     let size = |k: usize| match k {
         0 => numbers.mass,
@@ -122,7 +125,7 @@ fn of(numbers: &Ten<f64>, principal: &PrincipalAxes, doubt: &Doubt) -> Deviation
     Deviations {
         numbers: own.map(Terms::deviation),
         moments: moments.map(Terms::deviation),
-        radii: std::array::from_fn(|k| match (is_zero(k), is_zero_for_ever(k)) {
+        radii: std::array::from_fn(|k| match (is_zero(k), rests(k)) {
             (true, true) => 0.0,
             (true, false) => f64::NAN,
             (false, _) => radii[k].deviation(),
@@ -134,10 +137,11 @@ fn of(numbers: &Ten<f64>, principal: &PrincipalAxes, doubt: &Doubt) -> Deviation
         }),
         is_linear: std::array::from_fn(|k| own[k].is_linear(size(k))),
         moments_are_linear: std::array::from_fn(|k| {
-            stays(k) && (is_zero_for_ever(k) || moments[k].is_linear(largest))
+            stays(k) && (rests(k) || moments[k].is_linear(largest))
         }),
         radii_are_linear: std::array::from_fn(|k| {
-            stays(k) && (is_zero_for_ever(k) || (!is_zero(k) && radii[k].is_linear(radius)))
+            let rests = rests(k) && (is_zero(k) || radii[k].deviation() <= ROUNDING * radius);
+            stays(k) && (rests || (!is_zero(k) && radii[k].is_linear(radius)))
         }),
         axes_are_linear: std::array::from_fn(|k| {
             is_apart[k] && none_changes && gaps[k].is_wide(GAPS[1]) && angles[k].is_linear(1.0)

@@ -4,7 +4,7 @@
 //! ten numbers above all, is seen along the probes, by a step forward and one back: as the probes' variance of an even term,
 //! less that of its closed part.
 
-use nalgebra::{Matrix3, Rotation3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::doubt::Doubt;
 use super::higher::{Higher, Second};
@@ -17,6 +17,12 @@ use crate::principal::{PrincipalAxes, principal_axes};
 const LACKING: f64 = 0.015;
 /// Relative to the size of what is deviated from: smaller terms are rounding.
 pub(super) const ROUNDING: f64 = 1e-13;
+/// Twice the mean of the first- times the third-order term of numbers that nobody followed so far, in mean squares of their
+/// second order: 4/3 for a body that is turned, of which `x → x cos θ` and `y → x sin θ`; 1 to 3/2 for powers of lengths, 2 to 3
+/// for quotients, each with the variance of the even term beside it.
+const CUBIC: f64 = 4.0 / 3.0;
+/// Mass, centre and tensor among the ten numbers: the numbers of each turn into one another.
+const BLOCKS: [std::ops::Range<usize>; 3] = [0..1, 1..4, 4..10];
 /// Beside a closed part of an even term: the rest, by its variance, with which the closed part still helps.
 const REST: f64 = 0.25;
 
@@ -103,8 +109,22 @@ impl BodyTerms {
                 evens[2][k].add(mean(|end| end.radii), of_radius[k] * closed);
             }
         }
-        for (own, bend) in self.own.iter_mut().zip(bends) {
+        for (own, bend) in self.own.iter_mut().zip(&bends) {
             own.even = bend.variance(0.0);
+        }
+        for block in BLOCKS {
+            let weight = |k: usize| if k < 7 { 1.0 } else { 2.0 }; // beside the diagonal each stands twice
+            let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
+                block.clone().map(|k| weight(k) * of(k)).sum()
+            };
+            let bent = sum(&|k| bends[k].all.mean_square()) / sum(&|k| self.own[k].first);
+            for own in &mut self.own[block] {
+                own.unseen = if own.first > 0.0 {
+                    CUBIC * bent * own.first
+                } else {
+                    0.0
+                };
+            }
         }
         for (k, (moment, angle)) in seconds.iter().enumerate() {
             let (closed, square) = (higher.variance(moment), of_radius[k].powi(2));
@@ -114,6 +134,14 @@ impl BodyTerms {
             self.angles[k].odd = higher.of_angle(k);
             self.radii[k].even = evens[2][k].variance(square * closed);
             self.radii[k].odd = square * higher.of_radius(k);
+            let all = [
+                &mut self.moments[k],
+                &mut self.angles[k],
+                &mut self.radii[k],
+            ];
+            for (terms, even) in all.into_iter().zip(&evens) {
+                terms.unseen = CUBIC * even[k].unseen();
+            }
         }
     }
 }
@@ -124,6 +152,8 @@ pub(super) struct Terms {
     pub(super) first: f64,
     pub(super) even: f64,
     pub(super) odd: f64,
+    /// What nothing here sees of the third order, by its size: see [`CUBIC`].
+    pub(super) unseen: f64,
 }
 
 impl Terms {
@@ -136,12 +166,12 @@ impl Terms {
     pub(super) fn is_linear(self, size: f64) -> bool {
         let noise = ROUNDING * size;
         // A deviation that is rounding has no part in a mean of products.
-        let odd = if self.first > noise * noise {
-            self.odd
+        let (odd, unseen) = if self.first > noise * noise {
+            (self.odd, self.unseen)
         } else {
-            0.0
+            (0.0, 0.0)
         };
-        (self.even + odd).abs() <= LACKING * self.first + noise * noise
+        (self.even + odd).abs() + unseen <= LACKING * self.first + noise * noise
     }
 }
 
@@ -164,6 +194,11 @@ impl Even {
         self.all.add(term);
         self.closed.add(closed);
         self.rest.add(term - closed);
+    }
+
+    /// The mean square of what has no closed form, as far as the closed part does not undo it.
+    fn unseen(&self) -> f64 {
+        self.all.mean_square().min(self.rest.mean_square())
     }
 
     /// The variance of the term, where that of its closed part is this.
@@ -269,14 +304,26 @@ impl Stepped {
                     0.0
                 }
             }),
-            angles: Rotation3::from_matrix_unchecked(turn).scaled_axis().into(),
+            angles: rotation_vector(&turn).into(),
         }
     }
 }
 
+/// The rotation vector of a rotation, to the last digits of small angles too.
+fn rotation_vector(turn: &Matrix3<f64>) -> Vector3<f64> {
+    let twice_sine = Vector3::new(
+        turn[(2, 1)] - turn[(1, 2)],
+        turn[(0, 2)] - turn[(2, 0)],
+        turn[(1, 0)] - turn[(0, 1)],
+    );
+    let size = twice_sine.norm();
+    let angle = size.atan2(turn.trace() - 1.0);
+    twice_sine * if size > 0.0 { angle / size } else { 0.5 }
+}
+
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
+    use nalgebra::Rotation3;
 
     use super::*;
     use crate::mass::body::RigidBody;
@@ -317,6 +364,7 @@ mod tests {
             first: 1.0,
             even,
             odd,
+            unseen: 0.0,
         };
         for (near, is_linear) in [(0.99, true), (1.01, false)] {
             assert_eq!(terms(near * LACKING, 0.0).is_linear(1.0), is_linear);
@@ -325,11 +373,28 @@ mod tests {
                 terms(0.5 * near * LACKING, 0.5 * near * LACKING).is_linear(1.0),
                 is_linear
             );
+            let unseen = Terms {
+                unseen: 0.5 * near * LACKING,
+                ..terms(-0.5 * near * LACKING, 0.0)
+            };
+            assert_eq!(unseen.is_linear(1.0), is_linear);
             let none = Terms {
                 first: 0.0,
                 ..terms((near * ROUNDING).powi(2), 0.0)
             };
             assert_eq!(none.is_linear(1.0), is_linear);
+        }
+    }
+
+    #[test]
+    fn rotation_vectors_come_back() {
+        for size in [0.0, 1e-300, 1e-17, 1e-8, 0.1, 1.5, 3.0] {
+            let vector = Vector3::new(0.6, -0.48, 0.64) * size;
+            let found = rotation_vector(Rotation3::new(vector).matrix());
+            assert!(
+                (found - vector).norm() <= 1e-15 + 1e-15 * size,
+                "{size} {found}"
+            );
         }
     }
 
