@@ -68,13 +68,15 @@ package: setup ## source distribution and wheel into dist/, the wheel built from
 	$(BIN)/maturin sdist --out dist
 	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist dist/*.tar.gz
 
-bench: build ## times beside the peers, as ratios; NAMES= picks files of rows
+bench: build ## times beside the peers, as ratios, of the extension as in a wheel; NAMES= picks files of rows
+	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]" \
+		--config-settings=build-args="--profile release"
 	$(BIN)/python benchmarks/run.py $(NAMES)
 	cargo bench --locked --package polhode
 
 setup: $(VENV)/.tools ## virtual environment with the development tools
 
-build: $(VENV)/.built ## release build of the extension, installed in place
+build: $(VENV)/.built ## the extension, installed in place
 
 $(VENV)/.python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \

@@ -312,7 +312,7 @@ class TestBands:
         run, body, _ = uncertain_run()
         ax = draw(run.resume(TIMES[-1] + TIMES), flat())
         assert not ax.collections
-        assert words(ax)[0] == "no band: start uncertain by the motion before"
+        assert words(ax)[0] == "no band: motion before, or load, is not known"
         called = loads.torque_callback(lambda *_: np.array([0.1, 0.0, 0.0]))
         ax = draw(body.simulate(TIMES, (0.3, 0.5, 1.4), load=called), flat())
         assert not ax.collections

@@ -135,7 +135,7 @@ def _half_widths(
     if not 0.0 < coverage < 1.0:
         raise ValueError(f"coverage: {coverage} is not between 0 and 1; it is a probability, as 0.95")
     if trajectory.uncertain_start is None:
-        return "no band: start uncertain by the motion before"
+        return "no band: motion before, or load, is not known"
     try:
         found = covariance()
     except PolhodeError:
