@@ -72,10 +72,12 @@ impl PyRigidBody {
         }
         let arrays = match ParticleArrays::read(masses, positions, "..., n") {
             Ok(arrays) => arrays,
-            Err(_) if holds_uncertain(masses)? || holds_uncertain(positions)? => {
-                return of_uncertain_particles(py, masses, positions);
+            Err(fault) => {
+                if holds_uncertain(masses, &fault)? || holds_uncertain(positions, &fault)? {
+                    return of_uncertain_particles(py, masses, positions);
+                }
+                return Err(fault);
             }
-            Err(fault) => return Err(fault),
         };
         let grid = Broadcast::of(["masses", "positions"], arrays.shapes())?;
         let rows = arrays.rows()?;

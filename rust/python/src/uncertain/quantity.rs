@@ -6,7 +6,7 @@ use polhode::Error;
 use polhode::error::UncertaintyFault;
 use polhode::mass::ten::ELEMENTS;
 use polhode::uncertainty::{Form, Variable};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
 
@@ -76,7 +76,7 @@ impl<'py> FromPyObject<'_, 'py> for Weight {
             }
             Err(fault) => match object.cast::<PyUncertain>() {
                 Ok(uncertain) => uncertain.to_owned(),
-                Err(_) => joined(&object)?.ok_or(fault)?,
+                Err(_) => joined_or(&object, fault)?,
             },
         };
         let value: f64 = uncertain.get().value(object.py())?.extract()?;
@@ -137,9 +137,9 @@ pub(crate) fn is_uncertain(object: &Bound<'_, PyAny>) -> bool {
     object.is_instance_of::<PyUncertain>()
 }
 
-/// Whether numbers of an argument are uncertain.
-pub(crate) fn holds_uncertain(object: &Bound<'_, PyAny>) -> PyResult<bool> {
-    Ok(joined(object)?.is_some())
+/// Whether numbers of an argument that was refused are uncertain.
+pub(crate) fn holds_uncertain(object: &Bound<'_, PyAny>, fault: &PyErr) -> PyResult<bool> {
+    Ok(is_about_values(fault, object.py()) && joined(object)?.is_some())
 }
 
 /// Reads an argument that may be an `Uncertain`, or hold such or numbers of the package `uncertainties`.
@@ -150,10 +150,7 @@ pub(crate) fn quantity<T: Item>(object: &Bound<'_, PyAny>, name: &str) -> PyResu
     // Plain numbers are not asked: what has a sigma is refused first.
     match read(object, name) {
         Ok(values) => Ok(Quantity::known(values)),
-        Err(fault) => match joined(object)? {
-            Some(uncertain) => with_forms(&uncertain, name),
-            None => Err(fault),
-        },
+        Err(fault) => with_forms(&joined_or(object, fault)?, name),
     }
 }
 
@@ -188,10 +185,7 @@ pub(crate) fn quantity_list<T: Item>(
         }
         Err(_) => match read_list(object, name, leading) {
             Ok(values) => Ok(Quantity::known(values)),
-            Err(fault) => match joined(object)? {
-                Some(uncertain) => quantity_list(uncertain.as_any(), name, leading),
-                None => Err(fault),
-            },
+            Err(fault) => quantity_list(joined_or(object, fault)?.as_any(), name, leading),
         },
     }
 }
@@ -216,6 +210,20 @@ fn joined<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyUncer
         .import("polhode.uncertainty")?
         .call_method1("joined", (object,))?;
     Ok(found.cast_into::<PyUncertain>().ok())
+}
+
+/// As [`joined`], of an argument that was refused for this fault.
+fn joined_or<'py>(object: &Bound<'py, PyAny>, fault: PyErr) -> PyResult<Bound<'py, PyUncertain>> {
+    // Ctrl-C and lack of memory end the call at once.
+    if is_about_values(&fault, object.py()) {
+        joined(object)?.ok_or(fault)
+    } else {
+        Err(fault)
+    }
+}
+
+fn is_about_values(fault: &PyErr, py: Python<'_>) -> bool {
+    fault.is_instance_of::<PyTypeError>(py) || fault.is_instance_of::<PyValueError>(py)
 }
 
 /// The relative doubt of an amount, as a factor of one.
