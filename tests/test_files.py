@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -201,8 +202,7 @@ class TestOtherLibraries:
         """Water as ASE gives it: a stand-in with its methods where ASE is not installed."""
         positions = np.array([(0.0, 0.0, 0.119262), (0.0, 0.763239, -0.477047), (0.0, -0.763239, -0.477047)])
         try:
-            import ase  # type: ignore[import-untyped, import-not-found, unused-ignore]
-
+            ase: Any = importlib.import_module("ase")
             atoms = ase.Atoms("OH2", positions=positions)
             heavy = ase.Atoms("OH2", positions=positions, masses=[16.0, 2.0, 2.0])
         except ImportError:

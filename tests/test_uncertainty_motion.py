@@ -22,7 +22,7 @@ def by_draws(
     node: Node, omega: Quantity, turn: Quantity, time: float, torque: Any, drag: float, n: int
 ) -> Drawn:
     """Sigmas of (δ, ω) at a time."""
-    sources = Sources(node, omega, turn)  # type: ignore[arg-type]
+    sources = Sources(node, omega, turn)
 
     def states(z: Any) -> tuple[Any, Any]:
         of, count = sources.draws(z), z.shape[1]

@@ -173,7 +173,7 @@ class TestProbabilities:
             found = both_positive((means[0], means[1]), (slopes[0], slopes[1]))
             assert found == pytest.approx(float(expected), abs=2e-5 if k == 1 else 1e-7)
 
-    @pytest.mark.parametrize("apart", [0.0, 0.9e-9, 1.1e-9, 1e-6, 1e-3])
+    @pytest.mark.parametrize("apart", [0.0, 0.9e-14, 1.1e-14, 1e-9, 1e-6, 1e-3])
     def test_nearly_one_number_twice(self, apart: float) -> None:
         one, other = np.array([1.0, 0.0]), np.array([np.cos(apart), np.sin(apart)])
         assert both_positive((0.3, 0.5), (one, other)) == pytest.approx(

@@ -212,7 +212,7 @@ def _checked(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
     if array.ndim != 2 or array.shape[1] != 2:
         message = f"bonds: expected pairs of indices of atoms, shape (n, 2), got {array.shape}"
         raise ValueError(message)
-    if not (array == np.floor(array)).all():
+    if not (np.isfinite(array).all() and (array == np.floor(array)).all()):
         raise PolhodeError("bonds: an index of an atom is a whole number")
     pairs: list[tuple[int, int]] = []
     known: set[frozenset[int]] = set()

@@ -13,6 +13,7 @@ import numpy as np
 from polhode import _core
 from polhode._bonds import bonds, uncertain_positions
 from polhode._nuclides import Isotope, Masses, isotopes, uncertain_masses
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -139,6 +140,11 @@ def rotational_constants_sigma(
         Not a number where the constant is infinite. That of the atomic mass constant, 3.1e-10 of each
         constant, is part of it; all constants of all molecules share it.
 
+    Raises
+    ------
+    PolhodeError
+        For a sigma that is negative or not a number.
+
     Examples
     --------
     >>> from polhode.molecules import rotational_constants_sigma
@@ -150,6 +156,8 @@ def rotational_constants_sigma(
     deviations = _core.real_numbers(sigma, "sigma")
     if deviations.shape[-1:] != (3,):
         raise ValueError(f"sigma: expected shape (..., 3), got {deviations.shape}")
+    if not (deviations >= 0.0).all():
+        raise PolhodeError("sigma: a standard deviation is not negative, and a number")
     with np.errstate(divide="ignore", invalid="ignore"):
         found: Floats = constants * np.hypot(deviations / inertia, _SIGMA_OF_U)
     return np.where(np.isfinite(constants), found, np.nan)

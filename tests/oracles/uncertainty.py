@@ -42,7 +42,7 @@ OUTPUTS = (
 class Sources:
     """The standard normal numbers behind one or more trees: quantities of one name share theirs."""
 
-    def __init__(self, *nodes: Node) -> None:
+    def __init__(self, *nodes: Node | Quantity) -> None:
         self.first: dict[object, int] = {}
         self.count = 0
         for node in nodes:

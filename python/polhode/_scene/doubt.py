@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode._scene.shape import check_one
+from polhode._tangents import changes_in_principal_axes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,14 +34,11 @@ def angle_covariance(body: RigidBody) -> Floats | None:
     With W = Vᵀ δI V perturbation theory gives φ_k = W_ij / (I_j - I_i) for (i, j, k) in turn.
     """
     check_one(body.shape, "body")
-    doubts, sigma = body._doubts(), body.sigma
-    if doubts is None or sigma is None:
+    changes, sigma = changes_in_principal_axes(body), body.sigma
+    if changes is None or sigma is None:
         return None
-    axes, moments = body.principal.axes, body.principal.moments
-    xx, yy, zz, xy, xz, yz = doubts["tangents"][:, 4:].T
-    changes = np.moveaxis(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), -1, 0)
-    turned = axes.T @ changes @ axes
-    angles = np.full((3, len(changes)), np.nan)
+    moments, turned = body.principal.moments, changes[0]
+    angles = np.full((3, len(turned)), np.nan)
     for k in np.flatnonzero(~np.isnan(sigma.axes)):
         i, j = (k + 1) % 3, (k + 2) % 3
         gap = moments[j] - moments[i]

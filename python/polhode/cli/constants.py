@@ -144,7 +144,8 @@ def constant_fields(body: RigidBody, rtol: float | None = None) -> list[Field]:
     top = str(body.principal.classify(rtol))
     if top == "asymmetric":
         kappa = float(ray_kappa(frequencies))
-        fields.append(Field("ray_kappa", "Ray's kappa", kappa, **_derived(body, moments, top).kappa))
+        of_kappa = _derived(body, moments, top).kappa
+        fields.append(Field("ray_kappa", "Ray's kappa", kappa, scale=1.0 if of_kappa else 0.0, **of_kappa))
     return fields
 
 

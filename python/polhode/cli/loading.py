@@ -21,12 +21,14 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from polhode import RigidBody, Uncertain
+    from polhode._nuclides import Masses
+    from polhode.cli.atoms import Atoms
     from polhode.cli.options import BodyOptions
     from polhode.files.loaded import Loaded
     from polhode.files.mesh import Mesh
     from polhode.molecules import Isotope
 
-__all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body"]
+__all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body", "loaded_molecule"]
 
 
 @dataclass(frozen=True)
@@ -228,14 +230,21 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         bond_sigma=bond_sigma(options.bond_sigma, unit),
         mass_sigmas=options.mass_sigmas,
     )
+    return loaded_molecule(at, atoms, molecule.comment)
+
+
+def loaded_molecule(
+    at: Atoms, atoms: list[Isotope], comment: str, masses: Masses = "most_common"
+) -> LoadedBody:
+    """Make the body of a molecule's nuclides at their places."""
     return LoadedBody(
-        body=at.body(atoms),
+        body=at.body(atoms, masses),
         source=atoms,
         mass_unit="u",
         length="angstrom",
-        comment=molecule.comment,
+        comment=comment,
         notes=at.notes,
-        has_mass_sigmas=options.mass_sigmas,
+        has_mass_sigmas=at.with_mass_sigmas,
     )
 
 

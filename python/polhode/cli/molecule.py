@@ -6,10 +6,10 @@ import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from polhode.cli.atoms import Atoms, atoms_of
+from polhode.cli.atoms import atoms_of
 from polhode.cli.constants import constant_fields, isotopologue_row, rotation_fields, straightened
 from polhode.cli.layout import Column, Field, Report, Table
-from polhode.cli.loading import LoadedBody, bond_sigma
+from polhode.cli.loading import LoadedBody, bond_sigma, loaded_molecule
 from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import as_file, shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from polhode.cli.options import MoleculeOptions
-    from polhode.files.xyz import Molecule
 
 __all__ = ["atoms_report", "molecule_report"]
 
@@ -44,7 +43,7 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
     )
     sigma = bond_sigma(options.bond_sigma, options.length_unit)
     at = atoms_of(file, atoms, molecule, bond_sigma=sigma, mass_sigmas=options.mass_sigmas)
-    loaded = _loaded(atoms, molecule, at, options)
+    loaded = loaded_molecule(at, atoms, molecule.comment, options.masses)
     report = Report()
     _head(report, file, atoms, loaded)
     report.section("rotation", *rotation_fields(loaded, options.rtol))
@@ -84,18 +83,6 @@ def atoms_report(
     report.notes += [*straightened(loaded.body), *loaded.notes]
     note_linear(report)
     return report
-
-
-def _loaded(atoms: list[Isotope], molecule: Molecule, at: Atoms, options: MoleculeOptions) -> LoadedBody:
-    return LoadedBody(
-        body=at.body(atoms, options.masses),
-        source=atoms,
-        mass_unit="u",
-        length="angstrom",
-        comment=molecule.comment,
-        notes=at.notes,
-        has_mass_sigmas=options.mass_sigmas,
-    )
 
 
 def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, TypedDict
+from typing import TYPE_CHECKING, Final, TypedDict
 
 import numpy as np
 
+from polhode._tangents import changes_in_principal_axes
 from polhode.cli.layout import NOT_LINEAR, ROUNDING, Field
 
 if TYPE_CHECKING:
@@ -19,11 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Told", "about_point", "angle_field", "moments_slopes", "note_linear", "squared", "told"]
 
-_LACKING: Final = 0.015
-"""Largest part of a variance that the first order may lack, as that of a body's own sigmas."""
 _LARGE: Final = 0.17
 """Relative sigma of a number above which its square has another one than twice that, by a percent."""
-_ELEMENTS: Final = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 class Told(TypedDict, total=False):
@@ -52,43 +50,9 @@ def squared(value: Floats, of_value: Told) -> Told:
 
 
 def about_point(body: RigidBody, point: Floats) -> Told:
-    """Sigma of the tensor about a point that is known exactly.
-
-    I_P = I_C + m (d² 1 - d dᵀ), d from P to C: of third degree in the ten numbers. With the derivatives g, H
-    and T of an element and the covariance S its variance is g S g + tr(H S H S)/2 + g S (T : S) and less.
-    The first term is reported, the others tell whether it is enough.
-    """
-    sigma = body.sigma
-    covariance: Any = body.covariance
-    if covariance is None or sigma is None:
-        return {}
-    m, d = float(body.mass), body.center_of_mass - point
-    deviations, flags = np.zeros((3, 3)), np.zeros((3, 3), dtype=bool)
-    noise = ROUNDING * float(np.trace(body.inertia) + m * d @ d)
-    own = np.asarray(sigma.linear.inertia) & bool(sigma.linear.mass)
-    for place, (i, j) in enumerate(_ELEMENTS):
-        # The element is q(d) m + its own, with the quadratic form q = d·Q d.
-        unit = np.zeros((3, 3))
-        unit[i, j] += 0.5
-        unit[j, i] += 0.5
-        form = np.eye(3) * float(i == j) - unit
-        gradient = np.zeros(10)
-        gradient[0], gradient[1:4], gradient[4 + place] = d @ form @ d, 2.0 * m * form @ d, 1.0
-        bend = np.zeros((10, 10))
-        bend[0, 1:4] = bend[1:4, 0] = 2.0 * form @ d
-        bend[1:4, 1:4] = 2.0 * m * form
-        # T : S, which is what the third order adds to the gradient, twice.
-        third = np.zeros(10)
-        third[0] = 2.0 * np.sum(form * covariance[1:4, 1:4])
-        third[1:4] = 4.0 * form @ covariance[0, 1:4]
-        first = gradient @ covariance @ gradient
-        product = bend @ covariance
-        lacking = 0.5 * np.sum(product * product.T) + gradient @ covariance @ third
-        deviations[i, j] = deviations[j, i] = math.sqrt(max(float(first), 0.0))
-        by_center = np.where(sigma.linear.center_of_mass, 0.0, gradient[1:4] * sigma.center_of_mass)
-        missing = abs(lacking) + by_center @ by_center
-        flags[i, j] = flags[j, i] = own[i, j] and missing <= _LACKING * first + noise * noise
-    return {"sigma": deviations, "linear": flags}
+    """Sigma of the tensor about a point that is known exactly."""
+    sigma = body.sigma_about(point)
+    return {} if sigma is None else {"sigma": sigma.inertia, "linear": sigma.linear.inertia}
 
 
 def moments_slopes(body: RigidBody) -> Floats | None:
@@ -97,13 +61,8 @@ def moments_slopes(body: RigidBody) -> Floats | None:
     Each moment is e·I e, and turning the axes e adds nothing to it at first. Sums of these cancel to
     rounding, those of a covariance to its root.
     """
-    state = body._doubts()
-    if state is None:
-        return None
-    axes = body.principal.axes
-    by_element = [axes[i] * axes[j] * (1.0 if i == j else 2.0) for i, j in _ELEMENTS]
-    found: Floats = state["tangents"][:, 4:] @ np.array(by_element)
-    return found
+    changes = changes_in_principal_axes(body)
+    return None if changes is None else np.diagonal(changes[0], axis1=-2, axis2=-1)
 
 
 def angle_field(body: RigidBody) -> list[Field]:

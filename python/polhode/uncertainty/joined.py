@@ -32,7 +32,7 @@ def joined(values: Any) -> Any:
     Raises
     ------
     TypeError
-        For a rotation among the numbers.
+        For a rotation, a text or anything else among them that is no number.
     ValueError
         For rows of different lengths, or a list that holds itself.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from polhode._repr import short
+from polhode._tangents import changes_in_principal_axes
 from polhode.uncertainty.motions import each_motion
 
 if TYPE_CHECKING:
@@ -94,18 +95,14 @@ def axis_probabilities(body: RigidBody) -> AxisProbabilities:
     >>> axis_probabilities(weighed).intermediate.round(3)
     array([0.079, 0.921, 0.   ])
     """
-    state = body._doubts()
-    if state is None:
+    changes = changes_in_principal_axes(body)
+    if changes is None:
         message = "body: it carries no covariance; give it one by with_sigma, with_covariance or Uncertain"
         raise ValueError(message)
-    principal, ends = body.principal, np.cumsum(state["counts"]).tolist()
-    moments, axes = principal.moments.reshape(-1, 3), principal.axes.reshape(-1, 3, 3)
+    moments = body.principal_moments.reshape(-1, 3)
     ranks = np.zeros((len(moments), 3, 3))  # row, axis, rank
-    for row, (means, own) in enumerate(zip(moments, axes, strict=True)):
-        changes = state["tangents"][ends[row] - int(state["counts"][row]) : ends[row], 4:]
-        slopes = np.array([np.diagonal(own.T @ _symmetric(change) @ own) for change in changes]).reshape(
-            -1, 3
-        )
+    for row, (means, of_row) in enumerate(zip(moments, changes, strict=True)):
+        slopes = np.diagonal(of_row, axis1=-2, axis2=-1)
         for order in permutations(range(3)):
             low, middle, high = order
             found = both_positive(
@@ -197,8 +194,3 @@ def both_positive(means: tuple[float, float], slopes: tuple[Floats, Floats]) -> 
 def _below(x: float) -> float:
     """Give the probability that a standard normal variable is below x."""
     return 0.5 * math.erfc(-x / math.sqrt(2.0))
-
-
-def _symmetric(six: Floats) -> Floats:
-    xx, yy, zz, xy, xz, yz = six
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Function = Callable[..., Any]
 
-__all__ = ["Propagated", "propagate"]
+__all__ = ["Propagated", "is_enough", "propagate"]
 
 LACKING: Final = 0.015
 """Largest part of a variance that the first order may lack: a percent of the deviation, with a margin."""
@@ -180,10 +180,27 @@ def _is_linear(f: Function, around: Neighbours, value: Floats, slopes: Floats) -
         changes.append(0.5 * (above - below))
     first, change = np.array(firsts), np.array(changes)
     variance = (slopes**2).sum(axis=0)
-    sigma, noise = np.sqrt(variance), ROUNDING * np.abs(value.ravel())
-    lacking = np.var(even, axis=0) + 2 * (first * (change - first)).mean(axis=0)
-    fits = np.abs(lacking) <= LACKING * variance + 2 * noise * sigma + noise**2
+    fits = is_enough(first, change, np.array(even), variance, ROUNDING * np.abs(value.ravel()))
     return np.asarray((fits & _follows(f, around, value, variance)) | _is_rounding(value, first, change))
+
+
+def is_enough(
+    first: Floats, change: Floats, even: Floats, variance: Floats, noise: Floats
+) -> NDArray[np.bool_]:
+    """Tell whether the first order is enough, from random directions with normal coordinates.
+
+    Parameters
+    ----------
+    first, change, even : numpy.ndarray, shape (directions, ...)
+        Of each direction the first-order change; and of the changes for a step forward and one back half the
+        difference, and the mean.
+    variance : numpy.ndarray, shape (...)
+        To first order.
+    noise : numpy.ndarray, shape (...)
+        What is rounding.
+    """
+    lacking = even.var(axis=0) + 2 * (first * (change - first)).mean(axis=0)
+    return np.asarray(np.abs(lacking) <= LACKING * variance + 2 * noise * np.sqrt(variance) + noise**2)
 
 
 def _is_rounding(value: Floats, first: Floats, change: Floats) -> NDArray[np.bool_]:

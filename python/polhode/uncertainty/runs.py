@@ -14,7 +14,7 @@ from polhode._variables import of_forms
 from polhode.errors import PolhodeError
 from polhode.uncertainty.motions import row_of
 from polhode.uncertainty.neighbours import Neighbours
-from polhode.uncertainty.propagation import LACKING
+from polhode.uncertainty.propagation import is_enough
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -115,7 +115,10 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
         [_logarithm(_product(back, beside.quaternion)), beside.omega - run.omega[place]], axis=-1
     )
     above, below, near, beyond = moved.reshape(4, DIRECTIONS, len(run.t), 6)
-    return _is_linear(above, below, near, beyond, float(np.nanmax(np.abs(run.omega[place]), initial=0.0)))
+    first = (near - beyond) / (2 * NEAR)
+    speed = float(np.nanmax(np.abs(run.omega[place]), initial=0.0))
+    noise = ROUNDING * np.array([1.0, 1.0, 1.0, speed, speed, speed])
+    return is_enough(first, 0.5 * (above - below), 0.5 * (above + below), (first**2).mean(axis=0), noise)
 
 
 def _taken(many: Any, stack: tuple[int, ...], row: int) -> Any:
@@ -123,16 +126,6 @@ def _taken(many: Any, stack: tuple[int, ...], row: int) -> Any:
     if many is None or not many.shape:
         return many
     return many[np.unravel_index(rows_of(many.shape, stack)[row], many.shape)]
-
-
-def _is_linear(above: Floats, below: Floats, near: Floats, beyond: Floats, speed: float) -> NDArray[np.bool_]:
-    """Tell it from the changes of (δ, ω) along the directions, a whole step and a short one each way."""
-    first = (near - beyond) / (2 * NEAR)
-    even, odd = 0.5 * (above + below), 0.5 * (above - below) - first
-    variance = (first**2).mean(axis=0)
-    lacking = even.var(axis=0) + 2 * (first * odd).mean(axis=0)
-    noise = ROUNDING * np.array([1.0, 1.0, 1.0, speed, speed, speed])
-    return np.asarray(np.abs(lacking) <= LACKING * variance + 2 * noise * np.sqrt(variance) + noise**2)
 
 
 def _product(a: Floats, b: Floats) -> Floats:

@@ -56,7 +56,7 @@ pub fn deviations(body: &RigidBody, doubt: &Doubt) -> Deviations {
 /// As [`deviations`], with tensor, moments, axes and radii about a point of the body frame.
 ///
 /// # Errors
-/// None: those of [`follow`], which has none here.
+/// Those of [`follow`]; a point is in the domain of every body, so that there are none.
 pub fn deviations_about(
     body: &RigidBody,
     doubt: &Doubt,

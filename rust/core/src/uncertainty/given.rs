@@ -107,7 +107,7 @@ impl Given {
                     .ok()?;
                 Some(a * other[place].1)
             })
-            .fold(0.0, |sum, product| sum + product)
+            .fold(0.0, |sum, product| sum + product) // `sum` of none is −0
     }
 }
 

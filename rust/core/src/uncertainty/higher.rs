@@ -181,16 +181,22 @@ mod tests {
     use super::*;
     use crate::principal::principal_axes;
 
+    const MOMENTS: [f64; 3] = [2.0, 3.0, 4.5];
+
+    /// One variable z: every element is a multiple of it, and E[z⁴] = 3.
+    fn one() -> (Matrix3<f64>, Higher) {
+        let change = Matrix3::new(0.3, 0.2, 0.1, 0.2, -0.4, 0.25, 0.1, 0.25, 0.2);
+        let mut higher = Higher::new(MOMENTS, [1.0; 3]);
+        higher.add(&change, 0.1);
+        (change, higher)
+    }
+
     #[test]
     fn terms_of_moments_and_angles_are_those_of_a_line() {
-        // One variable z: every element is a multiple of it, and E[z⁴] = 3.
-        let moments = [2.0, 3.0, 4.5];
-        let change = Matrix3::new(0.3, 0.2, 0.1, 0.2, -0.4, 0.25, 0.1, 0.25, 0.2);
-        let mut higher = Higher::new(moments, [1.0; 3]);
-        higher.add(&change, 0.1);
+        let (change, higher) = one();
         let h = 0.01;
         let at = |s: f64| {
-            principal_axes(&(Matrix3::from_diagonal(&moments.into()) + change * s)).moments
+            principal_axes(&(Matrix3::from_diagonal(&MOMENTS.into()) + change * s)).moments
         };
         let [far, near, back, beyond] = [2.0 * h, h, -h, -2.0 * h].map(at);
         for k in 0..3 {
@@ -206,7 +212,7 @@ mod tests {
         }
         // Two axes alone.
         let change = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.0, 0.2, 0.3);
-        let mut higher = Higher::new(moments, [1.0; 3]);
+        let mut higher = Higher::new(MOMENTS, [1.0; 3]);
         higher.add(&change, 0.1);
         let (w, delta, g) = (0.2, 0.2, 1.5);
         let cubic = w * (delta * delta - 4.0 / 3.0 * w * w) / (g * g * g);
@@ -217,12 +223,9 @@ mod tests {
 
     #[test]
     fn second_order_terms_are_those_of_differences() {
-        let moments = [2.0, 3.0, 4.5];
-        let change = Matrix3::new(0.3, 0.2, 0.1, 0.2, -0.4, 0.25, 0.1, 0.25, 0.2);
-        let mut higher = Higher::new(moments, [1.0; 3]);
-        higher.add(&change, 0.1);
+        let (change, higher) = one();
         let h = 1e-3;
-        let at = |s: f64| principal_axes(&(Matrix3::from_diagonal(&moments.into()) + change * s));
+        let at = |s: f64| principal_axes(&(Matrix3::from_diagonal(&MOMENTS.into()) + change * s));
         let [above, here, below] = [h, 0.0, -h].map(at);
         let turn = |end: &crate::PrincipalAxes| {
             let turn = here.axes.tr_mul(&end.axes);

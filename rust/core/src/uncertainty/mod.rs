@@ -18,6 +18,7 @@
 //! | through sums, where parts are many | [`composites`] |
 //! | which covariances no body can have | [`possible`] |
 //! | terms of higher order of moments and axes | `higher` |
+//! | moments, axes and radii of gyration after a step | `stepped` |
 //! | terms of all that deviations are told of | `terms` |
 //! | standard deviations of all that a body has, and where they are not to be trusted | [`deviations`](mod@deviations) |
 
@@ -32,6 +33,7 @@ pub mod mesh;
 pub mod particles;
 pub mod polygon;
 pub mod possible;
+mod stepped;
 mod terms;
 pub mod variable;
 
