@@ -21,13 +21,15 @@ __all__ = ["angular_acceleration", "force", "pivot_reaction", "potential_energy"
 def torque(self: Trajectory) -> Floats:
     """Torque of the load about the point `about` at every time, components in the body frame.
 
+    That of wheels is what ``I ω̇ + ω × I ω`` is with the wheels locked in I.
+
     Returns
     -------
     numpy.ndarray, shape (..., T, 3)
     """
     if self.load is None:
         return np.zeros_like(self.omega)
-    return self._over_time(self.load).torque(*self._states(), **self._subject())
+    return self._over_time(self.load).torque(*self._states(), **self._subject(), states=self._own_states())
 
 
 def force(self: Trajectory) -> Floats:
@@ -39,7 +41,7 @@ def force(self: Trajectory) -> Floats:
     """
     if self.load is None:
         return np.zeros_like(self.omega)
-    return self._over_time(self.load).force(*self._states(), **self._subject())
+    return self._over_time(self.load).force(*self._states(), **self._subject(), states=self._own_states())
 
 
 def angular_acceleration(self: Trajectory) -> Floats:

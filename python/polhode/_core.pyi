@@ -89,8 +89,10 @@ __all__ = [
     "ring",
     "rod",
     "rotate",
+    "rotor",
     "sampled",
     "schedule",
+    "slug",
     "sphere",
     "steady_precession",
     "stick",
@@ -109,6 +111,8 @@ __all__ = [
     "tube",
     "uniform_gravity",
     "wedge",
+    "wheel",
+    "with_states",
     "within_box",
 ]
 
@@ -117,6 +121,7 @@ _Reference: TypeAlias = Literal["center_of_mass", "origin"]
 _About: TypeAlias = _Reference | ArrayLike
 _SpatialOrder: TypeAlias = Literal["angular-linear", "linear-angular"]
 _Attitude: TypeAlias = ArrayLike | SupportsQuaternion
+_WithStates: TypeAlias = Callable[[float, _Floats, _Floats, _Floats, _Floats, dict[str, _Floats]], Any]
 _Number: TypeAlias = float | Uncertain | SupportsSigma
 _Row: TypeAlias = ArrayLike | _Number | Sequence[_Number]
 _Numbers: TypeAlias = ArrayLike | _Number | Sequence[_Row]
@@ -442,6 +447,7 @@ class RigidBody:
         events: Callable[..., float] | Iterable[Callable[..., float]] | None = None,
         on_failure: Literal["raise", "keep"] = "raise",
         progress: Callable[[float], object] | None = None,
+        states: dict[str, Any] | None = None,
     ) -> Trajectory: ...
     @property
     def shape(self) -> tuple[int, ...]: ...
@@ -520,6 +526,7 @@ class Load:
         body: RigidBody | None = None,
         about: _Reference = "center_of_mass",
         start: float | None = None,
+        states: dict[str, Any] | None = None,
     ) -> _Floats: ...
     def force(
         self,
@@ -532,6 +539,7 @@ class Load:
         body: RigidBody | None = None,
         about: _Reference = "center_of_mass",
         start: float | None = None,
+        states: dict[str, Any] | None = None,
     ) -> _Floats: ...
     def potential(
         self,
@@ -540,6 +548,13 @@ class Load:
         position: ArrayLike | None = None,
         about: _Reference = "center_of_mass",
     ) -> _Floats | None: ...
+    def carried(
+        self, t: ArrayLike, omega: ArrayLike, states: dict[str, Any] | None = None
+    ) -> tuple[_Floats, _Floats]: ...
+    @property
+    def carries(self) -> bool: ...
+    @property
+    def states(self) -> dict[str, int]: ...
     def keeps_momentum(self, about: _Reference = "center_of_mass") -> Literal[True] | _Floats | None: ...
     def anchored(self, t: float) -> Load: ...
     @property
@@ -582,7 +597,56 @@ def torque_callback(function: Callable[[float, _Floats, _Floats], ArrayLike]) ->
 def callback(
     function: Callable[[float, _Floats, _Floats, _Floats, _Floats], tuple[ArrayLike, ArrayLike]],
 ) -> Load: ...
-def compiled(function: object, user_data: int | None = None) -> Load: ...
+def compiled(
+    function: object,
+    user_data: int | None = None,
+    *,
+    initial: ArrayLike | None = None,
+    name: str = "states",
+    scale: ArrayLike | None = None,
+) -> Load: ...
+def rotor(momentum: ArrayLike) -> Load: ...
+def wheel(
+    axis: ArrayLike,
+    inertia: ArrayLike,
+    rate: ArrayLike | None = None,
+    *,
+    torque: ArrayLike | Load | None = None,
+    speed: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+    friction: ArrayLike | None = None,
+    name: str = "wheel",
+) -> Load: ...
+def slug(inertia: ArrayLike, damping: ArrayLike, name: str = "slug") -> Load: ...
+def with_states(
+    rates: _WithStates | None,
+    initial: ArrayLike,
+    wrench: _WithStates | None = None,
+    name: str = "states",
+    *,
+    update: _WithStates | None = None,
+    period: float | None = None,
+    scale: ArrayLike | None = None,
+) -> Load: ...
+def _wheel(
+    axis: ArrayLike,
+    inertia: ArrayLike,
+    rate: ArrayLike | None,
+    torque: ArrayLike | Load | None,
+    speed: ArrayLike | None,
+    times: ArrayLike | None,
+    friction: ArrayLike | None,
+    name: str,
+) -> Load: ...
+def _with_states(
+    rates: _WithStates | None,
+    initial: ArrayLike,
+    wrench: _WithStates | None,
+    name: str,
+    update: _WithStates | None,
+    period: float | None,
+    scale: ArrayLike,
+) -> Load: ...
 def box(size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def cube(side: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def sphere(

@@ -130,6 +130,8 @@ def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats
                 flat[k, :, :, column] += omega[k] @ change
     if frame == "space":
         spin = (tensor @ self.omega[..., None])[..., 0]
+        if self.carried is not None:
+            spin = spin + self.carried[0]
         # Columns (δ × L) of the matrix that belongs to every change of the attitude.
         changes = changes + np.cross(forms[..., :3, :], spin[..., None], axis=-2)
         turned = _core.rotate(self.quaternion[..., None, :], np.swapaxes(changes, -1, -2))

@@ -70,7 +70,8 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     t : array_like, shape (T,)
         As of `simulate`; the first must be the last of this motion.
     **options
-        Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`.
+        Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`; with another
+        `load` its own states begin anew.
 
     Returns
     -------
@@ -90,12 +91,15 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     state = self.state()
     if np.isnan(state.omega).any():
         raise ValueError("resume: the last state is not known, since the run did not come to the last time")
-    options.setdefault("load", None if self.load is None else self.load.anchored(float(self.t[0])))
-    options.setdefault("about", self._about_word())
     given = state._asdict()
+    if "load" in options:
+        del given["states"]  # another load has others
+    elif self.load is not None:
+        options["load"] = self.load.anchored(float(self.t[0]))
+    options.setdefault("about", self._about_word())
     if self.pivoted:
         del given["velocity"]
-    run = self.body.simulate(t, **given, **options)
+    run = self.body.simulate(t, **given | options)
     if self.uncertain_start != (None, None) or self.body._doubts() is not None:
         run.__dict__["uncertain_start"] = None  # the last state is uncertain, together with the body
     return run

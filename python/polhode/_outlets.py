@@ -59,6 +59,8 @@ def to_xarray(self: Trajectory) -> Dataset:
         self.quaternion,
         {"long_name": "R_NB, scalar last"},
     )
+    for name, values in self.states.items():
+        variables[name] = ([*stack, "time", f"{name}_component"], values, {"long_name": "of the load"})
     coordinates = {"time": self.t, "component": list("xyz"), "quaternion_component": list("xyzw")}
     dataset: Dataset = xarray.Dataset(variables, coordinates, {"title": repr(self)})
     return dataset

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
@@ -26,7 +27,8 @@ class Event:
     Attributes
     ----------
     function : callable
-        ``function(t, omega, quaternion, position, velocity)`` returns a number: zero at the event.
+        ``function(t, omega, quaternion, position, velocity)`` returns a number: zero at the event. With a
+        load that has states of its own it gets a sixth argument, a dict of these states by name.
     direction : float
         Positive: only passages that rise in time count; negative: only those that fall; zero: all.
     terminal : bool or int
@@ -49,13 +51,29 @@ class Event:
     terminal: bool | int = False
 
     def __call__(
-        self, t: float, omega: Floats, quaternion: Floats, position: Floats, velocity: Floats
+        self,
+        t: float,
+        omega: Floats,
+        quaternion: Floats,
+        position: Floats,
+        velocity: Floats,
+        *states: dict[str, Floats],
     ) -> float:
         """Evaluate the function."""
-        return self.function(t, omega, quaternion, position, velocity)
+        return self.function(t, omega, quaternion, position, velocity, *states)
 
 
-class Events(NamedTuple):
+class _Events(NamedTuple):
+    row: NDArray[np.int64]
+    event: NDArray[np.int64]
+    t: Floats
+    omega: Floats
+    quaternion: Floats
+    position: Floats
+    velocity: Floats
+
+
+class Events(_Events):
     """The events of all bodies of a stack, one after the other: a table of its columns.
 
     Attributes
@@ -69,15 +87,11 @@ class Events(NamedTuple):
     quaternion : numpy.ndarray, shape (n, 4)
     position, velocity : numpy.ndarray, shape (n, 3)
         The state then.
+    states : dict of str and numpy.ndarray, shape (n, k)
+        The states of the load then, by name: beside the columns.
     """
 
-    row: NDArray[np.int64]
-    event: NDArray[np.int64]
-    t: Floats
-    omega: Floats
-    quaternion: Floats
-    position: Floats
-    velocity: Floats
+    states: Mapping[str, Floats] = MappingProxyType({})
 
     def __repr__(self) -> str:
         count = len(self.t)
@@ -85,6 +99,14 @@ class Events(NamedTuple):
             return "<Events: none>"
         span = f" from {self.t.min():.6g} to {self.t.max():.6g}" if count > 1 else f" at {self.t[0]:.6g}"
         return f"<Events: {count}{span}>"
+
+    @classmethod
+    def with_states(cls, states: dict[str, Floats], *columns: Any) -> Events:
+        """Make the table of a run whose load has states of its own."""
+        table = cls(*columns)
+        if states:
+            table.states = states
+        return table
 
     @classmethod
     def none(cls) -> Events:

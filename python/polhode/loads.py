@@ -2,10 +2,15 @@
 
 Loads add and scale: ``a + b``, ``a - b``, ``2 * a``, ``sum(loads)``. Torques are about the reference point
 of the motion: the centre of mass of a free body, or the origin that is fixed in space.
+
+What the body carries along, a :func:`rotor`, a :func:`wheel` or a :func:`slug`, is a load too, since it acts
+on the body; momentum and energy of the trajectory include it. Its states are in `states` of the trajectory.
 """
 
 from polhode._core import (
     Load,
+    _wheel,  # noqa: F401 - pickle
+    _with_states,  # noqa: F401 - pickle
     callback,
     compiled,
     constant_force,
@@ -13,10 +18,14 @@ from polhode._core import (
     damping,
     feedback,
     gravity_gradient,
+    rotor,
     sampled,
     schedule,
+    slug,
     torque_callback,
     uniform_gravity,
+    wheel,
+    with_states,
 )
 
 __all__ = [
@@ -28,8 +37,12 @@ __all__ = [
     "damping",
     "feedback",
     "gravity_gradient",
+    "rotor",
     "sampled",
     "schedule",
+    "slug",
     "torque_callback",
     "uniform_gravity",
+    "wheel",
+    "with_states",
 ]

@@ -290,15 +290,21 @@ class State(NamedTuple):
     omega : numpy.ndarray, shape (..., 3)
     attitude : numpy.ndarray, shape (..., 4)
     position, velocity : numpy.ndarray, shape (..., 3)
+    states : dict of str and numpy.ndarray, shape (..., k), or None
+        Of the load, by name, where it has states of its own.
     """
 
     omega: Floats
     attitude: Floats
     position: Floats
     velocity: Floats
+    states: dict[str, Floats] | None = None
 
     def __repr__(self) -> str:
-        return short(self)
+        fields = self._asdict()
+        if self.states is None:
+            del fields["states"]
+        return one_line(self, fields)
 
 
 class Invariants(NamedTuple):

@@ -62,6 +62,12 @@ class Trajectory:
         Angular velocity and attitude at the first time as `Uncertain`, each None where it was given without a
         sigma. Of an uncertain closed form at times that do not begin with 0 that motion itself; None for a
         run that goes on from an uncertain one.
+    states : dict of str and numpy.ndarray, shape (..., T, k)
+        The states that the load has of its own, by name: of a wheel its momentum ``J (Ω + a·ω)`` about its
+        axis, of a slug its angular velocity in the body frame.
+    carried : tuple of numpy.ndarray, shapes (..., T, 3) and (..., T), or None
+        Momentum in the body frame and energy of what the body carries along under the load, beside ``I ω``
+        and ``½ ω·I ω``: of wheels, rotors and slugs. None where there are none.
     """
 
     body: _core.RigidBody
@@ -81,6 +87,8 @@ class Trajectory:
     uncertain_start: (
         tuple[_core.Uncertain | None, _core.Uncertain | None] | _core.FreeMotion | _core.HeavyTop | None
     ) = (None, None)
+    states: dict[str, Floats] = field(default_factory=dict)
+    carried: tuple[Floats, Floats] | None = field(default_factory=lambda: None)
 
     # Methods that stand in files of their own.
     torque = _acting.torque
@@ -113,7 +121,7 @@ class Trajectory:
             outcome = self.__dict__.get("_outcome")
             if outcome is None or name not in type(self).__dataclass_fields__:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-            value = self.__dict__[name] = getattr(outcome, name)
+            value = self.__dict__[name] = self._carried_now() if name == "carried" else getattr(outcome, name)
             return value
 
     def __getstate__(self) -> dict[str, Any]:
@@ -148,12 +156,16 @@ class Trajectory:
         Returns
         -------
         KineticEnergy
-            Each part of shape (..., T).
+            Each part of shape (..., T). What the body carries along is in the rotational part; of a rotor
+            nothing, since the energy that such a motion keeps is ``½ ω·I ω``.
         """
-        return self._bodies().kinetic_energy(
+        found = self._bodies().kinetic_energy(
             self.omega,
             velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
             about=self._reference(),
+        )
+        return (
+            found if self.carried is None else found._replace(rotational=found.rotational + self.carried[1])
         )
 
     def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
@@ -167,7 +179,7 @@ class Trajectory:
         Returns
         -------
         AngularMomentum
-            Each part of shape (..., T, 3).
+            Each part of shape (..., T, 3). What the body carries along is in the spin.
         """
         if frame not in ("space", "body"):
             raise ValueError(f"frame: {frame!r} is not 'space' or 'body'")
@@ -177,6 +189,8 @@ class Trajectory:
             position=_core.rotate(self.quaternion, self.position, inverse=True),
             about=self._reference(),
         )
+        if self.carried is not None:
+            in_body = in_body._replace(spin=in_body.spin + self.carried[0])
         if frame == "body":
             return in_body
         return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
@@ -287,7 +301,11 @@ class Trajectory:
         -------
         State
         """
-        return State(*(x[..., index, :] for x in (self.omega, self.quaternion, self.position, self.velocity)))
+        at: list[Floats] = [
+            x[..., index, :] for x in (self.omega, self.quaternion, self.position, self.velocity)
+        ]
+        states = {name: values[..., index, :] for name, values in self.states.items()}
+        return State(at[0], at[1], at[2], at[3], states or None)
 
     @staticmethod
     def from_file(path: str | PathLike[str]) -> Trajectory:
@@ -332,6 +350,15 @@ class Trajectory:
 
     def _states(self) -> tuple[Floats, ...]:
         return self.t, self.omega, self.quaternion, self.position, self.velocity
+
+    def _own_states(self) -> dict[str, Floats] | None:
+        return self.states or None
+
+    def _carried_now(self) -> tuple[Floats, Floats] | None:
+        """Give momentum and energy of what the body carries along under the load."""
+        if self.load is None or not self.load.carries:
+            return None
+        return self._over_time(self.load).carried(self.t, self.omega, self._own_states())
 
     def _about_word(self) -> Literal["origin", "center_of_mass"]:
         return "origin" if self.pivoted else "center_of_mass"

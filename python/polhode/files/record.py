@@ -43,7 +43,11 @@ def record_suffix(file: Path) -> str:
 
 
 def read_record(
-    file: Path, expected: str, known_in_json: Collection[str], known_in_npz: Collection[str] | None = None
+    file: Path,
+    expected: str,
+    known_in_json: Collection[str],
+    known_in_npz: Collection[str] | None = None,
+    prefixes_in_npz: tuple[str, ...] = (),
 ) -> dict[str, Any]:
     """Read the fields of a file; an error where it has another format or a field that the format lacks."""
     fields: dict[str, Any]
@@ -57,6 +61,8 @@ def read_record(
     found = str(found) if isinstance(found, np.ndarray) else found
     if found != expected:
         raise FileFormatError(f"{file}: its format is {found!r}, expected {expected!r}")
+    if file.suffix.lower() == ".npz":
+        known |= {name for name in fields if prefixes_in_npz and name.startswith(prefixes_in_npz)}
     check_names(fields, known, str(file))
     return fields
 

@@ -46,7 +46,9 @@ _ENDS: Final = ("complete", "stopped", "failed")
 _OFF_UNITY: Final = 1e-6
 _FIELDS: Final = ("about", *_STATES, *_COUNTS, "status", "pivoted")
 _LOADED: Final = "loaded"
-_ARRAYS: Final = (*_FIELDS, _LOADED, *BODY_ARRAYS, *(f"body_{name}" for name in BODY_FIELDS))
+_STATES_OF_LOAD: Final = "states"
+_CARRIED: Final = ("carried_momentum", "carried_energy")
+_ARRAYS: Final = (*_FIELDS, _LOADED, *_CARRIED, *BODY_ARRAYS, *(f"body_{name}" for name in BODY_FIELDS))
 
 TRAJECTORY_SCHEMA: dict[str, object] = {
     "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -66,6 +68,15 @@ TRAJECTORY_SCHEMA: dict[str, object] = {
         "quaternion": array_schema("attitude R_NB as x, y, z, w, shape (..., T, 4)"),
         "position": array_schema("of the point of reference in space, shape (..., T, 3)"),
         "velocity": array_schema("of the point of reference in space, shape (..., T, 3)"),
+        "states": {
+            "description": "of the load, by name, each of shape (..., T, k)",
+            "type": "object",
+            "additionalProperties": {"type": "array"},
+        },
+        "carried_momentum": array_schema(
+            "in the body, of what the body carries along under the load, beside I ω, shape (..., T, 3)"
+        ),
+        "carried_energy": array_schema("of the same, beside ½ ω·I ω, shape (..., T)"),
         "status": {"description": "how each run ended, shape (...)", "type": ["string", "array"]},
         "steps": array_schema("accepted steps, shape (...)"),
         "evaluations": array_schema("of the equations of motion, shape (...)"),
@@ -116,6 +127,9 @@ def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
     fields["body"] = in_json(body_fields(trajectory.body), path)
     fields |= {name: getattr(trajectory, name) for name in _FIELDS}
     fields[_LOADED] = trajectory.load is not None
+    fields |= _carried_of(trajectory)
+    if trajectory.states:
+        fields[_STATES_OF_LOAD] = in_json(trajectory.states, path)
     write_json(path, in_json(fields, path))
 
 
@@ -129,9 +143,15 @@ def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
     """
     arrays = {name: getattr(trajectory, name) for name in _FIELDS}
     arrays[_LOADED] = np.array(trajectory.load is not None)
+    arrays |= _carried_of(trajectory)
+    arrays |= {f"{_STATES_OF_LOAD}_{name}": values for name, values in trajectory.states.items()}
     arrays |= {name: getattr(trajectory.body, name) for name in BODY_ARRAYS}
     arrays |= {f"body_{name}": value for name, value in body_fields(trajectory.body).items()}
     write_npz(path, _FORMAT, arrays)
+
+
+def _carried_of(trajectory: Trajectory) -> dict[str, Any]:
+    return {} if trajectory.carried is None else dict(zip(_CARRIED, trajectory.carried, strict=True))
 
 
 def read_motion(path: str | PathLike[str]) -> dict[str, Any]:
@@ -143,7 +163,13 @@ def read_motion(path: str | PathLike[str]) -> dict[str, Any]:
         Ends in ``.json`` or ``.npz``.
     """
     file = Path(path)
-    fields = read_record(file, _FORMAT, (*_FIELDS, _LOADED, "body"), _ARRAYS)
+    fields = read_record(
+        file,
+        _FORMAT,
+        (*_FIELDS, _LOADED, _STATES_OF_LOAD, *_CARRIED, "body"),
+        _ARRAYS,
+        (f"{_STATES_OF_LOAD}_",),
+    )
     if file.suffix.lower() == ".npz":
         fields["body"] = {
             name.removeprefix("body_"): value for name, value in fields.items() if name.startswith("body_")
@@ -156,23 +182,71 @@ def read_motion(path: str | PathLike[str]) -> dict[str, Any]:
     t = numbers(required(fields, "t", file), "t", file)
     states = {"t": t, "about": numbers(required(fields, "about", file), "about", file)}
     expected: dict[str, tuple[int, ...]] = {"about": (*body.shape, 3)}
+    stack: tuple[int, ...] = body.shape
     for name, width in _STATES.items():
         if width:
             states[name] = numbers(required(fields, name, file), name, file, with_holes=True)
-            expected[name] = (*body.shape, *t.shape, width)
+            if name == "omega":
+                stack = _stack(states[name].shape, body.shape, t.ndim)
+            expected[name] = (*stack, *t.shape, width)
     for name, shape in expected.items():
         if states[name].shape != shape:
             raise FileFormatError(f"{file}: {name} has shape {states[name].shape}, expected {shape}")
     _check_unit(states["quaternion"], file)
-    none = np.zeros(body.shape, dtype=np.int64)
-    given = {name: counts(fields.get(name, none), name, file, body.shape) for name in _COUNTS}
+    none = np.zeros(stack, dtype=np.int64)
+    given = {name: counts(fields.get(name, none), name, file, stack) for name in _COUNTS}
+    leading = (*stack, *t.shape)
     ended: dict[str, Any] = {
-        "status": _status(fields, file, body.shape),
+        "states": _states_of_load(fields, file, leading),
+        "carried": _carried(fields, file, leading),
+        "status": _status(fields, file, stack),
         "pivoted": _flag(fields, "pivoted", file),
     }
     if _flag(fields, _LOADED, file) and body._doubts() is not None:
         ended["uncertain_start"] = None  # what the body's doubts do to the motion the load decides, too
     return {"body": body, **states, **given, **ended}
+
+
+def _stack(shape: tuple[int, ...], bodies: tuple[int, ...], axes_of_time: int) -> tuple[int, ...]:
+    """Give the shape of the stack of motions, to which that of the bodies broadcasts."""
+    stack = shape[: max(len(shape) - 1 - axes_of_time, 0)]
+    fits = len(stack) >= len(bodies) and all(
+        own in (1, length) for own, length in zip(bodies[::-1], stack[::-1], strict=False)
+    )
+    return stack if fits else bodies
+
+
+def _states_of_load(fields: dict[str, Any], file: Path, leading: tuple[int, ...]) -> dict[str, Any]:
+    if file.suffix.lower() == ".npz":
+        prefix = f"{_STATES_OF_LOAD}_"
+        held = {name.removeprefix(prefix): fields[name] for name in fields if name.startswith(prefix)}
+    else:
+        held = fields.get(_STATES_OF_LOAD, {})
+        if not isinstance(held, dict):
+            raise FileFormatError(f"{file}: {_STATES_OF_LOAD} is not an object of arrays by name")
+    states = {}
+    for name, values in held.items():
+        states[name] = numbers(values, f"{_STATES_OF_LOAD} {name}", file, with_holes=True)
+        if states[name].shape[:-1] != leading or not states[name].ndim:
+            raise FileFormatError(
+                f"{file}: {_STATES_OF_LOAD} {name} has shape {states[name].shape}, expected {(*leading, 'k')}"
+            )
+    return states
+
+
+def _carried(
+    fields: dict[str, Any], file: Path, leading: tuple[int, ...]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    held = [name for name in _CARRIED if name in fields]
+    if not held:
+        return None
+    found = []
+    for name, shape in zip(_CARRIED, ((*leading, 3), leading), strict=True):
+        values = numbers(required(fields, name, file), name, file, with_holes=True)
+        if values.shape != shape:
+            raise FileFormatError(f"{file}: {name} has shape {values.shape}, expected {shape}")
+        found.append(values)
+    return found[0], found[1]
 
 
 def _status(fields: dict[str, Any], file: Path, shape: tuple[int, ...]) -> Any:

@@ -26,6 +26,7 @@ fn main() {
     for (name, terms) in [("free", vec![]), ("falling", vec![weight])] {
         let mut best = f64::INFINITY;
         for _ in 0..5 {
+            let initial = initial.clone();
             let task = Task::free(&body, initial, &times, Method::Dop853, tolerance);
             let mut load = Analytic::new(&terms, task.subject);
             let start = Instant::now();

@@ -84,7 +84,7 @@ fn backward_in_time_is_the_way_back() {
         let (forth, back) = ([0.0, 8.0], [8.0, 0.0]);
         let initial = turned(skew(), Vector3::new(0.7, -0.9, 1.1));
         let there = run(
-            &Task::free(&body, initial, &forth, Method::Taylor, tightest()),
+            &Task::free(&body, initial.clone(), &forth, Method::Taylor, tightest()),
             &terms,
         );
         let task = Task::free(&body, there.phase, &back, Method::Taylor, tightest());
@@ -220,7 +220,7 @@ fn a_rod_is_not_twisted() {
     .expect("a rod");
     let times = [0.0, 10.0];
     let initial = turned(UnitQuaternion::identity(), Vector3::new(3.0, 0.5, 0.0));
-    let task = Task::free(&rod, initial, &times, Method::Taylor, tightest());
+    let task = Task::free(&rod, initial.clone(), &times, Method::Taylor, tightest());
     let end = run(&task, &[]).phase;
     assert_eq!(end.omega.x, 3.0);
     assert!((end.omega.norm() - initial.omega.norm()).abs() < 1e-14);
@@ -320,7 +320,9 @@ fn runs_stop_when_told() {
     assert_eq!(stopped.end, End::Stopped);
     assert!(stopped.time > 0.0 && stopped.effort.steps == 192);
     let mut runs: Vec<Option<Run<polhode::Error>>> = vec![None; 300];
-    solve_many(&|_| task, &|_| &[], &mut runs, &|_| ControlFlow::Break(()));
+    solve_many(&|_| task.clone(), &|_| &[], &mut runs, &|_| {
+        ControlFlow::Break(())
+    });
     let ends: Vec<_> = runs.iter().flatten().map(|run| &run.end).collect();
     assert!(!ends.is_empty() && ends.iter().all(|end| **end == End::Stopped));
 }

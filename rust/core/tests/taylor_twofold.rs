@@ -39,7 +39,7 @@ fn every_term_agrees_with_doubles_and_does_not_depend_on_the_tolerance() {
         for omega in [Vector3::new(0.7, -0.9, 1.1), Vector3::zeros()] {
             let mut initial = turned(skew(), omega);
             initial.velocity = Vector3::new(0.1, 0.2, 0.3);
-            let at = |relative| run(&free(&body, initial, &times, relative), terms).samples;
+            let at = |relative| run(&free(&body, initial.clone(), &times, relative), terms).samples;
             let (doubles, close, closest) = (at(TIGHTEST), at(1e-22), at(1e-28));
             for ((a, b), c) in doubles.iter().zip(&close).zip(&closest) {
                 let far = c.position.norm().max(1.0);
@@ -70,7 +70,7 @@ fn backward_in_time_is_the_way_back_of_unstable_motions_too() {
     let body = aligned([1.0, 2.0, 3.0]);
     let initial = turned(skew(), Vector3::new(0.0, 1.0, 1e-8));
     let there = run(&free(&body, initial, &[0.0, 60.0], 1e-28), &[]);
-    let back = run(&free(&body, there.phase, &[60.0, 0.0], 1e-28), &[]);
+    let back = run(&free(&body, there.phase.clone(), &[60.0, 0.0], 1e-28), &[]);
     let neighbour = run(&free(&body, there.phase, &[60.0, 0.0], 1e-26), &[]);
     let error = apart(&back.phase, &neighbour.phase);
     assert!(error < 4e-16, "{error:e}");
@@ -84,7 +84,13 @@ fn energy_and_angular_momentum_stay_for_ten_thousand_turns() {
     let gravity = Vector3::new(0.0, 0.0, -1.0);
     let terms = [Term::uniform_gravity(&gravity).expect("finite")];
     let initial = turned(skew(), omega);
-    let top = Task::pivoted(&body, initial, &times, Method::Taylor, tolerance(1e-25));
+    let top = Task::pivoted(
+        &body,
+        initial.clone(),
+        &times,
+        Method::Taylor,
+        tolerance(1e-25),
+    );
     let end = run(&top, &terms).phase;
     let [before, after] = [initial, end].map(|phase| kept_by_a_top(&body, &gravity, &phase));
     for (after, before) in after.iter().zip(before) {
@@ -101,7 +107,7 @@ fn damped_spins_have_their_closed_forms() {
     let spins = |linear: f64, quadratic: f64| {
         let [d, e] = [linear, quadratic].map(Matrix3::from_diagonal_element);
         let load = [Term::Damping(Damping::new(&d, &e).expect("finite"))];
-        let samples = run(&free(&body, initial, &times, 1e-26), &load).samples;
+        let samples = run(&free(&body, initial.clone(), &times, 1e-26), &load).samples;
         [samples[1].omega.z, samples[2].omega.z]
     };
     // ω₀ exp(−D t/I), of dyadic numbers, and ω₀/(1 + E ω₀ t/I).

@@ -69,7 +69,7 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
             } else {
                 Term::constant_torque(&draw.vector()?, frame(draw)?)
             };
-            Windows::new(&windows).and_then(|windows| Ok(inner?.scheduled(&windows)))
+            Windows::new(&windows).and_then(|windows| inner?.scheduled(&windows))
         }
     })
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use arbitrary::Result;
 use nalgebra::Vector3;
 use polhode::motion::integrate::variation::variations;
-use polhode::motion::loads::{Analytic, Load, Term, Wrench};
+use polhode::motion::loads::{Analytic, Carried, Load, Term, Wrench};
 use polhode::motion::simulate::{
     Direction, End, Events, Method, NoEvents, Phase, Rule, Run, State, Task, Tolerance,
     check_times, simulate,
@@ -48,8 +48,8 @@ impl Load for Called<'_> {
         self.0.depends_on_rates()
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        self.0.breaks()
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
+        self.0.breaks(from, to)
     }
 
     fn enter(&mut self, from: f64, to: f64) -> core::result::Result<(), Error> {
@@ -58,6 +58,19 @@ impl Load for Called<'_> {
 
     fn wrench(&mut self, t: f64, phase: &Phase) -> core::result::Result<Wrench, Error> {
         self.0.wrench(t, phase)
+    }
+
+    fn act(
+        &mut self,
+        t: f64,
+        phase: &Phase,
+        rates: &mut [f64],
+    ) -> core::result::Result<Wrench, Error> {
+        self.0.act(t, phase, rates)
+    }
+
+    fn carried(&self) -> Vec<&dyn Carried> {
+        self.0.carried()
     }
 }
 

@@ -2,12 +2,13 @@
 
 use numpy::PyArray1;
 use polhode::motion::attitude::components;
+use polhode::motion::loads::Term;
 use polhode::motion::simulate::{Direction, Events, Rule};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::loads::Fault;
+use crate::loads::{Fault, Slot, named};
 
 /// The functions of an argument `events`.
 #[derive(Default)]
@@ -92,10 +93,15 @@ impl Functions {
     }
 
     /// The functions with the GIL to call them.
-    pub(crate) fn calling<'a, 'py>(&'a self, py: Python<'py>) -> Calling<'a, 'py> {
+    pub(crate) fn calling<'a, 'py>(
+        &'a self,
+        py: Python<'py>,
+        states: States<'a>,
+    ) -> Calling<'a, 'py> {
         Calling {
             functions: self,
             py,
+            states,
         }
     }
 }
@@ -104,6 +110,13 @@ impl Functions {
 pub(crate) struct Calling<'a, 'py> {
     functions: &'a Functions,
     py: Python<'py>,
+    states: States<'a>,
+}
+
+/// The states of the load under which a body is simulated.
+pub(crate) struct States<'a> {
+    pub(crate) slots: Vec<Slot>,
+    pub(crate) terms: &'a [Term],
 }
 
 impl Events for Calling<'_, '_> {
@@ -123,9 +136,15 @@ impl Events for Calling<'_, '_> {
             array(phase.velocity.as_slice()),
         );
         let value = || -> PyResult<f64> {
-            let returned = self.functions.functions[event]
-                .bind(self.py)
-                .call1(arguments)?;
+            let function = self.functions.functions[event].bind(self.py);
+            let returned = if self.states.slots.is_empty() {
+                function.call1(arguments)?
+            } else {
+                let States { slots, terms } = &self.states;
+                let states = named(self.py, slots, terms, phase)?;
+                let (t, omega, quaternion, position, velocity) = arguments;
+                function.call1((t, omega, quaternion, position, velocity, states))?
+            };
             returned.extract().map_err(|_| {
                 PyTypeError::new_err(format!(
                     "events: event {event} must return a number, got {}",

@@ -48,6 +48,38 @@ pub enum MotionFault {
         /// The middle angle.
         middle: f64,
     },
+    /// A torque or speed that is given at times is needed at another one.
+    #[error(
+        "the {what} of a wheel is known from t = {first:?} to t = {last:?}, and needed at t = {t:?}: give it times there"
+    )]
+    OutsideTimes {
+        /// Which.
+        what: &'static str,
+        /// When it is needed.
+        t: f64,
+        /// Its first time.
+        first: f64,
+        /// Its last time, or infinity.
+        last: f64,
+    },
+    /// What the body carries along is scaled or scheduled.
+    #[error(
+        "a load with momentum or states of its own cannot be {what}: what it carries stays in the body; \
+         make it with other numbers, or drive it by a torque that is given at times"
+    )]
+    StatesStay {
+        /// What was asked for.
+        what: &'static str,
+    },
+    /// The body turns with less than nothing once its wheels turn freely.
+    #[error(
+        "I − Σ J a aᵀ must have positive moments, where I is the inertia of the body with its wheels locked: the least is \
+         {moment:?}; inertia of the body must include the wheels"
+    )]
+    HeavyWheel {
+        /// The least principal moment.
+        moment: f64,
+    },
     /// The centre of mass is not on the symmetry axis through the pivot.
     #[error(
         "the pivot, the origin of the body frame, must lie on the symmetry axis: the axis passes it at {distance:?}, \
@@ -250,7 +282,10 @@ impl MotionFault {
             | Self::MethodCannotServe { .. }
             | Self::NoClosedForm { .. }
             | Self::PivotedInOrbit
+            | Self::OutsideTimes { .. }
+            | Self::StatesStay { .. }
             | Self::BeyondReach { .. } => Kind::Argument,
+            Self::HeavyWheel { .. } => Kind::Inertia,
         }
     }
 }

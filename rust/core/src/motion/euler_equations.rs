@@ -44,7 +44,12 @@ impl EulerEquations {
         if *point != body.center_of_mass() || body.provenance().moments != MomentsFrom::Tensor {
             return Self::about(body, point);
         }
-        let refined = RefinedPrincipal::of(body);
+        Self::of_refined(&RefinedPrincipal::of(body))
+    }
+
+    /// Of moments and axes that are known to twice the precision.
+    #[must_use]
+    pub fn of_refined(refined: &RefinedPrincipal) -> Self {
         let [i1, i2, i3] = refined.moments;
         Self {
             moments: refined.moments.map(DoubleDouble::rounded),

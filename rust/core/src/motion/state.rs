@@ -29,8 +29,8 @@ impl State {
     }
 }
 
-/// All six degrees of freedom and their rates: a point of phase space.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// All six degrees of freedom and their rates: a point of phase space. Beside them the states of what the body carries.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
     /// `q_NB`.
     pub attitude: UnitQuaternion<f64>,
@@ -40,6 +40,8 @@ pub struct Phase {
     pub position: Vector3<f64>,
     /// Of the reference point, in N.
     pub velocity: Vector3<f64>,
+    /// The states that the load has of its own, those of its parts one after the other; empty for most loads.
+    pub inner: Box<[f64]>,
 }
 
 impl Phase {
@@ -51,6 +53,7 @@ impl Phase {
             omega: state.omega,
             position: Vector3::zeros(),
             velocity: Vector3::zeros(),
+            inner: Box::default(),
         }
     }
 
@@ -74,7 +77,16 @@ impl Phase {
         }
     }
 
-    /// The numbers in the order x, y, z, w of the quaternion, ω, position, velocity.
+    /// What stands where nothing was computed of a motion like this.
+    #[must_use]
+    pub fn unknown(&self) -> Self {
+        Self {
+            inner: vec![f64::NAN; self.inner.len()].into(),
+            ..Self::nan()
+        }
+    }
+
+    /// The numbers of the body, without those that the load has of its own, in the order x, y, z, w of the quaternion, ω, position, velocity.
     #[must_use]
     pub fn numbers(&self) -> [f64; 13] {
         let (q, w, r, v) = (self.attitude, self.omega, self.position, self.velocity);
@@ -86,7 +98,9 @@ impl Phase {
     /// Whether all its numbers are.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        self.numbers().iter().all(|x| x.is_finite())
+        (self.numbers().iter())
+            .chain(&self.inner)
+            .all(|x| x.is_finite())
     }
 }
 

@@ -3,7 +3,9 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::loads::schedule::Windows;
-use polhode::motion::loads::{Damping, Feedback, Frame, GravityGradient, Sampled, Term};
+use polhode::motion::loads::{
+    Damping, Drive, Feedback, Frame, GravityGradient, Held, Rotor, Sampled, Slug, Term, Wheel,
+};
 use polhode::motion::simulate::{Phase, State};
 
 pub(crate) fn turned(attitude: UnitQuaternion<f64>, omega: Vector3<f64>) -> Phase {
@@ -54,6 +56,15 @@ pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
         .collect();
     let sampled = |frame| Term::Sampled(Sampled::new(&times, &values, frame).expect("ascending"));
     let windows = Windows::new(&[(1.0, 2.0), (3.0, 4.5), (7.0, f64::INFINITY)]).expect("ordered");
+    let scheduled = |term: Term| term.scheduled(&windows).expect("nothing is carried along");
+    let rotor = Term::Rotor(Rotor::new(&v).expect("finite"));
+    let slug = Term::Slug(Slug::new(0.2, 0.3).expect("positive"));
+    let wheel =
+        |drive, friction| Term::Wheel(Wheel::new(&at, 0.2, 3.0, friction, drive).expect("a wheel"));
+    let held = Held::table("torque", &[-1.0, 2.0, 5.5], &[0.3, -0.2, 0.4]).expect("ascending");
+    let asked = Drive::Feedback(Feedback::new(&(m * 5.0), &m, &target).expect("finite"));
+    let speeds = Held::table("speed", &[-1.0, 4.0, 20.0], &[3.0, -1.0, 2.0]).expect("ascending");
+    let speed = Drive::Speed(speeds);
     vec![
         ("none", vec![]),
         ("torque in the body", vec![torque(Frame::Body)]),
@@ -67,15 +78,22 @@ pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
         ("feedback", vec![feedback.clone()]),
         ("samples in the body", vec![sampled(Frame::Body)]),
         ("samples in space", vec![sampled(Frame::Space)]),
-        ("schedule", vec![torque(Frame::Space).scheduled(&windows)]),
+        ("schedule", vec![scheduled(torque(Frame::Space))]),
         (
             "all",
             vec![
                 gravity,
                 quadratic,
                 feedback,
-                sampled(Frame::Space).scheduled(&windows),
+                scheduled(sampled(Frame::Space)),
             ],
+        ),
+        ("rotor", vec![rotor.clone()]),
+        ("slug", vec![slug.clone()]),
+        ("wheel", vec![wheel(Drive::Torque(held), 0.1)]),
+        (
+            "wheels",
+            vec![wheel(asked, 0.0), slug, wheel(speed, 0.0), rotor],
         ),
     ]
 }
@@ -90,6 +108,7 @@ pub(crate) fn gradient() -> Term {
 pub(crate) fn apart(a: &Phase, b: &Phase) -> f64 {
     let q = (a.attitude.coords - b.attitude.coords).norm();
     let q = q.min((a.attitude.coords + b.attitude.coords).norm());
+    let own = a.inner.iter().zip(&b.inner).map(|(a, b)| (a - b).abs());
     [
         2.0 * q,
         (a.omega - b.omega).norm(),
@@ -97,5 +116,6 @@ pub(crate) fn apart(a: &Phase, b: &Phase) -> f64 {
         (a.velocity - b.velocity).norm(),
     ]
     .into_iter()
+    .chain(own)
     .fold(0.0, f64::max)
 }

@@ -2,13 +2,15 @@
 
 use polhode::Error;
 use polhode::error::Kind;
-use polhode::motion::loads::{Analytic, Load, Subject, Switch, Term, Windows, Wrench};
+use polhode::motion::loads::{Analytic, Carried, Load, Subject, Switch, Term, Windows, Wrench};
 use polhode::motion::state::Phase;
 use pyo3::prelude::*;
 
 use super::address::Compiled;
 use super::called::Callback;
 use super::load::PyLoad;
+use super::own::{Slot, named};
+use super::stateful::WithStates;
 use crate::errors::to_py;
 
 /// What may go wrong while a load is integrated.
@@ -54,6 +56,11 @@ pub(crate) struct Acting<'a, 'py> {
     /// Those that are switched on.
     callbacks: Vec<&'a Callback>,
     compiled: Vec<&'a Compiled>,
+    with_states: Vec<&'a WithStates>,
+    /// The states by name, where Python is called with them.
+    slots: Vec<Slot>,
+    /// Where the run begins, as far as it has been told.
+    start: f64,
 }
 
 impl<'a, 'py> Acting<'a, 'py> {
@@ -70,7 +77,19 @@ impl<'a, 'py> Acting<'a, 'py> {
             py,
             callbacks: load.callbacks().collect(),
             compiled: load.compiled().collect(),
+            with_states: load.with_states().collect(),
+            slots: if load.with_states().next().is_some() {
+                load.slots()
+            } else {
+                Vec::new()
+            },
+            start: subject.start,
         }
+    }
+
+    /// The states of the analytic terms come first, then those of functions of Python, then those of compiled ones.
+    fn first_of_functions(&self) -> usize {
+        self.analytic.terms().iter().map(Term::own).sum()
     }
 }
 
@@ -84,20 +103,22 @@ impl Load for Acting<'_, '_> {
     fn exerts_force(&self) -> bool {
         self.analytic.exerts_force()
             || self.load.callbacks().any(Callback::exerts_force)
+            || self.with_states.iter().any(|one| one.exerts_force())
             || self.load.compiled().next().is_some()
     }
 
     fn depends_on_rates(&self) -> bool {
         self.analytic.depends_on_rates()
-            || self.load.callbacks().next().is_some()
+            || self.load.calls_python()
             || self.load.compiled().next().is_some()
     }
 
-    fn breaks(&self) -> Vec<f64> {
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64> {
         let windows = (self.load.callbacks().map(|callback| &callback.windows))
             .chain(self.load.compiled().map(|compiled| &compiled.windows));
         let mut breaks: Vec<f64> = windows.flatten().flat_map(Windows::switches).collect();
-        breaks.extend(self.analytic.breaks());
+        breaks.extend(self.analytic.breaks(from, to));
+        breaks.extend(self.with_states.iter().flat_map(|one| one.times(from, to)));
         breaks
     }
 
@@ -126,9 +147,39 @@ impl Load for Acting<'_, '_> {
 
     #[inline]
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Fault> {
-        let mut sum = self.analytic.wrench(t, phase)?;
+        self.act(t, phase, &mut [])
+    }
+
+    /// Without room for the rates none are asked for.
+    #[inline]
+    fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Fault> {
+        let mut sum = self.analytic.act(t, phase, rates)?;
+        let mut first = self.first_of_functions();
+        let asked = !rates.is_empty();
+        if let Some(py) = self.py
+            && !self.with_states.is_empty()
+        {
+            let states =
+                named(py, &self.slots, self.analytic.terms(), phase).map_err(Fault::Python)?;
+            for one in &self.with_states {
+                let own = first..first + one.initial.len();
+                first = own.end;
+                if asked {
+                    one.rates(py, t, phase, &states, &mut rates[own])
+                        .map_err(Fault::Python)?;
+                }
+                sum += one.call(py, t, phase, &states).map_err(Fault::Python)?;
+            }
+        }
         for compiled in &self.compiled {
-            sum += compiled.call(t, phase);
+            let own = first..first + compiled.initial.len();
+            first = own.end;
+            let into = if asked {
+                &mut rates[own.clone()]
+            } else {
+                &mut []
+            };
+            sum += compiled.call(t, phase, &phase.inner[own], into);
         }
         if let Some(py) = self.py {
             for callback in &self.callbacks {
@@ -136,5 +187,37 @@ impl Load for Acting<'_, '_> {
             }
         }
         Ok(sum)
+    }
+
+    fn carried(&self) -> Vec<&dyn Carried> {
+        self.analytic.carried()
+    }
+
+    fn sizes(&self) -> Vec<[f64; 2]> {
+        let scales = (self.with_states.iter().map(|one| &one.scale))
+            .chain(self.load.compiled().map(|one| &one.scale));
+        let mut sizes = self.analytic.sizes();
+        sizes.extend(scales.flatten().map(|&scale| [0.0, scale]));
+        sizes
+    }
+
+    fn jump(&mut self, t: f64, phase: &mut Phase) -> Result<(), Fault> {
+        let Some(py) = self.py.filter(|_| !self.with_states.is_empty()) else {
+            return Ok(());
+        };
+        let now = (t, self.start);
+        let states = named(py, &self.slots, self.analytic.terms(), phase).map_err(Fault::Python)?;
+        let mut first = self.first_of_functions();
+        let mut after = phase.inner.clone();
+        for one in &self.with_states {
+            let own = first..first + one.initial.len();
+            first = own.end;
+            let updated = one.updated(py, now, phase, &states);
+            if let Some(new) = updated.map_err(Fault::Python)? {
+                after[own].copy_from_slice(&new);
+            }
+        }
+        phase.inner = after;
+        Ok(())
     }
 }

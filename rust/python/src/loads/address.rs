@@ -10,7 +10,9 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyCapsuleMethods, PyInt, PyTuple};
 
-/// `void f(double t, const double state[13], double out[6], void *user_data)`.
+use super::stateful::MOST_STATES;
+
+/// `void f(double t, const double state[13 + k], double out[6 + k], void *user_data)`, with k states of its own.
 type Function = unsafe extern "C" fn(f64, *const f64, *mut f64, *mut c_void);
 
 /// A compiled function as a term of a load.
@@ -20,6 +22,9 @@ pub(super) struct Compiled {
     /// What the address belongs to, which must live as long.
     owner: Py<PyAny>,
     pub(super) factor: f64,
+    /// Its own states at the start, and what counts as large of each.
+    pub(super) initial: Vec<f64>,
+    pub(super) scale: Vec<f64>,
     /// When it acts; always, where there are none.
     pub(super) windows: Option<Windows>,
 }
@@ -35,7 +40,11 @@ impl Compiled {
     ///
     /// # Errors
     /// `TypeError` or `ValueError` where it stands for none.
-    pub(super) fn new(function: &Bound<'_, PyAny>, user_data: Option<usize>) -> PyResult<Self> {
+    pub(super) fn new(
+        function: &Bound<'_, PyAny>,
+        user_data: Option<usize>,
+        (initial, scale): (Vec<f64>, Vec<f64>),
+    ) -> PyResult<Self> {
         let (address, own_data) = address(function)?;
         if address == 0 {
             return Err(PyValueError::new_err("function: the address is 0"));
@@ -50,6 +59,8 @@ impl Compiled {
             user_data,
             owner: function.clone().unbind(),
             factor: 1.0,
+            initial,
+            scale,
             windows: None,
         })
     }
@@ -62,19 +73,24 @@ impl Compiled {
         Self {
             owner: self.owner.clone_ref(py),
             windows: self.windows.clone(),
+            initial: self.initial.clone(),
+            scale: self.scale.clone(),
             ..*self
         }
     }
 
-    /// What the function says at a time and a state.
+    /// What the function says at a time and a state; the rates of its own states, which are `own`, into `rates`.
     #[inline]
-    pub(super) fn call(&self, t: f64, phase: &Phase) -> Wrench {
-        let state = phase.numbers();
-        let mut out = [0.0; 6];
+    pub(super) fn call(&self, t: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) -> Wrench {
+        let (mut state, mut out) = ([0.0; 13 + MOST_STATES], [0.0; 6 + MOST_STATES]);
+        state[..13].copy_from_slice(&phase.numbers());
+        state[13..13 + own.len()].copy_from_slice(own);
         // SAFETY: whoever passed the address to `loads.compiled` states that a function of this signature lives there, which
-        // reads 13 numbers of `state` and writes 6 to `out` and nothing else that is ours; `owner` keeps it alive.
+        // reads 13 numbers of `state` and its own states and writes 6 to `out` and their rates, and nothing else that is ours; `owner`
+        // keeps it alive.
         unsafe { (self.function)(t, state.as_ptr(), out.as_mut_ptr(), self.user_data) };
-        let [fx, fy, fz, nx, ny, nz] = out.map(|x| x * self.factor);
+        rates.copy_from_slice(&out[6..6 + rates.len()]);
+        let [fx, fy, fz, nx, ny, nz] = std::array::from_fn(|i| out[i] * self.factor);
         Wrench {
             force: Vector3::new(fx, fy, fz),
             torque: Vector3::new(nx, ny, nz),

@@ -107,7 +107,7 @@ impl Callback {
 }
 
 /// Three finite numbers from what a function returned; `what` they are.
-fn vector(returned: &Bound<'_, PyAny>, what: &str, t: f64) -> PyResult<Vector3<f64>> {
+pub(super) fn vector(returned: &Bound<'_, PyAny>, what: &str, t: f64) -> PyResult<Vector3<f64>> {
     let numbers = if let Some(numbers) = quickly(returned) {
         numbers
     } else {

@@ -3,14 +3,18 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use numpy::PyArrayDyn;
 use polhode::RigidBody;
+use polhode::mass::refined::RefinedPrincipal;
 use polhode::motion::attitude::from_components;
-use polhode::motion::loads::{Kept, Load, Subject, Term, Wrench};
+use polhode::motion::euler_equations::EulerEquations;
+use polhode::motion::loads::{Carried, Kept, Load, Subject, Term, Wrench};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::acting::{Acting, Fault};
 use super::load::PyLoad;
+use super::own::carried_along;
 use crate::about::is_pivot;
 use crate::arrays::{Numbers, read, write_of};
 use crate::attitudes::read_quaternion;
@@ -35,6 +39,7 @@ impl PyLoad {
         body: Option<&Bound<'_, PyRigidBody>>,
         about: &str,
         start: Option<f64>,
+        states: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Stack<Wrench>> {
         let _deeper = Deeper::run("load")?;
         let terms = self.terms(py)?;
@@ -53,6 +58,7 @@ impl PyLoad {
             )
         };
         let (position, velocity) = (vector(position, "position")?, vector(velocity, "velocity")?);
+        let states = self.read_states(states, true)?;
         let names = [
             "load",
             "body",
@@ -61,6 +67,7 @@ impl PyLoad {
             "quaternion",
             "position",
             "velocity",
+            "states",
         ];
         let shapes = [
             &terms.shape[..],
@@ -70,11 +77,12 @@ impl PyLoad {
             &quaternion.shape,
             &position.shape,
             &velocity.shape,
+            &states.shape,
         ];
         let grid = Broadcast::of(names, shapes)?;
         let mut found = memory::vector("result", &grid.shape, 1)?;
         let mut beat = Beat::new(py);
-        for (row, [l, b, k, w, q, r, v]) in grid.rows().enumerate() {
+        for (row, [l, b, k, w, q, r, v, s]) in grid.rows().enumerate() {
             if row % BLOCK == 0 {
                 beat.mark()?;
             }
@@ -101,9 +109,17 @@ impl PyLoad {
                             omega: omega[w],
                             position: position[r],
                             velocity: velocity[v],
+                            inner: self.begun(&terms[l], t[k], &omega[w], &states[s]),
                         };
                         acting.enter(t[k], t[k])?;
-                        acting.wrench(t[k], &phase)
+                        let wrench = acting.wrench(t[k], &phase)?;
+                        Ok(on_locked(
+                            &bodies[b],
+                            &subject,
+                            &acting.carried(),
+                            &omega[w],
+                            wrench,
+                        )?)
                     })
                     .map_err(|fault| match fault {
                         Fault::Core(error) => at_row(&grid.shape, row, &to_py(py, &error), py),
@@ -136,6 +152,9 @@ impl PyLoad {
     ///     The reference point, as in `simulate`.
     /// start : float, optional
     ///     When the motion starts; `t` by default. Orbits without an epoch begin there.
+    /// states : dict of str and array_like, shape (..., k), optional
+    ///     The states of a load that has some, as `states` of a trajectory. The torque of a wheel is the N of
+    ///     ``I ω̇ + ω × I ω = N``, where I has the wheel locked.
     ///
     /// Returns
     /// -------
@@ -149,7 +168,8 @@ impl PyLoad {
     /// >>> loads.constant_torque((0, 2, 1), frame="space").torque(0.0, (0, 0, 0), upside_down)
     /// array([ 0., -2., -1.])
     #[pyo3(signature = (
-        t, omega, quaternion, position=None, velocity=None, *, body=None, about="center_of_mass", start=None
+        t, omega, quaternion, position=None, velocity=None, *, body=None, about="center_of_mass", start=None,
+        states=None
     ))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
     fn torque<'py>(
@@ -163,11 +183,68 @@ impl PyLoad {
         body: Option<&Bound<'py, PyRigidBody>>,
         about: &str,
         start: Option<f64>,
+        states: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let wrenches = self.wrenches(
-            py, t, omega, quaternion, position, velocity, body, about, start,
+            py, t, omega, quaternion, position, velocity, body, about, start, states,
         )?;
         write_of(py, &wrenches, |wrench| wrench.torque)
+    }
+
+    /// What the body carries along under the load, beside ``I ω`` and ``½ ω·I ω``: wheels, rotors, slugs.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, shape (...)
+    /// omega : array_like, shape (..., 3)
+    /// states : dict of str and array_like, shape (..., k), optional
+    ///
+    /// Returns
+    /// -------
+    /// momentum : numpy.ndarray, shape (..., 3)
+    ///     In the body frame.
+    /// energy : numpy.ndarray, shape (...)
+    #[pyo3(signature = (t, omega, states=None))]
+    fn carried<'py>(
+        &self,
+        py: Python<'py>,
+        t: &Bound<'py, PyAny>,
+        omega: &Bound<'py, PyAny>,
+        states: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>)> {
+        let (terms, t): (_, Stack<f64>) = (self.terms(py)?, read(t, "t")?);
+        let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
+        let states = self.read_states(states, true)?;
+        let shapes = [&terms.shape[..], &t.shape, &omega.shape, &states.shape];
+        let grid = Broadcast::of(["load", "t", "omega", "states"], shapes)?;
+        let found = grid.try_map(py, |[l, k, w, s]| {
+            Ok(carried_along(&terms[l], t[k], &omega[w], &states[s]))
+        })?;
+        Ok((
+            write_of(py, &found, |found| found.0)?,
+            write_of(py, &found, |found| found.1)?,
+        ))
+    }
+
+    /// Whether the body carries something along under the load: wheels, rotors, slugs.
+    #[getter]
+    fn carries(&self, py: Python<'_>) -> PyResult<bool> {
+        let terms = self.terms(py)?;
+        Ok(terms
+            .rows
+            .iter()
+            .flatten()
+            .any(|term| term.carried().is_some()))
+    }
+
+    /// The states that the load has of its own: how many, by name.
+    #[getter]
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let named = PyDict::new(py);
+        for slot in self.slots() {
+            named.set_item(slot.name, slot.count)?;
+        }
+        Ok(named)
     }
 
     /// Sum of the forces of the load, at a time and a state; arguments as of `torque`.
@@ -184,7 +261,8 @@ impl PyLoad {
     /// >>> weight.force(0.0, (0, 0, 0), (0, 0, 0, 1), body=solids.cube(1.0, mass=2.0))
     /// array([  0.,   0., -20.])
     #[pyo3(signature = (
-        t, omega, quaternion, position=None, velocity=None, *, body=None, about="center_of_mass", start=None
+        t, omega, quaternion, position=None, velocity=None, *, body=None, about="center_of_mass", start=None,
+        states=None
     ))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
     fn force<'py>(
@@ -198,9 +276,10 @@ impl PyLoad {
         body: Option<&Bound<'py, PyRigidBody>>,
         about: &str,
         start: Option<f64>,
+        states: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let wrenches = self.wrenches(
-            py, t, omega, quaternion, position, velocity, body, about, start,
+            py, t, omega, quaternion, position, velocity, body, about, start, states,
         )?;
         write_of(py, &wrenches, |wrench| wrench.force)
     }
@@ -310,6 +389,26 @@ impl PyLoad {
         })?;
         Ok(Some(axes.into_any()))
     }
+}
+
+/// The torque N of `I ω̇ + ω × I ω = N`, where I has the wheels locked: from that beside the tensor without those that turn freely.
+fn on_locked(
+    body: &RigidBody,
+    subject: &Subject,
+    carried: &[&dyn Carried],
+    omega: &Vector3<f64>,
+    wrench: Wrench,
+) -> Result<Wrench, polhode::Error> {
+    let turning: Vec<_> = carried.iter().filter_map(|it| it.turning()).collect();
+    if turning.is_empty() {
+        return Ok(wrench);
+    }
+    let casing = RefinedPrincipal::about(body, &subject.point).without(&turning)?;
+    let rate = EulerEquations::of_refined(&casing).angular_acceleration(omega, &wrench.torque)?;
+    Ok(Wrench {
+        torque: EulerEquations::about(body, &subject.point).torque(omega, &rate),
+        ..wrench
+    })
 }
 
 /// The bodies it acts on; a load that does not depend on the body acts on any.

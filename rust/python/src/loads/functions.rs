@@ -1,5 +1,6 @@
 //! The functions that make loads of functions: of Python's and of compiled ones.
 
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::address::Compiled;
@@ -7,6 +8,7 @@ use super::called::{Callback, Gives};
 use super::load::PyLoad;
 use super::part::Acts;
 use super::recipe::recipe;
+use super::stateful::{self, WithStates};
 
 /// A torque computed by a Python function.
 ///
@@ -81,6 +83,13 @@ fn load(function: &Bound<'_, PyAny>, name: &str, gives: Gives) -> PyResult<PyLoa
 ///     ``out`` takes 6, the force in space and the torque in the body frame. ``out`` is zero before the call.
 /// user_data : int, optional
 ///     The address that the function gets as ``user_data``; that of the ``LowLevelCallable``, or 0, by default.
+/// initial : array_like, shape (k,), optional
+///     States of the function's own at the start: ``state`` then holds them after the 13 numbers, and ``out`` takes their
+///     rates after the 6.
+/// name : str, optional
+///     The name of these states in `states` of the trajectory.
+/// scale : float or array_like, shape (k,), optional
+///     What counts as large of each of them, as of :func:`with_states`.
 ///
 /// Returns
 /// -------
@@ -104,9 +113,118 @@ fn load(function: &Bound<'_, PyAny>, name: &str, gives: Gives) -> PyResult<PyLoa
 ///
 ///     body.simulate([0, 10], omega=(0, 0, 1), load=loads.compiled(drag))
 #[pyfunction]
-#[pyo3(signature = (function, user_data=None))]
-pub(crate) fn compiled(function: &Bound<'_, PyAny>, user_data: Option<usize>) -> PyResult<PyLoad> {
-    let compiled = Compiled::new(function, user_data)?;
+#[pyo3(signature = (function, user_data=None, *, initial=None, name="states", scale=None))]
+pub(crate) fn compiled(
+    function: &Bound<'_, PyAny>,
+    user_data: Option<usize>,
+    initial: Option<&Bound<'_, PyAny>>,
+    name: &str,
+    scale: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyLoad> {
+    let own = match initial {
+        Some(initial) => stateful::initial(initial, scale)?,
+        None if scale.is_some() => {
+            return Err(PyTypeError::new_err(
+                "scale: give initial= too: the function has no states",
+            ));
+        }
+        None => (Vec::new(), Vec::new()),
+    };
+    stateful::check_name(name)?;
+    let compiled = Compiled::new(function, user_data, own)?;
     let recipe = recipe(function.py(), "_unpicklable", (function,))?;
-    Ok(PyLoad::one(Acts::Compiled(compiled), recipe))
+    Ok(PyLoad::one(Acts::Compiled(compiled), recipe).named(name))
+}
+
+/// A load with states of its own that go on with the motion: filters, actuators, integrators, controllers that look now and then.
+///
+/// Every function is called as ``function(t, omega, quaternion, position, velocity, states)``: time, angular velocity in the
+/// body frame, attitude R_NB as (x, y, z, w), position and velocity of the reference point in space, and a dict of the
+/// states of the whole load by name, so that a controller reads the wheels beside it.
+///
+/// Parameters
+/// ----------
+/// rates : callable or None
+///     Returns the rates of change of these states. None: they change by `update` alone.
+/// initial : array_like, shape (k,)
+///     The states at the start, at most 51.
+/// wrench : callable, optional
+///     Returns a pair: the force through the reference point in space and the torque about it in the body frame. Without it
+///     the load exerts nothing.
+/// name : str, optional
+///     The name of these states, in `states` here and of the trajectory.
+/// update : callable, optional
+///     Returns new states, which then stand in place of the old ones: at the start and after each `period`. So a sampled
+///     controller holds what it has decided.
+/// period : float, optional
+///     The time between two updates.
+/// scale : float or array_like, shape (k,), optional
+///     What counts as large of each state: errors are relative to it, or to the largest that the state has come to. Give it for
+///     a state that stays near zero.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// A thruster that follows its command late, by a first-order lag of half a second:
+///
+/// >>> import numpy as np
+/// >>> from polhode import RigidBody, loads
+/// >>> def rates(t, omega, quaternion, position, velocity, states):
+/// ...     return (1.0 - states["lag"]) / 0.5
+/// >>> def wrench(t, omega, quaternion, position, velocity, states):
+/// ...     return (0, 0, 0), (0, 0, states["lag"][0])
+/// >>> thruster = loads.with_states(rates, [0.0], wrench, name="lag")
+/// >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+/// >>> motion = body.simulate([0, 1, 10], omega=(0, 0, 0), load=thruster, rtol=1e-12)
+/// >>> motion.states["lag"][:, 0].round(6)
+/// array([0.      , 0.864665, 1.      ])
+/// >>> bool(np.isclose(motion.omega[-1, 2], (10 - 0.5 * (1 - np.exp(-20))) / 2.5, rtol=1e-10))
+/// True
+#[pyfunction]
+#[pyo3(signature = (rates, initial, wrench=None, name="states", *, update=None, period=None, scale=None))]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+pub(crate) fn with_states(
+    py: Python<'_>,
+    rates: Option<&Bound<'_, PyAny>>,
+    initial: &Bound<'_, PyAny>,
+    wrench: Option<&Bound<'_, PyAny>>,
+    name: &str,
+    update: Option<&Bound<'_, PyAny>>,
+    period: Option<f64>,
+    scale: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyLoad> {
+    let (values, scales) = stateful::initial(initial, scale)?;
+    stateful::check_name(name)?;
+    let own = (values.clone(), scales.clone());
+    let load = WithStates::new([rates, wrench, update], period, own)?;
+    let arguments = (rates, values, wrench, name, update, period, scales);
+    let recipe = recipe(py, "_with_states", arguments)?;
+    Ok(PyLoad::one(Acts::WithStates(load), recipe).named(name))
+}
+
+/// As [`with_states`], all arguments by their places: for pickle.
+#[pyfunction]
+pub(crate) fn _with_states(
+    py: Python<'_>,
+    rates: Option<&Bound<'_, PyAny>>,
+    initial: &Bound<'_, PyAny>,
+    wrench: Option<&Bound<'_, PyAny>>,
+    name: &str,
+    update: Option<&Bound<'_, PyAny>>,
+    period: Option<f64>,
+    scale: &Bound<'_, PyAny>,
+) -> PyResult<PyLoad> {
+    with_states(
+        py,
+        rates,
+        initial,
+        wrench,
+        name,
+        update,
+        period,
+        Some(scale),
+    )
 }

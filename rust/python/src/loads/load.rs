@@ -8,6 +8,7 @@ use super::address::Compiled;
 use super::called::Callback;
 use super::part::{Acts, Part};
 use super::recipe::{recipe, unfolded};
+use super::stateful::WithStates;
 use crate::arrays::{numpy, read_list};
 use crate::errors::to_py;
 use crate::interrupt::Beat;
@@ -32,8 +33,20 @@ pub(crate) struct PyLoad {
 impl PyLoad {
     pub(super) fn one(acts: Acts, recipe: Py<PyTuple>) -> Self {
         Self {
-            parts: vec![Part { acts, recipe }],
+            parts: vec![Part {
+                acts,
+                recipe,
+                name: None,
+            }],
         }
+    }
+
+    /// The load with a name for the states of its parts.
+    pub(super) fn named(mut self, name: &str) -> Self {
+        for part in &mut self.parts {
+            part.name = Some(name.into());
+        }
+        self
     }
 
     pub(crate) fn copied(&self, py: Python<'_>) -> PyResult<Self> {
@@ -90,6 +103,13 @@ impl PyLoad {
         })
     }
 
+    pub(super) fn with_states(&self) -> impl Iterator<Item = &WithStates> {
+        self.parts.iter().filter_map(|part| match &part.acts {
+            Acts::WithStates(one) => Some(one),
+            _ => None,
+        })
+    }
+
     pub(super) fn compiled(&self) -> impl Iterator<Item = &Compiled> {
         self.parts.iter().filter_map(|part| match &part.acts {
             Acts::Compiled(compiled) => Some(compiled),
@@ -104,7 +124,7 @@ impl PyLoad {
 
     /// Whether it calls Python.
     pub(crate) fn calls_python(&self) -> bool {
-        self.callbacks().next().is_some()
+        self.callbacks().next().is_some() || self.with_states().next().is_some()
     }
 
     /// The load with orbits that have no epoch beginning at `t`: for the rest of a motion that started then.
@@ -116,6 +136,12 @@ impl PyLoad {
             {
                 part.recipe = recipe(py, "_anchored", (&part.recipe, t))?;
                 part.acts = Acts::Term(terms.map(py, |term| term.clone().anchored(t))?);
+            }
+            if let Acts::WithStates(one) = &mut part.acts
+                && one.needs_epoch()
+            {
+                one.anchored(t);
+                part.recipe = recipe(py, "_anchored", (&part.recipe, t))?;
             }
             Ok(part)
         })

@@ -4,6 +4,9 @@
 //! |---|---|
 //! | `called` | a Python function |
 //! | `address` | a function at an address |
+//! | `stateful` | Python functions with states of their own |
+//! | `own` | the states that a load has of its own, by name |
+//! | `wheels` | the functions that make rotors, wheels and slugs |
 //! | `recipe` | how a term was made, for pickle |
 //! | `part` | one term, scaled, scheduled, picked |
 //! | `load` | the sum of them |
@@ -19,14 +22,19 @@ mod evaluate;
 mod functions;
 mod load;
 mod operators;
+mod own;
 mod part;
 mod recipe;
+mod stateful;
 mod terms;
+mod wheels;
 
 pub(crate) use acting::{Acting, Fault};
-pub(crate) use functions::{callback, compiled, torque_callback};
+pub(crate) use functions::{_with_states, callback, compiled, torque_callback, with_states};
 pub(crate) use load::PyLoad;
+pub(crate) use own::{Slot, named, reported};
 pub(crate) use terms::{
     constant_force, constant_torque, damping, feedback, gravity_gradient, sampled, schedule,
     uniform_gravity,
 };
+pub(crate) use wheels::{_wheel, rotor, slug, wheel};

@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
 use crate::errors::{at_row, to_py};
-use crate::events::Functions;
+use crate::events::{Functions, States};
 use crate::interrupt::{Beat, Interrupt};
-use crate::loads::{Acting, Fault, PyLoad};
+use crate::loads::{Acting, Fault, PyLoad, reported};
 use crate::memory;
 use crate::stack::{BLOCK, Broadcast, Stack};
 
@@ -24,12 +24,16 @@ pub(super) struct Start<'a> {
     pub(super) position: Stack<Vector3<f64>>,
     pub(super) velocity: Stack<Vector3<f64>>,
     pub(super) terms: Stack<Vec<Term>>,
+    /// States of the load, as they are reported; not numbers where none are given.
+    pub(super) states: Stack<Vec<f64>>,
 }
 
 impl Start<'_> {
-    pub(super) fn grid(&self) -> PyResult<Broadcast<'static, 6>> {
+    pub(super) fn grid(&self) -> PyResult<Broadcast<'static, 7>> {
         Broadcast::of(
-            ["body", "omega", "attitude", "position", "velocity", "load"],
+            [
+                "body", "omega", "attitude", "position", "velocity", "load", "states",
+            ],
             [
                 &self.bodies.shape,
                 &self.omega.shape,
@@ -37,6 +41,7 @@ impl Start<'_> {
                 &self.position.shape,
                 &self.velocity.shape,
                 &self.terms.shape,
+                &self.states.shape,
             ],
         )
     }
@@ -45,7 +50,7 @@ impl Start<'_> {
 /// All that a run needs.
 pub(super) struct Ensemble<'a> {
     pub(super) start: &'a Start<'a>,
-    pub(super) grid: Broadcast<'a, 6>,
+    pub(super) grid: Broadcast<'a, 7>,
     pub(super) plan: Plan<'a>,
     pub(super) load: &'a PyLoad,
     pub(super) events: &'a Functions,
@@ -109,13 +114,34 @@ impl Ensemble<'_> {
                 }
             }
         }
+        self.tell_states(&mut runs);
         self.trajectory(py, body, load, runs, interrupt)
+    }
+
+    /// The states of the load as they are reported, in place of those that the runs went on with.
+    fn tell_states(&self, runs: &mut Runs) {
+        if self.load.slots().is_empty() {
+            return;
+        }
+        for (row, run) in runs.iter_mut().enumerate() {
+            let Some(run) = run else {
+                continue;
+            };
+            let terms = Rows::terms(self, row);
+            let found = run.crossings.iter_mut().map(|crossing| &mut crossing.phase);
+            for phase in run.samples.iter_mut().chain(found).chain([&mut run.phase]) {
+                if !phase.inner.is_empty() {
+                    phase.inner = reported(terms, phase).into();
+                }
+            }
+        }
     }
 
     /// As many as there are rows, none of them begun, and room for their states and the arrays of these.
     fn none_yet(&self, py: Python<'_>) -> PyResult<Runs> {
         let times = self.plan.times().len();
-        let numbers = size_of::<Phase>().saturating_mul(2 * times);
+        let own: usize = self.load.slots().iter().map(|slot| slot.count).sum();
+        let numbers = (size_of::<Phase>() + 8 * own).saturating_mul(2 * times);
         let what = "simulate: rows of the stack times output times";
         let states = [&self.grid.shape[..], &[times]].concat();
         memory::room(what, &states, 2 * size_of::<Phase>())?;
@@ -145,18 +171,26 @@ impl Rows for Ensemble<'_> {
     }
 
     fn start(&self, row: usize) -> (usize, Phase) {
-        let [b, w, q, r, v, _] = self.grid.operands(row);
+        let [b, w, q, r, v, l, s] = self.grid.operands(row);
+        let omega = self.start.omega[w];
+        let inner = self.load.begun(
+            &self.start.terms[l],
+            self.plan.times()[0],
+            &omega,
+            &self.start.states[s],
+        );
         let initial = Phase {
             attitude: self.start.attitude[q],
-            omega: self.start.omega[w],
+            omega,
             position: self.start.position[r],
             velocity: self.start.velocity[v],
+            inner,
         };
         (b, initial)
     }
 
     fn terms(&self, row: usize) -> &[Term] {
-        let [.., l] = self.grid.operands(row);
+        let [.., l, _] = self.grid.operands(row);
         &self.start.terms[l]
     }
 
@@ -169,7 +203,11 @@ impl Rows for Ensemble<'_> {
             }
             Calls::OnThisThread => Python::attach(|py| {
                 let mut load = Acting::new(load, terms, subject, Some(py));
-                row.under(&mut load, &mut self.events.calling(py))
+                let states = States {
+                    slots: self.load.slots(),
+                    terms,
+                };
+                row.under(&mut load, &mut self.events.calling(py, states))
             }),
         }
     }

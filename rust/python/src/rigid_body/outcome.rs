@@ -16,7 +16,7 @@ use crate::arrays::{Item, Numbers, write, write_of};
 use crate::body::PyRigidBody;
 use crate::errors::at_row;
 use crate::interrupt::Interrupt;
-use crate::loads::Fault;
+use crate::loads::{Fault, Slot};
 use crate::memory;
 use crate::stack::Stack;
 
@@ -29,6 +29,8 @@ pub(crate) struct Outcome {
     efforts: Vec<Effort>,
     /// Each with its row.
     crossings: Vec<(usize, Crossing)>,
+    /// The states of the load by name.
+    slots: Vec<Slot>,
     /// The states of a run that Ctrl-C ended: to put them into arrays takes too long for whoever pressed it.
     samples: Vec<Option<Vec<Phase>>>,
 }
@@ -43,6 +45,21 @@ impl Outcome {
         let shape = [&self.shape[..], &[self.times.len()]].concat();
         let rows = self.samples.iter().map(Option::as_deref);
         array(py, &shape, rows, of)
+    }
+
+    /// The states of the load at the events.
+    fn states_of_events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let named = PyDict::new(py);
+        for slot in &self.slots {
+            let found = self.crossings.iter();
+            let values = found.flat_map(|(_, crossing)| slot.of(&crossing.phase.inner));
+            let values = PyArray1::from_vec(py, values.copied().collect());
+            named.set_item(
+                &slot.name,
+                values.reshape([self.crossings.len(), slot.count])?,
+            )?;
+        }
+        Ok(named)
     }
 
     fn counts<'py>(&self, py: Python<'py>, of: fn(&Effort) -> u64) -> PyResult<Bound<'py, PyAny>> {
@@ -95,6 +112,13 @@ impl Outcome {
         self.array(py, |phase| phase.velocity)
     }
 
+    #[getter]
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let shape = [&self.shape[..], &[self.times.len()]].concat();
+        let rows: Vec<_> = self.samples.iter().map(Option::as_deref).collect();
+        states(py, &self.slots, &shape, &rows)
+    }
+
     /// The events of all rows, one after the other.
     #[getter]
     fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -108,6 +132,7 @@ impl Outcome {
             PyArray1::from_vec(py, numbers)
         };
         let columns = (
+            self.states_of_events(py)?,
             counts(|found| found.0),
             counts(|found| found.1.event),
             write_of(py, &found, |found| found.1.time)?,
@@ -118,7 +143,7 @@ impl Outcome {
         );
         py.import("polhode.events")?
             .getattr("Events")?
-            .call1(columns)
+            .call_method1("with_states", columns)
     }
 }
 
@@ -140,8 +165,9 @@ impl Ensemble<'_> {
         fields.set_item(intern!(py, "load"), load)?;
         fields.set_item(intern!(py, "pivoted"), self.plan.pivoted())?;
         let shape = [&self.grid.shape[..], &[self.plan.times().len()]].concat();
+        let slots = self.load.slots();
         if !interrupt.is_stopped()
-            && let Err(error) = put_states(py, &fields, &shape, &runs)
+            && let Err(error) = put_states(py, &fields, &shape, &runs, &slots)
         {
             if error.is_instance_of::<PyMemoryError>(py) {
                 return Err(error);
@@ -170,6 +196,7 @@ impl Ensemble<'_> {
             },
             efforts,
             crossings,
+            slots,
             samples,
         };
         fields.set_item(intern!(py, "_outcome"), Bound::new(py, outcome)?)?;
@@ -234,6 +261,7 @@ fn put_states(
     fields: &Bound<'_, PyDict>,
     shape: &[usize],
     runs: &Runs,
+    slots: &[Slot],
 ) -> PyResult<()> {
     let rows = || (runs.iter()).map(|run| run.as_ref().map(|run| &run.samples[..]));
     let omega = array(py, shape, rows(), |phase| phase.omega)?;
@@ -243,7 +271,36 @@ fn put_states(
     fields.set_item(intern!(py, "omega"), omega)?;
     fields.set_item(intern!(py, "quaternion"), quaternion)?;
     fields.set_item(intern!(py, "position"), position)?;
-    fields.set_item(intern!(py, "velocity"), velocity)
+    fields.set_item(intern!(py, "velocity"), velocity)?;
+    let rows: Vec<_> = rows().collect();
+    fields.set_item(intern!(py, "states"), states(py, slots, shape, &rows)?)
+}
+
+/// The states of the load by name, each of shape (..., T, k); not numbers for a row that was not begun.
+fn states<'py>(
+    py: Python<'py>,
+    slots: &[Slot],
+    shape: &[usize],
+    rows: &[Option<&[Phase]>],
+) -> PyResult<Bound<'py, PyDict>> {
+    let times = shape.last().copied().unwrap_or(0);
+    let named = PyDict::new(py);
+    for slot in slots {
+        let shape = [shape, &[slot.count]].concat();
+        let mut numbers = Numbers::of::<f64>(py, "result", &shape)?;
+        for row in rows {
+            match row {
+                Some(states) => numbers.put(*states, |phase, out| {
+                    out.extend_from_slice(slot.of(&phase.inner));
+                })?,
+                None => numbers.put(0..times, |_, out| {
+                    out.extend(std::iter::repeat_n(f64::NAN, slot.count));
+                })?,
+            }
+        }
+        named.set_item(&slot.name, numbers.finish::<f64>(&shape)?)?;
+    }
+    Ok(named)
 }
 
 /// One item for each state of each row; not numbers for a row that was not begun.

@@ -70,7 +70,7 @@ impl PyRigidBody {
     ///     Error of the angular velocity allowed besides; none by default.
     /// events : callable or sequence of callables, optional
     ///     Functions ``event(t, omega, quaternion, position, velocity)`` whose passages through zero are
-    ///     looked for. All those of a smooth function are found, also two within one step. Of a function with jumps,
+    ///     looked for. Where the load has states of its own they are called with a sixth argument, a dict of these states by name. All those of a smooth function are found, also two within one step. Of a function with jumps,
     ///     corners or narrow peaks, two passages may be missed when the body turns by less than a quarter of a radian
     ///     between them. Attributes as in SciPy: ``direction`` positive or negative counts those that rise
     ///     or fall in time alone; ``terminal`` True ends the run at the first, a number n at the n-th.
@@ -80,6 +80,8 @@ impl PyRigidBody {
     ///     see ``status`` and ``failures`` of the trajectory.
     /// progress : callable, optional
     ///     Called with the fraction done, about twenty times a second and at the end.
+    /// states : dict of str and array_like, shape (..., k), optional
+    ///     States of the load at the start, by name, in place of those that it begins with: to go on from other states.
     ///
     /// Returns
     /// -------
@@ -110,9 +112,9 @@ impl PyRigidBody {
     #[pyo3(
         signature = (
             t, omega, attitude=None, *, load=None, position=None, velocity=None, about="center_of_mass",
-            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None, **unknown
+            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None, states=None, **unknown
         ),
-        text_signature = "($self, t, omega, attitude=None, *, load=None, position=None, velocity=None, about=\"center_of_mass\", method=\"auto\", rtol=1e-10, atol=None, events=None, on_failure=\"raise\", progress=None)"
+        text_signature = "($self, t, omega, attitude=None, *, load=None, position=None, velocity=None, about=\"center_of_mass\", method=\"auto\", rtol=1e-10, atol=None, events=None, on_failure=\"raise\", progress=None, states=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
     fn simulate<'py>(
@@ -131,6 +133,7 @@ impl PyRigidBody {
         events: Given<'_, 'py>,
         on_failure: &str,
         progress: Option<Py<PyAny>>,
+        states: Given<'_, 'py>,
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
@@ -170,6 +173,7 @@ impl PyRigidBody {
             position: at_start(position, "position")?,
             velocity: at_start(velocity, "velocity")?,
             terms: acts.terms(py)?,
+            states: acts.read_states(states, false)?,
         };
         let events = Functions::read(events)?;
         let of_first = start.terms.rows.first().map_or(&[][..], Vec::as_slice);
@@ -190,6 +194,7 @@ impl PyRigidBody {
                 None => error,
             }
         })?;
+        acts.check_run(times[0], times[times.len() - 1])?;
         let ensemble = Ensemble {
             start: &start,
             grid: start.grid()?,
@@ -218,7 +223,7 @@ impl PyRigidBody {
     }
 }
 
-const KEYWORDS: [&str; 13] = [
+const KEYWORDS: [&str; 14] = [
     "t",
     "omega",
     "attitude",
@@ -232,6 +237,7 @@ const KEYWORDS: [&str; 13] = [
     "events",
     "on_failure",
     "progress",
+    "states",
 ];
 
 const METHODS: [Method; 6] = [

@@ -7,10 +7,13 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::finest::{Finest, Source};
 use super::vectors::{Vector, dot, orthonormal, within};
+use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
+use crate::mass::validity::ROUNDING;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::power_below;
+use crate::principal::{PrincipalAxes, principal_axes};
 
 /// The principal moments, ascending, with their axes, to twice the precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +65,41 @@ impl RefinedPrincipal {
         refined.refine(&tensor);
         refined.clear(&about.moments);
         refined
+    }
+
+    /// Of the tensor less `Σ J a aᵀ`, with moments J about axes a of any length: of a body whose wheels turn freely.
+    ///
+    /// # Errors
+    /// [`MotionFault::HeavyWheel`] where that leaves a moment that is not positive, to rounding.
+    pub fn without(&self, turning: &[(Vector3<f64>, f64)]) -> Result<Self, Error> {
+        let parts = turning.iter().map(|(axis, moment)| {
+            let axis = (axis / power_below(axis.amax())).map(DoubleDouble::from);
+            let axis = [axis.x, axis.y, axis.z];
+            (axis, DoubleDouble::from(*moment) / dot(&axis, &axis))
+        });
+        let parts: Vec<_> = parts.collect();
+        let whole = || self.axes.iter().zip(self.moments);
+        let tensor: [Vector; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let zero = DoubleDouble::default();
+                let all = whole().fold(zero, |sum, (axis, moment)| {
+                    sum + moment * (axis[i] * axis[j])
+                });
+                (parts.iter()).fold(all, |left, (axis, moment)| {
+                    left - *moment * (axis[i] * axis[j])
+                })
+            })
+        });
+        let rounded = Matrix3::from_fn(|i, j| tensor[i.min(j)][i.max(j)].rounded());
+        let PrincipalAxes { moments, axes } = principal_axes(&rounded);
+        let mut refined = Self::given(&moments, &axes);
+        refined.refine(&tensor);
+        let moment = refined.moments[0].rounded();
+        if moment > ROUNDING * self.moments[2].rounded() {
+            Ok(refined)
+        } else {
+            Err(MotionFault::HeavyWheel { moment }.into())
+        }
     }
 
     /// An element of the tensor in B that the body has about its centre of mass.

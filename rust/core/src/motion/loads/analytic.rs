@@ -1,5 +1,6 @@
 //! Sums of analytic terms.
 
+use super::carried::Carried;
 use super::load::Load;
 use super::subject::Subject;
 use super::switch::Switch;
@@ -16,6 +17,8 @@ pub struct Analytic<'a> {
     active: Vec<&'a Term>,
     /// One for each term among those that act whose law has a sign, once they are settled.
     switches: Vec<Switch>,
+    /// A time within the span last entered.
+    middle: f64,
 }
 
 impl<'a> Analytic<'a> {
@@ -27,6 +30,7 @@ impl<'a> Analytic<'a> {
             terms,
             active: terms.iter().collect(),
             switches: Vec::new(),
+            middle: f64::NAN,
         }
     }
 
@@ -64,12 +68,13 @@ impl Load for Analytic<'_> {
         self.terms.iter().any(Term::depends_on_rates)
     }
 
-    fn breaks(&self) -> Vec<f64> {
+    fn breaks(&self, _: f64, _: f64) -> Vec<f64> {
         self.terms.iter().flat_map(Term::breaks).collect()
     }
 
     fn enter(&mut self, from: f64, to: f64) -> Result<(), Error> {
         let middle = from + 0.5 * (to - from);
+        self.middle = middle;
         self.active.clear();
         self.switches.clear();
         for term in self.terms.iter().filter_map(|term| term.active(middle)) {
@@ -95,18 +100,42 @@ impl Load for Analytic<'_> {
 
     #[inline]
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Error> {
+        self.act(t, phase, &mut [])
+    }
+
+    fn carried(&self) -> Vec<&dyn Carried> {
+        (self.terms.iter().filter_map(Term::carried)).collect()
+    }
+
+    #[inline]
+    fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Error> {
+        let (mut own, mut rates) = (&phase.inner[..], rates);
         let mut switches = self.switches.iter();
-        let wrenches = (self.active.iter()).map(|term| {
+        let mut sum = Wrench::default();
+        for term in &self.active {
             let switch = if term.may_switch() {
                 switches.next()
             } else {
                 None
             };
-            match switch {
-                Some(switch) => term.settled_wrench(switch.side, &self.subject, t, phase),
-                None => term.wrench(&self.subject, t, phase),
-            }
-        });
-        Ok(wrenches.sum())
+            sum += if let Some(carried) = term.carried() {
+                let mine = own.split_off(..carried.count()).unwrap_or_default();
+                let side = switch.map_or_else(|| side(term, phase), |switch| switch.side);
+                if let Some(rates) = rates.split_off_mut(..carried.count()) {
+                    carried.rates(side, self.middle, phase, mine, rates);
+                }
+                Wrench::couple(carried.torque(side, self.middle, phase, mine))
+            } else if let Some(switch) = switch {
+                term.settled_wrench(switch.side, &self.subject, t, phase)
+            } else {
+                term.wrench(&self.subject, t, phase)
+            };
+        }
+        Ok(sum)
     }
+}
+
+/// The sign that a law has at `phase`.
+fn side(term: &Term, phase: &Phase) -> f64 {
+    term.switch(phase).map_or(1.0, |switch| switch.side)
 }

@@ -75,6 +75,8 @@ pub struct Axes<'s, X: Exact> {
     pub variables: X::Variables,
     /// The column of the first number of the term that is asked.
     pub first: usize,
+    /// A time within the span under way, which has no breaks.
+    pub middle: f64,
 }
 
 impl<X: Exact> Axes<'_, X> {

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::axes::{Axes, Exact};
+use super::carried::Carried;
 use super::linear::Linear;
 use super::parameter::Parameter;
 use super::subject::Subject;
@@ -84,6 +85,8 @@ pub struct Parts {
     pub is_timed: bool,
     /// Whether a force acts on a free body.
     pub is_pushed: bool,
+    /// How many states the laws have of their own.
+    pub own: usize,
 }
 
 impl Parts {
@@ -100,6 +103,7 @@ impl Parts {
             gradients: self.gradients + other.gradients,
             is_timed: self.is_timed || other.is_timed,
             is_pushed: self.is_pushed || other.is_pushed,
+            own: self.own + other.own,
         }
     }
 
@@ -189,6 +193,11 @@ pub trait Law: Sized {
     /// The function of the attitude (x, y, z, w), linear in it, whose sign the law has.
     fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<nalgebra::Vector4<X>> {
         let _ = axes;
+        None
+    }
+
+    /// What it carries along in the body. [`Self::wrench`] of a law with states is that where a motion starts.
+    fn carried(&self) -> Option<&dyn Carried> {
         None
     }
 }

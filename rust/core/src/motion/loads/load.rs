@@ -1,5 +1,6 @@
 //! A load, whoever computes it.
 
+use super::carried::Carried;
 use super::switch::Switch;
 use super::term::Term;
 use super::wrench::Wrench;
@@ -23,8 +24,9 @@ pub trait Load {
     /// position.
     fn depends_on_rates(&self) -> bool;
 
-    /// The times at which it is not smooth, where a step must end; in any order.
-    fn breaks(&self) -> Vec<f64>;
+    /// The times in a run from one time to another at which it is not smooth, where a step must end; in any order, and others may be
+    /// among them.
+    fn breaks(&self, from: f64, to: f64) -> Vec<f64>;
 
     /// From now on it is asked for times within from..to alone, both ends included, between which there are no breaks.
     ///
@@ -53,4 +55,36 @@ pub trait Load {
     /// # Errors
     /// Ends the integration and comes back to the caller as it is.
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Self::Error>;
+
+    /// What it carries along in the body.
+    fn carried(&self) -> Vec<&dyn Carried> {
+        Vec::new()
+    }
+
+    /// What counts as large of each of its own states besides the largest it has been: a number times the largest |ω|, and a number.
+    fn sizes(&self) -> Vec<[f64; 2]> {
+        let carried = self.carried().into_iter();
+        carried
+            .flat_map(|it| vec![[it.size(), 0.0]; it.count()])
+            .collect()
+    }
+
+    /// As [`Self::wrench`], with the rates of the states that it has of its own into `rates`.
+    ///
+    /// # Errors
+    /// As [`Self::wrench`].
+    fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Self::Error> {
+        let _ = rates;
+        self.wrench(t, phase)
+    }
+
+    /// The states that it has of its own jump to where a span without breaks begins, at time `t`: those of a controller that looks at
+    /// the body now and then.
+    ///
+    /// # Errors
+    /// As [`Self::wrench`].
+    fn jump(&mut self, t: f64, phase: &mut Phase) -> Result<(), Self::Error> {
+        let _ = (t, phase);
+        Ok(())
+    }
 }

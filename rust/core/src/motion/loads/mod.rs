@@ -9,50 +9,63 @@
 //! | damping | `N = −D ω − E \|ω\| ω` | [`damping`] |
 //! | attitude feedback | `N = −K sign(w) vec(q_target⁻¹∘q) − D ω` | [`feedback`] |
 //! | a torque sampled in time | cubic spline | [`sampled`] |
+//! | a rotor | `N = −ω × h` | [`rotor`] |
+//! | a wheel with motor and friction | `ḣ = τ − c Ω` | [`wheel`], [`held`] |
+//! | a spherical damper | `N = k (σ − ω)` | [`slug`] |
 //! | any of them on and off | windows of time | [`schedule`] |
 //!
 //! A law more is a file more here, which answers what a [`Law`] is asked, and its name in the list in `term.rs`.
 
 mod analytic;
 mod axes;
+mod carried;
 pub mod constant_force;
 pub mod constant_torque;
 pub mod damping;
 pub mod feedback;
 mod forcing;
 pub mod gravity_gradient;
+pub mod held;
 pub mod kepler;
 mod law;
 mod linear;
 mod load;
 mod parameter;
+pub mod rotor;
 pub mod sampled;
 pub mod schedule;
+pub mod slug;
 mod stumpff;
 mod subject;
 mod switch;
 mod term;
 pub mod uniform_gravity;
 pub(in crate::motion) mod variables;
+pub mod wheel;
 mod wrench;
 
 pub use self::analytic::Analytic;
 pub use self::axes::{Axes, Exact};
+pub use self::carried::Carried;
 pub use self::constant_force::ConstantForce;
 pub use self::constant_torque::ConstantTorque;
 pub use self::damping::Damping;
 pub use self::feedback::Feedback;
 pub use self::forcing::{Forcing, OnOrbit, Timed, When};
 pub use self::gravity_gradient::GravityGradient;
+pub use self::held::Held;
 pub use self::law::{Character, Kept, Law, Parts};
-pub use self::linear::Linear;
+pub use self::linear::{Linear, Own};
 pub use self::load::Load;
 pub use self::parameter::Parameter;
+pub use self::rotor::Rotor;
 pub use self::sampled::Sampled;
 pub use self::schedule::Windows;
+pub use self::slug::Slug;
 pub use self::subject::Subject;
 pub use self::switch::Switch;
 pub use self::term::Term;
 pub use self::uniform_gravity::UniformGravity;
+pub use self::wheel::{Drive, Wheel};
 pub use self::wrench::Wrench;
 pub use super::kinematics::Frame;

@@ -381,6 +381,7 @@ mod tests {
                 q_bp: &q_bp,
                 variables: Block { first: 3 * sample },
                 first: 0,
+                middle: 0.0,
             };
             let alone = alone(sample);
             let largest =

@@ -3,6 +3,7 @@
 use nalgebra::{Vector3, Vector4};
 
 use super::axes::{Axes, Exact};
+use super::carried::Carried;
 use super::constant_force::ConstantForce;
 use super::constant_torque::ConstantTorque;
 use super::damping::Damping;
@@ -11,13 +12,16 @@ use super::gravity_gradient::GravityGradient;
 use super::law::{Character, Kept, Law};
 use super::linear::Linear;
 use super::parameter::Parameter;
+use super::rotor::Rotor;
 use super::sampled::Sampled;
 use super::schedule::Windows;
+use super::slug::Slug;
 use super::subject::Subject;
 use super::switch::Switch;
 use super::uniform_gravity::UniformGravity;
+use super::wheel::Wheel;
 use super::wrench::Wrench;
-use crate::error::{Error, finite};
+use crate::error::{Error, MotionFault, finite};
 use crate::motion::kinematics::Frame;
 use crate::motion::state::Phase;
 
@@ -189,6 +193,15 @@ macro_rules! laws {
                 }
             }
 
+            /// What it carries along in the body.
+            #[must_use]
+            pub fn carried(&self) -> Option<&dyn Carried> {
+                match self {
+                    $(Self::$law(law) => law.carried(),)+
+                    Self::Scheduled { .. } => None, // what is carried along cannot be scheduled
+                }
+            }
+
             /// Whether its law has a sign that changes with the state.
             #[inline]
             pub(super) fn may_switch(&self) -> bool {
@@ -220,6 +233,12 @@ laws!(
         Sampled(Sampled),
         /// A torque that turns the body toward an attitude.
         Feedback(Feedback),
+        /// A rotor that keeps its momentum in the body.
+        Rotor(Rotor),
+        /// A wheel with motor and friction.
+        Wheel(Wheel),
+        /// A spherical damper.
+        Slug(Slug),
     }
 );
 
@@ -253,9 +272,14 @@ impl Term {
     }
 
     /// The term in `windows` only; of a scheduled one, where both sets of windows are open.
-    #[must_use]
-    pub fn scheduled(self, windows: &Windows) -> Self {
-        match self {
+    ///
+    /// # Errors
+    /// [`MotionFault::StatesStay`] for what the body carries along.
+    pub fn scheduled(self, windows: &Windows) -> Result<Self, Error> {
+        if self.carried().is_some() {
+            return Err(MotionFault::StatesStay { what: "scheduled" }.into());
+        }
+        Ok(match self {
             Self::Scheduled {
                 windows: own,
                 term: inner,
@@ -267,7 +291,7 @@ impl Term {
                 windows: windows.clone(),
                 term: Box::new(term),
             },
-        }
+        })
     }
 
     /// The term as it acts throughout a span of time without breaks around `middle`: nothing where it is switched off,
@@ -280,6 +304,12 @@ impl Term {
             }
             law => Some(law),
         }
+    }
+
+    /// How many states it has of its own.
+    #[must_use]
+    pub fn own(&self) -> usize {
+        self.carried().map_or(0, Carried::count)
     }
 
     /// How many numbers it has.

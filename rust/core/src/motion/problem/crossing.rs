@@ -24,7 +24,7 @@ pub struct Rule {
 }
 
 /// A passage through zero.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
     /// The number of the function.
     pub event: usize,

@@ -46,14 +46,14 @@ pub struct Run<E> {
 impl<E> Run<E> {
     /// One that has come no further than the first time.
     pub(crate) fn at_start(task: &Task<'_>, end: End<E>) -> Self {
-        let mut samples = vec![Phase::nan(); task.times.len()];
-        samples[0] = task.initial;
+        let mut samples = vec![task.initial.unknown(); task.times.len()];
+        samples[0] = task.initial.clone();
         Self {
             samples,
             crossings: Vec::new(),
             effort: Effort::default(),
             time: task.times[0],
-            phase: task.initial,
+            phase: task.initial.clone(),
             end,
         }
     }

@@ -2,9 +2,11 @@
 
 use super::method::Method;
 use super::tolerance::Tolerance;
+use crate::error::Error;
 use crate::mass::RigidBody;
+use crate::mass::refined::RefinedPrincipal;
 use crate::motion::euler_equations::EulerEquations;
-use crate::motion::loads::Subject;
+use crate::motion::loads::{Carried, Subject};
 use crate::motion::state::Phase;
 
 /// A body and the point its motion refers to: what all motions of the body have in common.
@@ -38,7 +40,7 @@ impl Footing {
 }
 
 /// What is to be simulated: a body from a state through times, and how.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Task<'a> {
     /// The body.
     pub body: &'a RigidBody,
@@ -54,6 +56,8 @@ pub struct Task<'a> {
     pub method: Method,
     /// How accurately.
     pub tolerance: Tolerance,
+    /// Principal moments and axes about the reference point of a body whose wheels turn freely, without what turns.
+    pub casing: Option<Box<RefinedPrincipal>>,
 }
 
 impl<'a> Task<'a> {
@@ -103,6 +107,36 @@ impl<'a> Task<'a> {
             times,
             method,
             tolerance,
+            casing: None,
         }
+    }
+
+    /// The task of a body that carries this along: its equations are those of the body without the wheels that turn freely. States of
+    /// the load that are not given are what they begin with.
+    ///
+    /// # Errors
+    /// [`MotionFault::HeavyWheel`](crate::error::MotionFault::HeavyWheel).
+    pub fn carrying<'c>(
+        mut self,
+        carried: impl Iterator<Item = &'c dyn Carried>,
+    ) -> Result<Self, Error> {
+        let carried: Vec<_> = carried.collect();
+        if self.initial.inner.is_empty() {
+            let omega = self.initial.omega;
+            let begun = carried
+                .iter()
+                .flat_map(|it| it.begin(self.times[0], &omega));
+            self.initial.inner = begun.collect();
+        }
+        let turning: Vec<_> = carried.iter().filter_map(|it| it.turning()).collect();
+        if turning.is_empty() {
+            return Ok(self);
+        }
+        let casing = RefinedPrincipal::about(self.body, &self.subject.point).without(&turning)?;
+        Ok(Self {
+            euler: EulerEquations::of_refined(&casing),
+            casing: Some(Box::new(casing)),
+            ..self
+        })
     }
 }

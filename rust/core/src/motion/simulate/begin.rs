@@ -1,11 +1,12 @@
 //! The one place where the methods of steps are told apart.
 
-use super::equations::{MOVING, TURNING};
+use super::equations::{FEW, MANY, MOVING, SOME, TURNING};
 use super::exact::Exact;
 use super::kicked::Kicked;
 use super::solved::Solved;
 use super::stepper::{Span, Stepper};
-use crate::motion::integrate::{Dop853, Radau};
+use crate::error::{Error, MotionFault};
+use crate::motion::integrate::{Dop853, Radau, RungeKutta};
 use crate::motion::loads::Load;
 use crate::motion::problem::{Method, Task};
 
@@ -22,21 +23,55 @@ where
     L::Error: 'a,
 {
     let moves = !task.subject.pivoted && load.exerts_force();
-    Ok(match method {
-        Method::Exact => Box::new(Exact::<L::Error>::new(task, span, load.analytic())?),
-        Method::Radau if moves => {
-            Box::new(Solved::<L, Radau<MOVING>, MOVING>::new(task, span, load)?)
-        }
-        Method::Radau => Box::new(Solved::<L, Radau<TURNING>, TURNING>::new(task, span, load)?),
-        Method::Splitting => Box::new(Kicked::new(task, span, load)?),
+    let own = span.phase.inner.len();
+    if own > 0 {
+        return match method {
+            Method::Exact | Method::Splitting => {
+                Err(Error::Motion(MotionFault::MethodCannotServe {
+                    method: method.name(),
+                    needs: "a load without states of its own",
+                    instead: "dop853",
+                })
+                .into())
+            }
+            Method::Radau if own <= FEW - MOVING => solved::<L, Radau<FEW>, FEW>(task, span, load),
+            Method::Radau if own <= SOME - MOVING => {
+                solved::<L, Radau<SOME>, SOME>(task, span, load)
+            }
+            Method::Radau => solved::<L, Radau<MANY>, MANY>(task, span, load),
+            _ if own <= FEW - MOVING => solved::<L, Dop853<FEW>, FEW>(task, span, load),
+            _ if own <= SOME - MOVING => solved::<L, Dop853<SOME>, SOME>(task, span, load),
+            _ => solved::<L, Dop853<MANY>, MANY>(task, span, load),
+        };
+    }
+    match method {
+        Method::Exact => Ok(Box::new(Exact::<L::Error>::new(
+            task,
+            span,
+            load.analytic(),
+        )?)),
+        Method::Radau if moves => solved::<L, Radau<MOVING>, MOVING>(task, span, load),
+        Method::Radau => solved::<L, Radau<TURNING>, TURNING>(task, span, load),
+        Method::Splitting => Ok(Box::new(Kicked::new(task, span, load)?)),
         // Auto was settled, and a series has a driver of its own.
         Method::Auto | Method::Taylor | Method::Dop853 if moves => {
-            Box::new(Solved::<L, Dop853<MOVING>, MOVING>::new(task, span, load)?)
+            solved::<L, Dop853<MOVING>, MOVING>(task, span, load)
         }
         Method::Auto | Method::Taylor | Method::Dop853 => {
-            Box::new(Solved::<L, Dop853<TURNING>, TURNING>::new(
-                task, span, load,
-            )?)
+            solved::<L, Dop853<TURNING>, TURNING>(task, span, load)
         }
-    })
+    }
+}
+
+/// Not inlined: a run of few numbers is not to take the stack that many take.
+#[inline(never)]
+fn solved<'a, L: Load, M: RungeKutta<N> + 'a, const N: usize>(
+    task: &Task<'_>,
+    span: &Span,
+    load: &'a mut L,
+) -> Result<Box<dyn Stepper<Error = L::Error> + 'a>, L::Error>
+where
+    L::Error: 'a,
+{
+    Ok(Box::new(Solved::<L, M, N>::new(task, span, load)?))
 }

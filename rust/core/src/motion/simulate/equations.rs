@@ -14,6 +14,10 @@ use crate::motion::state::Phase;
 pub(super) const TURNING: usize = 7;
 /// Those and position and velocity of C in N.
 pub(super) const MOVING: usize = 13;
+/// Those and up to three, eleven or 51 states of the load's own; what is left stays zero.
+pub(super) const FEW: usize = 16;
+pub(super) const SOME: usize = 24;
+pub(super) const MANY: usize = 64;
 
 /// The principal axes P as seen from B.
 #[derive(Clone, Copy, Debug)]
@@ -24,15 +28,16 @@ struct Axes {
     are_of_body: bool,
 }
 
-/// The largest |ω|, |r| and |v| of the states so far: what errors are relative to.
-#[derive(Clone, Copy, Debug, Default)]
+/// The largest |ω|, |r|, |v| and states of the load's own so far: what errors are relative to.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Scales {
     omega: f64,
     position: f64,
     velocity: f64,
+    own: Vec<f64>,
 }
 
-/// `q̇ = ½ q∘ω`, `I ω̇ + ω×Iω = N`; and with N = [`MOVING`] `ṙ = v`, `m v̇ = F`.
+/// `q̇ = ½ q∘ω`, `I ω̇ + ω×Iω = N`; and with N = [`MOVING`] or more `ṙ = v`, `m v̇ = F`, and states of the load's own.
 pub(super) struct Equations<'a, L, const N: usize> {
     euler: EulerEquations,
     mass: f64,
@@ -42,6 +47,8 @@ pub(super) struct Equations<'a, L, const N: usize> {
     pub(super) scales: Scales,
     /// When the reference point, if no force acts on it, was where; it keeps its velocity.
     origin: (f64, Vector3<f64>, Vector3<f64>),
+    /// What counts as large of the load's own states besides.
+    sizes: Vec<[f64; 2]>,
 }
 
 impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
@@ -55,7 +62,17 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
         tolerance: Tolerance,
         scales: Scales,
     ) -> Self {
+        let own = phase.inner.len();
+        let scales = Scales {
+            own: if scales.own.is_empty() {
+                vec![0.0; own]
+            } else {
+                scales.own
+            },
+            ..scales
+        };
         Self {
+            sizes: load.sizes(),
             euler: *euler,
             mass,
             axes: Axes {
@@ -78,13 +95,17 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
         let numbers = [
             q.i, q.j, q.k, q.w, w.x, w.y, w.z, r.x, r.y, r.z, v.x, v.y, v.z,
         ];
-        SVector::from_fn(|i, _| numbers[i])
+        let mut y = SVector::<f64, N>::zeros();
+        for (number, given) in y.iter_mut().zip(numbers.iter().chain(&phase.inner)) {
+            *number = *given;
+        }
+        y
     }
 
     /// In body axes, at time `t`.
     #[inline]
     pub(super) fn phase(&self, t: f64, y: &SVector<f64, N>) -> Phase {
-        let (position, velocity) = if N == MOVING {
+        let (position, velocity) = if N >= MOVING {
             (vector(y, 7), vector(y, 10))
         } else {
             let (start, position, velocity) = self.origin;
@@ -100,7 +121,13 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             omega,
             position,
             velocity,
+            inner: y.as_slice()[N.min(MOVING)..][..self.own()].into(),
         }
+    }
+
+    /// How many states the load has of its own.
+    fn own(&self) -> usize {
+        self.scales.own.len()
     }
 }
 
@@ -125,7 +152,10 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
     #[inline]
     fn derivative(&mut self, t: f64, y: &SVector<f64, N>) -> Result<SVector<f64, N>, L::Error> {
         let (q, w) = (quaternion(y), vector(y, 4));
-        let wrench = self.load.wrench(t, &self.phase(t, y))?;
+        let (phase, own) = (self.phase(t, y), self.own());
+        let mut slope = SVector::<f64, N>::zeros();
+        let rates = &mut slope.as_mut_slice()[N.min(MOVING)..][..own];
+        let wrench = self.load.act(t, &phase, rates)?;
         let torque = if self.axes.are_of_body {
             wrench.torque
         } else {
@@ -133,12 +163,11 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         };
         let turning = self.euler.principal_acceleration(&w, &torque)?;
         let q_rate = rate(&q, &w);
-        let mut slope = SVector::zeros();
         (slope[0], slope[1], slope[2], slope[3]) = (q_rate.i, q_rate.j, q_rate.k, q_rate.w);
         for i in 0..3 {
             slope[4 + i] = turning[i];
         }
-        if N == MOVING {
+        if N >= MOVING {
             let moving = wrench.force / self.mass;
             for i in 0..3 {
                 slope[7 + i] = y[10 + i];
@@ -168,7 +197,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
             quaternion(error).norm() / relative,
             part(4, self.scales.omega, absolute),
         ];
-        let moving = if N == MOVING {
+        let moving = if N >= MOVING {
             [
                 part(7, self.scales.position, 0.0),
                 part(10, self.scales.velocity, 0.0),
@@ -183,14 +212,34 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
                 most
             }
         };
-        parts.iter().chain(&moving).fold(0.0, largest_or_nan)
+        let own = (0..self.own()).map(|i| {
+            let size = error[MOVING + i].abs();
+            let [per_omega, least] = self.sizes[i];
+            let natural = (per_omega * self.scales.omega).max(least);
+            let largest = self.scales.own[i].max(y_new[MOVING + i].abs());
+            if size == 0.0 {
+                0.0
+            } else {
+                size / (relative * largest.max(natural))
+            }
+        });
+        let body = parts.iter().chain(&moving).fold(0.0, largest_or_nan);
+        own.fold(body, |most, part| largest_or_nan(most, &part))
     }
 
     fn accept(&mut self, y: &mut Compensated<N>) {
         self.scales.omega = self.scales.omega.max(vector(&y.value, 4).norm());
-        if N == MOVING {
+        if N >= MOVING {
             self.scales.position = self.scales.position.max(vector(&y.value, 7).norm());
             self.scales.velocity = self.scales.velocity.max(vector(&y.value, 10).norm());
+            for (largest, now) in self
+                .scales
+                .own
+                .iter_mut()
+                .zip(&y.value.as_slice()[MOVING..])
+            {
+                *largest = largest.max(now.abs());
+            }
         }
         // |q|² − 1 with what rounding left out, halved: the first-order correction, exact where it is small.
         let (q, rest) = (quaternion(&y.value), quaternion(y.rest()));

@@ -52,7 +52,7 @@ pub(super) fn solve<E: From<Error>>(
             );
         }
         let last = from + times.len() - 1;
-        (run.time, run.phase) = (task.times[last], run.samples[last]);
+        (run.time, run.phase) = (task.times[last], run.samples[last].clone());
         if watch(last as f64 / count as f64).is_break() {
             return Ok(End::Stopped);
         }
@@ -133,6 +133,7 @@ impl Closed {
             omega: state.omega,
             position: self.place(elapsed),
             velocity: self.velocity,
+            inner: Box::default(),
         }
     }
 

@@ -35,7 +35,7 @@ impl<'a, L: Load> Kicked<'a, L> {
         )?;
         Ok(Self {
             load,
-            carry: span.carry,
+            carry: span.carry.clone(),
             stepper,
         })
     }
@@ -74,7 +74,7 @@ impl<L: Load> Stepper for Kicked<'_, L> {
         Carry {
             scheme: Some(scheme),
             step: Some(step),
-            ..self.carry
+            ..self.carry.clone()
         }
     }
 

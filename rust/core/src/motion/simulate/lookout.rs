@@ -122,7 +122,11 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
             if !phase.is_finite() {
                 return Err(Error::Motion(MotionFault::NotFiniteMotion { time }).into());
             }
-            self.crossings.push(Crossing { event, time, phase });
+            self.crossings.push(Crossing {
+                event,
+                time,
+                phase: phase.clone(),
+            });
             self.counts[event] += 1;
             if self.counts[event] == self.rules[event].last {
                 return Ok(Some((place, phase)));

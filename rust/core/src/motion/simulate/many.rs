@@ -191,7 +191,7 @@ mod tests {
             true
         }
 
-        fn breaks(&self) -> Vec<f64> {
+        fn breaks(&self, _: f64, _: f64) -> Vec<f64> {
             Vec::new()
         }
 

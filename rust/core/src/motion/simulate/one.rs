@@ -34,8 +34,11 @@ pub fn simulate<L: Load>(
     );
     match plan {
         Ok(plan) => {
-            let method = plan.method();
-            by_method(&Task { method, ..*task }, load, events, watch)
+            let task = Task {
+                method: plan.method(),
+                ..task.clone()
+            };
+            by_method(&task, load, events, watch)
         }
         Err(refusal) => Run::at_start(task, End::Failed(refusal.error.into())),
     }
@@ -48,6 +51,10 @@ pub(super) fn by_method<L: Load>(
     events: &mut dyn Events<Error = L::Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<L::Error> {
+    let task = &match task.clone().carrying(load.carried().into_iter()) {
+        Ok(task) => task,
+        Err(error) => return Run::at_start(task, End::Failed(error.into())),
+    };
     let has_events = !events.rules().is_empty();
     if let (Method::Taylor, Some(terms)) = (task.method, load.analytic()) {
         return if has_events {
@@ -145,7 +152,7 @@ mod tests {
     fn constant_space_torque_about_a_principal_axis_spins_up() {
         let load =
             [Term::constant_torque(&Vector3::new(0.0, 0.0, 3.0), Frame::Space).expect("finite")];
-        let end = run([1.0, 2.0, 2.5], Vector3::zeros(), &[0.0, 4.0], &load, 1e-12)[1];
+        let end = &run([1.0, 2.0, 2.5], Vector3::zeros(), &[0.0, 4.0], &load, 1e-12)[1];
         assert!((end.omega - Vector3::new(0.0, 0.0, 4.8)).norm() < 1e-11);
         assert!(
             end.attitude

@@ -23,7 +23,7 @@ impl<'a, L: Load, M: RungeKutta<N>, const N: usize> Solved<'a, L, M, N> {
             &span.phase,
             load,
             task.tolerance,
-            span.carry.scales,
+            span.carry.scales.clone(),
         );
         let y = equations.principal(&span.phase);
         let method = M::new(&mut equations, span.from, span.to, y, span.carry.step)?;
@@ -67,7 +67,7 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> 
 
     fn carry(&self) -> Carry {
         Carry {
-            scales: self.equations.scales,
+            scales: self.equations.scales.clone(),
             step: Some(self.method.step()),
             scheme: None,
         }

@@ -42,7 +42,7 @@ pub(super) trait Stepper: Dense {
 }
 
 /// What one span leaves to the next.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Carry {
     pub(super) scales: Scales,
     /// The length of step that the method would try next.
@@ -52,7 +52,7 @@ pub(super) struct Carry {
 }
 
 /// Where a span of smooth load begins and ends, and in which state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Span {
     pub(super) from: f64,
     pub(super) to: f64,

@@ -26,7 +26,8 @@ impl<E> Run<E> {
     where
         E: From<Error>,
     {
-        let bounds = spans(task.times, load.breaks());
+        let last = task.times[task.times.len() - 1];
+        let bounds = spans(task.times, load.breaks(task.times[0], last));
         for pair in bounds.windows(2) {
             load.enter(pair[0], pair[1])?; // refused before anything is computed
         }
@@ -37,6 +38,7 @@ impl<E> Run<E> {
         for pair in bounds.windows(2) {
             let [mut from, to] = [pair[0], pair[1]];
             load.enter(from, to)?;
+            load.jump(from, &mut self.phase)?;
             load.settle(&self.phase);
             // Where the law of the load changes with the state, which of its signs changes.
             let mut flip: Option<(usize, f64)> = None;
@@ -45,7 +47,7 @@ impl<E> Run<E> {
                 let span = Span {
                     from,
                     to: flip.map_or(to, |(_, time)| time),
-                    phase: self.phase,
+                    phase: self.phase.clone(),
                     carry,
                 };
                 let mut stepper = begin(method, task, &span, load)?;
@@ -167,8 +169,9 @@ impl<E> Run<E> {
                 } else {
                     before + (reached - before) * (stage / stages)
                 };
-                let ended = lookout.look(stepper, from, begin, end)?;
-                let (last, phase) = match ended {
+                let event = lookout.look(stepper, from, begin, end)?;
+                let has_ended = event.is_some();
+                let (last, phase) = match event {
                     Some(event) => event,
                     None if end == reached => (end, stepper.phase()),
                     None => (end, stepper.within(end)?),
@@ -177,16 +180,16 @@ impl<E> Run<E> {
                     && elapsed.abs() <= last.abs()
                 {
                     let sample = if elapsed == last {
-                        phase
+                        phase.clone()
                     } else {
                         stepper.within(elapsed)?
                     };
-                    self.reach(task.times[*next], sample)?;
+                    self.reach(task.times[*next], sample.clone())?;
                     self.samples[*next] = sample;
                     *next += 1;
                 }
                 self.reach(from + last, phase)?;
-                if ended.is_some() {
+                if has_ended {
                     return Ok(Reached::Over(End::Event));
                 }
                 if watch(end).is_break() {

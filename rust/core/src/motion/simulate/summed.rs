@@ -69,9 +69,9 @@ pub(super) fn solve<E: From<Error>>(
         for (sample, t) in run.samples.iter_mut().zip(task.times) {
             let since = t - start;
             if since == elapsed && elapsed != 0.0 {
-                *sample = phase;
+                *sample = phase.clone();
             } else if since.abs() > elapsed.abs() {
-                *sample = Phase::nan();
+                *sample = phase.unknown();
             }
         }
         (run.time, run.phase, run.end) = (start + elapsed, phase, end);

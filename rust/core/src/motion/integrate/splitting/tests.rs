@@ -65,7 +65,7 @@ fn between_steps_and_backward() {
     let mut go = |times: [f64; 2], phase: &Phase| {
         let mut run =
             Splitting::new(&euler, None, times, phase, &mut load, 1e-12, None).expect("smooth");
-        let mut between = *phase;
+        let mut between = phase.clone();
         while run.elapsed() != times[1] - times[0] {
             let from = run.elapsed();
             run.advance(&mut load).expect("smooth");

@@ -59,7 +59,10 @@ impl Precision for DoubleDouble {
     const STILL: f64 = 2e-6;
 
     fn principal(task: &Task<'_>, _: Fixed) -> Principal<Self> {
-        let refined = RefinedPrincipal::about(task.body, &task.subject.point);
+        let refined = match &task.casing {
+            Some(casing) => **casing,
+            None => RefinedPrincipal::about(task.body, &task.subject.point),
+        };
         let [i1, i2, i3] = refined.moments;
         let axes = refined.axes();
         Principal {

@@ -29,7 +29,13 @@ pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
         run.end = End::Complete;
         return None;
     }
-    match Course::new(task, terms, Fixed) {
+    let course = (task.clone())
+        .carrying(terms.iter().filter_map(Term::carried))
+        .and_then(|task| {
+            run.samples[0].inner = task.initial.inner.clone();
+            Course::new(&task, terms, Fixed)
+        });
+    match course {
         Ok(course) => Some(Job {
             course,
             run,

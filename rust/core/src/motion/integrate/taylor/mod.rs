@@ -12,6 +12,7 @@
 //! | `derived`, `row`, `pace` | these sums in numbers with derivatives, and how far they reach |
 //! | `directions` | directions of space as seen from the body |
 //! | `push` | the path of a body that forces act on |
+//! | `carried` | the states that a load has of its own |
 //! | `step` | the length of a step, the state at its end or within |
 //! | `drive` | steps, outputs, breaks, until all motions are done; `seen`: each step as it is made |
 //! | `pack` | one number of several motions |
@@ -29,6 +30,7 @@
 
 mod abreast;
 mod alone;
+mod carried;
 mod course;
 mod derived;
 mod directions;

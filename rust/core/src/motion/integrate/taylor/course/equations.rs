@@ -6,7 +6,7 @@ use super::segments::Course;
 use crate::motion::integrate::taylor::field::Field;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::loads::variables::{Block, MASS, Variables};
-use crate::motion::loads::{Forcing, Parts, Term, When};
+use crate::motion::loads::{Forcing, Own, Parts, Term, When};
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::power_below;
 
@@ -16,7 +16,12 @@ impl<X: Precision> Course<'_, X> {
     }
 
     /// Takes the power of two at or below the fastest rate of the motion at ω (in principal axes) as the unit of rates.
-    pub(in crate::motion::integrate::taylor) fn choose_unit(&mut self, omega: &[f64; 3]) -> f64 {
+    /// `own` are the states of the load.
+    pub(in crate::motion::integrate::taylor) fn choose_unit(
+        &mut self,
+        omega: &[f64; 3],
+        own: &[X],
+    ) -> f64 {
         let (linear, inverse) = (&self.linear, self.inverse_moments.map(X::rounded));
         let over_moment = inverse.amax();
         let squares = [
@@ -32,10 +37,20 @@ impl<X: Precision> Course<'_, X> {
         let end = self.breaks[self.segment];
         let timed = (linear.timed.iter())
             .map(|(_, timed)| timed.square_of_rate(&self.task.subject, end, over_moment));
-        let square = (squares.into_iter().chain(on_space).chain(timed)).fold(0.0, f64::max);
+        let (mut momentum, mut torque, mut decay) = (Vector3::zeros(), Vector3::zeros(), 0.0_f64);
+        for (state, &value) in linear.own.iter().zip(own) {
+            momentum += state.momentum.map(X::rounded) * value.rounded();
+            torque += state.torque.map(X::rounded) * value.rounded();
+            decay = decay.max(state.on_itself.rounded().abs());
+        }
+        let by_own = torque.component_mul(&inverse).amax();
+        let squares = squares.into_iter().chain([by_own]);
+        let square = (squares.chain(on_space).chain(timed)).fold(0.0, f64::max);
         let rate = Vector3::from(*omega)
             .amax()
             .max(linear.on_omega.map(X::rounded).amax() * over_moment)
+            .max(momentum.amax() * over_moment)
+            .max(decay)
             .max(square.sqrt());
         self.unit = power_below(rate);
         self.unit
@@ -107,6 +122,11 @@ impl<X: Precision> Course<'_, X> {
             torque.component_mul_assign(&self.inverse_moments);
         }
         forcing
+    }
+
+    /// What the states of the load do in the segment under way.
+    pub(in crate::motion::integrate::taylor) fn own(&self) -> &[Own<X>] {
+        &self.linear.own
     }
 
     pub(in crate::motion::integrate::taylor) fn inverse_moments(&self) -> &Vector3<X> {

@@ -14,3 +14,4 @@ mod times;
 
 pub(super) use equations::{parts, parts_of};
 pub(super) use segments::Course;
+pub(super) use state::Besides;

@@ -83,7 +83,7 @@ impl<'a, X: Precision> Course<'a, X> {
             breaks.reverse();
         }
         let mut course = Self {
-            task: *task,
+            task: task.clone(),
             terms,
             variables,
             firsts: variables.columns(&mut terms.iter().map(Term::count)),
@@ -155,6 +155,7 @@ impl<'a, X: Precision> Course<'a, X> {
             q_bp: &self.q_bp,
             variables: self.variables,
             first,
+            middle: self.middle(),
         }
     }
 

@@ -8,6 +8,15 @@ use crate::motion::loads::variables::{ATTITUDE, RATES, Variables};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::{conjugate, normalized, product};
 
+/// What goes on beside attitude and ω.
+#[derive(Clone, Debug, Default)]
+pub(in crate::motion::integrate::taylor) struct Besides<X> {
+    /// Position and velocity, in units of the unit of rates, of a body that is pushed.
+    pub(in crate::motion::integrate::taylor) place: Option<[X; 6]>,
+    /// The states of the load, vectors among them in principal axes.
+    pub(in crate::motion::integrate::taylor) own: Vec<X>,
+}
+
 impl<X: Precision> Course<'_, X> {
     pub(in crate::motion::integrate::taylor) fn initial(&self) -> &Phase {
         &self.task.initial
@@ -25,17 +34,16 @@ impl<X: Precision> Course<'_, X> {
         [omega.x, omega.y, omega.z, x, y, z, w]
     }
 
-    /// The state in body axes and real units; `place` is position and velocity, in units of the unit of rates, of a body
-    /// that is pushed.
+    /// The state in body axes and real units.
     pub(in crate::motion::integrate::taylor) fn phase(
         &self,
         state: &[X; 7],
-        place: Option<&[X; 6]>,
+        besides: &Besides<X>,
         now: (f64, f64),
     ) -> Phase {
         let [x, y, z, i, j, k, w] = *state;
         let initial = self.initial();
-        let (position, velocity) = if let Some(place) = place {
+        let (position, velocity) = if let Some(place) = besides.place {
             let [x, y, z, u, v, w] = place.map(X::rounded);
             (Vector3::new(x, y, z), Vector3::new(u, v, w) * self.unit)
         } else {
@@ -52,7 +60,40 @@ impl<X: Precision> Course<'_, X> {
             omega: (self.axes * Vector3::new(x, y, z)).map(X::rounded) * self.unit,
             position,
             velocity,
+            inner: self
+                .own_in_body(&besides.own)
+                .into_iter()
+                .map(X::rounded)
+                .collect(),
         }
+    }
+
+    /// The load's own states at the start, vectors among them in principal axes.
+    pub(in crate::motion::integrate::taylor) fn own_at_start(&self) -> Vec<X> {
+        let given: Vec<X> = self
+            .task
+            .initial
+            .inner
+            .iter()
+            .map(|&x| X::from(x))
+            .collect();
+        self.own_turned(&given, |vector| self.axes.tr_mul(&vector))
+    }
+
+    /// The load's own states, or coefficients of their series, vectors among them in body axes.
+    pub(in crate::motion::integrate::taylor) fn own_in_body(&self, own: &[X]) -> Vec<X> {
+        self.own_turned(own, |vector| self.axes * vector)
+    }
+
+    fn own_turned(&self, own: &[X], turn: impl Fn(Vector3<X>) -> Vector3<X>) -> Vec<X> {
+        let mut turned = own.to_vec();
+        for (number, state) in self.linear.own.iter().enumerate() {
+            if let Some((first, component)) = state.turned {
+                let vector = turn(Vector3::from_column_slice(&own[first..first + 3]));
+                turned[number] = vector[component];
+            }
+        }
+        turned
     }
 
     /// ω and (x, y, z, w) in body axes and real units of a state, or of a coefficient of its series.

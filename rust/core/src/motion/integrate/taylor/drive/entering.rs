@@ -3,7 +3,7 @@
 use super::lanes::{Job, Lanes, Lead, Stop, effort};
 use super::stops::next_stop;
 use crate::error::Error;
-use crate::motion::integrate::taylor::course::Course;
+use crate::motion::integrate::taylor::course::{Besides, Course};
 use crate::motion::integrate::taylor::field::Field;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::Pack;
@@ -36,6 +36,9 @@ where
             } = job.course.initial();
             push.set(row, &[r.x, r.y, r.z, v.x, v.y, v.z]);
         }
+        if let Some(carried) = &mut self.carried {
+            carried.set(row, &job.course.own_at_start());
+        }
         self.extras.restart(row);
         self.now[row] = (0.0, 0.0);
         self.direction[row] = job.course.direction();
@@ -59,7 +62,8 @@ where
         let course = &mut lead.job.course;
         let old = course.unit();
         let omega = [0, 1, 2].map(|i| state[i].rounded() * old);
-        let unit = course.choose_unit(&omega);
+        let own = (self.carried.as_ref()).map_or_else(Vec::new, |carried| carried.now(row));
+        let unit = course.choose_unit(&omega, &own);
         let ratio = old / unit;
         for i in 0..3 {
             // Units are powers of two.
@@ -69,6 +73,10 @@ where
         }
         if let Some(push) = &mut self.push {
             push.rescale(row, ratio);
+        }
+        if let Some(carried) = &mut self.carried {
+            let inverse = (*course.inverse_moments()).into();
+            carried.enter(row, course.own(), inverse, unit);
         }
         self.extras.rescale(row, ratio);
         self.series.rescale(ratio);
@@ -98,15 +106,23 @@ where
         self.hold();
     }
 
+    /// What goes on beside attitude and ω, now.
+    pub(super) fn besides(&self, row: usize) -> Besides<L::Real> {
+        Besides {
+            place: self.push.as_ref().map(|push| push.now(row)),
+            own: (self.carried.as_ref()).map_or_else(Vec::new, |carried| carried.now(row)),
+        }
+    }
+
     /// Ends a motion before its last output.
     pub(super) fn end(&mut self, row: usize, end: End<Error>) {
         let (time, state) = (self.time(row), self.state.now(row));
-        let place = self.push.as_ref().map(|push| push.now(row));
+        let besides = self.besides(row);
         if let Some(lead) = &mut self.leads[row] {
             let run = &mut *lead.job.run;
             run.effort = effort(lead.steps);
             run.time = time;
-            run.phase = lead.job.course.phase(&state, place.as_ref(), self.now[row]);
+            run.phase = lead.job.course.phase(&state, &besides, self.now[row]);
             run.end = end;
         }
         self.leads[row] = None;
@@ -136,6 +152,9 @@ where
         }
         if let Some(push) = &mut self.push {
             push.set(row, &[0.0; 6]);
+        }
+        if let Some(carried) = &mut self.carried {
+            carried.vacate(row);
         }
         self.field.set(row, &Field::none(L::Real::default()));
         self.still[row] = [true; 3];

@@ -2,6 +2,7 @@
 
 use super::settings::Settings;
 use crate::error::Error;
+use crate::motion::integrate::taylor::carried::Carried;
 use crate::motion::integrate::taylor::course::Course;
 use crate::motion::integrate::taylor::extras::Extras;
 use crate::motion::integrate::taylor::field::Field;
@@ -64,6 +65,7 @@ pub(super) struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const
     pub(super) directions: [[Pack<L, R>; 3]; B],
     pub(super) state: Compensated<Pack<L, R>>,
     pub(super) push: Option<Box<Push<Pack<L, R>>>>,
+    pub(super) carried: Option<Box<Carried<Pack<L, R>>>>,
     pub(super) leads: [Option<Lead<'a, L::Real>>; R],
     /// The times now and of the next stop, each with what rounding has left out.
     pub(super) now: [(f64, f64); R],
@@ -92,6 +94,10 @@ where
             directions: [[zero; 3]; B],
             state: Compensated::new(),
             push: settings.parts.is_pushed.then(|| Box::new(Push::new())),
+            carried: match settings.parts.own {
+                0 => None,
+                count => Some(Box::new(Carried::new(count))),
+            },
             leads: [const { None }; R],
             now: [(0.0, 0.0); R],
             stop: [(f64::INFINITY, 0.0); R],
@@ -105,7 +111,8 @@ where
     pub(super) fn hold(&mut self) {
         let is_still = |n: &usize| self.still.iter().all(|row| row[*n]);
         let still = [0, 2].into_iter().find(is_still);
-        self.series.hold(still.filter(|_| !self.extras.is_timed()));
+        let goes_by_itself = !self.extras.is_timed() && self.carried.is_none();
+        self.series.hold(still.filter(|_| goes_by_itself));
     }
 
     /// The time from now to the next stop, positive also backward in time.

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::lanes::Lanes;
-use crate::motion::integrate::taylor::course::Course;
+use crate::motion::integrate::taylor::course::{Besides, Course};
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::Pack;
 use crate::motion::integrate::taylor::series::{Coefficient, Series};
@@ -28,6 +28,9 @@ pub(crate) struct Step {
     series: Vec<[f64; 7]>,
     /// Position and velocity, where they do not go on evenly.
     path: Vec<[f64; 6]>,
+    /// The states of the load, from order 0 on, and what rounding left out at the start.
+    own: Vec<Vec<f64>>,
+    own_change: Vec<f64>,
     /// Position and velocity at the start of the motion.
     initial: [Vector3<f64>; 2],
 }
@@ -52,7 +55,17 @@ impl Step {
             omega: Vector3::new(x, y, z),
             position,
             velocity,
+            inner: self.own_at(within),
         }
+    }
+
+    fn own_at(&self, within: f64) -> Box<[f64]> {
+        let states = self.own_change.iter().enumerate().map(|(i, change)| {
+            let higher = self.own[1..].iter().rev();
+            let sum = higher.fold(0.0, |sum, order| (sum + order[i]) * within);
+            self.own[0][i] + (sum + change)
+        });
+        states.collect()
     }
 
     fn path_at(&self, elapsed: f64, within: f64) -> [Vector3<f64>; 2] {
@@ -87,7 +100,7 @@ pub(super) struct Before<'a, L: Number<Real: Precision>, const R: usize> {
     course: Course<'a, L::Real>,
     now: (f64, f64),
     state: Compensated<Pack<L, R>>,
-    place: Option<[L::Real; 6]>,
+    besides: Besides<L::Real>,
 }
 
 impl<'a, L, S, const B: usize, const R: usize> Lanes<'a, L, S, B, R>
@@ -103,7 +116,7 @@ where
             course: lead.job.course.clone(),
             now: self.now[0],
             state: self.state.clone(),
-            place: self.push.as_ref().map(|push| push.now(0)),
+            besides: self.besides(0),
         })
     }
 
@@ -114,7 +127,7 @@ where
             course,
             now,
             state,
-            place,
+            besides,
         } = before;
         let order = self.settings.order;
         let mut series = Vec::with_capacity(order);
@@ -124,6 +137,21 @@ where
             let coefficient = [w0, w1, w2, x, y, z, s].map(|number| number.real(0));
             series.push(course.in_body(&coefficient).map(L::Real::rounded));
         }
+        let mut own = Vec::new();
+        if let Some(carried) = &self.carried {
+            for k in 0..=order {
+                let coefficients = course.own_in_body(&carried.coefficients(0, k));
+                own.push(coefficients.into_iter().map(L::Real::rounded).collect());
+            }
+        }
+        // Of what is rounded to a double, which is much of it where the numbers have twice the precision.
+        let own_change = course.own_in_body(&besides.own).into_iter().enumerate();
+        let own_change: Vec<f64> = own_change
+            .map(|(i, exact)| {
+                let rounded: &Vec<f64> = &own[0];
+                (exact - rounded[i].into()).rounded()
+            })
+            .collect();
         let unit = course.unit();
         let end = self.leads[0].as_ref().map_or_else(
             || course.last_elapsed(),
@@ -142,7 +170,9 @@ where
             state: rounded,
             change: std::array::from_fn(change),
             series,
-            path: (self.push.as_ref().zip(place))
+            own,
+            own_change,
+            path: (self.push.as_ref().zip(besides.place))
                 .map_or_else(Vec::new, |(push, place)| push.path(0, order, &place)),
             initial: [initial.position, initial.velocity],
         }

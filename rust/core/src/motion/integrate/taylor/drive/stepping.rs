@@ -3,6 +3,7 @@
 use super::lanes::{Landing, Lanes, OUTGROWN};
 use super::settings::Settings;
 use super::stops::Meeting;
+use crate::motion::integrate::taylor::course::Besides;
 use crate::motion::integrate::taylor::directions::seen;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::{Pack, plus};
@@ -28,6 +29,9 @@ where
         self.extras
             .limit(&self.series, &self.field, &self.fastest, &mut h);
         self.series.limit(&mut h);
+        if let Some(carried) = &self.carried {
+            carried.limit(order, last_term, &self.fastest, &mut h);
+        }
         let mut eventful = self.settings.parts.may_flip();
         for row in 0..R {
             let (now, gap) = (self.now[row].0, self.gap(row));
@@ -56,6 +60,9 @@ where
         if let Some(push) = &mut self.push {
             let change = push.increment(order, signed);
             push.add(&change);
+        }
+        if let Some(carried) = &mut self.carried {
+            carried.advance(order, signed);
         }
         self.extras.advance(order, signed);
         let mut ended = false;
@@ -109,6 +116,9 @@ where
             }
         }
         self.extras.start(&self.fastest);
+        if let Some(carried) = &mut self.carried {
+            carried.start();
+        }
         // Several motions have order 0 apart, so that what is special about it is not in their loop.
         let first = usize::from(R > 1);
         for k in 0..first {
@@ -132,6 +142,10 @@ where
         let acceleration = self
             .extras
             .plus_coefficients(k, series, field, acceleration);
+        let acceleration = match &mut self.carried {
+            Some(carried) => carried.plus_coefficients(k, series, acceleration),
+            None => acceleration,
+        };
         let acceleration = if L::VARIES && self.field.is_tilted() {
             self.tilted(k, &spins, acceleration)
         } else {
@@ -175,8 +189,8 @@ where
                 Meeting::Nothing => return (h, landing),
                 Meeting::End => return (0.0, Landing::None),
             };
-            let (state, place) = self.within(row, time);
-            self.give(row, &state, place.as_ref());
+            let (state, besides) = self.within(row, time);
+            self.give(row, &state, &besides);
         }
     }
 
@@ -191,9 +205,9 @@ where
         lead.flips_at_once > HELD
     }
 
-    /// The state of a motion, and its position and velocity when it is pushed, at a time since the start of the step.
+    /// The state of a motion, and what goes on beside it, at a time since the start of the step.
     #[inline(always)]
-    pub(super) fn within(&self, row: usize, time: L::Real) -> ([L::Real; 7], Option<[L::Real; 6]>) {
+    pub(super) fn within(&self, row: usize, time: L::Real) -> ([L::Real; 7], Besides<L::Real>) {
         let mut within = Pack::new(0.0);
         within.put(row, time);
         let order = self.settings.order;
@@ -203,7 +217,11 @@ where
             Some(push) => Some(push.moved(&push.increment(order, within), row)),
             None => None,
         };
-        (state, place)
+        let own = match &self.carried {
+            Some(carried) => carried.within(row, order, within),
+            None => Vec::new(),
+        };
+        (state, Besides { place, own })
     }
 
     /// Whether a feedback has another sign in the `state` later in the step than at its start, or ω has passed through zero

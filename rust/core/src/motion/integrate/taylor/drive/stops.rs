@@ -2,7 +2,7 @@
 
 use super::lanes::{Landing, Lanes, OUTGROWN, Stop, effort};
 use crate::error::{Error, MotionFault};
-use crate::motion::integrate::taylor::course::Course;
+use crate::motion::integrate::taylor::course::{Besides, Course};
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::Pack;
 use crate::motion::integrate::taylor::series::Series;
@@ -54,25 +54,25 @@ where
 
     /// Gives a sample to a motion; after the last one it ends.
     #[inline(never)]
-    pub(super) fn give(&mut self, row: usize, state: &[L::Real; 7], place: Option<&[L::Real; 6]>) {
+    pub(super) fn give(&mut self, row: usize, state: &[L::Real; 7], besides: &Besides<L::Real>) {
         let now = self.stop[row];
         let Some(lead) = &mut self.leads[row] else {
             return;
         };
-        let phase = lead.job.course.phase(state, place, now);
+        let phase = lead.job.course.phase(state, besides, now);
         let run = &mut *lead.job.run;
         if !phase.is_finite() {
             // It came to the last state that is one.
             let before = lead.next - 1;
             run.effort = effort(lead.steps);
             run.time = lead.job.course.time_of(before);
-            run.phase = run.samples[before];
+            run.phase = run.samples[before].clone();
             let time = lead.job.course.time_of(lead.next);
             run.end = End::Failed(Error::Motion(MotionFault::NotFiniteMotion { time }));
             self.leads[row] = None;
             return;
         }
-        run.samples[lead.next] = phase;
+        run.samples[lead.next] = phase.clone();
         if let Some(tell) = &mut lead.job.tell {
             tell(lead.next, &lead.job.course.in_body(state));
         }

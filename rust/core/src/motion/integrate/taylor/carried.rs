@@ -1,0 +1,251 @@
+//! The states that a load has of its own: wheels and slugs.
+
+use super::frame::Precision;
+use super::pack::{Pack, cross_term};
+use super::series::Series;
+use super::step::compensate;
+use super::twin::COUNT;
+use crate::motion::loads::Own;
+use crate::numerics::number::Number;
+
+/// The states z of a load, and their series in a step:
+///
+/// ```text
+/// ż = c + r z + b·ω + a·q,   N = Σ z p − ω × Σ z g
+/// ```
+///
+/// where a vector s among them has the rate `−ω × s` besides.
+#[derive(Clone, Debug)]
+pub(super) struct Carried<T> {
+    states: Vec<State<T>>,
+    /// Σ z g.
+    momentum: [[T; 3]; COUNT],
+    inverse_moments: [T; 3],
+}
+
+/// One of them.
+#[derive(Clone, Debug)]
+struct State<T> {
+    value: T,
+    rest: T,
+    series: [T; COUNT],
+    torque: [T; 3],
+    momentum: [T; 3],
+    constant: T,
+    on_itself: T,
+    on_omega: [T; 3],
+    on_attitude: [T; 4],
+    turned: Option<(usize, usize)>,
+    /// What counts as large beside the fastest ω, and the largest it has been.
+    size: T,
+    largest: T,
+}
+
+impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
+    /// So many, all zero.
+    pub(super) fn new(count: usize) -> Self {
+        let zero = Pack::new(0.0);
+        let none = State {
+            value: zero,
+            rest: zero,
+            series: [zero; COUNT],
+            torque: [zero; 3],
+            momentum: [zero; 3],
+            constant: zero,
+            on_itself: zero,
+            on_omega: [zero; 3],
+            on_attitude: [zero; 4],
+            turned: None,
+            size: Pack::new(1.0),
+            largest: zero,
+        };
+        Self {
+            states: vec![none; count],
+            momentum: [[zero; 3]; COUNT],
+            inverse_moments: [zero; 3],
+        }
+    }
+
+    /// Sets the states of one row.
+    pub(super) fn set(&mut self, row: usize, values: &[L::Real]) {
+        for (state, &value) in self.states.iter_mut().zip(values) {
+            state.value.put(row, value);
+            state.rest.set(row, 0.0);
+            state.largest.set(row, 0.0);
+        }
+    }
+
+    /// Sets what the states of one row do, in units of the unit of rates.
+    pub(super) fn enter(
+        &mut self,
+        row: usize,
+        own: &[Own<L::Real>],
+        inverse_moments: [L::Real; 3],
+        unit: f64,
+    ) {
+        let rate = L::Real::from(1.0 / unit);
+        for i in 0..3 {
+            self.inverse_moments[i].put(row, inverse_moments[i]);
+        }
+        for (state, own) in self.states.iter_mut().zip(own) {
+            for i in 0..3 {
+                state.torque[i].put(row, own.torque[i] * rate * rate);
+                state.momentum[i].put(row, own.momentum[i] * rate);
+                state.on_omega[i].put(row, own.on_omega[i]);
+            }
+            for i in 0..4 {
+                state.on_attitude[i].put(row, own.on_attitude[i] * rate);
+            }
+            state.constant.put(row, own.constant * rate);
+            state.on_itself.put(row, own.on_itself * rate);
+            // The same in all rows.
+            state.turned = state.turned.or(own.turned);
+            state.size.set(row, own.size * unit);
+        }
+    }
+
+    /// Leaves one row without effect.
+    pub(super) fn vacate(&mut self, row: usize) {
+        let none = Own::default();
+        let count = self.states.len();
+        self.set(row, &vec![L::Real::default(); count]);
+        self.enter(row, &vec![none; count], [L::Real::default(); 3], 1.0);
+    }
+
+    #[inline(always)]
+    pub(super) fn start(&mut self) {
+        for state in &mut self.states {
+            state.series[0] = state.value;
+        }
+    }
+
+    /// `sum` and the coefficient of order `k` of the angular acceleration by the states; and theirs of order k + 1.
+    #[inline(always)]
+    pub(super) fn plus_coefficients<const B: usize>(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        sum: [Pack<L, R>; 3],
+    ) -> [Pack<L, R>; 3] {
+        let zero = Pack::new(0.0);
+        let (mut momentum, mut torque) = ([zero; 3], [zero; 3]);
+        for state in &self.states {
+            let value = state.series[k];
+            for i in 0..3 {
+                momentum[i] = state.momentum[i].mul_add(value, momentum[i]);
+                torque[i] = state.torque[i].mul_add(value, torque[i]);
+            }
+        }
+        self.momentum[k] = momentum;
+        // −ω × m = m × ω.
+        for j in 0..=k {
+            torque = cross_term(&self.momentum[j], &series.get(k - j).w, torque);
+        }
+        self.extend(k, series);
+        [0, 1, 2].map(|i| torque[i].mul_add(self.inverse_moments[i], sum[i]))
+    }
+
+    /// The coefficients of order k + 1 of the states.
+    #[inline(always)]
+    fn extend<const B: usize>(&mut self, k: usize, series: &impl Series<Pack<L, R>, B>) {
+        let at = series.get(k);
+        let reciprocal = Pack::over(k + 1);
+        for number in 0..self.states.len() {
+            let state = &self.states[number];
+            let mut rate = state.on_itself * state.series[k];
+            if k == 0 {
+                rate = rate + state.constant;
+            }
+            for i in 0..3 {
+                rate = state.on_omega[i].mul_add(at.w[i], rate);
+            }
+            for i in 0..4 {
+                rate = state.on_attitude[i].mul_add(at.q[i], rate);
+            }
+            if let Some((first, component)) = state.turned {
+                // s × ω.
+                let (one, two) = ((component + 1) % 3, (component + 2) % 3);
+                let (s, t) = (&self.states[first + one], &self.states[first + two]);
+                for j in 0..=k {
+                    let w = series.get(k - j).w;
+                    rate = s.series[j].mul_add(w[two], rate);
+                    rate = (-t.series[j]).mul_add(w[one], rate);
+                }
+            }
+            self.states[number].series[k + 1] = rate * reciprocal;
+        }
+    }
+
+    /// Keeps each step so short that the last two terms of the states are `tolerance` at most, relative to what counts as large.
+    #[inline(always)]
+    pub(super) fn limit(
+        &self,
+        order: usize,
+        tolerance: f64,
+        fastest: &[f64; R],
+        steps: &mut [f64; R],
+    ) {
+        for state in &self.states {
+            for row in 0..R {
+                let natural = state.size.get(row) * fastest[row];
+                let scale = natural.max(state.largest.get(row));
+                for k in [order - 1, order] {
+                    let part = (state.series[k].get(row) / scale).abs();
+                    if part > 0.0 {
+                        let most = ((tolerance - part.log2()) / k as f64).exp2();
+                        steps[row] = if steps[row] > most { most } else { steps[row] };
+                    } else if part.is_nan() {
+                        steps[row] = f64::NAN;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The states of one row after the time `h`.
+    pub(super) fn within(&self, row: usize, order: usize, h: Pack<L, R>) -> Vec<L::Real> {
+        let moved = self.states.iter().map(|state| {
+            let change = state.increment(order, h) + state.rest;
+            state.value.real(row) + change.real(row)
+        });
+        moved.collect()
+    }
+
+    /// Goes on by the time `h`.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
+        for state in &mut self.states {
+            let change = state.increment(order, h);
+            compensate(&mut state.value, &mut state.rest, change);
+            for row in 0..R {
+                let size = state.value.get(row).abs();
+                if size > state.largest.get(row) {
+                    state.largest.set(row, size);
+                }
+            }
+        }
+    }
+
+    /// The states of one row.
+    pub(super) fn now(&self, row: usize) -> Vec<L::Real> {
+        let values = self.states.iter();
+        values.map(|state| state.value.real(row)).collect()
+    }
+
+    /// The coefficients of order `k` of the states of one row; of order 0 what rounding left out of them.
+    pub(super) fn coefficients(&self, row: usize, k: usize) -> Vec<L::Real> {
+        let coefficients = self.states.iter().map(|state| state.series[k].real(row));
+        coefficients.collect()
+    }
+}
+
+impl<L: Number, const R: usize> State<Pack<L, R>> {
+    #[inline(always)]
+    fn increment(&self, order: usize, h: Pack<L, R>) -> Pack<L, R> {
+        let mut sum = Pack::new(0.0);
+        for k in (1..=order).rev() {
+            sum = sum.mul_add(h, self.series[k]);
+        }
+        sum * h
+    }
+}

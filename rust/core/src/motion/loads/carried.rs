@@ -1,0 +1,42 @@
+//! What a load carries along in the body, with states of its own: wheels, slugs.
+
+use nalgebra::Vector3;
+
+use crate::motion::state::Phase;
+
+/// What a law carries along in the body: an angular momentum beside I ω, and states of its own that go on with the motion.
+///
+/// I is the tensor of the body with its wheels locked, ω that of B relative to N; all components in B. `own`: the states.
+pub trait Carried {
+    /// How many states it has.
+    fn count(&self) -> usize;
+
+    /// What counts as large of a state, times |ω|.
+    fn size(&self) -> f64;
+
+    /// Its states where a motion starts at time `t` with `omega`, unless others are given.
+    fn begin(&self, t: f64, omega: &Vector3<f64>) -> Vec<f64>;
+
+    /// The states as they are reported, of the same number: those of a wheel are its momentum `h = J (Ω + a·ω)`.
+    fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
+
+    /// Its states where a motion starts at time `t` with `omega`, from those reported.
+    fn resumed(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64>;
+
+    /// The axis (not of unit length) and the moment J of what turns freely in the body: the equations of motion have the tensor
+    /// `I − J a aᵀ`.
+    fn turning(&self) -> Option<(Vector3<f64>, f64)>;
+
+    /// The torque about the reference point that stands beside that tensor; `side` is the sign that the law is taken for, `middle` a
+    /// time within the span under way, which has no breaks.
+    fn torque(&self, side: f64, middle: f64, phase: &Phase, own: &[f64]) -> Vector3<f64>;
+
+    /// The rates of its states, into `rates`.
+    fn rates(&self, side: f64, middle: f64, phase: &Phase, own: &[f64], rates: &mut [f64]);
+
+    /// Its momentum beside I ω.
+    fn momentum(&self, own: &[f64], omega: &Vector3<f64>) -> Vector3<f64>;
+
+    /// Its kinetic energy beside ½ ω·I ω; of a momentum that is constant nothing.
+    fn energy(&self, own: &[f64], omega: &Vector3<f64>) -> f64;
+}

@@ -1,0 +1,133 @@
+//! A number that is constant, held from time to time, or the rate of one that runs straight from time to time.
+
+use std::sync::Arc;
+
+use crate::error::{Error, MotionFault, all_finite, finite};
+
+/// A number that changes at known times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    /// Ascending; none of a constant.
+    times: Arc<[f64]>,
+    values: Arc<[f64]>,
+}
+
+impl Held {
+    /// The same at all times.
+    ///
+    /// # Errors
+    /// When it is not finite.
+    pub fn constant(what: &'static str, value: f64) -> Result<Self, Error> {
+        finite(what, value)?;
+        Ok(Self {
+            times: Arc::default(),
+            values: [value].into(),
+        })
+    }
+
+    /// `values[k]` from `times[k]` on, or there.
+    ///
+    /// # Errors
+    /// Without times, for times that do not ascend, for numbers that are not finite.
+    ///
+    /// # Panics
+    /// When `times` and `values` differ in length.
+    pub fn table(what: &'static str, times: &[f64], values: &[f64]) -> Result<Self, Error> {
+        assert_eq!(times.len(), values.len(), "a value for each time");
+        if times.is_empty() {
+            return Err(Error::Empty { what: "times" });
+        }
+        all_finite("times", times)?;
+        all_finite(what, values)?;
+        for (k, pair) in times.windows(2).enumerate() {
+            if pair[1] <= pair[0] {
+                return Err(Error::Motion(MotionFault::NotMonotone {
+                    index: k + 1,
+                    previous: pair[0],
+                    next: pair[1],
+                }));
+            }
+        }
+        Ok(Self {
+            times: times.into(),
+            values: values.into(),
+        })
+    }
+
+    /// The times at which it changes.
+    #[must_use]
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Whether it is known from one time to another: from its first time on, and where it `ends`, up to its last.
+    pub(super) fn covers(
+        &self,
+        what: &'static str,
+        from: f64,
+        to: f64,
+        ends: bool,
+    ) -> Result<(), Error> {
+        let (Some(&first), Some(&last)) = (self.times.first(), self.times.last()) else {
+            return Ok(());
+        };
+        let last = if ends { last } else { f64::INFINITY };
+        for t in [from, to] {
+            if t < first || t > last {
+                return Err(Error::Motion(MotionFault::OutsideTimes {
+                    what,
+                    t,
+                    first,
+                    last,
+                }));
+            }
+        }
+        Ok(())
+    }
+
+    /// The value at time `t`, held since the last of its times up to it.
+    #[must_use]
+    pub fn value(&self, t: f64) -> f64 {
+        let passed = self.times.partition_point(|&time| time <= t);
+        self.values[passed.saturating_sub(1)]
+    }
+
+    /// The value at time `t` of the straight lines between its times, and how fast it changes after `t`.
+    #[must_use]
+    pub fn line(&self, t: f64) -> [f64; 2] {
+        if self.times.len() < 2 {
+            return [self.values[0], 0.0];
+        }
+        let passed = self.times.partition_point(|&time| time <= t);
+        let k = passed.clamp(1, self.times.len() - 1);
+        let (from, to) = (self.times[k - 1], self.times[k]);
+        let slope = (self.values[k] - self.values[k - 1]) / (to - from);
+        [self.values[k - 1] + slope * (t - from), slope]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_held_or_runs_straight() {
+        let table = Held::table("torque", &[0.0, 1.0, 3.0], &[2.0, 4.0, 0.0]).expect("ascending");
+        let held = [0.0, 0.5, 1.0, 2.9, 3.0, 9.0].map(|t| table.value(t));
+        assert_eq!(held, [2.0, 2.0, 4.0, 4.0, 0.0, 0.0]);
+        let line = [0.0, 0.5, 1.0, 2.0].map(|t| table.line(t));
+        assert_eq!(line, [[2.0, 2.0], [3.0, 2.0], [4.0, -2.0], [2.0, -2.0]]);
+        assert!(
+            table.covers("torque", 0.0, 9.0, false).is_ok()
+                && table.covers("speed", 0.0, 9.0, true).is_err()
+        );
+        assert!(table.covers("torque", -1e-9, 1.0, false).is_err());
+        let constant = Held::constant("torque", 7.0).expect("finite");
+        assert_eq!(
+            (constant.value(-5.0), constant.line(3.0)),
+            (7.0, [7.0, 0.0])
+        );
+        assert!(Held::table("torque", &[0.0, 0.0], &[1.0, 1.0]).is_err());
+        assert!(Held::table("torque", &[], &[]).is_err());
+    }
+}

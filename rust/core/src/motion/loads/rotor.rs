@@ -1,0 +1,134 @@
+//! A rotor that keeps its angular momentum in the body: the gyrostat.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::axes::{Axes, Exact};
+use super::carried::Carried;
+use super::law::{Character, Kept, Law, Parts};
+use super::linear::Linear;
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::wrench::{Wrench, times};
+use crate::error::{Error, all_finite};
+use crate::motion::state::Phase;
+
+/// `N = −ω × h`: what a wheel that turns at constant speed relative to the body does to it, h its momentum relative to the body,
+/// constant in B.
+///
+/// Source: Volterra, Acta Mathematica 22 (1899) 201; Hughes, Spacecraft Attitude Dynamics, §3.5.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotor {
+    /// h.
+    pub momentum: Vector3<f64>,
+}
+
+impl Rotor {
+    /// A checked momentum.
+    ///
+    /// # Errors
+    /// When a component is not finite.
+    pub fn new(momentum: &Vector3<f64>) -> Result<Self, Error> {
+        all_finite("momentum", momentum)?;
+        Ok(Self {
+            momentum: *momentum,
+        })
+    }
+}
+
+impl Law for Rotor {
+    fn character(&self, _: bool) -> Character {
+        Character {
+            exerts_force: false,
+            depends_on_rates: true,
+            needs_body: false,
+            needs_epoch: false,
+            keeps: Kept::All,
+            parts: Parts {
+                on_omega: true,
+                ..Parts::default()
+            },
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::new("momentum", &[3])]
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        times(&self.momentum, factor).map(|momentum| Self { momentum })
+    }
+
+    fn anchored(self, _: f64) -> Self {
+        self
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+        Ok(())
+    }
+
+    #[inline]
+    fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
+        Wrench::couple(self.momentum.cross(&phase.omega))
+    }
+
+    /// It does no work.
+    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+        Some(0.0)
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        let [x, y, z] = axes.principal(&axes.vector(&self.momentum, 0)).into();
+        let o = X::zero();
+        // h × ω.
+        linear.on_omega += Matrix3::new(o, -z, y, z, o, -x, -y, x, o);
+    }
+
+    fn carried(&self) -> Option<&dyn Carried> {
+        Some(self)
+    }
+}
+
+impl Carried for Rotor {
+    fn count(&self) -> usize {
+        0
+    }
+
+    fn size(&self) -> f64 {
+        0.0
+    }
+
+    fn begin(&self, _: f64, _: &Vector3<f64>) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn reported(&self, _: &[f64], _: &Vector3<f64>) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn resumed(&self, _: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn turning(&self) -> Option<(Vector3<f64>, f64)> {
+        None
+    }
+
+    fn torque(&self, _: f64, _: f64, phase: &Phase, _: &[f64]) -> Vector3<f64> {
+        self.momentum.cross(&phase.omega)
+    }
+
+    fn rates(&self, _: f64, _: f64, _: &Phase, _: &[f64], _: &mut [f64]) {}
+
+    fn momentum(&self, _: &[f64], _: &Vector3<f64>) -> Vector3<f64> {
+        self.momentum
+    }
+
+    /// That of a wheel at constant speed Ω is `JΩ a·ω` and a constant; the energy that the motion keeps has neither.
+    fn energy(&self, _: &[f64], _: &Vector3<f64>) -> f64 {
+        0.0
+    }
+}

@@ -1,0 +1,191 @@
+//! A spherical damper: a slug in a viscous fluid.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::axes::{Axes, Exact};
+use super::carried::Carried;
+use super::law::{Character, Kept, Law, Parts};
+use super::linear::{Linear, Own};
+use super::parameter::Parameter;
+use super::subject::Subject;
+use super::wrench::Wrench;
+use crate::error::{Error, MotionFault, finite};
+use crate::motion::state::Phase;
+
+/// A sphere that turns in the body with the angular velocity σ (of the sphere relative to N, components in B), slowed by the fluid
+/// around it:
+///
+/// ```text
+/// N = k (σ − ω),   J σ̇ + ω × J σ = −k (σ − ω)
+/// ```
+///
+/// J is its moment of inertia, which is not part of the body's. Its states are σ, at the start ω. The momentum `I ω + J σ` is
+/// constant where nothing else acts, and the energy falls: a model of what is loose or flexible in the body.
+/// Source: Kane, Levinson, Journal of Applied Mechanics 45 (1978) 903; Rahn, Barba, Journal of Guidance 14 (1991) 424.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slug {
+    /// J.
+    pub inertia: f64,
+    /// k: torque over angular velocity.
+    pub damping: f64,
+}
+
+impl Slug {
+    /// Checked numbers.
+    ///
+    /// # Errors
+    /// For a moment that is not positive, for damping that is negative, for what is not finite.
+    pub fn new(inertia: f64, damping: f64) -> Result<Self, Error> {
+        positive("inertia", inertia)?;
+        not_negative("damping", damping)?;
+        Ok(Self { inertia, damping })
+    }
+
+    /// k (σ − ω).
+    #[inline]
+    fn drag(&self, omega: &Vector3<f64>, own: &[f64]) -> Vector3<f64> {
+        (Vector3::from_column_slice(own) - omega) * self.damping
+    }
+}
+
+impl Law for Slug {
+    fn character(&self, _: bool) -> Character {
+        Character {
+            exerts_force: false,
+            depends_on_rates: true,
+            needs_body: false,
+            needs_epoch: false,
+            keeps: Kept::All,
+            parts: Parts {
+                on_omega: true,
+                own: 3,
+                ..Parts::default()
+            },
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![
+            Parameter::new("inertia", &[]),
+            Parameter::new("damping", &[]),
+        ]
+    }
+
+    fn scaled(&self, _: f64) -> Result<Self, Error> {
+        Err(MotionFault::StatesStay { what: "scaled" }.into())
+    }
+
+    fn anchored(self, _: f64) -> Self {
+        self
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// At a start: σ = ω.
+    fn wrench(&self, _: &Subject, _: f64, _: &Phase) -> Wrench {
+        Wrench::default()
+    }
+
+    /// It takes energy, but without damping.
+    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+        (self.damping == 0.0).then_some(0.0)
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        let (inertia, damping) = (axes.number(self.inertia, 0), axes.number(self.damping, 1));
+        let rate = damping / inertia;
+        linear.on_omega -= Matrix3::from_diagonal_element(damping);
+        let first = linear.own.len();
+        for component in 0..3 {
+            let unit = Vector3::from_fn(|i, _| if i == component { X::one() } else { X::zero() });
+            linear.own.push(Own {
+                torque: unit * damping,
+                on_itself: -rate,
+                on_omega: unit * rate,
+                turned: Some((first, component)),
+                size: 1.0,
+                ..Own::default()
+            });
+        }
+    }
+
+    fn carried(&self) -> Option<&dyn Carried> {
+        Some(self)
+    }
+}
+
+impl Carried for Slug {
+    fn count(&self) -> usize {
+        3
+    }
+
+    fn size(&self) -> f64 {
+        1.0
+    }
+
+    fn begin(&self, _: f64, omega: &Vector3<f64>) -> Vec<f64> {
+        omega.as_slice().to_vec()
+    }
+
+    fn reported(&self, own: &[f64], _: &Vector3<f64>) -> Vec<f64> {
+        own.to_vec()
+    }
+
+    fn resumed(&self, reported: &[f64], _: f64, _: &Vector3<f64>) -> Vec<f64> {
+        reported.to_vec()
+    }
+
+    fn turning(&self) -> Option<(Vector3<f64>, f64)> {
+        None
+    }
+
+    fn torque(&self, _: f64, _: f64, phase: &Phase, own: &[f64]) -> Vector3<f64> {
+        self.drag(&phase.omega, own)
+    }
+
+    fn rates(&self, _: f64, _: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) {
+        let sigma = Vector3::from_column_slice(own);
+        let rate = -self.drag(&phase.omega, own) / self.inertia - phase.omega.cross(&sigma);
+        rates.copy_from_slice(rate.as_slice());
+    }
+
+    fn momentum(&self, own: &[f64], _: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::from_column_slice(own) * self.inertia
+    }
+
+    fn energy(&self, own: &[f64], _: &Vector3<f64>) -> f64 {
+        0.5 * self.inertia * Vector3::from_column_slice(own).norm_squared()
+    }
+}
+
+/// That a number is positive.
+pub(super) fn positive(what: &'static str, value: f64) -> Result<(), Error> {
+    finite(what, value)?;
+    if value > 0.0 {
+        return Ok(());
+    }
+    Err(Error::OutOfDomain {
+        what,
+        law: "positive",
+        value,
+    })
+}
+
+/// That a number is positive or zero.
+pub(super) fn not_negative(what: &'static str, value: f64) -> Result<(), Error> {
+    finite(what, value)?;
+    if value >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::OutOfDomain {
+        what,
+        law: "positive or zero",
+        value,
+    })
+}

@@ -1,0 +1,300 @@
+//! A wheel in the body, with a motor and friction.
+
+use nalgebra::{Vector3, Vector4};
+
+use super::axes::{Axes, Exact, exact};
+use super::carried::Carried;
+use super::feedback::Feedback;
+use super::held::Held;
+use super::law::{Character, Kept, Law, Parts};
+use super::linear::{Linear, Own};
+use super::parameter::Parameter;
+use super::slug::{not_negative, positive};
+use super::subject::Subject;
+use super::switch::Switch;
+use super::wrench::Wrench;
+use crate::error::{Error, MotionFault, finite};
+use crate::motion::state::Phase;
+
+/// What turns a wheel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Drive {
+    /// A motor whose torque τ on the wheel, about its axis, is known; no motor where it is zero.
+    Torque(Held),
+    /// A motor that exerts on the body, about the wheel's axis, what a feedback asks for: `τ = −a·N`.
+    Feedback(Feedback),
+    /// A motor that gives the wheel a speed Ω relative to the body that is known: straight lines between times.
+    Speed(Held),
+}
+
+/// A wheel that turns about an axis a fixed in the body with the rate Ω relative to it: J is its moment about that axis, and the
+/// tensor I of the body includes it as if it were locked.
+///
+/// ```text
+/// ḣ = τ − c Ω,   h = J (Ω + a·ω),   (I − J a aᵀ) ω̇ + ω × ((I − J a aᵀ) ω + h a) = N − a ḣ
+/// ```
+///
+/// with the motor's torque τ and viscous friction c in its bearing. With its speed given instead of τ
+///
+/// ```text
+/// I ω̇ + ω × (I ω + JΩ a) = N − JΩ̇ a
+/// ```
+///
+/// Source: Hughes, Spacecraft Attitude Dynamics, §3.5; Wittenburg, Dynamics of Multibody Systems, §4.6.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wheel {
+    /// a, of any length.
+    axis: Vector3<f64>,
+    /// a of unit length.
+    unit: Vector3<f64>,
+    /// J.
+    inertia: f64,
+    /// Ω at the start; of a given speed what it is then.
+    rate: f64,
+    /// c.
+    friction: f64,
+    drive: Drive,
+}
+
+impl Wheel {
+    /// A checked wheel.
+    ///
+    /// # Errors
+    /// For an axis without direction, a moment that is not positive, friction that is negative, what is not finite.
+    pub fn new(
+        axis: &Vector3<f64>,
+        inertia: f64,
+        rate: f64,
+        friction: f64,
+        drive: Drive,
+    ) -> Result<Self, Error> {
+        crate::error::all_finite("axis", axis)?;
+        let unit = (axis / axis.amax())
+            .try_normalize(0.0)
+            .filter(|_| axis.amax() > 0.0)
+            .ok_or(Error::NoDirection { what: "axis" })?;
+        positive("inertia", inertia)?;
+        finite("rate", rate)?;
+        not_negative("friction", friction)?;
+        Ok(Self {
+            axis: *axis,
+            unit,
+            inertia,
+            rate,
+            friction,
+            drive,
+        })
+    }
+
+    /// Whether its speed is given.
+    fn has_speed(&self) -> bool {
+        matches!(self.drive, Drive::Speed(_))
+    }
+
+    /// Ω from the state.
+    fn speed(&self, own: &[f64], omega: &Vector3<f64>) -> f64 {
+        if self.has_speed() {
+            own[0] / self.inertia
+        } else {
+            own[0] / self.inertia - self.unit.dot(omega)
+        }
+    }
+
+    /// The rate of the state: ḣ, or JΩ̇ where the speed is given.
+    fn rate_of_state(&self, side: f64, middle: f64, phase: &Phase, own: &[f64]) -> f64 {
+        let motor = match &self.drive {
+            Drive::Speed(speed) => return self.inertia * speed.line(middle)[1],
+            Drive::Torque(torque) => torque.value(middle),
+            Drive::Feedback(law) => {
+                -(self.unit).dot(&law.torque_on(side, &phase.attitude, &phase.omega))
+            }
+        };
+        motor - self.friction * self.speed(own, &phase.omega)
+    }
+
+    /// a of unit length, in principal axes.
+    fn direction<X: Exact>(&self, axes: &Axes<'_, X>) -> Vector3<X> {
+        let scaled = exact::<X>(&(self.axis / self.axis.amax().log2().floor().exp2()));
+        axes.principal(&(scaled / scaled.dot(&scaled).root()))
+    }
+}
+
+impl Law for Wheel {
+    fn character(&self, _: bool) -> Character {
+        let feedback = matches!(self.drive, Drive::Feedback(_));
+        Character {
+            exerts_force: false,
+            depends_on_rates: true,
+            needs_body: !self.has_speed(),
+            needs_epoch: false,
+            keeps: Kept::All,
+            parts: Parts {
+                on_omega: true,
+                on_attitude: feedback,
+                own: 1,
+                ..Parts::default()
+            },
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![
+            Parameter::new("axis", &[3]),
+            Parameter::new("inertia", &[]),
+            Parameter::new("rate", &[]),
+            Parameter::new("friction", &[]),
+        ]
+    }
+
+    fn scaled(&self, _: f64) -> Result<Self, Error> {
+        Err(MotionFault::StatesStay { what: "scaled" }.into())
+    }
+
+    fn anchored(self, _: f64) -> Self {
+        self
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        match &self.drive {
+            Drive::Torque(held) | Drive::Speed(held) => held.times().to_vec(),
+            Drive::Feedback(_) => Vec::new(),
+        }
+    }
+
+    fn check(&self, _: &Subject, from: f64, to: f64) -> Result<(), Error> {
+        match &self.drive {
+            Drive::Torque(held) => held.covers("torque", from, to, false),
+            Drive::Speed(held) => held.covers("speed", from, to, true),
+            Drive::Feedback(_) => Ok(()),
+        }
+    }
+
+    /// At a start.
+    fn wrench(&self, _: &Subject, t: f64, phase: &Phase) -> Wrench {
+        let side = self.switch(phase).map_or(1.0, |switch| switch.side);
+        let own = self.begin(t, &phase.omega);
+        Wrench::couple(self.torque(side, t, phase, &own))
+    }
+
+    /// A wheel without motor and friction takes no energy.
+    fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
+        let is_free = match &self.drive {
+            Drive::Torque(torque) => torque.times().is_empty() && torque.value(0.0) == 0.0,
+            Drive::Feedback(_) | Drive::Speed(_) => false,
+        };
+        (is_free && self.friction == 0.0).then_some(0.0)
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
+        let a = self.direction(axes);
+        let (inertia, friction) = (X::from(self.inertia), X::from(self.friction));
+        let mut own = Own {
+            momentum: a,
+            size: self.inertia,
+            ..Own::default()
+        };
+        match &self.drive {
+            Drive::Speed(speed) => {
+                own.constant = inertia * X::from(speed.line(axes.middle)[1]);
+            }
+            Drive::Torque(torque) => own.constant = X::from(torque.value(axes.middle)),
+            Drive::Feedback(law) => {
+                let mut asked = Linear::default();
+                law.add_to(&mut asked, axes, side);
+                own.on_omega = -asked.on_omega.tr_mul(&a);
+                own.on_attitude = -asked.on_attitude.tr_mul(&a);
+            }
+        }
+        if !self.has_speed() {
+            own.on_itself = -(friction / inertia);
+            own.on_omega += a * friction;
+        }
+        // −a ḣ.
+        linear.constant -= a * own.constant;
+        linear.on_omega -= a * own.on_omega.transpose();
+        linear.on_attitude -= a * own.on_attitude.transpose();
+        own.torque = -(a * own.on_itself);
+        linear.own.push(own);
+    }
+
+    fn may_switch(&self) -> bool {
+        matches!(self.drive, Drive::Feedback(_))
+    }
+
+    fn switch(&self, phase: &Phase) -> Option<Switch> {
+        match &self.drive {
+            Drive::Feedback(law) => law.switch(phase),
+            Drive::Torque(_) | Drive::Speed(_) => None,
+        }
+    }
+
+    fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
+        match &self.drive {
+            Drive::Feedback(law) => law.switching(axes),
+            Drive::Torque(_) | Drive::Speed(_) => None,
+        }
+    }
+
+    fn carried(&self) -> Option<&dyn Carried> {
+        Some(self)
+    }
+}
+
+impl Carried for Wheel {
+    fn count(&self) -> usize {
+        1
+    }
+
+    fn size(&self) -> f64 {
+        self.inertia
+    }
+
+    fn begin(&self, t: f64, omega: &Vector3<f64>) -> Vec<f64> {
+        vec![match &self.drive {
+            Drive::Speed(speed) => self.inertia * speed.line(t)[0],
+            Drive::Torque(_) | Drive::Feedback(_) => {
+                self.inertia * (self.rate + self.unit.dot(omega))
+            }
+        }]
+    }
+
+    fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
+        vec![if self.has_speed() {
+            own[0] + self.inertia * self.unit.dot(omega)
+        } else {
+            own[0]
+        }]
+    }
+
+    fn resumed(&self, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
+        if self.has_speed() {
+            self.begin(t, omega)
+        } else {
+            reported.to_vec()
+        }
+    }
+
+    fn turning(&self) -> Option<(Vector3<f64>, f64)> {
+        (!self.has_speed()).then_some((self.axis, self.inertia))
+    }
+
+    fn torque(&self, side: f64, middle: f64, phase: &Phase, own: &[f64]) -> Vector3<f64> {
+        let rate = self.rate_of_state(side, middle, phase, own);
+        self.unit.cross(&phase.omega) * own[0] - self.unit * rate
+    }
+
+    fn rates(&self, side: f64, middle: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) {
+        rates[0] = self.rate_of_state(side, middle, phase, own);
+    }
+
+    /// JΩ a.
+    fn momentum(&self, own: &[f64], omega: &Vector3<f64>) -> Vector3<f64> {
+        self.unit * (self.inertia * self.speed(own, omega))
+    }
+
+    /// `JΩ a·ω + ½ J Ω²`.
+    fn energy(&self, own: &[f64], omega: &Vector3<f64>) -> f64 {
+        let speed = self.speed(own, omega);
+        self.inertia * speed * (self.unit.dot(omega) + 0.5 * speed)
+    }
+}

@@ -1,0 +1,261 @@
+//! The states that a load has of its own, by name.
+
+use nalgebra::Vector3;
+use numpy::{PyArray1, PyUntypedArrayMethods};
+use polhode::motion::loads::{Carried, Term};
+use polhode::motion::state::Phase;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::load::PyLoad;
+use super::part::Acts;
+use super::stateful::MOST_STATES;
+use crate::arrays::floats;
+use crate::shape::tuple;
+use crate::stack::{Broadcast, Stack};
+
+/// The states of one part of a load among those of all.
+#[derive(Clone, Debug)]
+pub(crate) struct Slot {
+    pub(crate) name: String,
+    pub(crate) first: usize,
+    pub(crate) count: usize,
+}
+
+impl Slot {
+    pub(crate) fn of<'a>(&self, all: &'a [f64]) -> &'a [f64] {
+        &all[self.first..self.first + self.count]
+    }
+}
+
+impl PyLoad {
+    /// The states of its parts, in the order in which a run has them: first those of its analytic terms, then those of parts that call
+    /// Python, then those of compiled functions. Of parts with the same name the second is called `name_2`.
+    pub(crate) fn slots(&self) -> Vec<Slot> {
+        let mut slots: Vec<Slot> = Vec::new();
+        let mut first = 0;
+        for kind in 0..3 {
+            for part in &self.parts {
+                let (of_kind, count) = match &part.acts {
+                    Acts::Term(terms) => (0, terms.rows.first().map_or(0, Term::own)),
+                    Acts::Callback(_) => (1, 0),
+                    Acts::WithStates(one) => (1, one.initial.len()),
+                    Acts::Compiled(one) => (2, one.initial.len()),
+                };
+                if of_kind != kind || count == 0 {
+                    continue;
+                }
+                let name = part.name.as_deref().unwrap_or("states");
+                let same = |slot: &&Slot| slot.name == name || is_numbered(&slot.name, name);
+                let before = slots.iter().filter(same).count();
+                slots.push(Slot {
+                    name: if before == 0 {
+                        name.to_owned()
+                    } else {
+                        format!("{name}_{}", before + 1)
+                    },
+                    first,
+                    count,
+                });
+                first += count;
+            }
+        }
+        slots
+    }
+
+    /// The states with which a motion starts at time `t` with `omega`, from those reported that are given; what is not a number is
+    /// not given.
+    pub(crate) fn begun(
+        &self,
+        terms: &[Term],
+        t: f64,
+        omega: &Vector3<f64>,
+        given: &[f64],
+    ) -> Box<[f64]> {
+        let mut states = Vec::new();
+        for carried in terms.iter().filter_map(Term::carried) {
+            let mine = given.get(states.len()..states.len() + carried.count());
+            states.extend(match mine.filter(|mine| !mine.iter().any(|x| x.is_nan())) {
+                Some(mine) => carried.resumed(mine, t, omega),
+                None => carried.begin(t, omega),
+            });
+        }
+        for initial in self.initial_of_functions() {
+            for &value in initial {
+                let given = given.get(states.len()).filter(|x| !x.is_nan());
+                states.push(given.copied().unwrap_or(value));
+            }
+        }
+        states.into()
+    }
+
+    /// That a run from one time to another can be made.
+    pub(crate) fn check_run(&self, from: f64, to: f64) -> PyResult<()> {
+        let count: usize = self.slots().iter().map(|slot| slot.count).sum();
+        if count > MOST_STATES && !self.is_analytic() {
+            return Err(PyValueError::new_err(format!(
+                "load: {count} states of its own, more than the {MOST_STATES} of a load that calls functions"
+            )));
+        }
+        self.with_states().try_for_each(|one| one.check(from, to))
+    }
+
+    fn initial_of_functions(&self) -> impl Iterator<Item = &[f64]> {
+        let called = self.with_states().map(|one| &one.initial[..]);
+        called.chain(self.compiled().map(|one| &one.initial[..]))
+    }
+
+    /// The states given under their names, each of shape (..., k); what is not given is not a number.
+    pub(crate) fn read_states(
+        &self,
+        given: Option<&Bound<'_, PyAny>>,
+        all: bool,
+    ) -> PyResult<Stack<Vec<f64>>> {
+        let slots = self.slots();
+        let names = || {
+            let names: Vec<_> = slots
+                .iter()
+                .map(|slot| format!("{:?}", slot.name))
+                .collect();
+            names.join(", ")
+        };
+        let Some(given) = given.filter(|given| !given.is_none()) else {
+            if all && !slots.is_empty() {
+                return Err(PyTypeError::new_err(format!(
+                    "states: the load has states of its own: pass states= with {}, as `states` of a trajectory has them",
+                    names()
+                )));
+            }
+            return Ok(Stack::one(Vec::new()));
+        };
+        let given = given.cast::<PyDict>().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "states: expected a dict of names and arrays, got {}",
+                given.get_type()
+            ))
+        })?;
+        for key in given.keys() {
+            let name: String = key.extract()?;
+            if !slots.iter().any(|slot| slot.name == name) {
+                let known = if slots.is_empty() {
+                    "the load has none".to_owned()
+                } else {
+                    format!("the load has {}", names())
+                };
+                return Err(PyValueError::new_err(format!(
+                    "states: no {name:?}; {known}"
+                )));
+            }
+        }
+        let mut found = Stack::one(Vec::new());
+        for slot in &slots {
+            let values = match given.get_item(&slot.name)? {
+                Some(values) => one(&values, slot)?,
+                None if all => {
+                    return Err(PyTypeError::new_err(format!(
+                        "states: {:?} is missing",
+                        slot.name
+                    )));
+                }
+                None => Stack::one(vec![f64::NAN; slot.count]),
+            };
+            let grid = Broadcast::of(["states", "states"], [&found.shape, &values.shape])?;
+            found = grid.try_map(
+                given.py(),
+                |[a, b]| Ok([&found[a][..], &values[b]].concat()),
+            )?;
+        }
+        Ok(found)
+    }
+}
+
+/// The names and numbers of the states of a phase, for functions of Python.
+pub(crate) fn named<'py>(
+    py: Python<'py>,
+    slots: &[Slot],
+    terms: &[Term],
+    phase: &Phase,
+) -> PyResult<Bound<'py, PyDict>> {
+    let states = reported(terms, phase);
+    let named = PyDict::new(py);
+    for slot in slots {
+        named.set_item(&slot.name, PyArray1::from_slice(py, slot.of(&states)))?;
+    }
+    Ok(named)
+}
+
+/// Whether a name is another one with a number.
+fn is_numbered(name: &str, of: &str) -> bool {
+    let rest = name
+        .strip_prefix(of)
+        .and_then(|rest| rest.strip_prefix('_'));
+    rest.is_some_and(|number| number.parse::<usize>().is_ok())
+}
+
+/// The states of one part, shape (..., k).
+fn one(values: &Bound<'_, PyAny>, slot: &Slot) -> PyResult<Stack<Vec<f64>>> {
+    let name = format!("states[{:?}]", slot.name);
+    let array = floats(values, &name)?;
+    let shape = array.shape();
+    if shape.last() != Some(&slot.count) {
+        return Err(PyValueError::new_err(format!(
+            "{name}: expected shape (..., {}), got {}",
+            slot.count,
+            tuple(shape)
+        )));
+    }
+    let numbers = array.as_slice()?;
+    if let Some(bad) = numbers.iter().find(|x| !x.is_finite()) {
+        return Err(PyValueError::new_err(format!(
+            "{name}: must be finite, got {bad}"
+        )));
+    }
+    Ok(Stack {
+        shape: shape[..shape.len() - 1].to_vec(),
+        rows: numbers.chunks(slot.count).map(<[f64]>::to_vec).collect(),
+    })
+}
+
+/// The states of a phase as they are reported.
+pub(crate) fn reported(terms: &[Term], phase: &Phase) -> Vec<f64> {
+    let mut states = phase.inner.to_vec();
+    let mut first = 0;
+    for carried in terms.iter().filter_map(Term::carried) {
+        let mine = first..first + carried.count();
+        if let Some(own) = states.get_mut(mine.clone()) {
+            let told = carried.reported(own, &phase.omega);
+            own.copy_from_slice(&told);
+        }
+        first = mine.end;
+    }
+    states
+}
+
+/// What the terms carry along at a time: momentum beside I ω and energy beside ½ ω·I ω, from the states as they are reported.
+pub(crate) fn carried_along(
+    terms: &[Term],
+    t: f64,
+    omega: &Vector3<f64>,
+    reported: &[f64],
+) -> (Vector3<f64>, f64) {
+    let (mut momentum, mut energy, mut first) = (Vector3::zeros(), 0.0, 0);
+    for carried in terms.iter().filter_map(Term::carried) {
+        let mine = reported
+            .get(first..first + carried.count())
+            .unwrap_or_default();
+        first += carried.count();
+        let own = own_of(carried, mine, t, omega);
+        momentum += carried.momentum(&own, omega);
+        energy += carried.energy(&own, omega);
+    }
+    (momentum, energy)
+}
+
+fn own_of(carried: &dyn Carried, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
+    if carried.count() == 0 {
+        Vec::new()
+    } else {
+        carried.resumed(reported, t, omega)
+    }
+}

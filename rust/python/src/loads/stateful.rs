@@ -1,0 +1,304 @@
+//! Loads that are Python functions with states of their own.
+
+use numpy::PyArray1;
+use polhode::motion::attitude::components;
+use polhode::motion::loads::Wrench;
+use polhode::motion::state::Phase;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use pyo3::{PyTraverseError, PyVisit};
+
+use super::called::vector;
+use crate::arrays::{floats, list_floats};
+use crate::errors::new;
+
+/// Python functions that give the rates of states, their jumps, and force and torque.
+pub(super) struct WithStates {
+    pub(super) initial: Vec<f64>,
+    /// What counts as large of each state besides the largest it has been.
+    pub(super) scale: Vec<f64>,
+    rates: Option<Py<PyAny>>,
+    wrench: Option<Py<PyAny>>,
+    update: Option<Py<PyAny>>,
+    /// Between two updates.
+    period: f64,
+    /// When the first one is; where the run begins by default.
+    epoch: Option<f64>,
+}
+
+impl WithStates {
+    /// # Errors
+    /// Where a function is none, or `update` and `period` do not stand together.
+    pub(super) fn new(
+        [rates, wrench, update]: [Option<&Bound<'_, PyAny>>; 3],
+        period: Option<f64>,
+        (initial, scale): (Vec<f64>, Vec<f64>),
+    ) -> PyResult<Self> {
+        for (what, function) in [("rates", rates), ("wrench", wrench), ("update", update)] {
+            if let Some(function) = function.filter(|function| !function.is_callable()) {
+                return Err(PyTypeError::new_err(format!(
+                    "{what}: expected a callable, got {}",
+                    function.get_type()
+                )));
+            }
+        }
+        if update.is_some() != period.is_some() {
+            return Err(PyTypeError::new_err(
+                "update: give update= and period= together, or neither",
+            ));
+        }
+        if let Some(period) = period.filter(|period| !(*period > 0.0 && period.is_finite())) {
+            return Err(PyValueError::new_err(format!(
+                "period: must be positive, got {period}"
+            )));
+        }
+        let kept = |function: Option<&Bound<'_, PyAny>>| function.map(|it| it.clone().unbind());
+        Ok(Self {
+            initial,
+            scale,
+            rates: kept(rates),
+            wrench: kept(wrench),
+            update: kept(update),
+            period: period.unwrap_or(0.0),
+            epoch: None,
+        })
+    }
+
+    pub(super) fn copied(&self, py: Python<'_>) -> Self {
+        let cloned = |function: &Option<Py<PyAny>>| function.as_ref().map(|it| it.clone_ref(py));
+        Self {
+            initial: self.initial.clone(),
+            scale: self.scale.clone(),
+            rates: cloned(&self.rates),
+            wrench: cloned(&self.wrench),
+            update: cloned(&self.update),
+            ..*self
+        }
+    }
+
+    pub(super) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        for function in [&self.rates, &self.wrench, &self.update]
+            .into_iter()
+            .flatten()
+        {
+            visit.call(function)?;
+        }
+        Ok(())
+    }
+
+    /// Whether updates count from where the run begins.
+    pub(super) fn needs_epoch(&self) -> bool {
+        self.update.is_some() && self.epoch.is_none()
+    }
+
+    pub(super) fn anchored(&mut self, t: f64) {
+        self.epoch.get_or_insert(t);
+    }
+
+    /// The times of updates after `from`, until `to`, of a run that begins at `from`.
+    pub(super) fn times(&self, from: f64, to: f64) -> Vec<f64> {
+        if self.update.is_none() {
+            return Vec::new();
+        }
+        let epoch = self.epoch.unwrap_or(from);
+        let first = ((from - epoch) / self.period).floor().max(0.0);
+        let count = ((to - epoch) / self.period - first).max(0.0);
+        let mut times = Vec::new();
+        let mut k = 0.0;
+        while k <= count {
+            times.push(epoch + (first + k) * self.period);
+            k += 1.0;
+        }
+        times
+    }
+
+    /// Why a run from one time to another cannot be, if it cannot.
+    pub(super) fn check(&self, from: f64, to: f64) -> PyResult<()> {
+        if self.update.is_none() {
+            return Ok(());
+        }
+        if to < from {
+            return Err(PyValueError::new_err(
+                "t: a load with update= cannot go backward in time: what its states were before an update is not known",
+            ));
+        }
+        let count = (to - from) / self.period;
+        if count > MOST_UPDATES {
+            return Err(PyValueError::new_err(format!(
+                "period: {:?} makes {count:.1e} updates in this run, more than {MOST_UPDATES:.0e}",
+                self.period
+            )));
+        }
+        Ok(())
+    }
+
+    /// Whether an update is due at time `t` of a run that began at `start`.
+    fn is_due(&self, t: f64, start: f64) -> bool {
+        let epoch = self.epoch.unwrap_or(start);
+        let k = ((t - epoch) / self.period).round();
+        k >= 0.0 && t == epoch + k * self.period
+    }
+
+    /// The states after an update that is due, if one is.
+    pub(super) fn updated(
+        &self,
+        py: Python<'_>,
+        (t, start): (f64, f64),
+        phase: &Phase,
+        states: &Bound<'_, PyDict>,
+    ) -> PyResult<Option<Vec<f64>>> {
+        let Some(update) = self.update.as_ref().filter(|_| self.is_due(t, start)) else {
+            return Ok(None);
+        };
+        let returned = update.bind(py).call1(arguments(py, t, phase, states))?;
+        numbers(&returned, "states that update", self.initial.len(), t).map(Some)
+    }
+
+    /// The rates of the states, into `rates`.
+    pub(super) fn rates(
+        &self,
+        py: Python<'_>,
+        t: f64,
+        phase: &Phase,
+        states: &Bound<'_, PyDict>,
+        rates: &mut [f64],
+    ) -> PyResult<()> {
+        if let Some(function) = &self.rates {
+            let returned = function.bind(py).call1(arguments(py, t, phase, states))?;
+            rates.copy_from_slice(&numbers(&returned, "rates that rates", rates.len(), t)?);
+        }
+        Ok(())
+    }
+
+    /// Force and torque.
+    pub(super) fn call(
+        &self,
+        py: Python<'_>,
+        t: f64,
+        phase: &Phase,
+        states: &Bound<'_, PyDict>,
+    ) -> PyResult<Wrench> {
+        let Some(function) = &self.wrench else {
+            return Ok(Wrench::default());
+        };
+        let returned = function.bind(py).call1(arguments(py, t, phase, states))?;
+        let Ok((force, torque)) = returned.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>() else {
+            return Err(PyTypeError::new_err(format!(
+                "wrench must return a pair (force in space, torque in the body), got {}",
+                returned.get_type()
+            )));
+        };
+        Ok(Wrench {
+            force: vector(&force, "force", t)?,
+            torque: vector(&torque, "torque", t)?,
+        })
+    }
+
+    pub(super) fn exerts_force(&self) -> bool {
+        self.wrench.is_some()
+    }
+}
+
+/// The most updates of a run: their times take 8 bytes each.
+const MOST_UPDATES: f64 = 1e8;
+
+type Arguments<'a, 'py> = (
+    f64,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    &'a Bound<'py, PyDict>,
+);
+
+/// What every function is called with.
+fn arguments<'a, 'py>(
+    py: Python<'py>,
+    t: f64,
+    phase: &Phase,
+    states: &'a Bound<'py, PyDict>,
+) -> Arguments<'a, 'py> {
+    let array = |numbers: &[f64]| PyArray1::from_slice(py, numbers);
+    (
+        t,
+        array(phase.omega.as_slice()),
+        array(&components(&phase.attitude)),
+        array(phase.position.as_slice()),
+        array(phase.velocity.as_slice()),
+        states,
+    )
+}
+
+/// So many finite numbers from what a function returned.
+fn numbers(returned: &Bound<'_, PyAny>, what: &str, count: usize, t: f64) -> PyResult<Vec<f64>> {
+    let what = format!("the {what} returned");
+    let array = floats(returned, &what)?;
+    let found = array.as_slice()?;
+    if found.len() != count {
+        return Err(PyValueError::new_err(format!(
+            "{what}: expected {count}, as many as there are states, got {}",
+            found.len()
+        )));
+    }
+    if let Some(value) = found.iter().find(|x| !x.is_finite()) {
+        let message = format!("{what} must be finite, got {value} at t = {t:?}");
+        return Err(new(returned.py(), "PolhodeError", message));
+    }
+    Ok(found.to_vec())
+}
+
+/// Initial values and scales of states.
+pub(super) fn initial(
+    initial: &Bound<'_, PyAny>,
+    scale: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(Vec<f64>, Vec<f64>)> {
+    let values = list_floats(initial, "initial", "k", &[])?
+        .as_slice()?
+        .to_vec();
+    if let Some(bad) = values.iter().find(|x| !x.is_finite()) {
+        return Err(PyValueError::new_err(format!(
+            "initial: must be finite, got {bad}"
+        )));
+    }
+    if values.is_empty() || values.len() > MOST_STATES {
+        return Err(PyValueError::new_err(format!(
+            "initial: expected from 1 to {MOST_STATES} states, got {}",
+            values.len()
+        )));
+    }
+    let scales = match scale {
+        None => vec![0.0; values.len()],
+        Some(scale) => {
+            let given = floats(scale, "scale")?;
+            let given = given.as_slice()?;
+            match given.len() {
+                1 => vec![given[0]; values.len()],
+                count if count == values.len() => given.to_vec(),
+                count => {
+                    return Err(PyValueError::new_err(format!(
+                        "scale: expected one number or {}, one for each state, got {count}",
+                        values.len()
+                    )));
+                }
+            }
+        }
+    };
+    if let Some(bad) = scales.iter().find(|x| !(**x >= 0.0 && x.is_finite())) {
+        return Err(PyValueError::new_err(format!(
+            "scale: must be positive or zero, got {bad}"
+        )));
+    }
+    Ok((values, scales))
+}
+
+/// The most states of a load.
+pub(crate) const MOST_STATES: usize = 51;
+
+/// That a name is one.
+pub(super) fn check_name(name: &str) -> PyResult<()> {
+    if name.is_empty() {
+        return Err(PyValueError::new_err("name: must not be empty"));
+    }
+    Ok(())
+}

@@ -1,0 +1,312 @@
+//! The functions that make loads which the body carries along: rotors, wheels, slugs.
+
+use nalgebra::Vector3;
+use numpy::PyUntypedArrayMethods;
+use polhode::motion::loads::{Drive, Held, Rotor, Slug, Term, Wheel};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use super::load::PyLoad;
+use super::part::Acts;
+use super::recipe::recipe;
+use super::stateful::check_name;
+use crate::arrays::{floats, list_floats, read, try_rows, write, write_of};
+use crate::errors::to_py;
+use crate::stack::{Broadcast, Stack};
+
+/// A rotor that keeps its angular momentum in the body: the gyrostat's torque ``-ω × h``.
+///
+/// The momentum of the trajectory includes it, and its energy is the one that the motion keeps, ``½ ω·I ω``.
+///
+/// Parameters
+/// ----------
+/// momentum : array_like, shape (..., 3)
+///     h of the rotor relative to the body, in the body frame: ``J Ω`` along its axis.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// A body at rest but for a wheel that turns in it turns when it is pushed, and then nutates:
+///
+/// >>> from polhode import RigidBody, loads
+/// >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+/// >>> motion = body.simulate([0, 50, 100], omega=(0.1, 0, 0), load=loads.rotor((0, 0, 20)), rtol=1e-13)
+/// >>> motion.angular_momentum().spin.round(9)[-1]
+/// array([ 0.1,  0. , 20. ])
+/// >>> bool(motion.invariants().energy_drift < 1e-11)
+/// True
+#[pyfunction]
+pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyLoad> {
+    let momentum: Stack<Vector3<f64>> = read(momentum, "momentum")?;
+    let terms = try_rows(py, &momentum, |h| Rotor::new(h).map(Term::Rotor))?;
+    let recipe = recipe(py, "rotor", (write(py, &momentum)?,))?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// A wheel in the body, with a motor and friction in its bearing.
+///
+/// Its state is ``h = J (Ω + a·ω)``, its momentum about its axis a, with the rate Ω relative to the body; the inertia of the body
+/// includes the wheel as if it were locked. ``ḣ = τ - c Ω`` with the motor's torque τ on the wheel, and ``-a ḣ`` acts on
+/// the rest of the body. Where ``speed`` is given instead, the motor does whatever the speed needs.
+///
+/// Parameters
+/// ----------
+/// axis : array_like, shape (..., 3)
+///     a in the body frame, of any length.
+/// inertia : array_like, shape (...)
+///     J about the axis. ``I - J a aᵀ`` must have positive moments.
+/// rate : array_like, shape (...), optional
+///     Ω at the start; zero by default.
+/// torque : float, array_like of shape (n,), or Load, optional
+///     τ of the motor on the wheel: constant; held from each of `times` on; or a :func:`feedback`, whose torque on the body
+///     the motor exerts as far as it is along the axis.
+/// speed : float or array_like of shape (n,), optional
+///     Ω: constant, or straight lines between `times`.
+/// times : array_like, shape (n,), optional
+///     Ascending. A torque is not known before the first of them, a speed neither before the first nor after the last.
+/// friction : array_like, shape (...), optional
+///     c: torque over rate, not with `speed`.
+/// name : str, optional
+///     The name of its state in `states` of the trajectory; of several with the same name the second is ``wheel_2``.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// See Also
+/// --------
+/// rotor : a momentum that stays as it is.
+///
+/// Examples
+/// --------
+/// A wheel is spun up and turns the body the other way; the momentum in space stays zero:
+///
+/// >>> from polhode import RigidBody, loads
+/// >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+/// >>> wheel = loads.wheel(axis=(0, 0, 1), inertia=0.5, torque=0.1)
+/// >>> motion = body.simulate([0, 10], omega=(0, 0, 0), load=wheel)
+/// >>> motion.omega[-1].round(9), motion.states["wheel"][-1].round(9)
+/// (array([ 0. ,  0. , -0.5]), array([1.]))
+#[pyfunction]
+#[pyo3(signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None, name="wheel"))]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+pub(crate) fn wheel(
+    py: Python<'_>,
+    axis: &Bound<'_, PyAny>,
+    inertia: &Bound<'_, PyAny>,
+    rate: Option<&Bound<'_, PyAny>>,
+    torque: Option<&Bound<'_, PyAny>>,
+    speed: Option<&Bound<'_, PyAny>>,
+    times: Option<&Bound<'_, PyAny>>,
+    friction: Option<&Bound<'_, PyAny>>,
+    name: &str,
+) -> PyResult<PyLoad> {
+    check_name(name)?;
+    if speed.is_some() {
+        for (what, given) in [("rate", rate), ("torque", torque), ("friction", friction)] {
+            if given.is_some() {
+                return Err(PyTypeError::new_err(format!(
+                    "{what}: not beside speed=, which says what the wheel does"
+                )));
+            }
+        }
+    }
+    let drive = match (torque, speed) {
+        (_, Some(speed)) => Stack::one(Drive::Speed(held("speed", speed, times)?)),
+        (None, None) => Stack::one(Drive::Torque(nothing(py, times)?)),
+        (Some(torque), None) => match torque.cast::<PyLoad>() {
+            Ok(load) => asked(py, load.get(), times)?,
+            Err(_) => Stack::one(Drive::Torque(held("torque", torque, times)?)),
+        },
+    };
+    let axis: Stack<Vector3<f64>> = read(axis, "axis")?;
+    let inertia: Stack<f64> = read(inertia, "inertia")?;
+    let or_zero = |given: Option<&Bound<'_, PyAny>>, name| {
+        given.map_or_else(|| Ok(Stack::one(0.0)), |given| read::<f64>(given, name))
+    };
+    let (rates, frictions) = (or_zero(rate, "rate")?, or_zero(friction, "friction")?);
+    let names = ["axis", "inertia", "rate", "friction", "torque"];
+    let shapes = [
+        &axis.shape[..],
+        &inertia.shape,
+        &rates.shape,
+        &frictions.shape,
+        &drive.shape,
+    ];
+    let terms = Broadcast::of(names, shapes)?.try_map(py, |[a, j, w, c, d]| {
+        Wheel::new(
+            &axis[a],
+            inertia[j],
+            rates[w],
+            frictions[c],
+            drive[d].clone(),
+        )
+        .map(Term::Wheel)
+    })?;
+    let number = |stack: &Stack<f64>| write_of(py, stack, |x| *x);
+    let kept = |given: Option<&Bound<'_, PyAny>>| -> PyResult<Option<Py<PyAny>>> {
+        Ok(match given {
+            Some(load) if load.is_instance_of::<PyLoad>() => Some(load.clone().unbind()),
+            Some(numbers) => Some(
+                crate::arrays::numpy(py)?
+                    .call_method1("array", (numbers, "float64"))?
+                    .unbind(),
+            ),
+            None => None,
+        })
+    };
+    let arguments = (
+        write(py, &axis)?,
+        number(&inertia)?,
+        rate.map(|_| number(&rates)).transpose()?,
+        kept(torque)?,
+        kept(speed)?,
+        kept(times)?,
+        friction.map(|_| number(&frictions)).transpose()?,
+        name,
+    );
+    let recipe = recipe(py, "_wheel", arguments)?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe).named(name))
+}
+
+/// As [`wheel`], all arguments by their places: for pickle.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "those of a wheel")]
+pub(crate) fn _wheel(
+    py: Python<'_>,
+    axis: &Bound<'_, PyAny>,
+    inertia: &Bound<'_, PyAny>,
+    rate: Option<&Bound<'_, PyAny>>,
+    torque: Option<&Bound<'_, PyAny>>,
+    speed: Option<&Bound<'_, PyAny>>,
+    times: Option<&Bound<'_, PyAny>>,
+    friction: Option<&Bound<'_, PyAny>>,
+    name: &str,
+) -> PyResult<PyLoad> {
+    wheel(
+        py, axis, inertia, rate, torque, speed, times, friction, name,
+    )
+}
+
+/// No torque.
+fn nothing(py: Python<'_>, times: Option<&Bound<'_, PyAny>>) -> PyResult<Held> {
+    if times.is_some() {
+        return Err(PyTypeError::new_err("times: give torque= or speed= too"));
+    }
+    Held::constant("torque", 0.0).map_err(|error| to_py(py, &error))
+}
+
+/// A number, or one for each of the times.
+fn held(
+    what: &'static str,
+    given: &Bound<'_, PyAny>,
+    times: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Held> {
+    let py = given.py();
+    let values = floats(given, what)?;
+    let made = match times {
+        None if values.ndim() == 0 => Held::constant(what, values.as_slice()?[0]),
+        None => {
+            return Err(PyTypeError::new_err(format!(
+                "{what}: expected one number, got {} of them; give the times= from which each holds",
+                values.len()
+            )));
+        }
+        Some(times) => {
+            let times = list_floats(times, "times", "n", &[])?;
+            let values = list_floats(given, what, "n", &[])?;
+            if times.len() != values.len() {
+                return Err(PyValueError::new_err(format!(
+                    "{what}: expected one for each of the {} times, got {}",
+                    times.len(),
+                    values.len()
+                )));
+            }
+            Held::table(what, times.as_slice()?, values.as_slice()?)
+        }
+    };
+    made.map_err(|error| to_py(py, &error))
+}
+
+/// What a feedback asks of a motor.
+fn asked(
+    py: Python<'_>,
+    load: &PyLoad,
+    times: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Stack<Drive>> {
+    let refused = || {
+        PyTypeError::new_err(
+            "torque: expected a number, numbers with times=, or one loads.feedback(...) alone, not a sum, a scaled or scheduled one",
+        )
+    };
+    if times.is_some() {
+        return Err(PyTypeError::new_err("times: not beside a feedback"));
+    }
+    let terms = load.terms(py)?;
+    if !load.is_analytic() || terms.rows.iter().any(|row| row.len() != 1) {
+        return Err(refused());
+    }
+    let shape = terms.shape;
+    let drives = terms.rows.into_iter().map(|mut row| match row.pop() {
+        Some(Term::Feedback(law)) => Ok(Drive::Feedback(law)),
+        _ => Err(refused()),
+    });
+    Ok(Stack {
+        shape,
+        rows: drives.collect::<PyResult<_>>()?,
+    })
+}
+
+/// A spherical damper: a slug in a viscous fluid, which takes energy from the body and keeps its momentum.
+///
+/// Its states are σ, the angular velocity of the slug relative to space in the body frame: ``J σ̇ + ω × J σ = -k (σ - ω)``, and the
+/// body feels ``k (σ - ω)``. It stands for all that is loose or flexible in the body: nutation damps, and a long body that
+/// spins about its long axis goes over into a flat spin.
+///
+/// Parameters
+/// ----------
+/// inertia : array_like, shape (...)
+///     J, a number; not part of the inertia of the body.
+/// damping : array_like, shape (...)
+///     k: torque over angular velocity.
+/// name : str, optional
+///     The name of its states in `states` of the trajectory.
+///
+/// Returns
+/// -------
+/// Load
+///
+/// Examples
+/// --------
+/// A long body that spins about its long axis, a little off, ends in a flat spin: all its momentum about the axis of the
+/// largest moment.
+///
+/// >>> from polhode import RigidBody, loads
+/// >>> explorer = RigidBody.from_principal(1.0, (0.2, 1.0, 1.05))
+/// >>> motion = explorer.simulate([0, 400], omega=(10, 0.1, 0), load=loads.slug(inertia=0.05, damping=0.05))
+/// >>> abs(motion.omega[-1]).round(3)
+/// array([0.   , 0.   , 2.275])
+/// >>> motion.angular_momentum().spin[-1].round(6) - motion.angular_momentum().spin[0].round(6)
+/// array([0., 0., 0.])
+#[pyfunction]
+#[pyo3(signature = (inertia, damping, name="slug"))]
+pub(crate) fn slug(
+    py: Python<'_>,
+    inertia: &Bound<'_, PyAny>,
+    damping: &Bound<'_, PyAny>,
+    name: &str,
+) -> PyResult<PyLoad> {
+    check_name(name)?;
+    let (inertia, damping): (Stack<f64>, Stack<f64>) =
+        (read(inertia, "inertia")?, read(damping, "damping")?);
+    let grid = Broadcast::of(["inertia", "damping"], [&inertia.shape, &damping.shape])?;
+    let terms = grid.try_map(py, |[j, k]| {
+        Slug::new(inertia[j], damping[k]).map(Term::Slug)
+    })?;
+    let number = |stack: &Stack<f64>| write_of(py, stack, |x| *x);
+    let recipe = recipe(py, "slug", (number(&inertia)?, number(&damping)?, name))?;
+    Ok(PyLoad::one(Acts::Term(terms), recipe).named(name))
+}

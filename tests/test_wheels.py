@@ -1,0 +1,479 @@
+"""Rotors, wheels and slugs: against SciPy on the equations of both bodies, and against closed forms."""
+
+from __future__ import annotations
+
+import copy
+import itertools
+import pickle
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from polhode import Event, RigidBody, Trajectory, loads
+from polhode.errors import InvalidInertiaError, PolhodeError
+from scipy.integrate import solve_ivp
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+BODY = RigidBody.from_principal(
+    3.0, (1.0, 2.0, 2.5), axes=np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+)
+OMEGA = np.array([0.7, -0.9, 1.1])
+ATTITUDE = np.array([0.1, -0.5, 0.3, 0.8]) / np.linalg.norm([0.1, -0.5, 0.3, 0.8])
+T = np.array([0.0, 1.7, 6.0, 15.0])
+METHODS = [("taylor", 2.3e-15, 2e-11), ("dop853", 1e-12, 2e-10), ("radau", 1e-9, 1e-6)]
+
+
+def turning(q: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """Give q̇ = ½ q∘ω."""
+    x, y, z, s = q
+    a, b, c = w
+    product = [s * a + y * c - z * b, s * b + z * a - x * c, s * c + x * b - y * a, -x * a - y * b - z * c]
+    return 0.5 * np.array(product)
+
+
+def by_scipy(
+    rates: Callable[[float, np.ndarray], np.ndarray], own: list[float], ends: list[float]
+) -> np.ndarray:
+    """Integrate (q, ω, own) from piece to piece; the states at T."""
+    y, found = np.concatenate([ATTITUDE, OMEGA, own]), []
+    for low, high in itertools.pairwise(ends):
+        last = high == ends[-1]
+        t = T[(low <= T) & ((high > T) | last)]
+        run = solve_ivp(rates, (low, high), y, "DOP853", t_eval=np.union1d(t, high), rtol=3e-14, atol=1e-14)
+        found += [run.y[:, k] for k, at in enumerate(run.t) if at in t]
+        y = run.y[:, -1]
+    return np.array(found)
+
+
+def of_wheels(
+    axes: np.ndarray,
+    inertia: np.ndarray,
+    friction: np.ndarray,
+    torque: Callable[[float, np.ndarray, np.ndarray], np.ndarray],
+) -> Callable[[float, np.ndarray], np.ndarray]:
+    """Give the rates of (q, ω, Ω): body and wheels as bodies that push each other, by one matrix for all."""
+    count, tensor = len(axes), BODY.inertia
+    mass = np.zeros((3 + count, 3 + count))
+    mass[:3, :3] = tensor
+    for k in range(count):
+        mass[:3, 3 + k] = mass[3 + k, :3] = inertia[k] * axes[k]
+        mass[3 + k, 3 + k] = inertia[k]
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        q, w, speed = y[:4], y[4:7], y[7:]
+        spin = tensor @ w + (inertia * speed) @ axes
+        push = torque(t, q, w) - friction * speed
+        return np.concatenate(
+            [turning(q, w), np.linalg.solve(mass, np.concatenate([-np.cross(w, spin), push]))]
+        )
+
+    return rates
+
+
+def apart(run: Trajectory, exact: np.ndarray) -> float:
+    return float(max(np.abs(run.omega - exact[:, 4:7]).max(), np.abs(run.quaternion - exact[:, :4]).max()))
+
+
+AXES = np.array([[1.0, 2.0, -2.0], [0.0, 3.0, 4.0]])
+UNIT = AXES / np.linalg.norm(AXES, axis=1)[:, None]
+J, RATES, FRICTION = np.array([0.2, 0.15]), np.array([3.0, -7.0]), np.array([0.05, 0.3])
+
+
+@pytest.mark.parametrize(("method", "rtol", "allowed"), METHODS)
+class TestAgainstBothBodies:
+    def test_friction_and_a_motor(self, method: Any, rtol: float, allowed: float) -> None:
+        pair = loads.wheel(AXES[0], J[0], RATES[0], friction=FRICTION[0], torque=0.1)
+        pair = pair + loads.wheel(AXES[1], J[1], RATES[1], friction=FRICTION[1], name="second")
+        run = BODY.simulate(T, OMEGA, ATTITUDE, load=pair, method=method, rtol=rtol)
+        rates = of_wheels(UNIT, J, FRICTION, lambda *_: np.array([0.1, 0.0]))
+        exact = by_scipy(rates, list(RATES), [0.0, 15.0])
+        assert apart(run, exact) < allowed
+        momenta = J * (exact[:, 7:] + exact[:, 4:7] @ UNIT.T)
+        assert np.abs(run.states["wheel"][:, 0] - momenta[:, 0]).max() < allowed
+        assert np.abs(run.states["second"][:, 0] - momenta[:, 1]).max() < allowed
+        spin = run.angular_momentum().spin
+        assert np.abs(spin - spin[0]).max() < 10 * allowed
+        energy = 0.5 * np.einsum("ti,ij,tj->t", exact[:, 4:7], BODY.inertia, exact[:, 4:7])
+        energy += (J * exact[:, 7:] * (exact[:, 4:7] @ UNIT.T + 0.5 * exact[:, 7:])).sum(axis=1)
+        assert np.abs(run.kinetic_energy().total - energy).max() < 10 * allowed
+
+    def test_a_torque_that_is_held(self, method: Any, rtol: float, allowed: float) -> None:
+        times, values = np.array([-1.0, 2.5, 7.0]), np.array([0.3, -0.7, 0.1])
+        wheel = loads.wheel(AXES[0], J[0], RATES[0], torque=values, times=times)
+        run = BODY.simulate(T, OMEGA, ATTITUDE, load=wheel, method=method, rtol=rtol)
+
+        def torque(t: float, *_: Any) -> np.ndarray:
+            return values[[np.searchsorted(times, t, "right") - 1]]
+
+        exact = by_scipy(of_wheels(UNIT[:1], J[:1], np.zeros(1), torque), [3.0], [0.0, 2.4999999999999, 15.0])
+        assert apart(run, exact[[0, 1, 2, 3]]) < max(allowed, 1e-9)
+
+    def test_a_feedback_on_the_attitude(self, method: Any, rtol: float, allowed: float) -> None:
+        three = np.eye(3)
+        control = loads.feedback(K=2.0, D=1.5, target=(0, 0, 0, 1))
+        load: Any = sum(loads.wheel(axis, 0.1, torque=control) for axis in three)
+        run = BODY.simulate(T, OMEGA, ATTITUDE, load=load, method=method, rtol=rtol)
+
+        def torque(_: float, q: np.ndarray, w: np.ndarray) -> Any:
+            return np.sign(q[3]) * 2.0 * q[:3] + 1.5 * w
+
+        exact = by_scipy(of_wheels(three, np.full(3, 0.1), np.zeros(3), torque), [0.0] * 3, [0.0, 15.0])
+        assert apart(run, exact) < max(allowed, 1e-9)
+        assert set(run.states) == {"wheel", "wheel_2", "wheel_3"}
+
+    def test_a_given_speed(self, method: Any, rtol: float, allowed: float) -> None:
+        wheel = loads.wheel(AXES[0], J[0], speed=[2.0, 5.0, -1.0], times=[0.0, 4.0, 15.0])
+        run = BODY.simulate(T, OMEGA, ATTITUDE, load=wheel, method=method, rtol=rtol)
+
+        def rates(t: float, y: np.ndarray) -> np.ndarray:
+            speed = np.interp(t, [0.0, 4.0, 15.0], [2.0, 5.0, -1.0])
+            slope = 0.75 if t < 4.0 else -6.0 / 11.0
+            w = y[4:7]
+            spin = BODY.inertia @ w + J[0] * speed * UNIT[0]
+            return np.concatenate(
+                [
+                    turning(y[:4], w),
+                    np.linalg.solve(BODY.inertia, -np.cross(w, spin) - J[0] * slope * UNIT[0]),
+                ]
+            )
+
+        exact = by_scipy(rates, [], [0.0, 3.99999999999999, 15.0])
+        assert apart(run, exact) < max(allowed, 1e-9)
+        speed = np.interp(T, [0.0, 4.0, 15.0], [2.0, 5.0, -1.0])
+        assert np.abs(run.states["wheel"][:, 0] - J[0] * (speed + exact[:, 4:7] @ UNIT[0])).max() < 1e-6
+
+    def test_a_slug(self, method: Any, rtol: float, allowed: float) -> None:
+        run = BODY.simulate(T, OMEGA, ATTITUDE, load=loads.slug(0.3, 0.4), method=method, rtol=rtol)
+
+        def rates(_: float, y: np.ndarray) -> np.ndarray:
+            w, s = y[4:7], y[7:]
+            push = 0.4 * (s - w)
+            rate = np.linalg.solve(BODY.inertia, push - np.cross(w, BODY.inertia @ w))
+            return np.concatenate([turning(y[:4], w), rate, -push / 0.3 - np.cross(w, s)])
+
+        exact = by_scipy(rates, list(OMEGA), [0.0, 15.0])
+        assert apart(run, exact) < allowed
+        assert np.abs(run.states["slug"] - exact[:, 7:]).max() < allowed
+        energies = run.kinetic_energy().total
+        assert (np.diff(energies) < 0).all()
+
+    def test_a_rotor(self, method: Any, rtol: float, allowed: float) -> None:
+        h = np.array([0.4, -0.2, 0.9])
+        run = BODY.simulate(T, OMEGA, ATTITUDE, load=loads.rotor(h), method=method, rtol=rtol)
+
+        def rates(_: float, y: np.ndarray) -> np.ndarray:
+            w = y[4:7]
+            return np.concatenate(
+                [turning(y[:4], w), np.linalg.solve(BODY.inertia, -np.cross(w, BODY.inertia @ w + h))]
+            )
+
+        assert apart(run, by_scipy(rates, [], [0.0, 15.0])) < allowed
+        kept = run.invariants()
+        assert kept.energy_drift < 10 * allowed
+        assert kept.angular_momentum_drift < 10 * allowed
+
+
+class TestOneAxis:
+    """About one principal axis all is known by hand."""
+
+    BODY = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+
+    def test_a_wheel_that_is_spun_up(self) -> None:
+        run = self.BODY.simulate([0, 10], (0, 0, 0), load=loads.wheel((0, 0, 5), 0.5, torque=0.1))
+        assert run.omega[-1] == pytest.approx((0, 0, -1.0 / (2.5 - 0.5)), abs=1e-14)
+        assert run.states["wheel"][-1, 0] == pytest.approx(1.0, abs=1e-14)
+
+    def test_friction_brings_them_together(self) -> None:
+        """Body and wheel end with one rate; the difference decays with c (1/J + 1/(I − J))."""
+        run = self.BODY.simulate(
+            [0, 3], (0, 0, 1), load=loads.wheel((0, 0, 1), 0.5, 8.0, friction=0.2), rtol=1e-13
+        )
+        rate = 0.2 * (1 / 0.5 + 1 / 2.0)
+        mean = (2.5 + 0.5 * 8.0) / 2.5
+        expected = mean - 0.5 * 8.0 / 2.5 * np.exp(-3 * rate)
+        assert run.omega[-1, 2] == pytest.approx(expected, abs=1e-13)
+
+    def test_a_given_speed_that_is_constant_is_a_rotor(self) -> None:
+        wheel = self.BODY.simulate([0, 9], OMEGA, load=loads.wheel((3, 0, 4), 0.5, speed=4.0), rtol=1e-13)
+        rotor = self.BODY.simulate([0, 9], OMEGA, load=loads.rotor((1.2, 0, 1.6)), rtol=1e-13)
+        assert np.abs(wheel.omega - rotor.omega).max() < 1e-13
+        assert np.abs(wheel.angular_momentum().spin - rotor.angular_momentum().spin).max() < 1e-12
+
+    def test_a_damping_matrix_is_a_rotor(self) -> None:
+        h = np.array([0.4, -0.2, 0.9])
+        skew = np.array([[0, -h[2], h[1]], [h[2], 0, -h[0]], [-h[1], h[0], 0]])
+        one = BODY.simulate(T, OMEGA, load=loads.rotor(h), rtol=1e-13)
+        other = BODY.simulate(T, OMEGA, load=loads.damping(-skew), rtol=1e-13)
+        assert np.abs(one.omega - other.omega).max() < 1e-13
+
+    def test_a_sampled_controller(self) -> None:
+        """Each second it holds −g ω: ω goes down by the factor 1 − g/I."""
+
+        def update(_t: float, w: np.ndarray, *_: Any) -> np.ndarray:
+            return -0.5 * w
+
+        def wrench(*arguments: Any) -> tuple[Any, Any]:
+            return (0, 0, 0), arguments[-1]["control"]
+
+        control = loads.with_states(None, np.zeros(3), wrench, "control", update=update, period=1.0)
+        for method in ("dop853", "radau"):
+            run = self.BODY.simulate(np.arange(6.0), (0, 0, 1), load=control, method=method)
+            assert run.omega[:, 2] == pytest.approx((1 - 0.5 / 2.5) ** np.arange(6.0), abs=1e-12)
+            assert run.states["control"][1:, 2] == pytest.approx(-0.5 * run.omega[:-1, 2], abs=1e-12)
+        half = self.BODY.simulate([0, 2.5], (0, 0, 1), load=control)
+        assert half.resume([2.5, 5.0]).omega[-1] == pytest.approx(run.omega[-1], abs=1e-12)
+
+
+class TestStates:
+    LOAD = (
+        loads.wheel(AXES[0], J[0], RATES[0], friction=0.1) + loads.slug(0.3, 0.4) + loads.rotor((0, 0, 0.3))
+    )
+
+    def test_a_run_goes_on(self) -> None:
+        whole = BODY.simulate([0, 3, 7], OMEGA, ATTITUDE, load=self.LOAD, rtol=1e-13)
+        half = BODY.simulate([0, 3], OMEGA, ATTITUDE, load=self.LOAD, rtol=1e-13)
+        for again in (
+            half.resume([3, 7], rtol=1e-13),
+            BODY.simulate([3, 7], **half.state()._asdict(), load=self.LOAD, rtol=1e-13),
+        ):
+            assert np.abs(again.omega[-1] - whole.omega[-1]).max() < 1e-13
+            assert np.abs(again.states["slug"][-1] - whole.states["slug"][-1]).max() < 1e-13
+        fresh = half.resume([3, 7], load=loads.slug(0.3, 0.4))
+        assert np.array_equal(fresh.states["slug"][0], half.omega[-1])
+
+    def test_back_in_time(self) -> None:
+        there = BODY.simulate([0, 5], OMEGA, ATTITUDE, load=self.LOAD, rtol=1e-14)
+        back = BODY.simulate([5, 0], **there.state()._asdict(), load=self.LOAD, rtol=1e-14)
+        assert np.abs(back.omega[-1] - OMEGA).max() < 1e-11
+        assert np.abs(back.states["slug"][-1] - OMEGA).max() < 1e-11
+
+    def test_files_pickles_and_copies_hold_them(self, tmp_path: Path) -> None:
+        run = BODY.simulate(T, OMEGA[None] * [[1], [2]], load=self.LOAD)
+        whole = run.angular_momentum().total
+        for again in (pickle.loads(pickle.dumps(run)), copy.deepcopy(run)):
+            assert np.array_equal(again.states["slug"], run.states["slug"])
+            assert np.array_equal(again.angular_momentum().total, whole)
+        for name in ("motion.json", "motion.npz"):
+            run.save(tmp_path / name)
+            again = Trajectory.from_file(tmp_path / name)
+            assert {key: value.shape for key, value in again.states.items()} == {
+                "wheel": (2, 4, 1),
+                "slug": (2, 4, 3),
+            }
+            assert np.array_equal(again.states["wheel"], run.states["wheel"])
+            assert np.array_equal(again.angular_momentum().total, whole)
+            assert np.array_equal(again.kinetic_energy().total, run.kinetic_energy().total)
+        load = pickle.loads(pickle.dumps(self.LOAD))
+        assert np.array_equal(
+            BODY.simulate(T, OMEGA, load=load).omega, BODY.simulate(T, OMEGA, load=self.LOAD).omega
+        )
+
+    def test_stacks_have_the_bits_of_single_runs(self) -> None:
+        momenta = np.linspace(0.1, 0.3, 9)
+        stack = loads.wheel((0, 3, 4), momenta, np.linspace(-5, 5, 9), friction=0.1) + loads.slug(
+            momenta, 0.4
+        )
+        run = BODY.simulate(T, OMEGA, load=stack)
+        for k in range(9):
+            alone = BODY.simulate(T, OMEGA, load=stack[k])
+            assert np.abs(run.omega[k] - alone.omega).max() < 1e-14
+            assert np.abs(run.states["slug"][k] - alone.states["slug"]).max() < 1e-14
+
+    def test_events_see_them(self) -> None:
+        wheel = loads.wheel((0, 0, 1), 0.5, torque=0.1, name="w")
+        crossing = Event(lambda *arguments: arguments[-1]["w"][0] - 0.5, terminal=True)
+        for method in ("taylor", "dop853"):
+            run = BODY.simulate([0, 20], (0, 0, 0), load=wheel, events=crossing, method=method)
+            assert run.events.t[0] == pytest.approx(5.0, abs=1e-12)
+            assert run.events.states["w"].shape == (1, 1)
+            assert run.events.states["w"][0, 0] == pytest.approx(0.5, abs=1e-12)
+            assert run.status == "event"
+            assert np.isnan(run.states["w"][-1, 0])
+
+    def test_the_torque_is_that_of_the_locked_body(self) -> None:
+        t = np.linspace(0, 0.02, 21)
+        run = BODY.simulate(t, OMEGA, load=self.LOAD, rtol=1e-14)
+        slope = np.polyfit(t - 0.01, run.omega, 8)[-2]
+        assert np.abs(run.angular_acceleration()[10] - slope).max() < 1e-9
+
+    def test_a_pivoted_body(self) -> None:
+        body = RigidBody.from_principal(2.0, (1.0, 2.0, 2.5), center_of_mass=(0, 0, 0.3))
+        load = loads.uniform_gravity((0, 0, -9.8)) + loads.wheel((0, 0, 1), 0.2, 60.0)
+        runs = [
+            body.simulate(
+                [0, 2, 5], (0, 0, 0), (0.28, 0, 0, 0.96), load=load, about="origin", method=method, rtol=1e-13
+            )
+            for method in ("taylor", "dop853")
+        ]
+        assert np.abs(runs[0].omega - runs[1].omega).max() < 1e-9
+        assert runs[0].invariants().energy_drift < 1e-12
+        upward = runs[0].angular_momentum().total[:, 2]
+        assert np.abs(upward - upward[0]).max() < 1e-11
+
+    def test_xarray_names_them(self) -> None:
+        pytest.importorskip("xarray")
+        data = BODY.simulate(T, OMEGA, load=self.LOAD).to_xarray()
+        assert data["slug"].dims == ("time", "slug_component")
+
+    def test_a_failed_run_has_none_after_its_end(self) -> None:
+        def rates(t: float, *_: Any) -> list[float]:
+            return [1.0 if t < 1 else np.nan]
+
+        with pytest.raises(PolhodeError, match="must be finite"):
+            BODY.simulate([0, 2], OMEGA, load=loads.with_states(rates, [0.0]))
+
+
+class TestFunctions:
+    def test_functions_solve_what_a_slug_solves(self) -> None:
+        def rates(_t: float, w: Any, _q: Any, _r: Any, _v: Any, states: Any) -> Any:
+            return -0.4 / 0.3 * (states["own"] - w) - np.cross(w, states["own"])
+
+        def wrench(_t: float, w: Any, _q: Any, _r: Any, _v: Any, states: Any) -> Any:
+            return (0, 0, 0), 0.4 * (states["own"] - w)
+
+        own = loads.with_states(rates, OMEGA, wrench, "own")
+        exact = BODY.simulate(T, OMEGA, load=loads.slug(0.3, 0.4), rtol=2.3e-15)
+        for method, rtol, allowed in (("dop853", 1e-12, 1e-10), ("radau", 1e-8, 1e-6)):
+            run = BODY.simulate(T, OMEGA, load=own, method=method, rtol=rtol)
+            assert np.abs(run.omega - exact.omega).max() < allowed
+            assert np.abs(run.states["own"] - exact.states["slug"]).max() < allowed
+        both = BODY.simulate(T, OMEGA, load=own + loads.wheel((0, 0, 1), 0.1), rtol=1e-12)
+        other = BODY.simulate(T, OMEGA, load=loads.slug(0.3, 0.4) + loads.wheel((0, 0, 1), 0.1), rtol=1e-12)
+        assert np.abs(both.omega - other.omega).max() < 1e-10
+
+    def test_many_states(self) -> None:
+        for count in (3, 4, 11, 12, 51):
+            slow = np.linspace(0.1, 1.0, count)
+
+            def rates(*arguments: Any, slow: Any = slow) -> Any:
+                return -slow * arguments[-1]["states"]
+
+            methods: list[Any] = ["dop853", "radau"]
+            for method in methods:
+                load = loads.with_states(rates, np.ones(count))
+                run = BODY.simulate([0, 1, 2], OMEGA, load=load, method=method)
+                assert np.abs(run.states["states"] - np.exp(-slow * run.t[:, None])).max() < 1e-8
+        with pytest.raises(ValueError, match="from 1 to 51 states, got 52"):
+            loads.with_states(None, np.zeros(52))
+        two = loads.with_states(None, np.zeros(30)) + loads.with_states(None, np.zeros(30))
+        with pytest.raises(ValueError, match="60 states of its own, more than the 51"):
+            BODY.simulate(T, OMEGA, load=two)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    moments=st.tuples(*[st.floats(1.0, 1.9)] * 3),
+    omega=st.tuples(*[st.floats(-3, 3)] * 3),
+    axis=st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda a: np.linalg.norm(a) > 0.1),
+    numbers=st.tuples(
+        st.floats(0.01, 0.9), st.floats(-50, 50), st.floats(0, 2), st.floats(0.01, 2), st.floats(0, 2)
+    ),
+    scale=st.sampled_from([1e-30, 1.0, 1e25]),
+)
+def test_momentum_is_kept_at_any_scale(
+    moments: Any, omega: Any, axis: Any, numbers: Any, scale: float
+) -> None:
+    inertia, rate, friction, slug, damping = numbers
+    body = RigidBody.from_principal(scale, np.multiply(moments, scale))
+    load = loads.wheel(axis, inertia * scale, rate, friction=friction * scale) + loads.slug(
+        slug * scale, damping * scale
+    )
+    run = body.simulate([0, 1, 5], omega, load=load, rtol=2.3e-15)
+    spin = run.angular_momentum().spin / scale
+    size = np.linalg.norm(spin[0]) + np.linalg.norm(omega) + abs(inertia * rate)
+    assert np.abs(spin - spin[0]).max() <= 1e-13 * size
+    energy = run.kinetic_energy().total / scale
+    assert (np.diff(energy) <= 1e-12 * size**2).all()
+
+
+ANY: Any = 1
+UPDATE: Any = len
+REFUSED: list[tuple[Callable[[], Any], type[Exception], str]] = [
+    (lambda: 2 * loads.slug(1, 1), PolhodeError, "cannot be scaled"),
+    (lambda: -loads.wheel((0, 0, 1), 1), PolhodeError, "cannot be scaled"),
+    (lambda: 2 * loads.with_states(None, [0]), PolhodeError, "cannot be scaled"),
+    (lambda: loads.schedule(loads.rotor((0, 0, 1)), [(0, 1)]), PolhodeError, "cannot be scheduled"),
+    (lambda: loads.schedule(loads.with_states(None, [0]), [(0, 1)]), PolhodeError, "cannot be scheduled"),
+    (lambda: loads.wheel((0, 0, 0), 1), PolhodeError, "axis must not be the zero vector"),
+    (lambda: loads.wheel((0, 0, 1), 0), PolhodeError, "inertia must be positive, got 0.0"),
+    (lambda: loads.wheel((0, 0, 1), 1, friction=-1), PolhodeError, "friction must be positive or zero"),
+    (lambda: loads.wheel((0, 0, 1), 1, speed=1, friction=1), TypeError, "friction: not beside speed="),
+    (lambda: loads.wheel((0, 0, 1), 1, times=[0]), TypeError, "times: give torque= or speed= too"),
+    (lambda: loads.wheel((0, 0, 1), 1, torque=[1, 2]), TypeError, "give the times= from which each holds"),
+    (lambda: loads.wheel((0, 0, 1), 1, torque=[1, 2], times=[1]), ValueError, "one for each of the 1 times"),
+    (lambda: loads.wheel((0, 0, 1), 1, torque=loads.rotor((0, 0, 1))), TypeError, "one loads.feedback"),
+    (lambda: loads.wheel((0, 0, 1), 1, name=""), ValueError, "name: must not be empty"),
+    (lambda: loads.slug(-1, 1), PolhodeError, "inertia must be positive, got -1.0"),
+    (lambda: loads.slug(1, -1), PolhodeError, "damping must be positive or zero, got -1.0"),
+    (lambda: loads.rotor((0, np.inf, 0)), PolhodeError, "momentum must be finite"),
+    (lambda: loads.with_states(ANY, [0]), TypeError, "rates: expected a callable"),
+    (lambda: loads.with_states(None, [0], update=UPDATE), TypeError, "update= and period= together"),
+    (lambda: loads.with_states(None, [0], update=UPDATE, period=0.0), ValueError, "period: must be positive"),
+    (lambda: loads.with_states(None, [np.nan]), ValueError, "initial: must be finite"),
+    (lambda: loads.with_states(None, [0, 1], scale=[1, 2, 3]), ValueError, "scale: expected one number or 2"),
+    (lambda: run(loads.wheel((0, 0, 1), 2.5)), InvalidInertiaError, "must have positive moments"),
+    (lambda: run(loads.wheel((0, 0, 1), 1), method="splitting"), PolhodeError, "without states of its own"),
+    (lambda: run(loads.wheel((0, 0, 1), 1), states={"x": [1]}), ValueError, 'no "x"; the load has "wheel"'),
+    (
+        lambda: run(loads.wheel((0, 0, 1), 1), states={"wheel": [1, 2]}),
+        ValueError,
+        r"expected shape \(..., 1\)",
+    ),
+    (lambda: run(loads.wheel((0, 0, 1), 1), states=ANY), TypeError, "expected a dict"),
+    (
+        lambda: run(loads.wheel((0, 0, 1), 1, torque=[1], times=[0.5])),
+        PolhodeError,
+        "torque of a wheel is known from",
+    ),
+    (
+        lambda: run(loads.wheel((0, 0, 1), 1, speed=[1, 2], times=[0, 0.5])),
+        PolhodeError,
+        "speed of a wheel is known",
+    ),
+    (lambda: run(loads.wheel((0, 0, 1), 1)).sensitivity(), PolhodeError, "states of its own"),
+    (lambda: loads.slug(1, 1).torque(0, (0, 0, 0), (0, 0, 0, 1)), TypeError, "pass states= with"),
+]
+
+
+def run(load: loads.Load, **options: Any) -> Trajectory:
+    return RigidBody.from_principal(1.0, (1.0, 2.0, 2.5)).simulate([0, 1], (0, 0, 1), load=load, **options)
+
+
+@pytest.mark.parametrize(("call", "kind", "message"), REFUSED)
+def test_what_is_refused(call: Callable[[], Any], kind: type[Exception], message: str) -> None:
+    with pytest.raises(kind, match=message):
+        call()
+
+
+class TestEnergySink:
+    """A prolate body with a small slug goes over into a flat spin; the energy-sink model says how fast."""
+
+    def test_time_to_half_way(self) -> None:
+        """To first order in J the energy falls as a slug takes it that the free motion drives."""
+        body = RigidBody.from_principal(1.0, (0.5, 1.0, 1.0))
+        i_s, i_t = 0.5, 1.0
+        theta0, theta1, momentum = 0.2, 1.2, 1.0
+        found = []
+        for inertia in (2e-3, 1e-3, 5e-4):
+            damping = inertia * 0.7
+            # In space ω circles L with the rate L/I_t: η = σ − ω obeys η̇ = −(k/J) η − ω̇ there.
+            theta = np.linspace(theta0, theta1, 4001)
+            nu = momentum / i_t
+            across = momentum * np.sin(theta) * np.cos(theta) * (1 / i_s - 1 / i_t)
+            power = damping * across**2 * nu**2 / ((damping / inertia) ** 2 + nu**2)
+            # T = L²/2 (cos²θ/I_s + sin²θ/I_t).
+            slope = momentum**2 * np.sin(theta) * np.cos(theta) * (1 / i_s - 1 / i_t)
+            predicted = np.trapezoid(slope / power, theta)
+            start = np.array([momentum * np.cos(theta0) / i_s, momentum * np.sin(theta0) / i_t, 0.0])
+            half = Event(lambda _t, w, *_: abs(w[0]) * i_s - momentum * np.cos(theta1), terminal=True)
+            motion = body.simulate(
+                np.array([0, 3 * predicted]), start, load=loads.slug(inertia, damping), events=half
+            )
+            found.append(motion.events.t[0] / predicted - 1)
+        assert abs(found[2]) < 5e-3
+        assert abs(found[2]) < 0.6 * abs(found[1]) < 0.36 * abs(found[0]) + 1e-4
