@@ -4,8 +4,8 @@ L = I ω + h in the body obeys dL/dt = L × ω, and the attitude dq/dt = ½ q ω
 follow both until L returns, after the period T; the rotation M of that period is the same every time:
 q(nT + s) = q(0) Mⁿ U(s), where U is the motion from attitude 1 and M = U(T).
 
-A motion near none, that of a nearly spherical body with little inside, is followed relative to axes that turn at the
-rate dL in space: there q = exp(d L t) V, and V turns at ω − dL.
+What hardly differs from a steady turning, a nearly spherical body with little inside, is followed relative to
+axes that turn at the rate dL in space: q = exp(d L t) V, and V turns at ω − dL.
 
 Nothing here knows an elliptic function, a root of a polynomial or a regime.
 """
@@ -84,7 +84,7 @@ class Motion:
         self.digits = digits
         with mp.workdps(digits + 30):
             unit = mpmath.ldexp(mpf(1), -size)
-            I = mpmath.matrix([[x * unit for x in row] for row in tensor])  # noqa: E741
+            I = mpmath.matrix([[x * unit for x in row] for row in tensor])
             J = (I**-1).tolist()
             steepest = max(abs(x) for row in J for x in row)
             self.noise = 4 + mpmath.frexp(steepest)[1]
@@ -92,7 +92,7 @@ class Motion:
             self.order = int(1.4 * (digits + 10))
         self.dps = int(self.bits / 3.3219) + 20
         with mp.workdps(self.dps):
-            I = mpmath.matrix([[x * unit for x in row] for row in tensor])  # noqa: E741
+            I = mpmath.matrix([[x * unit for x in row] for row in tensor])
             J = (I**-1).tolist()
             h = [mpmath.ldexp(mpf(x), -size - self.rate) for x in inside]
             w = [mpmath.ldexp(mpf(x), -self.rate) for x in omega]
@@ -106,7 +106,10 @@ class Motion:
             """Rate of the axes in space that the motion is followed in."""
             self.J = [[self.fixed(x) for x in row] for row in J]
             self.held = [self.fixed(-x) for x in apply(J, h)]
-            self.A = [[self.fixed(x - (drift if i == j else 0)) for j, x in enumerate(row)] for i, row in enumerate(J)]
+            self.A = [
+                [self.fixed(x - (drift if i == j else 0)) for j, x in enumerate(row)]
+                for i, row in enumerate(J)
+            ]
             self.first = [*(self.fixed(x) for x in L), 0, 0, 0, 1 << self.bits]
         self.steps: list[Step] = []
         self.period = 0
@@ -246,7 +249,9 @@ class Motion:
         """The angle by which the body has turned about L after a period, in −π..π."""
         with mp.workdps(self.dps):
             L = [self.real(x) for x in self.first[:3]]
-            q = product(exponential([self.real(self.period) * x for x in self.turning]), product(self.q0, self.cycle))
+            q = product(
+                exponential([self.real(self.period) * x for x in self.turning]), product(self.q0, self.cycle)
+            )
             *vector, scalar = product(q, conjugate(self.q0))
             axis = turned(self.q0, L)
             half = mpmath.atan2(mpmath.fdot(vector, axis) / mpmath.norm(axis), scalar)
@@ -257,7 +262,9 @@ class Motion:
         with mp.workdps(self.dps):
             w = [mpmath.ldexp(x, -self.rate) for x in omega]
             J = [[self.real(x) for x in row] for row in self.J]
-            L = mpmath.lu_solve(mpmath.matrix(J), mpmath.matrix([x - self.real(b) for x, b in zip(w, self.held, strict=True)]))
+            L = mpmath.lu_solve(
+                mpmath.matrix(J), mpmath.matrix([x - self.real(b) for x, b in zip(w, self.held, strict=True)])
+            )
             return [mpmath.ldexp(x, 2 * self.rate) for x in apply(J, cross(list(L), w))]
 
     def at(self, t: Any) -> State:
@@ -290,7 +297,7 @@ class Motion:
 
 
 def rises(row: Sequence[int], bits: int) -> Iterator[tuple[int, int]]:
-    """Intervals within 0..1 with one place each where a polynomial changes from negative to positive: all, in order.
+    """Intervals within 0..1 with a place each where a polynomial becomes positive: all of them, in order.
 
     The polynomial has no more such places than its Bernstein coefficients have changes of sign (Descartes).
     """

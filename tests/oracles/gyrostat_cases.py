@@ -1,9 +1,9 @@
 """The committed cases of the gyrostat: every regime there is, up to 1e12 rotations, with condition numbers.
 
-``python -m oracles.gyrostat_cases`` in the folder ``tests`` writes ``oracles/tables/gyrostat.json``. A rotation is 2π/|ω|
-at the start; the first time of each case is a quarter of the shorter of that and 2π I₂/|h|. Each case is computed twice,
-with 75 and 95 digits and a different share of the attitude taken out; what the two do not share to
-42 digits is not written. Three are also followed straight through 1e3 rotations.
+``python -m oracles.gyrostat_cases`` in the folder ``tests`` writes ``oracles/tables/gyrostat.json``. A
+rotation is 2π/|ω| at the start; the first time of each case is a quarter of the shorter of that and
+2π I₂/|h|. Each case is computed twice, with 75 and 95 digits and a different share of the attitude taken out;
+what the two do not share to 42 digits is not written. Three are also followed straight through 1e3 rotations.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mpmath import mp, mpf
 
 from oracles.gyrostat import Motion
 from oracles.motion_cases import DIGITS, Floats, MotionCase, State, apart, generate, unit_floats
-from oracles.rotation import conjugate, cross
+from oracles.rotation import conjugate
 from oracles.rotation import times as product
 
 __all__ = ["NAME", "STARTS", "cases", "condition", "motion", "proven", "straight"]
@@ -55,7 +55,10 @@ W = (0.3, 0.7, -0.9)
 SHORT: Floats = (0.5, 1.0, 2.0, 4.0)
 LONG: Floats = (1.0, 10.0, 100.0, 1000.0)
 
-NEAR = tuple(s * 2.0**-k for s, k in ((1, 10), (-1, 10), (1, 20), (-1, 27), (1, 30), (-1, 34), (1, 37), (-1, 40), (1, 40)))
+NEAR = tuple(
+    s * 2.0**-k
+    for s, k in ((1, 10), (-1, 10), (1, 20), (-1, 27), (1, 30), (-1, 34), (1, 37), (-1, 40), (1, 40))
+)
 """Relative distances from the separatrix, 1e-3 … 1e-12."""
 
 STARTS: dict[str, list[Start]] = {
@@ -83,7 +86,10 @@ STARTS: dict[str, list[Start]] = {
     ],
     "little inside": [
         *(Start(f"{h:g} along none", GENERIC, (h, -2 * h, h), W) for h in (1e-4, 1e-8, 1e-16, 1e-300)),
-        *(Start(f"{h:g} along the middle axis, long", GENERIC, (0.0, h, 0.0), (1.5, 0.7, -0.4)) for h in (1e-8, 1e-300)),
+        *(
+            Start(f"{h:g} along the middle axis, long", GENERIC, (0.0, h, 0.0), (1.5, 0.7, -0.4))
+            for h in (1e-8, 1e-300)
+        ),
         Start("1e-4 in a sphere", (1.5, 1.5, 1.5), (1e-4, -1e-4, 2e-4), W),
         Start("1e-16 in a symmetric body", (1.0, 1.0, 1.7), (1e-16, -1e-16, 2e-16), W),
     ],
@@ -94,7 +100,9 @@ STARTS: dict[str, list[Start]] = {
         Start("1e8 along the middle axis", GENERIC, (0.0, 1e8, 0.0), W),
     ],
     "dual spin": [
-        Start("oblate, despun platform", (1200.0, 1150.0, 900.0), (0.0, 0.0, 3500.0), (0.002, -0.001, 0.00007)),
+        Start(
+            "oblate, despun platform", (1200.0, 1150.0, 900.0), (0.0, 0.0, 3500.0), (0.002, -0.001, 0.00007)
+        ),
         Start("prolate, fast rotor", (300.0, 310.0, 120.0), (0.0, 0.0, 40.0), (0.01, -0.02, 0.3)),
         Start("symmetric platform", (300.0, 300.0, 120.0), (0.0, 0.0, 40.0), (0.01, -0.02, 0.3)),
         Start("rotor against the spin", (300.0, 310.0, 420.0), (0.0, 0.0, -100.0), (0.05, -0.02, 0.25)),
@@ -110,7 +118,12 @@ STARTS: dict[str, list[Start]] = {
     "nearly symmetric": [
         Start("oblate 1e-9", (1.0, 1.0 + 1e-9, 1.7), (0.2, -0.1, 0.3), W),
         Start("last bit, h along its axis", (1.0, 1.0 + 2.0**-52, 1.7), (0.0, 0.0, 0.3), W),
-        Start("prolate 1e-6, h nearly along its axis", (0.4, 1.3, 1.3 + 1e-6), (0.9, 1e-9, 0.0), (1.5, -0.4, 0.7)),
+        Start(
+            "prolate 1e-6, h nearly along its axis",
+            (0.4, 1.3, 1.3 + 1e-6),
+            (0.9, 1e-9, 0.0),
+            (1.5, -0.4, 0.7),
+        ),
         Start("planet", (8.0101e37, 8.0103e37, 8.0365e37), (1e31, -2e31, 5e32), (7e-11, 3e-11, 7.292115e-5)),
         Start("tilted tensor", NEARLY_SYMMETRIC, (0.1, 0.2, -0.3), (0.3, 0.4, 1.0)),
     ],
@@ -136,7 +149,9 @@ STARTS: dict[str, list[Start]] = {
     ],
     "scaled": [
         Start("molecule", (1.0226e-47, 1.9191e-47, 2.9417e-47), (3e-36, 1e-35, -2e-35), (1e12, 2e12, 9e12)),
-        Start("planet with a core", (8.0101e37, 8.0903e37, 9.0365e37), (3e32, -2e32, 5e33), (7e-6, 3e-6, 7.3e-5)),
+        Start(
+            "planet with a core", (8.0101e37, 8.0903e37, 9.0365e37), (3e32, -2e32, 5e33), (7e-6, 3e-6, 7.3e-5)
+        ),
     ],
     "stable": [
         Start("at rest", GENERIC, (0.3, -0.5, 0.4), (0.0, 0.0, 0.0)),
@@ -144,10 +159,15 @@ STARTS: dict[str, list[Start]] = {
         Start("along the middle axis, held by h", GENERIC, (0.0, 2.5, 0.0), (0.0, 0.5, 0.0)),
         Start("along none", (2.0, 3.0, 4.0), (0.75, 1.0, 1.0), (0.25, 0.5, 1.0)),
         Start("along none, of most energy", (2.0, 3.0, 4.0), (-0.25, -1.0, -3.0), (0.25, 0.5, 1.0)),
-        *(Start(f"near the third axis by {d:g}", GENERIC, (0.0, 0.0, 0.5), (d, -d, 1.5)) for d in (1e-4, 1e-10, 1e-16)),
+        *(
+            Start(f"near the third axis by {d:g}", GENERIC, (0.0, 0.0, 0.5), (d, -d, 1.5))
+            for d in (1e-4, 1e-10, 1e-16)
+        ),
         Start("near the middle axis by 1e-8", GENERIC, (0.0, 2.5, 0.0), (1e-8, 0.5, -1e-8)),
         Start("near one along none, 2⁻³⁰", (2.0, 3.0, 4.0), (0.75, 1.0, 1.0), (0.25 + 2.0**-30, 0.5, 1.0)),
-        Start("near one along none, last bit", (2.0, 3.0, 4.0), (-0.25, -1.0, -3.0), (0.25 + 2.0**-54, 0.5, 1.0)),
+        Start(
+            "near one along none, last bit", (2.0, 3.0, 4.0), (-0.25, -1.0, -3.0), (0.25 + 2.0**-54, 0.5, 1.0)
+        ),
     ],
     "unstable": [
         Start("along the middle axis, little h", GENERIC, (0.0, 0.1, 0.0), (0.0, 1.0, 0.0), SHORT),
@@ -157,9 +177,19 @@ STARTS: dict[str, list[Start]] = {
     "separatrix": [
         Start("h along the middle axis", (1.0, 2.0, 2.5), (0.0, 1.0, 0.0), (-2.0, -0.5, 0.0), SHORT),
         Start("h along the middle axis, wide", (3.0, 4.0, 6.0), (0.0, 1.5, 0.0), (2.0, 0.0, -2.0), SHORT),
-        Start("h in the plane of the first and third", (3.0, 4.0, 6.0), (2.5, 0.0, -1.0), (-1.5, 1.0, -1.5), SHORT),
-        Start("h in the plane of the first and second", (2.0, 3.0, 4.0), (2.0, 1.0, 0.0), (0.5, 3.0, 1.0), SHORT),
-        Start("h in the plane of the second and third", (3.0, 4.0, 5.0), (0.0, 1.5, 0.5), (2.0, 1.5, 2.0), SHORT),
+        Start(
+            "h in the plane of the first and third",
+            (3.0, 4.0, 6.0),
+            (2.5, 0.0, -1.0),
+            (-1.5, 1.0, -1.5),
+            SHORT,
+        ),
+        Start(
+            "h in the plane of the first and second", (2.0, 3.0, 4.0), (2.0, 1.0, 0.0), (0.5, 3.0, 1.0), SHORT
+        ),
+        Start(
+            "h in the plane of the second and third", (3.0, 4.0, 5.0), (0.0, 1.5, 0.5), (2.0, 1.5, 2.0), SHORT
+        ),
         Start("h along the first axis", (3.0, 4.0, 6.0), (3.0, 0.0, 0.0), (-1.0, -0.5, 2.0), SHORT),
         Start("h along the third axis", (2.0, 3.0, 4.0), (0.0, 0.0, 2.0), (2.0, 0.0, -0.5), SHORT),
         Start("h along none", (2.0, 3.0, 4.0), (1.0, 1.0, 2.0), (-2.5, 1.0, -2.5), SHORT),
@@ -169,14 +199,39 @@ STARTS: dict[str, list[Start]] = {
         Start("cusp, h in a principal plane", (2.0, 3.0, 4.0), (1.0, 0.0, 2.0), (-2.5, 0.0, 0.5), LONG),
     ],
     "near the separatrix": [
-        *(Start(f"h along none, {d:.0e}", (2.0, 3.0, 4.0), (1.0, 1.0, 2.0), (-2.5, 1.0, -2.5 * (1 + d))) for d in NEAR),
-        *(Start(f"h in a principal plane, {d:.0e}", (3.0, 4.0, 6.0), (2.5, 0.0, -1.0), (-1.5 * (1 + d), 1.0, -1.5)) for d in NEAR[1::3]),
-        *(Start(f"h along the middle axis, {d:.0e}", (1.0, 2.0, 2.5), (0.0, 1.0, 0.0), (-2.0 * (1 + d), -0.5, 0.0)) for d in NEAR[::4]),
-        *(Start(f"from the saddle, {d:.0e}", (2.0, 3.0, 4.0), (1.0, 1.0, 2.0), (1.5 + d, -3.0, -1.5)) for d in NEAR[3::4]),
+        *(
+            Start(f"h along none, {d:.0e}", (2.0, 3.0, 4.0), (1.0, 1.0, 2.0), (-2.5, 1.0, -2.5 * (1 + d)))
+            for d in NEAR
+        ),
+        *(
+            Start(
+                f"h in a principal plane, {d:.0e}",
+                (3.0, 4.0, 6.0),
+                (2.5, 0.0, -1.0),
+                (-1.5 * (1 + d), 1.0, -1.5),
+            )
+            for d in NEAR[1::3]
+        ),
+        *(
+            Start(
+                f"h along the middle axis, {d:.0e}",
+                (1.0, 2.0, 2.5),
+                (0.0, 1.0, 0.0),
+                (-2.0 * (1 + d), -0.5, 0.0),
+            )
+            for d in NEAR[::4]
+        ),
+        *(
+            Start(f"from the saddle, {d:.0e}", (2.0, 3.0, 4.0), (1.0, 1.0, 2.0), (1.5 + d, -3.0, -1.5))
+            for d in NEAR[3::4]
+        ),
         Start("little h, 1e-12 off the middle axis", GENERIC, (1e-8, -1e-8, 2e-8), (1e-12, 1.0, -1e-12)),
-        *(Start(f"cusp, {d:.0e}", (2.0, 3.0, 4.0), (4.0, 1.0, 4.0), (-6.0 * (1 + d), -3.0, 3.0)) for d in NEAR[:2]),
+        *(
+            Start(f"cusp, {d:.0e}", (2.0, 3.0, 4.0), (4.0, 1.0, 4.0), (-6.0 * (1 + d), -3.0, 3.0))
+            for d in NEAR[:2]
+        ),
     ],
-}  # fmt: skip
+}
 
 
 def cases() -> Iterator[MotionCase]:
@@ -201,7 +256,9 @@ def cases() -> Iterator[MotionCase]:
             )
 
 
-def motion(case: MotionCase, digits: int, share: Any = 1, changed: int | None = None, returns: bool = True) -> Motion:
+def motion(
+    case: MotionCase, digits: int, share: Any = 1, changed: int | None = None, returns: bool = True
+) -> Motion:
     """The motion of a case; `changed` counts the moments or the tensor's six numbers, then h, then ω."""
     with mp.workdps(digits + 50):
         full = "inertia" in case.body
@@ -217,7 +274,9 @@ def motion(case: MotionCase, digits: int, share: Any = 1, changed: int | None = 
         elif "axes" in case.body:
             tensor = _in_axes(tensor, case.body["axes"])
         longest = 1.001 * max(case.times) if case.kind in UNSETTLED else None
-        return Motion(tensor, rotor, omega, case.attitude, digits=digits, share=share, longest=longest, returns=returns)
+        return Motion(
+            tensor, rotor, omega, case.attitude, digits=digits, share=share, longest=longest, returns=returns
+        )
 
 
 SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -226,11 +285,14 @@ SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 def _in_axes(moments: Sequence[Any], axes: Sequence[float]) -> list[list[Any]]:
     """R diag(moments) Rᵀ of the quaternion R."""
     columns = [product(product(axes, [mpf(i == k) for k in range(4)]), conjugate(axes))[:3] for i in range(3)]
-    return [[sum(m * c[i] * c[j] for m, c in zip(moments, columns, strict=True)) for j in range(3)] for i in range(3)]
+    return [
+        [sum(m * c[i] * c[j] for m, c in zip(moments, columns, strict=True)) for j in range(3)]
+        for i in range(3)
+    ]
 
 
 def condition(case: MotionCase, digits: int = 66) -> Floats:
-    """For each time the largest relative change of the state by that of an input number: h, ω, I and the time."""
+    """For each time the largest relative change of the state by that of a number of I, h, ω or the time."""
     base = motion(case, digits)
     before = [base.at(t) for t in case.times]
     largest = base.largest()
@@ -238,7 +300,10 @@ def condition(case: MotionCase, digits: int = 66) -> Floats:
     numbers = (6 if "inertia" in case.body else 3) + 6
     for i in range(numbers):
         six = "inertia" in case.body
-        value = ([case.body["inertia"][a][b] for a, b in SIX] if six else [*case.body["moments"]]) + [*case.rotor, *case.omega]
+        value = ([case.body["inertia"][a][b] for a, b in SIX] if six else [*case.body["moments"]]) + [
+            *case.rotor,
+            *case.omega,
+        ]
         if not value[i]:
             continue
         changed = motion(case, digits, changed=i)
@@ -264,12 +329,15 @@ def _per_time(base: Motion, t: float, state: State) -> Any:
 
 def proven(case: MotionCase) -> MotionCase:
     """The case with its states, if two computations agree."""
-    slow = case.kind in ("spherical",) or "sphere" in case.name
+    slow = case.kind == "spherical" or "sphere" in case.name
     extra = 35 if case.kind == "much inside" else 15 if case.kind == "near the separatrix" else 0
     once = motion(case, 75 + extra, 1 if slow else 0.5)
     again = motion(case, 95 + extra)
     states = [again.at(t) for t in case.times]
-    difference = max(apart(once.at(t), state) if again.largest() else mpf(0) for t, state in zip(case.times, states, strict=True))
+    difference = max(
+        apart(once.at(t), state) if again.largest() else mpf(0)
+        for t, state in zip(case.times, states, strict=True)
+    )
     if difference > mpf(10) ** (-DIGITS - 2):
         raise ArithmeticError(f"{case.name}: two computations differ by {mpmath.nstr(difference, 3)}")
     if case.name in STRAIGHT:
@@ -278,11 +346,13 @@ def proven(case: MotionCase) -> MotionCase:
             raise ArithmeticError(f"{case.name}: differs by {mpmath.nstr(off, 3)} from the straight way")
     kappa = condition(case, 66 + (extra if extra > 20 else 0))
     digits = [mpmath.nstr(x, DIGITS) for x in (again.time(), again.turn())] if again.period else []
-    return case._replace(expected=tuple(states), kappa=kappa, fastest=float(again.largest()), periods=tuple(digits))
+    return case._replace(
+        expected=tuple(states), kappa=kappa, fastest=float(again.largest()), periods=tuple(digits)
+    )
 
 
 def straight(case: MotionCase, rotations: float, digits: int = 50) -> Any:
-    """How far the state at this many rotations is from the one that Taylor series reach without any return."""
+    """How far the state at this many rotations is from the one that Taylor series reach straight."""
     t = rotations * 2 * math.pi / math.hypot(*case.omega)
     return apart(motion(case, digits, returns=False).straight(t), motion(case, digits).at(t))
 

@@ -1,13 +1,14 @@
-"""Steady rotations of gyrostats from the roots of a polynomial, at 60 digits and more.
+"""Steady rotations of gyrostats from the roots of a polynomial, to 120 digits.
 
-``python -m oracles.gyrostat_equilibria`` in the folder ``tests`` writes the table that the core's test reads: a line
-``case I₁ I₂ I₃ h₁ h₂ h₃ |L|``, then one line for each equilibrium, ascending in ω·L, and for each |L| at which their
-number changes. Components in principal axes; inputs are exact.
+``python -m oracles.gyrostat_equilibria`` in the folder ``tests`` writes the table that the core's test reads:
+a line ``case I₁ I₂ I₃ h₁ h₂ h₃ |L|``, then one line for each equilibrium, ascending in ω·L, and for each |L|
+at which their number changes. Components in principal axes; inputs are exact.
 """
 
 from __future__ import annotations
 
 import random
+import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -37,7 +38,7 @@ def cases() -> Iterator[tuple[Sequence[float], Sequence[float], float]]:
         moments, h = drawn()
         h = [0.0 if (k >> i) % 2 else x for i, x in enumerate(h)]
         yield moments, h, 10 ** draw.uniform(0, 2)
-    for k in range(16):
+    for _ in range(16):
         # Components of very different size.
         moments, h = drawn()
         h = [x * 10 ** draw.uniform(-40, 0) for x in h]
@@ -56,10 +57,12 @@ def cases() -> Iterator[tuple[Sequence[float], Sequence[float], float]]:
         yield moments, h, float(near * (1 + (gap if k % 4 < 2 else -gap)))
 
 
-def equilibria(moments: Sequence[float], h: Sequence[float], momentum: float) -> list[tuple[Any, list[Any], Any, Any]]:
+def equilibria(
+    moments: Sequence[float], h: Sequence[float], momentum: float
+) -> list[tuple[Any, list[Any], Any, Any]]:
     """μ, L/|L|, ½ ω·I ω and D L² of each."""
     with mp.workdps(DIGITS):
-        I = [mpf(x) for x in moments]  # noqa: E741
+        I = [mpf(x) for x in moments]
         e = [mpf(x) / momentum for x in h]
         found = []
         live = [i for i in range(3) if e[i]]
@@ -67,14 +70,10 @@ def equilibria(moments: Sequence[float], h: Sequence[float], momentum: float) ->
             polynomial = _product([_square(I[i]) for i in live])
             for i in live:
                 rest = _product([_square(I[j]) for j in live if j != i])
-                polynomial = _plus(polynomial, [-e[i] ** 2 * c for c in rest])
-            size = max(map(abs, polynomial))
-            roots = mpmath.polyroots([c / size for c in polynomial[::-1]], maxsteps=2000, extraprec=2000)
-            for root in roots:
-                if abs(mpmath.im(root)) < mpf(10) ** -40 * abs(root):
-                    mu = mpmath.re(root)
-                    n = [e[i] / (1 - mu * I[i]) for i in range(3)]
-                    found.append((mu, n))
+                polynomial = _plus(polynomial, [-(e[i] ** 2) * c for c in rest])
+            for mu in _real_roots(polynomial):
+                n = [e[i] / (1 - mu * I[i]) for i in range(3)]
+                found.append((mu, n))
         for i in range(3):
             if e[i]:
                 continue
@@ -87,13 +86,21 @@ def equilibria(moments: Sequence[float], h: Sequence[float], momentum: float) ->
                     found.append((1 / I[i], m))
         found.sort(key=lambda pair: pair[0])
         L = mpf(momentum)
-        return [(mu, n, (mu * L) ** 2 * sum(a * x * x for a, x in zip(I, n, strict=True)) / 2, _determinant(I, mu, n) * L * L) for mu, n in found]
+        return [
+            (
+                mu,
+                n,
+                (mu * L) ** 2 * sum(a * x * x for a, x in zip(I, n, strict=True)) / 2,
+                _determinant(I, mu, n) * L * L,
+            )
+            for mu, n in found
+        ]
 
 
 def folds(moments: Sequence[float], h: Sequence[float]) -> list[Any]:
     """The |L| at which f has a minimum between two poles."""
     with mp.workdps(DIGITS):
-        I = [mpf(x) for x in moments]  # noqa: E741
+        I = [mpf(x) for x in moments]
         live = [i for i in range(3) if h[i]]
         if len(live) < 2:
             return []
@@ -101,19 +108,25 @@ def folds(moments: Sequence[float], h: Sequence[float]) -> list[Any]:
         for i in live:
             rest = _product([_cube(I[j]) for j in live if j != i])
             polynomial = _plus(polynomial, [mpf(h[i]) ** 2 * I[i] * c for c in rest])
-        size = max(map(abs, polynomial))
-        while abs(polynomial[-1]) < size * mpf(10) ** -(DIGITS - 10):
-            polynomial.pop()
-        found = []
-        for root in mpmath.polyroots([c / size for c in polynomial[::-1]], maxsteps=2000, extraprec=2000):
-            if abs(mpmath.im(root)) < mpf(10) ** -40 * abs(root):
-                mu = mpmath.re(root)
-                if min(1 / I[i] for i in live) < mu < max(1 / I[i] for i in live):
-                    found.append(mpmath.sqrt(sum((mpf(h[i]) / (1 - mu * I[i])) ** 2 for i in live)))
-        return sorted(found)
+        poles = [1 / I[i] for i in live]
+        between = [mu for mu in _real_roots(polynomial) if min(poles) < mu < max(poles)]
+        return sorted(mpmath.sqrt(sum((mpf(h[i]) / (1 - mu * I[i])) ** 2 for i in live)) for mu in between)
 
 
-def _determinant(I: Sequence[Any], mu: Any, n: Sequence[Any]) -> Any:  # noqa: E741
+def _real_roots(polynomial: Sequence[Any]) -> list[Any]:
+    """Of a polynomial, its lowest coefficient first."""
+    size = max(map(abs, polynomial))
+    falling = [c / size for c in reversed(polynomial)]
+    while abs(falling[0]) < mpf(10) ** (10 - DIGITS):
+        del falling[0]
+    with warnings.catch_warnings():
+        # The order of coefficients that every version of mpmath takes.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        roots = mpmath.polyroots(falling, maxsteps=2000, extraprec=2000)
+    return [mpmath.re(root) for root in roots if abs(mpmath.im(root)) < mpf(10) ** -40 * abs(root)]
+
+
+def _determinant(I: Sequence[Any], mu: Any, n: Sequence[Any]) -> Any:
     """Of I⁻¹ − μ across n: the product of both eigenvalues, from a basis of the plane."""
     least = min(range(3), key=lambda i: abs(n[i]))
     a = mpmath.matrix([mpf(i == least) for i in range(3)])

@@ -8,10 +8,10 @@
 //! f(μ) = Σ h_i²/(1 − μ I_i)² = L².
 //! ```
 //!
-//! f has poles at 1/I_i, falls to zero on either side of all of them and is convex between two of them. So there is one
+//! f has poles at `1/I_i`, falls to zero on either side of all of them and is convex between two of them. So there is one
 //! root on either side and none or two between two poles, as f's minimum there lies above or below L²: two, four or
 //! six equilibria, counted without any polynomial. The minimum itself says where the number changes, by a *fold*. A pole
-//! without its h_i is none, and `μ = 1/I_i` is then a multiplier of its own, with L_i of either sign and all that the other
+//! without its `h_i` is none, and `μ = 1/I_i` is then a multiplier of its own, with `L_i` of either sign and all that the other
 //! components leave of L²; where they leave nothing, both meet a root of f: a *pitchfork*.
 //!
 //! On the sphere of L in the body an equilibrium is a stationary point of the energy `½ (L − h)·I⁻¹(L − h)`, whose second

@@ -14,7 +14,7 @@ const STEPS: usize = 60;
 pub(super) struct Place {
     /// k.
     axis: usize,
-    /// A power of two at a small h_k, so that s is of order one at the pole's roots.
+    /// A power of two at a small `h_k`, so that s is of order one at the pole's roots.
     unit: i32,
     /// The distance.
     s: DoubleDouble,
@@ -263,7 +263,7 @@ impl<'a> Secular<'a> {
 }
 
 impl Place {
-    /// The multiplier 1/I_k itself, of an axis without a part of h.
+    /// The multiplier `1/I_k` itself, of an axis without a part of h.
     pub(super) fn at_pole(axis: usize) -> Self {
         Self {
             axis,

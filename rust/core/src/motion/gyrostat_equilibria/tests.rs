@@ -90,10 +90,16 @@ fn all_roots_of_the_polynomial() {
 #[test]
 fn without_rotor_it_is_the_free_body() {
     let all = of([1.0, 2.0, 2.5], [0.0; 3], 5.0);
-    use Kind::{Maximum, Minimum, Saddle};
     assert_eq!(
         kinds(&all),
-        [Minimum, Minimum, Saddle, Saddle, Maximum, Maximum]
+        [
+            Kind::Minimum,
+            Kind::Minimum,
+            Kind::Saddle,
+            Kind::Saddle,
+            Kind::Maximum,
+            Kind::Maximum
+        ]
     );
     assert!(all.bifurcations.is_empty());
     // D L² is what `stability` says of a spin with ω = L/I.
