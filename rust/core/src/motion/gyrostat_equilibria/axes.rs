@@ -1,7 +1,10 @@
 //! Principal axes that suit the momentum inside: equal moments have one axis along their part of it.
 
-use super::{Vector, norm};
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
+
+/// Three components to twice the precision.
+pub(super) type Vector = [DoubleDouble; 3];
 
 /// Axes of which no two with equal moments both have a part of h.
 pub(super) struct Frame {
@@ -96,5 +99,28 @@ impl Frame {
                 .zip(&self.axes)
                 .fold(DoubleDouble::default(), |sum, (&x, axis)| sum + x * axis[k])
         })
+    }
+}
+
+/// The squared length.
+pub(super) fn square(v: &Vector) -> DoubleDouble {
+    v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+}
+
+/// The length, which does not overflow.
+pub(super) fn norm(v: &Vector) -> DoubleDouble {
+    let largest = v.iter().fold(0.0, |most: f64, x| most.max(x.high.abs()));
+    if largest == 0.0 {
+        return DoubleDouble::default();
+    }
+    let unit = exponent(largest);
+    let scaled = v.map(|x| DoubleDouble {
+        high: times_power_of_two(x.high, -unit),
+        low: times_power_of_two(x.low, -unit),
+    });
+    let root = square(&scaled).sqrt();
+    DoubleDouble {
+        high: times_power_of_two(root.high, unit),
+        low: times_power_of_two(root.low, unit),
     }
 }

@@ -1,10 +1,12 @@
 //! `f(μ) = Σ h_i²/(1 − μ I_i)²` between its poles: where it has a given value, where it is least.
 
-use super::axes::Frame;
-use super::{NOTHING, Vector, norm};
+use super::axes::{Frame, Vector, norm};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
+
+/// What is below this, relative to its own terms, is zero: inputs are doubles, and the arithmetic has 31 digits.
+pub(super) const NOTHING: f64 = 1e-28;
 
 /// Steps of Newton's method at most; from a double it takes two or three.
 const STEPS: usize = 60;

@@ -1,4 +1,6 @@
+use super::axes::Vector;
 use super::*;
+use crate::numerics::double_double::DoubleDouble;
 use proptest::prelude::*;
 
 fn exact(v: [f64; 3]) -> Vector {
@@ -59,6 +61,14 @@ fn all_roots_of_the_polynomial() {
         let all = of(moments, rotor, input[6]);
         assert_eq!(all.found.len(), case.found.len(), "{input:?} {all:?}");
         for (got, want) in all.found.iter().zip(&case.found) {
+            let told = [got.kinetic_energy, got.squared_rate];
+            let is_finite = |x: &f64| x.is_finite();
+            assert!(
+                told.iter()
+                    .chain(&got.direction)
+                    .chain(&got.omega)
+                    .all(is_finite)
+            );
             for i in 0..3 {
                 worst[0] = worst[0].max((got.direction[i] - want[1 + i]).abs());
                 let rate = want[0] * input[6];

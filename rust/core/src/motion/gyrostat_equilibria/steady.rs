@@ -1,41 +1,9 @@
-//! Steady rotations of a gyrostat with a given total angular momentum: all of them, whether they are stable, and where
-//! their number changes.
-//!
-//! A body with a constant momentum h inside turns steadily where ω is along L = I ω + h, `ω = μ L`, so that in principal
-//! axes `L_i = h_i/(1 − μ I_i)`, and μ is a root of
-//!
-//! ```text
-//! f(μ) = Σ h_i²/(1 − μ I_i)² = L².
-//! ```
-//!
-//! f has poles at `1/I_i`, falls to zero on either side of all of them and is convex between two of them. So there is one
-//! root on either side and none or two between two poles, as f's minimum there lies above or below L²: two, four or
-//! six equilibria, counted without any polynomial. The minimum itself says where the number changes, by a *fold*. A pole
-//! without its `h_i` is none, and `μ = 1/I_i` is then a multiplier of its own, with `L_i` of either sign and all that the other
-//! components leave of L²; where they leave nothing, both meet a root of f: a *pitchfork*.
-//!
-//! On the sphere of L in the body an equilibrium is a stationary point of the energy `½ (L − h)·I⁻¹(L − h)`, whose second
-//! variation is that of `I⁻¹ − μ` across L. Its determinant D gives the motion close by: L circles with the
-//! frequency `|L| √D`, or departs as `exp(|L| √−D t)`.
-//!
-//! Everything is computed to twice the precision, each root as its distance from a pole in units of what is left of h there.
-//! Sources: Elipe and Lanchares, Celest. Mech. Dyn. Astron. 101 (2008) 49; Hughes, Spacecraft Attitude Dynamics, §6.
+//! What is told of each steady rotation, and of where their number changes.
 
-mod axes;
-mod secular;
-#[cfg(test)]
-mod tests;
-
+use super::axes::{Frame, Group, Vector, norm, square};
+use super::secular::{NOTHING, Place, Secular};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
-use axes::{Frame, Group};
-use secular::{Place, Secular};
-
-/// Three components to twice the precision.
-type Vector = [DoubleDouble; 3];
-
-/// What is below this, relative to its own terms, is zero: inputs are doubles, and the arithmetic has 31 digits.
-const NOTHING: f64 = 1e-28;
 
 /// What the energy is at an equilibrium, among all states with this angular momentum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -286,26 +254,5 @@ impl Maker<'_> {
             found: self.found.into_iter().map(|(_, found)| found).collect(),
             bifurcations: self.bifurcations,
         }
-    }
-}
-
-fn square(v: &Vector) -> DoubleDouble {
-    v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
-}
-
-fn norm(v: &Vector) -> DoubleDouble {
-    let largest = v.iter().fold(0.0, |most: f64, x| most.max(x.high.abs()));
-    if largest == 0.0 {
-        return DoubleDouble::default();
-    }
-    let unit = exponent(largest);
-    let scaled = v.map(|x| DoubleDouble {
-        high: times_power_of_two(x.high, -unit),
-        low: times_power_of_two(x.low, -unit),
-    });
-    let root = square(&scaled).sqrt();
-    DoubleDouble {
-        high: times_power_of_two(root.high, unit),
-        low: times_power_of_two(root.low, unit),
     }
 }
