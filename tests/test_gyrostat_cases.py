@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from oracles.gyrostat_cases import cases
-from oracles.motion_cases import MotionCase, State, angle, load_table, relative_error
+from oracles.gyrostat_cases import cases, proven
+from oracles.motion_cases import MotionCase, State, angle, apart, load_table, relative_error
 from polhode import RigidBody, loads
 
 if TYPE_CHECKING:
@@ -32,6 +32,16 @@ def test_every_regime_has_its_cases() -> None:
     assert [case.name for case in CASES] == [case.name for case in cases()]
     assert len(CASES) >= 60
     assert all(len(case.kappa) == len(case.expected) == len(case.times) for case in CASES)
+
+
+@pytest.mark.parametrize(
+    "name", ["symmetric: oblate, h along its axis", "spherical: h along none", "generic: two lobes, one"]
+)
+def test_the_generator_makes_the_table(name: str) -> None:
+    made = next(proven(case) for case in cases() if case.name == name)
+    kept = next(case for case in CASES if case.name == name)
+    assert (made.kappa, made.fastest, made.periods) == (kept.kappa, kept.fastest, kept.periods)
+    assert max(apart(a, b) for a, b in zip(made.expected, kept.expected, strict=True)) < 1e-38
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

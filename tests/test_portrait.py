@@ -48,7 +48,10 @@ class Gyrostat:
         size = float(np.linalg.norm(self.momentum))
         rotor = [size * momentum / float(x) for x in folds(MOMENTS, self.momentum.tolist())]
         return SimpleNamespace(
-            direction=np.array(directions), kind=kinds, bifurcations=SimpleNamespace(rotor=rotor)
+            direction=np.array(directions),
+            kind=kinds,
+            circle=np.full((len(kinds), 3), np.nan),
+            bifurcations=SimpleNamespace(rotor=rotor),
         )
 
 
@@ -73,6 +76,25 @@ def test_marks_and_curves() -> None:
         np.testing.assert_allclose(np.linalg.norm(curve, axis=1), 1.0, rtol=1e-14)
         energy = (curve - np.array(INSIDE) / 2.0) ** 2 @ (1 / np.array(MOMENTS))
         assert np.ptp(energy) < 2e-4
+
+
+def test_a_circle_of_equilibria_is_drawn() -> None:
+    # Moments 1, 1, 2 and h = (0, 0, 0.2): L₃ = −h on the circle, of most energy.
+    n = np.array([np.sqrt(1 - 0.01), 0.0, -0.1])
+    none = np.full(3, np.nan)
+    found = SimpleNamespace(
+        direction=np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], n]),
+        kind=["minimum", "minimum", "maximum"],
+        circle=np.array([none, none, [0.0, 0.0, 1.0]]),
+    )
+    gyrostat: Any = SimpleNamespace(
+        shape=(), inertia=np.diag([1.0, 1.0, 2.0]), momentum=np.array([0, 0, 0.2]), equilibria=lambda _: found
+    )
+    ax: Any = plot.portrait(gyrostat, 2.0)
+    thick = [np.array(line.get_data_3d()).T for line in ax.get_lines() if line.get_linewidth() == 2.4]
+    heights = [line[:, 2] for line in thick if len(line) == 181]
+    assert heights
+    np.testing.assert_allclose(heights[0][np.isfinite(heights[0])], -0.1, rtol=1e-14)
 
 
 def test_a_row_has_one_for_each_number_of_equilibria() -> None:

@@ -52,7 +52,8 @@ def portrait(
     constant energy.
     Curves below the lowest saddle go round a minimum and are green and dashed with dots, those above the
     highest go round a maximum and are blue and dashed; separatrices are vermilion and drawn through, what
-    lies between two of them is grey. Minima are discs, maxima triangles, saddles crosses.
+    lies between two of them is grey. Minima are discs, maxima triangles, saddles crosses; where a body with two
+    equal moments has a circle of equilibria it is thick, with a mark on it.
 
     Parameters
     ----------
@@ -101,6 +102,10 @@ def portrait(
     for level in saddles:
         for curve in _curves(inverse, inside, level):
             curve_on(ax, curve, curve, AXIS_COLORS[1], linewidth=1.6)
+    for n, axis, kind in zip(points, np.asarray(found.circle), kinds, strict=True):
+        if np.isfinite(axis).all():
+            ring = _circle(n, axis)
+            curve_on(ax, ring, ring, _LOOKS[kind][0], linewidth=2.4)
     _marks(ax, points, kinds, labels)
     if labels:
         _names(ax, inside)
@@ -208,6 +213,15 @@ def _curves(inverse: Floats, inside: Floats, level: float) -> Iterator[Floats]:
             values = _energy(inverse, inside, onto(a, b))
             for line in contourpy.contour_generator(a, b, values).lines(level):
                 yield onto(line[:, 0], line[:, 1])
+
+
+def _circle(n: Floats, axis: Floats) -> Floats:
+    """The circle about an axis through a point of the unit sphere."""
+    height = float(n @ axis)
+    across = n - height * axis
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)[:, np.newaxis]
+    circle: Floats = height * axis + np.cos(turn) * across + np.sin(turn) * np.cross(axis, across)
+    return circle
 
 
 def _marks(ax: Axes3D, points: Floats, kinds: list[str], labels: bool) -> None:
