@@ -52,8 +52,8 @@ def portrait(
     constant energy.
     Curves below the lowest saddle go round a minimum and are green and dashed with dots, those above the
     highest go round a maximum and are blue and dashed; separatrices are vermilion and drawn through, what
-    lies between two of them is grey. Minima are discs, maxima triangles, saddles crosses; where a body with two
-    equal moments has a circle of equilibria it is thick, with a mark on it.
+    lies between two of them is grey. Minima are discs, maxima triangles, saddles crosses; where a body with
+    two equal moments has a circle of equilibria it is thick, with a mark on it.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def _curves(inverse: Floats, inside: Floats, level: float) -> Iterator[Floats]:
 
 
 def _circle(n: Floats, axis: Floats) -> Floats:
-    """The circle about an axis through a point of the unit sphere."""
+    """Give the circle about an axis through a point of the unit sphere."""
     height = float(n @ axis)
     across = n - height * axis
     turn = np.linspace(0.0, 2.0 * np.pi, 181)[:, np.newaxis]
