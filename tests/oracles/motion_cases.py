@@ -76,6 +76,15 @@ class MotionCase(NamedTuple):
         Of a heavy top, in space; else empty.
     position, velocity : tuple of float
         The path's start; empty where the body goes nowhere.
+    rotor : tuple of float
+        The constant momentum inside a gyrostat, in the body. Its `kappa` is, for each time, the largest
+        change of the state (angle of the attitude, ω over the largest |ω|) by a relative change of one
+        number of I, h, ω(0) or t.
+    fastest : float
+        The largest |ω| of a gyrostat's whole motion.
+    periods : tuple of str
+        To all digits: the time in which a gyrostat's ω returns in the body, and the angle, −π to π, by which
+        the body has then turned about its total angular momentum; empty where it does not return.
     """
 
     name: str
@@ -91,6 +100,9 @@ class MotionCase(NamedTuple):
     gravity: Floats = ()
     position: Floats = ()
     velocity: Floats = ()
+    rotor: Floats = ()
+    fastest: float = 0.0
+    periods: tuple[str, ...] = ()
 
 
 @cache

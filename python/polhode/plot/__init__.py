@@ -11,6 +11,7 @@ from polhode.plot._bodies import body, principal_axes
 from polhode.plot._cones import cones
 from polhode.plot._ellipsoid import ellipsoid, poinsot, polhodes
 from polhode.plot._motion import angular_momentum, angular_velocity, euler_angles, invariants
+from polhode.plot._portrait import portrait, portraits
 from polhode.plot._top import effective_potential, nutation
 
 __all__ = [
@@ -29,5 +30,7 @@ __all__ = [
     "nutation",
     "poinsot",
     "polhodes",
+    "portrait",
+    "portraits",
     "principal_axes",
 ]

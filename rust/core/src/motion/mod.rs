@@ -12,6 +12,7 @@
 //! | steady spins and whether they are stable | [`stability`] |
 //! | free motion of any body, exact at any time, and what it tells | [`free`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
+//! | steady rotations of a body with a constant momentum inside | [`gyrostat_equilibria`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | attitude, ω, position and velocity together | [`state`] |
 //! | what acts on the body | [`loads`] |
@@ -25,6 +26,7 @@ pub mod euler_angles;
 pub mod euler_equations;
 pub mod free;
 pub mod free_precession;
+pub mod gyrostat_equilibria;
 pub mod heavy_top;
 pub mod integrate;
 pub mod kinematics;

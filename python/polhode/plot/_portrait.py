@@ -1,0 +1,265 @@
+"""The phase portrait of a gyrostat: curves of equal energy on the sphere of its momentum in the body."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode._extras import require
+from polhode._scene.shape import check_one
+from polhode._scene.style import AXIS_COLORS, AXIS_DASHES
+from polhode.plot._style import axes_3d, matplotlib
+from polhode.plot._surfaces import curve_on, plain_frame, solid_ellipsoid, toward_viewer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+    from numpy.typing import NDArray
+
+    from polhode import Gyrostat
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["portrait", "portraits"]
+
+_LOOKS: Final = {
+    "minimum": (AXIS_COLORS[2], "o", "stable: least energy"),
+    "maximum": (AXIS_COLORS[0], "^", "stable: most energy"),
+    "saddle": (AXIS_COLORS[1], "X", "unstable"),
+    "degenerate": ("0.15", "D", "where some meet"),
+}
+"""Colour, marker and words for each kind of equilibrium."""
+_BETWEEN: Final = "0.35"
+"""Curves that go round more than one equilibrium."""
+_CELLS: Final = 160
+"""Along an edge of each of the six sides of a cube on which curves are looked for."""
+
+
+def portrait(
+    gyrostat: Gyrostat,
+    momentum: float,
+    ax: Axes3D | None = None,
+    *,
+    levels: int = 4,
+    labels: bool = True,
+) -> Axes3D:
+    """Draw the paths of the total angular momentum in the body, with all equilibria.
+
+    L = I ω + h keeps its length, so that in the body its tip moves on a sphere, on a curve of
+    constant energy.
+    Curves below the lowest saddle go round a minimum and are green and dashed with dots, those above the
+    highest go round a maximum and are blue and dashed; separatrices are vermilion and drawn through, what
+    lies between two of them is grey. Minima are discs, maxima triangles, saddles crosses; where a body with
+    two equal moments has a circle of equilibria it is thick, with a mark on it.
+
+    Parameters
+    ----------
+    gyrostat : Gyrostat
+        One gyrostat.
+    momentum : float
+        The length of L.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+        Where to draw; a new figure by default.
+    levels : int
+        How many curves between an extremum of the energy and the next saddle.
+    labels : bool
+        Whether the axes, h and the marks are named.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    check_one(gyrostat.shape, "gyrostat")
+    if not 0.0 < momentum < np.inf:
+        raise ValueError(f"momentum: {momentum} is not positive and finite; it is the length of L = I ω + h")
+    if levels < 0:
+        raise ValueError(f"levels: {levels} is negative")
+    new = ax is None
+    ax = axes_3d(ax)
+    if new:
+        ax.view_init(elev=20.0, azim=35.0)
+    inverse = np.linalg.inv(gyrostat.inertia) * np.max(np.abs(gyrostat.inertia))
+    inside = np.asarray(gyrostat.momentum, dtype=np.float64) / momentum
+    found = gyrostat.equilibria(momentum)
+    points, kinds = np.asarray(found.direction), list(found.kind)
+    solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 1.0)
+    energies = [float(_energy(inverse, inside, n)) for n in points]
+    saddles = [e for e, kind in zip(energies, kinds, strict=True) if kind == "saddle"]
+    # Without a saddle every curve goes round both: the half of the way tells to which it is nearer.
+    middle = [0.5 * (min(energies) + max(energies))]
+    least, most = min(saddles or middle), max(saddles or middle)
+    for level in _levels(energies, levels):
+        color, dash = _BETWEEN, "-"
+        if level > most:
+            color, dash = AXIS_COLORS[0], AXIS_DASHES[0]
+        elif level < least:
+            color, dash = AXIS_COLORS[2], AXIS_DASHES[2]
+        for curve in _curves(inverse, inside, level):
+            curve_on(ax, curve, curve, color, linestyle=dash, linewidth=1.1)
+    for level in saddles:
+        for curve in _curves(inverse, inside, level):
+            curve_on(ax, curve, curve, AXIS_COLORS[1], linewidth=1.6)
+    for n, axis, kind in zip(points, np.asarray(found.circle), kinds, strict=True):
+        if np.isfinite(axis).all():
+            ring = _circle(n, axis)
+            curve_on(ax, ring, ring, _LOOKS[kind][0], linewidth=2.4)
+    _marks(ax, points, kinds, labels)
+    if labels:
+        _names(ax, inside)
+    plain_frame(ax, 3 * [-1.15], 3 * [1.15])
+    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.3)
+    return ax
+
+
+def portraits(
+    gyrostat: Gyrostat,
+    momentum: float,
+    factors: Sequence[float] | None = None,
+    *,
+    levels: int = 3,
+) -> NDArray[np.object_]:
+    """Draw a row of portraits as the momentum inside grows.
+
+    Parameters
+    ----------
+    gyrostat : Gyrostat
+        One gyrostat, with something inside.
+    momentum : float
+        The length of L.
+    factors : sequence of float, optional
+        Of the momentum inside; by default one in each range of |h| between those at which the number of
+        equilibria changes.
+    levels : int
+        As of :func:`portrait`.
+
+    Returns
+    -------
+    numpy.ndarray of mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    check_one(gyrostat.shape, "gyrostat")
+    size = float(np.linalg.norm(gyrostat.momentum))
+    if not size > 0.0:
+        raise ValueError("gyrostat: there is no momentum inside whose growth could be shown")
+    if factors is None:
+        changes = sorted({float(x) / size for x in gyrostat.equilibria(momentum).bifurcations.rotor})
+        ends = [0.0, *changes, 1.6 * changes[-1]] if changes else [0.0, 2.0 * momentum / size]
+        factors = [0.5 * (a + b) for a, b in itertools.pairwise(ends) if b - a > 0.02 * ends[-1]]
+    figure, row = matplotlib("pyplot").subplots(
+        1, len(factors), figsize=(3.6 * len(factors), 4.2), squeeze=False, layout="constrained",
+        subplot_kw={"projection": "3d", "computed_zorder": False},
+    )  # fmt: skip
+    shown: set[str] = set()
+    for ax, factor in zip(row[0], factors, strict=True):
+        ax.view_init(elev=20.0, azim=35.0)
+        one = gyrostat.body.gyrostat(factor * np.asarray(gyrostat.momentum))
+        portrait(one, momentum, ax, levels=levels, labels=False)
+        _names(ax, np.asarray(one.momentum) / momentum)
+        kinds = list(one.equilibria(momentum).kind)
+        shown.update(kinds)
+        words = f"|h| = {factor * size / momentum:.3g} |L|: {len(kinds)} equilibria"
+        ax.text2D(0.5, 0.02, words, transform=ax.transAxes, ha="center", fontsize=10)
+    handles = [_mark(kind) for kind in _LOOKS if kind in shown]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
+    return np.asarray(row[0])
+
+
+def _energy(inverse: Floats, inside: Floats, n: Floats) -> Any:
+    """½ (n − h)·I⁻¹(n − h), in units of L² over the largest moment."""
+    off = n - inside
+    return 0.5 * np.einsum("...i,ij,...j", off, inverse, off)
+
+
+def _levels(stationary: list[float], count: int) -> list[float]:
+    """Energies between stationary ones, denser towards the extrema, where a curve's size is as the root."""
+    distinct = sorted(set(stationary))
+    if len(distinct) < 2:
+        return []
+    span = distinct[-1] - distinct[0]
+    levels = []
+    for i, (low, high) in enumerate(itertools.pairwise(distinct)):
+        if high - low < 1e-9 * span:
+            continue
+        part = np.sqrt((high - low) / span)
+        many = int(np.ceil(count * (0.5 + part))) if part > 0.1 else min(count, 1)
+        s = np.arange(1, many + 1) / (many + 1)
+        first, last = i == 0, i == len(distinct) - 2
+        if first and last:
+            s = np.sin(0.5 * np.pi * s) ** 2
+        elif first:
+            s = s**2
+        elif last:
+            s = 1.0 - (1.0 - s) ** 2
+        levels += list(low + (high - low) * s)
+    return levels
+
+
+def _curves(inverse: Floats, inside: Floats, level: float) -> Iterator[Floats]:
+    """Where the energy on the unit sphere has one value: pieces, cut at the edges of a cube."""
+    contourpy: Any = require("contourpy", extra="plot", purpose="drawing")
+    edge = np.linspace(-0.25 * np.pi, 0.25 * np.pi, _CELLS + 1)
+    for axis in range(3):
+        for sign in (1.0, -1.0):
+
+            def onto(a: Floats, b: Floats, axis: int = axis, sign: float = sign) -> Floats:
+                n = np.empty((*np.shape(a), 3))
+                n[..., axis], n[..., axis - 2], n[..., axis - 1] = sign, np.tan(a), np.tan(b)
+                unit: Floats = n / np.linalg.norm(n, axis=-1, keepdims=True)
+                return unit
+
+            a, b = np.meshgrid(edge, edge)
+            values = _energy(inverse, inside, onto(a, b))
+            for line in contourpy.contour_generator(a, b, values).lines(level):
+                yield onto(line[:, 0], line[:, 1])
+
+
+def _circle(n: Floats, axis: Floats) -> Floats:
+    """Give the circle about an axis through a point of the unit sphere."""
+    height = float(n @ axis)
+    across = n - height * axis
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)[:, np.newaxis]
+    circle: Floats = height * axis + np.cos(turn) * across + np.sin(turn) * np.cross(axis, across)
+    return circle
+
+
+def _marks(ax: Axes3D, points: Floats, kinds: list[str], labels: bool) -> None:
+    """Mark the equilibria, faintly those on the far side, with a legend for the kinds that there are."""
+    viewer = toward_viewer(ax)
+    for n, kind in zip(points, kinds, strict=True):
+        color, marker, _ = _LOOKS[kind]
+        near = n @ viewer >= 0.0
+        ax.plot(
+            *(1.005 * n)[:, np.newaxis], linestyle="none", marker=marker, markersize=8.0 if near else 6.0,
+            color=color, markeredgecolor="white", markeredgewidth=0.8, alpha=1.0 if near else 0.35,
+            zorder=7 if near else 3,
+        )  # fmt: skip
+    if labels:
+        present = [_mark(kind) for kind in _LOOKS if kind in kinds]
+        ax.legend(handles=present, loc="lower center", ncols=len(present), frameon=False, fontsize=9)
+
+
+def _mark(kind: str) -> Any:
+    color, marker, words = _LOOKS[kind]
+    return matplotlib("lines").Line2D(
+        [], [], linestyle="none", marker=marker, color=color, markersize=8, label=words
+    )
+
+
+def _names(ax: Axes3D, inside: Floats) -> None:
+    """Name the axes of the body, and the direction of h."""
+    viewer = toward_viewer(ax)
+    for k, name in enumerate("xyz"):
+        axis = np.zeros(3)
+        axis[k] = 1.0
+        order = 5 if axis @ viewer >= 0.0 else 1
+        ax.plot(*np.stack([axis, 1.2 * axis], axis=-1), color="0.25", linewidth=1.2, zorder=order)
+        ax.text(*(1.36 * axis), f"$L_{name}$", color="0.15", ha="center", va="center", fontsize=11, zorder=8)
+    size = np.linalg.norm(inside)
+    if size > 0.0:
+        unit = inside / size
+        order = 6 if unit @ viewer >= 0.0 else 1
+        ax.plot(*np.stack([unit, 1.3 * unit], axis=-1), color="0.0", linewidth=2.4, zorder=order)
+        ax.plot(*unit[:, np.newaxis], linestyle="none", marker="o", markersize=3.5, color="0.0", zorder=order)
+        ax.text(*(1.42 * unit), "h", color="0.0", ha="center", va="center", fontsize=12, zorder=8)

@@ -1,0 +1,115 @@
+"""The portrait of a gyrostat: what is marked is what was found, and every curve keeps its energy."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from oracles.gyrostat_equilibria import equilibria, folds
+from polhode import plot
+
+mpl.use("Agg")
+from matplotlib import pyplot as plt
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+MOMENTS = (1.0, 1.8, 2.6)
+INSIDE = (0.25, 0.2, 0.3)
+
+
+@pytest.fixture(autouse=True)
+def _no_figure_left_open() -> Iterator[None]:
+    yield
+    plt.close("all")
+
+
+class Gyrostat:
+    """What a portrait asks of a gyrostat, from the roots of a polynomial."""
+
+    shape = ()
+    inertia = np.diag(MOMENTS)
+
+    def __init__(self, momentum: Sequence[float]) -> None:
+        self.momentum = np.array(momentum)
+        self.body = SimpleNamespace(gyrostat=Gyrostat)
+
+    def equilibria(self, momentum: float) -> Any:
+        directions, kinds = [], []
+        for mu, n, _, squared in equilibria(MOMENTS, self.momentum.tolist(), momentum):
+            direction = np.array([float(x) for x in n])
+            across = np.diag(1 / np.array(MOMENTS) - float(mu))
+            trace = np.trace(across) - direction @ across @ direction
+            directions.append(direction)
+            kinds.append("saddle" if squared < 0 else "minimum" if trace > 0 else "maximum")
+        size = float(np.linalg.norm(self.momentum))
+        rotor = [size * momentum / float(x) for x in folds(MOMENTS, self.momentum.tolist())]
+        return SimpleNamespace(
+            direction=np.array(directions),
+            kind=kinds,
+            circle=np.full((len(kinds), 3), np.nan),
+            bifurcations=SimpleNamespace(rotor=rotor),
+        )
+
+
+def test_marks_and_curves() -> None:
+    gyrostat: Any = Gyrostat(INSIDE)
+    ax: Any = plot.portrait(gyrostat, 2.0)
+    found = gyrostat.equilibria(2.0)
+    lines = [np.array(line.get_data_3d()).T for line in ax.get_lines()]
+    marks = [line[0] for line in lines if len(line) == 1]
+    for direction in found.direction:
+        assert min(np.linalg.norm(mark - direction) for mark in marks) < 0.01
+    assert {text.get_text() for text in ax.get_legend().get_texts()} == {
+        "stable: least energy",
+        "stable: most energy",
+        "unstable",
+    }
+    curves = [line[np.isfinite(line[:, 0])] for line in lines if len(line) > 2]
+    assert len(curves) > 20
+    for curve in curves:
+        if not len(curve):
+            continue
+        np.testing.assert_allclose(np.linalg.norm(curve, axis=1), 1.0, rtol=1e-14)
+        energy = (curve - np.array(INSIDE) / 2.0) ** 2 @ (1 / np.array(MOMENTS))
+        assert np.ptp(energy) < 2e-4
+
+
+def test_a_circle_of_equilibria_is_drawn() -> None:
+    # Moments 1, 1, 2 and h = (0, 0, 0.2): L₃ = −h on the circle, of most energy.
+    n = np.array([np.sqrt(1 - 0.01), 0.0, -0.1])
+    none = np.full(3, np.nan)
+    found = SimpleNamespace(
+        direction=np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], n]),
+        kind=["minimum", "minimum", "maximum"],
+        circle=np.array([none, none, [0.0, 0.0, 1.0]]),
+    )
+    gyrostat: Any = SimpleNamespace(
+        shape=(), inertia=np.diag([1.0, 1.0, 2.0]), momentum=np.array([0, 0, 0.2]), equilibria=lambda _: found
+    )
+    ax: Any = plot.portrait(gyrostat, 2.0)
+    thick = [np.array(line.get_data_3d()).T for line in ax.get_lines() if line.get_linewidth() == 2.4]
+    heights = [line[:, 2] for line in thick if len(line) == 181]
+    assert heights
+    np.testing.assert_allclose(heights[0][np.isfinite(heights[0])], -0.1, rtol=1e-14)
+
+
+def test_a_row_has_one_for_each_number_of_equilibria() -> None:
+    gyrostat: Any = Gyrostat(INSIDE)
+    row = plot.portraits(gyrostat, 2.0)
+    words = [ax.texts[-1].get_text() for ax in row]
+    assert [word.split(": ")[1] for word in words] == ["6 equilibria", "4 equilibria", "2 equilibria"]
+    assert len(plot.portraits(gyrostat, 2.0, (0.5, 1.0))) == 2
+
+
+def test_what_cannot_be_drawn() -> None:
+    gyrostat: Any = Gyrostat(INSIDE)
+    for momentum in (0.0, -1.0, np.nan):
+        with pytest.raises(ValueError, match="momentum"):
+            plot.portrait(gyrostat, momentum)
+    still: Any = Gyrostat((0.0, 0.0, 0.0))
+    with pytest.raises(ValueError, match="no momentum inside"):
+        plot.portraits(still, 2.0)
