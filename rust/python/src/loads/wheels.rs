@@ -34,7 +34,7 @@ use crate::stack::{Broadcast, Stack};
 /// >>> from polhode import RigidBody, loads
 /// >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
 /// >>> motion = body.simulate([0, 50, 100], omega=(0.1, 0, 0), load=loads.rotor((0, 0, 20)), rtol=1e-13)
-/// >>> motion.angular_momentum().spin.round(9)[-1]
+/// >>> motion.angular_momentum().spin.round(9)[-1] + 0.0
 /// array([ 0.1,  0. , 20. ])
 /// >>> bool(motion.invariants().energy_drift < 1e-11)
 /// True
