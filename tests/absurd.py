@@ -126,6 +126,10 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "gravity_gradient": (_core.gravity_gradient, {"mu": 1.0, "position": V, "velocity": V}),
     "damping": (_core.damping, {"matrix": T, "quadratic": T}),
     "feedback": (_core.feedback, {"K": T, "D": T, "target": Q}),
+    "rotor": (_core.rotor, {"momentum": V}),
+    "wheel": (_core.wheel, {"axis": V, "inertia": 1.0, "rate": 1.0, "friction": 1.0}),
+    "slug": (_core.slug, {"inertia": 1.0, "damping": 1.0}),
+    "Load.carried": (_core.rotor(V).carried, {"t": 1.0, "omega": V}),
     "principal_axes": (_core.principal_axes, {"inertia": T}),
     "principal_moments": (_core.principal_moments, {"inertia": T}),
     "canonical_axes": (
@@ -203,6 +207,10 @@ OTHERS: dict[str, Callable[[], object]] = {
         COLUMN, np.linspace(0.0, 1.0, SIDE), V, Q, None, "center_of_mass"
     ),
     "RigidBody.__getitem__ of rows": lambda: COLUMN[np.broadcast_to(0, ABSURD)],
+    "with_states": lambda: _core.with_states(None, np.broadcast_to(1.0, ABSURD)),
+    "wheel, absurd times": lambda: _core.wheel(
+        V, 1.0, torque=np.broadcast_to(1.0, ABSURD), times=np.broadcast_to(1.0, ABSURD)
+    ),
     "Load.__getitem__": lambda: LOADS[np.broadcast_to(0, ABSURD)],
     "RigidBody.__add__": lambda: COLUMN + COLUMN[:, 0],
     "RigidBody.__sub__": lambda: COLUMN - COLUMN[:, 0],

@@ -628,25 +628,6 @@ def with_states(
     period: float | None = None,
     scale: ArrayLike | None = None,
 ) -> Load: ...
-def _wheel(
-    axis: ArrayLike,
-    inertia: ArrayLike,
-    rate: ArrayLike | None,
-    torque: ArrayLike | Load | None,
-    speed: ArrayLike | None,
-    times: ArrayLike | None,
-    friction: ArrayLike | None,
-    name: str,
-) -> Load: ...
-def _with_states(
-    rates: _WithStates | None,
-    initial: ArrayLike,
-    wrench: _WithStates | None,
-    name: str,
-    update: _WithStates | None,
-    period: float | None,
-    scale: ArrayLike,
-) -> Load: ...
 def box(size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def cube(side: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def sphere(

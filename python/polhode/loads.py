@@ -9,8 +9,6 @@ on the body; momentum and energy of the trajectory include it. Its states are in
 
 from polhode._core import (
     Load,
-    _wheel,  # noqa: F401 - pickle
-    _with_states,  # noqa: F401 - pickle
     callback,
     compiled,
     constant_force,

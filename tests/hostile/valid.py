@@ -91,7 +91,9 @@ VALUES: dict[str, Any] = {
     "inverse": False, "name": "omega", "values": OMEGA, "direction": 0.0, "terminal": False, "index": -1,
     "constants": [3.0, 2.0, 1.0],
     "unwrap": False, "options": {}, "unit": "MHz", "factor": 2.0, "key": 0, "user_data": None,
-    "labels_of_atoms": ["C", "O"],
+    "labels_of_atoms": ["C", "O"], "states": None, "momentum": [0.0, 0.5, 2.0], "speed": None,
+    "times": None, "friction": 0.25, "initial": [0.5, 0.0], "wrench": None, "update": None, "period": None,
+    "scale": None,
     "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
 }  # fmt: skip
 """What a parameter of this name takes; numbers that float32 has too."""
@@ -137,6 +139,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "triangle": {"vertices": [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]},
     "polygon": {"vertices": [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]},
     "sampled": {"t": [-1.0, 0.5, 2.0], "torque": [[0.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]]},
+    "wheel": {"axis": [0.0, 0.5, 1.0], "inertia": 0.25, "torque": 0.5},
+    "slug": {"inertia": 0.25, "damping": 0.5},
+    "with_states": {"rates": None},
+    "Load.carried": {"t": 0.5},
     "schedule": {"load": loads.constant_torque((0.5, 0.0, 0.25))},
     "callback": {"function": push},
     "from_pseudo_inertia": {"pseudo_inertia": _core.to_pseudo_inertia(TUMBLER).tolist()},

@@ -97,9 +97,9 @@ mod _core {
     use crate::laminae::{annulus, disk, ellipse, polygon, rectangle, triangle};
     #[pymodule_export]
     use crate::loads::{
-        _wheel, _with_states, PyLoad, callback, compiled, constant_force, constant_torque, damping,
-        feedback, gravity_gradient, rotor, sampled, schedule, slug, torque_callback,
-        uniform_gravity, wheel, with_states,
+        PyLoad, callback, compiled, constant_force, constant_torque, damping, feedback,
+        gravity_gradient, rotor, sampled, schedule, slug, torque_callback, uniform_gravity, wheel,
+        with_states,
     };
     #[pymodule_export]
     use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};

@@ -2,6 +2,7 @@
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::address::Compiled;
 use super::called::{Callback, Gives};
@@ -200,31 +201,10 @@ pub(crate) fn with_states(
     stateful::check_name(name)?;
     let own = (values.clone(), scales.clone());
     let load = WithStates::new([rates, wrench, update], period, own)?;
-    let arguments = (rates, values, wrench, name, update, period, scales);
-    let recipe = recipe(py, "_with_states", arguments)?;
+    let options = PyDict::new(py);
+    options.set_item("update", update)?;
+    options.set_item("period", period)?;
+    options.set_item("scale", scales)?;
+    let recipe = recipe(py, "with_states", (rates, values, wrench, name, options))?;
     Ok(PyLoad::one(Acts::WithStates(load), recipe).named(name))
-}
-
-/// As [`with_states`], all arguments by their places: for pickle.
-#[pyfunction]
-pub(crate) fn _with_states(
-    py: Python<'_>,
-    rates: Option<&Bound<'_, PyAny>>,
-    initial: &Bound<'_, PyAny>,
-    wrench: Option<&Bound<'_, PyAny>>,
-    name: &str,
-    update: Option<&Bound<'_, PyAny>>,
-    period: Option<f64>,
-    scale: &Bound<'_, PyAny>,
-) -> PyResult<PyLoad> {
-    with_states(
-        py,
-        rates,
-        initial,
-        wrench,
-        name,
-        update,
-        period,
-        Some(scale),
-    )
 }

@@ -152,8 +152,14 @@ impl PyLoad {
 pub(super) fn made(py: Python<'_>, recipe: &Bound<'_, PyTuple>) -> PyResult<PyLoad> {
     let steps = unfolded(recipe)?;
     let (name, arguments) = &steps[0];
-    let made = (py.import("polhode.loads")?.getattr(name.as_str())?)
-        .call(arguments, None::<&Bound<'_, PyDict>>)?;
+    let function = py.import("polhode.loads")?.getattr(name.as_str())?;
+    let made = match arguments.get_item(arguments.len().saturating_sub(1)) {
+        Ok(last) if last.is_instance_of::<PyDict>() => {
+            let plain = arguments.get_slice(0, arguments.len() - 1);
+            function.call(plain, Some(last.cast::<PyDict>()?))?
+        }
+        _ => function.call(arguments, None)?,
+    };
     let mut load = made.cast::<PyLoad>()?.get().copied(py)?;
     let mut beat = Beat::new(py);
     for (name, arguments) in &steps[1..] {

@@ -30,11 +30,11 @@ mod terms;
 mod wheels;
 
 pub(crate) use acting::{Acting, Fault};
-pub(crate) use functions::{_with_states, callback, compiled, torque_callback, with_states};
+pub(crate) use functions::{callback, compiled, torque_callback, with_states};
 pub(crate) use load::PyLoad;
 pub(crate) use own::{Slot, named, reported};
 pub(crate) use terms::{
     constant_force, constant_torque, damping, feedback, gravity_gradient, sampled, schedule,
     uniform_gravity,
 };
-pub(crate) use wheels::{_wheel, rotor, slug, wheel};
+pub(crate) use wheels::{rotor, slug, wheel};

@@ -50,8 +50,6 @@ pub(super) fn described(recipe: &Bound<'_, PyTuple>) -> PyResult<String> {
     }
     let made_by = match steps[0].0.as_str() {
         "_unpicklable" => "compiled",
-        "_with_states" => "with_states",
-        "_wheel" => "wheel",
         name => name,
     };
     Ok(format!("{}{made_by}{}", before.concat(), ")".repeat(after)))

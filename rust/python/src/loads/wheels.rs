@@ -5,6 +5,7 @@ use numpy::PyUntypedArrayMethods;
 use polhode::motion::loads::{Drive, Held, Rotor, Slug, Term, Wheel};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::load::PyLoad;
 use super::part::Acts;
@@ -158,37 +159,19 @@ pub(crate) fn wheel(
             None => None,
         })
     };
-    let arguments = (
-        write(py, &axis)?,
-        number(&inertia)?,
-        rate.map(|_| number(&rates)).transpose()?,
-        kept(torque)?,
-        kept(speed)?,
-        kept(times)?,
+    let options = PyDict::new(py);
+    options.set_item("torque", kept(torque)?)?;
+    options.set_item("speed", kept(speed)?)?;
+    options.set_item("times", kept(times)?)?;
+    options.set_item(
+        "friction",
         friction.map(|_| number(&frictions)).transpose()?,
-        name,
-    );
-    let recipe = recipe(py, "_wheel", arguments)?;
+    )?;
+    options.set_item("name", name)?;
+    let rate = rate.map(|_| number(&rates)).transpose()?;
+    let arguments = (write(py, &axis)?, number(&inertia)?, rate, options);
+    let recipe = recipe(py, "wheel", arguments)?;
     Ok(PyLoad::one(Acts::Term(terms), recipe).named(name))
-}
-
-/// As [`wheel`], all arguments by their places: for pickle.
-#[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "those of a wheel")]
-pub(crate) fn _wheel(
-    py: Python<'_>,
-    axis: &Bound<'_, PyAny>,
-    inertia: &Bound<'_, PyAny>,
-    rate: Option<&Bound<'_, PyAny>>,
-    torque: Option<&Bound<'_, PyAny>>,
-    speed: Option<&Bound<'_, PyAny>>,
-    times: Option<&Bound<'_, PyAny>>,
-    friction: Option<&Bound<'_, PyAny>>,
-    name: &str,
-) -> PyResult<PyLoad> {
-    wheel(
-        py, axis, inertia, rate, torque, speed, times, friction, name,
-    )
 }
 
 /// No torque.
