@@ -17,6 +17,15 @@ pub enum MotionFault {
         /// The component.
         torque: f64,
     },
+    /// Momentum inside a body that has a moment of zero.
+    #[error(
+        "a gyrostat's principal moments must be positive, got {moment:?}: the momentum inside would turn such a body \
+         infinitely fast; give the body a thickness, or give momentum=(0, 0, 0)"
+    )]
+    MasslessGyrostat {
+        /// The least principal moment.
+        moment: f64,
+    },
     /// An unknown Euler sequence.
     #[error(
         "sequence must be three axes such as \"ZXZ\" (intrinsic) or \"zxz\" (extrinsic), neighbours different, \
@@ -233,7 +242,7 @@ impl MotionFault {
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
-            Self::TorqueAlongMasslessAxis { .. } => Kind::Inertia,
+            Self::TorqueAlongMasslessAxis { .. } | Self::MasslessGyrostat { .. } => Kind::Inertia,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. }
             | Self::TooManySteps { .. }
