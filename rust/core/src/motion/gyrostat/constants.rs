@@ -97,7 +97,7 @@ pub(super) fn moving(
         let before = spinor.argument.size().ln();
         let growth = in_units(spinor.rate).scaled(spinor.sense);
         if let Some((turn, in_time)) = spinor.in_time {
-            let is_alternating = spinor.nome.high < 0.0;
+            let is_alternating = spinor.is_alternating;
             let step = if is_alternating {
                 turn.scaled(0.5)
             } else {
@@ -169,7 +169,8 @@ pub(super) fn moving(
 
 fn hyperbolic(spinor: &Spinor, angle: f64, unit: f64, end: f64) -> AnySeries {
     let nome = spinor.nome.high;
-    let (size, sign) = (nome.abs(), nome.signum());
+    let size = nome.abs();
+    let sign = if spinor.is_alternating { -1.0_f64 } else { 1.0 };
     let wave = |n: i32| {
         let phase = f64::from(n) * angle;
         [phase.cos(), phase.sin()]

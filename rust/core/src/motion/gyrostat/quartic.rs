@@ -95,4 +95,22 @@ impl<T: Real> Quartic<T> {
     pub(super) fn turning(&self) -> Complex<T> {
         self.a[0].times_i()
     }
+
+    /// `1/x` of the farther of the two spinors that half a period exchanges with themselves, for a start near an equilibrium:
+    /// the zeros of `v_m x² − v_n x − v_m̄`, v the eigenvector of the matrix whose traces the invariants are, to `root`.
+    pub(super) fn far(&self, root: T) -> Complex<T> {
+        let [a1, a2, a3, a4] = self.a;
+        let shift = a2.scaled(0.5) + Complex::new(root, T::from(0.0));
+        let twice = shift.scaled(2.0);
+        let first = a4 * a1 - twice * a3;
+        let middle = twice.squared() - a4;
+        let last = (a1 * middle + first).over(twice);
+        let spread = (middle.squared() + (first * last).scaled(4.0)).sqrt();
+        let spread = if spread.is_opposite_to(middle) {
+            -spread
+        } else {
+            spread
+        };
+        first.scaled(2.0).over(middle + spread)
+    }
 }

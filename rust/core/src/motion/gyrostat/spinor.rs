@@ -17,8 +17,10 @@ type Number = Complex<DoubleDouble>;
 pub(super) struct Spinor {
     /// Whether Z grows as the exponential of the time, instead of circling.
     pub(super) is_hyperbolic: bool,
-    /// Q.
+    /// Q; zero where it does not matter.
     pub(super) nome: DoubleDouble,
+    /// Whether Q is negative, however small.
+    pub(super) is_alternating: bool,
     /// |κ|: radians, or powers of e, for a unit of time.
     pub(super) rate: DoubleDouble,
     /// The sign of κ, or of κ/i.
@@ -39,6 +41,8 @@ fn real(x: DoubleDouble) -> Number {
     Complex::new(x, DoubleDouble::default())
 }
 
+/// A start is near an equilibrium where ρ is smaller.
+const NEAR: f64 = 1e-9;
 /// Below this nome all but three terms are beyond twice the precision.
 const NO_NOME: f64 = 1e-62;
 /// Terms below this part are left out.
@@ -78,10 +82,18 @@ impl Spinor {
         let drift = (slope + quartic.turning()).scaled(0.5);
         let wronskian = Complex::<DoubleDouble>::one().over(even[0] * odd[1] - odd[0] * even[1]);
         let half = Complex::new(DoubleDouble::default(), rho.scaled(0.5)) * wronskian;
-        let columns = [
+        let mut columns = [
             [(odd[1] - drift * odd[0]) * wronskian, -(half * odd[0])],
             [(drift * even[0] - even[1]) * wronskian, half * even[0]],
         ];
+        if rho.high < NEAR {
+            // One column is nearly (0, 1), and what it has of the first component a difference of far larger ones.
+            let root = curve.apart.root;
+            let far = quartic.far(if curve.is_turned { -root } else { root });
+            let ratio = |column: &[Number; 2]| column[0].size() / column[1].size();
+            let k = usize::from(ratio(&columns[1]) < ratio(&columns[0]));
+            columns[k][0] = columns[k][1] * far.times(DoubleDouble::from(1.0) / rho);
+        }
         let in_time = (curve.is_turned)
             .then(|| curve.in_time())
             .flatten()
@@ -93,6 +105,7 @@ impl Spinor {
         Self {
             is_hyperbolic: curve.is_turned,
             nome,
+            is_alternating: curve.gap.high < 0.0,
             rate: found.mean,
             sense,
             start,
