@@ -81,6 +81,8 @@ class Trajectory:
     uncertain_start: (
         tuple[_core.Uncertain | None, _core.Uncertain | None] | _core.FreeMotion | _core.HeavyTop | None
     ) = (None, None)
+    _rotor: tuple[Floats, Floats] | None = None
+    """Of a gyrostat: h (..., 3) in the body frame, and Σ J a aᵀ (..., 3, 3) of its free wheels."""
 
     # Methods that stand in files of their own.
     torque = _acting.torque
@@ -148,13 +150,18 @@ class Trajectory:
         Returns
         -------
         KineticEnergy
-            Each part of shape (..., T).
+            Each part of shape (..., T). Of a gyrostat without what wheels have in their own rotation: the part that a
+            free motion keeps.
         """
-        return self._bodies().kinetic_energy(
+        energy = self._bodies().kinetic_energy(
             self.omega,
             velocity=_core.rotate(self.quaternion, self.velocity, inverse=True),
             about=self._reference(),
         )
+        if self._rotor is None:
+            return energy
+        of_wheels = 0.5 * np.vecdot(self.omega, self._free_wheels())
+        return energy._replace(rotational=energy.rotational - of_wheels)
 
     def angular_momentum(self, frame: Literal["space", "body"] = "space") -> AngularMomentum:
         """Angular momentum about the origin of space at every time.
@@ -167,7 +174,7 @@ class Trajectory:
         Returns
         -------
         AngularMomentum
-            Each part of shape (..., T, 3).
+            Each part of shape (..., T, 3). The spin of a gyrostat includes its wheels.
         """
         if frame not in ("space", "body"):
             raise ValueError(f"frame: {frame!r} is not 'space' or 'body'")
@@ -177,6 +184,9 @@ class Trajectory:
             position=_core.rotate(self.quaternion, self.position, inverse=True),
             about=self._reference(),
         )
+        if self._rotor is not None:
+            spin = in_body.spin - self._free_wheels() + self._per_time(self._rotor[0])
+            in_body = in_body._replace(spin=spin)
         if frame == "body":
             return in_body
         return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
@@ -322,6 +332,13 @@ class Trajectory:
     def _per_time(self, vectors: Floats) -> Floats:
         """Give vectors the axes of time before their components."""
         return vectors[(..., *self._time_axes(), slice(None))]
+
+    def _free_wheels(self) -> Floats:
+        """Give Σ J a a·ω of the free wheels, what locked ones have of the momentum."""
+        assert self._rotor is not None
+        tensors = self._rotor[1][(..., *self._time_axes(), slice(None), slice(None))]
+        product: Floats = np.einsum("...ij,...j->...i", tensors, self.omega)
+        return product
 
     def _reference(self) -> Floats:
         return self._per_time(self.about)

@@ -26,6 +26,24 @@ pub enum MotionFault {
         /// The least principal moment.
         moment: f64,
     },
+    /// A wheel with a negative moment of inertia.
+    #[error("inertia of a wheel must not be negative, got {inertia:?}")]
+    NegativeWheel {
+        /// The moment.
+        inertia: f64,
+    },
+    /// A wheel whose axis is zero.
+    #[error("axis of a wheel must have a direction, got (0, 0, 0)")]
+    WheelWithoutAxis,
+    /// More moment in free wheels than the body has.
+    #[error(
+        "the body without its free wheels must have positive moments, but I − Σ J a aᵀ has the principal moment {moment:?}: \
+         the body's inertia includes its locked wheels; add them to it, or give smaller wheels"
+    )]
+    WheelsTooHeavy {
+        /// The least principal moment.
+        moment: f64,
+    },
     /// An unknown Euler sequence.
     #[error(
         "sequence must be three axes such as \"ZXZ\" (intrinsic) or \"zxz\" (extrinsic), neighbours different, \
@@ -242,13 +260,17 @@ impl MotionFault {
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
-            Self::TorqueAlongMasslessAxis { .. } | Self::MasslessGyrostat { .. } => Kind::Inertia,
+            Self::TorqueAlongMasslessAxis { .. }
+            | Self::MasslessGyrostat { .. }
+            | Self::WheelsTooHeavy { .. } => Kind::Inertia,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. }
             | Self::TooManySteps { .. }
             | Self::NotFiniteMotion { .. }
             | Self::NotFiniteDerivative { .. } => Kind::Integration,
             Self::EulerSequence { .. }
+            | Self::NegativeWheel { .. }
+            | Self::WheelWithoutAxis
             | Self::PivotOffAxis { .. }
             | Self::SpinTooSlow { .. }
             | Self::NoSuchMode { .. }

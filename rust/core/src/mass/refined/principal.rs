@@ -11,6 +11,7 @@ use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::power_below;
+use crate::principal::axes::principal_axes;
 
 /// The principal moments, ascending, with their axes, to twice the precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +62,20 @@ impl RefinedPrincipal {
         let mut refined = Self::given(&about.moments, &about.axes);
         refined.refine(&tensor);
         refined.clear(&about.moments);
+        refined
+    }
+
+    /// Of a body about its centre of mass with a symmetric tensor added, whose rows in B these are.
+    #[must_use]
+    pub fn with(body: &RigidBody, added: &[Vector; 3]) -> Self {
+        let central = Self::of(body);
+        let tensor: [Vector; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| central.element(body, i, j) + added[i][j])
+        });
+        let rounded = Matrix3::from(tensor.map(|row| row.map(DoubleDouble::rounded)));
+        let about = principal_axes(&rounded);
+        let mut refined = Self::given(&about.moments, &about.axes);
+        refined.refine(&tensor);
         refined
     }
 

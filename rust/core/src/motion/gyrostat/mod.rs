@@ -7,6 +7,7 @@
 //!
 //! | file | idea |
 //! |---|---|
+//! | `inside.rs` | momentum and wheels, and the tensor that is left |
 //! | `mode.rs` | the ways to move |
 //! | `motion.rs` | a motion from its start, its states |
 //! | `start.rs` | the frame of L and ω at the start, and the matrix of the motion there |
@@ -19,6 +20,7 @@
 
 mod constants;
 mod curve;
+mod inside;
 mod logarithm;
 pub mod mode;
 mod motion;
@@ -29,5 +31,6 @@ mod start;
 #[cfg(test)]
 mod tests;
 
+pub use inside::{Gyrostat, Inside};
 pub use mode::Mode;
 pub use motion::GyrostatMotion;

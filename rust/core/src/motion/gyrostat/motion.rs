@@ -31,6 +31,10 @@ pub struct GyrostatMotion {
     pub initial: State,
     /// h in B, to twice the precision.
     pub rotor: Vector,
+    /// `I ω + h`, components in space: constant.
+    pub angular_momentum: Vector3<f64>,
+    /// `½ ω·I ω`: constant. The energy but for that of the wheels in their own rotation.
+    pub kinetic_energy: f64,
     /// The time after which ω and L are again where they were in the body; infinite where they never are, or always.
     pub period: DoubleDouble,
     /// The rate in radians at which the body turns about L in the mean, seen each time when ω has come back. Known but for
@@ -71,10 +75,10 @@ impl GyrostatMotion {
             attitude: *attitude,
             omega: *omega,
         };
+        let (angular_momentum, kinetic_energy) = kept(principal, rotor, &initial);
         if rounded == Vector3::zeros() {
-            return Ok(Self::free(FreeMotion::refined(
-                principal, omega, attitude,
-            )?));
+            let motion = FreeMotion::refined(principal, omega, attitude)?;
+            return Ok(Self::free(motion, angular_momentum, kinetic_energy));
         }
         if principal.moments[0].high <= 0.0 {
             return Err(MotionFault::MasslessGyrostat {
@@ -133,13 +137,15 @@ impl GyrostatMotion {
             mode,
             initial,
             rotor: *rotor,
+            angular_momentum,
+            kinetic_energy,
             period: by(period, -rate),
             mean_precession: by(precession, rate),
             way: Way::Within(propagator.in_units_of(rate_unit)),
         })
     }
 
-    fn free(motion: FreeMotion) -> Self {
+    fn free(motion: FreeMotion, angular_momentum: Vector3<f64>, kinetic_energy: f64) -> Self {
         let mode = match motion.mode {
             free::Mode::Spherical | free::Mode::Steady => Mode::Steady,
             free::Mode::Symmetric => Mode::Circular,
@@ -150,6 +156,8 @@ impl GyrostatMotion {
             mode,
             initial: motion.initial,
             rotor: [DoubleDouble::default(); 3],
+            angular_momentum,
+            kinetic_energy,
             period: motion.secular.half_period.scaled(2.0),
             mean_precession: motion.secular.mean_precession,
             way: Way::Free(motion),
@@ -231,6 +239,23 @@ impl ClosedForm for GyrostatMotion {
 
 /// Fewer times than this are done one by one.
 const FEW: usize = 8;
+
+/// `I ω + h` in space, and `½ ω·I ω`.
+fn kept(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3<f64>, f64) {
+    let along = principal.components(&start.omega);
+    let axes = principal.axes();
+    let mut momentum = *rotor;
+    let mut twice = DoubleDouble::default();
+    for (k, (&moment, &rate)) in principal.moments.iter().zip(&along).enumerate() {
+        let part = moment * rate;
+        twice += part * rate;
+        for (i, sum) in momentum.iter_mut().enumerate() {
+            *sum += axes[(i, k)] * part;
+        }
+    }
+    let momentum = Vector3::from(momentum.map(DoubleDouble::rounded));
+    (start.attitude * momentum, 0.5 * twice.high)
+}
 
 /// A start with its curve and its spinor.
 struct Solved {

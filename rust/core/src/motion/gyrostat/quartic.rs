@@ -97,7 +97,7 @@ impl<T: Real> Quartic<T> {
     }
 
     /// `1/x` of the farther of the two spinors that half a period exchanges with themselves, for a start near an equilibrium:
-    /// the zeros of `v_m x² − v_n x − v_m̄`, v the eigenvector of the matrix whose traces the invariants are, to `root`.
+    /// the zeros of `v_m x² + v_n x − v_m̄`, v the eigenvector of the matrix whose traces the invariants are, to `root`.
     pub(super) fn far(&self, root: T) -> Complex<T> {
         let [a1, a2, a3, a4] = self.a;
         let shift = a2.scaled(0.5) + Complex::new(root, T::from(0.0));
@@ -111,6 +111,6 @@ impl<T: Real> Quartic<T> {
         } else {
             spread
         };
-        first.scaled(2.0).over(middle + spread)
+        -first.scaled(2.0).over(middle + spread)
     }
 }
