@@ -114,6 +114,7 @@ __all__ = [
     "State",
     "Trajectory",
     "Uncertain",
+    "Wheel",
     "__version__",
     "equimomental",
     "errors",
@@ -131,4 +132,5 @@ __all__ = [
     "tops",
     "uncertainty",
     "validity",
+    "wheel",
 ]
