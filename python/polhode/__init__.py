@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     )
     from polhode._core import (
         FreeMotion,
+        Gyrostat,
+        GyrostatMotion,
         HeavyTop,
         MassAccumulator,
         RigidBody,
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     )
     from polhode.events import Event, Events
     from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
+    from polhode.gyrostat import Wheel, wheel
     from polhode.results import (
         AngularMomentum,
         ErrorBound,
@@ -76,6 +79,7 @@ _HOMES = (
     "polhode.trajectory",
     "polhode.events",
     "polhode.free_motion",
+    "polhode.gyrostat",
 )
 """Modules whose names are public here; the other names are modules."""
 
@@ -88,6 +92,8 @@ __all__ = [
     "Events",
     "FreeMotion",
     "FreePrecession",
+    "Gyrostat",
+    "GyrostatMotion",
     "HeavyTop",
     "Invariants",
     "KineticEnergy",
@@ -108,6 +114,7 @@ __all__ = [
     "State",
     "Trajectory",
     "Uncertain",
+    "Wheel",
     "__version__",
     "equimomental",
     "errors",
@@ -125,4 +132,5 @@ __all__ = [
     "tops",
     "uncertainty",
     "validity",
+    "wheel",
 ]

@@ -119,9 +119,13 @@ class Trajectory:
         def __getattr__(self, name: str) -> Any:
             """Get the attributes that few ask for from the outcome of the run."""
             outcome = self.__dict__.get("_outcome")
-            if outcome is None or name not in type(self).__dataclass_fields__:
+            if name == "carried":
+                value = self._carried_now()
+            elif outcome is not None and name in type(self).__dataclass_fields__:
+                value = getattr(outcome, name)
+            else:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-            value = self.__dict__[name] = self._carried_now() if name == "carried" else getattr(outcome, name)
+            self.__dict__[name] = value
             return value
 
     def __getstate__(self) -> dict[str, Any]:
@@ -355,7 +359,13 @@ class Trajectory:
         return self.states or None
 
     def _carried_now(self) -> tuple[Floats, Floats] | None:
-        """Give momentum and energy of what the body carries along under the load."""
+        """Give momentum and energy of what the body carries along under the load, or as a gyrostat."""
+        if "_rotor" in self.__dict__:
+            momentum, free = self.__dict__["_rotor"]
+            of_free = np.einsum(
+                "...ij,...j->...i", free[(..., *self._time_axes(), slice(None), slice(None))], self.omega
+            )
+            return self._per_time(momentum) - of_free, -0.5 * np.einsum("...i,...i->...", self.omega, of_free)
         if self.load is None or not self.load.carries:
             return None
         return self._over_time(self.load).carried(self.t, self.omega, self._own_states())

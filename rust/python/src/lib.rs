@@ -35,6 +35,7 @@ mod files;
 mod foreign;
 mod forms;
 mod free_motion;
+mod gyrostat;
 mod heavy_top;
 mod hints;
 mod indexing;
@@ -89,6 +90,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::free_motion::PyFreeMotion;
+    #[pymodule_export]
+    use crate::gyrostat::{PyGyrostat, PyGyrostatMotion};
     #[pymodule_export]
     use crate::heavy_top::PyHeavyTop;
     #[pymodule_export]

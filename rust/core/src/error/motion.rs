@@ -17,6 +17,24 @@ pub enum MotionFault {
         /// The component.
         torque: f64,
     },
+    /// Momentum inside a body that has a moment of zero.
+    #[error(
+        "a gyrostat's principal moments must be positive, got {moment:?}: the momentum inside would turn such a body \
+         infinitely fast; give the body a thickness, or give momentum=(0, 0, 0)"
+    )]
+    MasslessGyrostat {
+        /// The least principal moment.
+        moment: f64,
+    },
+    /// More moment in free wheels than the body has.
+    #[error(
+        "the body without its free wheels must have positive moments, but I − Σ J a aᵀ has the principal moment {moment:?}: \
+         the body's inertia includes its locked wheels; add them to it, or give smaller wheels"
+    )]
+    WheelsTooHeavy {
+        /// The least principal moment.
+        moment: f64,
+    },
     /// An unknown Euler sequence.
     #[error(
         "sequence must be three axes such as \"ZXZ\" (intrinsic) or \"zxz\" (extrinsic), neighbours different, \
@@ -70,15 +88,6 @@ pub enum MotionFault {
     StatesStay {
         /// What was asked for.
         what: &'static str,
-    },
-    /// The body turns with less than nothing once its wheels turn freely.
-    #[error(
-        "I − Σ J a aᵀ must have positive moments, where I is the inertia of the body with its wheels locked: the least is \
-         {moment:?}; inertia of the body must include the wheels"
-    )]
-    HeavyWheel {
-        /// The least principal moment.
-        moment: f64,
     },
     /// The centre of mass is not on the symmetry axis through the pivot.
     #[error(
@@ -265,7 +274,9 @@ impl MotionFault {
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
-            Self::TorqueAlongMasslessAxis { .. } => Kind::Inertia,
+            Self::TorqueAlongMasslessAxis { .. }
+            | Self::MasslessGyrostat { .. }
+            | Self::WheelsTooHeavy { .. } => Kind::Inertia,
             Self::GimbalLock { .. } | Self::SingularEulerRates { .. } => Kind::SingularAttitude,
             Self::StepTooSmall { .. }
             | Self::TooManySteps { .. }
@@ -285,7 +296,6 @@ impl MotionFault {
             | Self::OutsideTimes { .. }
             | Self::StatesStay { .. }
             | Self::BeyondReach { .. } => Kind::Argument,
-            Self::HeavyWheel { .. } => Kind::Inertia,
         }
     }
 }

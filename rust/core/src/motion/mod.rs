@@ -11,6 +11,7 @@
 //! | the force in a pivot (mln24) | [`mod@pivot_reaction`] |
 //! | steady spins and whether they are stable | [`stability`] |
 //! | free motion of any body, exact at any time, and what it tells | [`free`] |
+//! | a body with constant momentum inside, exact at any time | [`gyrostat`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
 //! | steady rotations of a body with a constant momentum inside | [`gyrostat_equilibria`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
@@ -26,7 +27,7 @@ pub mod euler_angles;
 pub mod euler_equations;
 pub mod free;
 pub mod free_precession;
-pub mod gyrostat_equilibria;
+pub mod gyrostat;
 pub mod heavy_top;
 pub mod integrate;
 pub mod kinematics;

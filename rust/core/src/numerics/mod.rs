@@ -9,6 +9,7 @@
 //! | [`double_double`] | error-free sums and products |
 //! | [`quad_double`] | four times the precision, where differences decide |
 //! | [`expansion`] | sums and determinants without any rounding |
+//! | [`complex`] | complex numbers of such precisions |
 //! | [`twofold`] | numbers of twice the precision in kernels |
 //! | [`number`] | one algorithm for doubles and for numbers of twice the precision |
 //! | [`power_of_two`] | scales that keep all digits |
@@ -29,6 +30,7 @@
 //! number of threads, nor on which machine with fused multiply-add computes it.
 
 mod assign;
+pub mod complex;
 pub mod dispatch;
 pub mod double_double;
 pub mod eigen3;

@@ -67,26 +67,16 @@ impl RefinedPrincipal {
         refined
     }
 
-    /// Of the tensor less `Σ J a aᵀ`, with moments J about axes a of any length: of a body whose wheels turn freely.
+    /// Of the tensor less another one, whose rows in B these are: of a body without what turns freely in it.
     ///
     /// # Errors
-    /// [`MotionFault::HeavyWheel`] where that leaves a moment that is not positive, to rounding.
-    pub fn without(&self, turning: &[(Vector3<f64>, f64)]) -> Result<Self, Error> {
-        let parts = turning.iter().map(|(axis, moment)| {
-            let axis = (axis / power_below(axis.amax())).map(DoubleDouble::from);
-            let axis = [axis.x, axis.y, axis.z];
-            (axis, DoubleDouble::from(*moment) / dot(&axis, &axis))
-        });
-        let parts: Vec<_> = parts.collect();
-        let whole = || self.axes.iter().zip(self.moments);
+    /// [`MotionFault::WheelsTooHeavy`] where that leaves a moment that is not positive, to rounding.
+    pub fn less(&self, other: &[Vector; 3]) -> Result<Self, Error> {
         let tensor: [Vector; 3] = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
-                let zero = DoubleDouble::default();
-                let all = whole().fold(zero, |sum, (axis, moment)| {
+                let whole = self.axes.iter().zip(self.moments);
+                whole.fold(-other[i][j], |sum, (axis, moment)| {
                     sum + moment * (axis[i] * axis[j])
-                });
-                (parts.iter()).fold(all, |left, (axis, moment)| {
-                    left - *moment * (axis[i] * axis[j])
                 })
             })
         });
@@ -98,8 +88,27 @@ impl RefinedPrincipal {
         if moment > ROUNDING * self.moments[2].rounded() {
             Ok(refined)
         } else {
-            Err(MotionFault::HeavyWheel { moment }.into())
+            Err(MotionFault::WheelsTooHeavy { moment }.into())
         }
+    }
+
+    /// Of the tensor less `Σ J a aᵀ`, with moments J about axes a of any length.
+    ///
+    /// # Errors
+    /// As [`Self::less`].
+    pub fn without(&self, turning: &[(Vector3<f64>, f64)]) -> Result<Self, Error> {
+        let mut sum = [Vector::default(); 3];
+        for (axis, moment) in turning {
+            let axis = (axis / power_below(axis.amax())).map(DoubleDouble::from);
+            let axis = [axis.x, axis.y, axis.z];
+            let part = DoubleDouble::from(*moment) / dot(&axis, &axis);
+            for (i, row) in sum.iter_mut().enumerate() {
+                for (j, element) in row.iter_mut().enumerate() {
+                    *element += part * (axis[i] * axis[j]);
+                }
+            }
+        }
+        self.less(&sum)
     }
 
     /// An element of the tensor in B that the body has about its centre of mass.

@@ -115,7 +115,7 @@ impl<'a> Task<'a> {
     /// the load that are not given are what they begin with.
     ///
     /// # Errors
-    /// [`MotionFault::HeavyWheel`](crate::error::MotionFault::HeavyWheel).
+    /// [`MotionFault::WheelsTooHeavy`](crate::error::MotionFault::WheelsTooHeavy).
     pub fn carrying<'c>(
         mut self,
         carried: impl Iterator<Item = &'c dyn Carried>,

@@ -1,0 +1,150 @@
+//! The elliptic curve of a motion: from the invariants of its quartic to roots, periods and nome.
+//!
+//! `4E³ − G₂E + G₃ = 0` has the roots `E_k`, whose sum is zero. `G₃ ≤ 0` means that the one that stands apart is the
+//! largest: then the real period is not long beside the imaginary one and sines serve. Where `G₃ > 0` all is done for −E and
+//! the time i t, in which the two periods exchange their roles, with hyperbolic functions.
+
+use super::quartic::Invariants;
+use crate::numerics::double_double::DoubleDouble;
+
+/// A way to measure the curve: from the root E to the means of its real period.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Means {
+    /// E, the largest or the only real root.
+    pub(super) root: DoubleDouble,
+    /// `H = √((E − E′)(E − E″))`, E′ and E″ the other roots.
+    pub(super) height: DoubleDouble,
+    /// `½√(3E + 2H)` and `√H`, whose arithmetic-geometric mean is 2π over the real period.
+    pub(super) pair: [DoubleDouble; 2],
+}
+
+impl Means {
+    fn of(root: DoubleDouble, height: DoubleDouble, sum: DoubleDouble) -> Self {
+        Self {
+            root,
+            height,
+            pair: [sum.sqrt().scaled(0.5), height.sqrt()],
+        }
+    }
+}
+
+/// The curve, or that of −E.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Curve {
+    /// Whether it is that of −E.
+    pub(super) is_turned: bool,
+    /// `(E′ − E″)²`: positive where all roots are real, zero where the curve is degenerate.
+    pub(super) gap: DoubleDouble,
+    /// By the root that stands apart.
+    pub(super) apart: Means,
+    /// The nome for a doubled imaginary period: the square of the nome of the curve, negative where only one root is real.
+    pub(super) nome: DoubleDouble,
+}
+
+/// Steps of Newton's method in double precision at most.
+const STEPS: usize = 60;
+
+impl Curve {
+    pub(super) fn of(invariants: &Invariants<DoubleDouble>) -> Self {
+        let (second, third) = (invariants.second, invariants.third);
+        let is_turned = third.high > 0.0;
+        let third = if is_turned { third } else { -third };
+        let root = largest_root(second, third);
+        let three = DoubleDouble::from(3.0);
+        let square = three * (root * root) - second.scaled(0.25);
+        if square.high <= 0.0 {
+            // Three equal roots.
+            let zero = DoubleDouble::default();
+            return Self {
+                is_turned,
+                gap: zero,
+                apart: Means::of(zero, zero, zero),
+                nome: zero,
+            };
+        }
+        let gap = invariants.discriminant.scaled(1.0 / 16.0) / (square * square);
+        let height = square.sqrt();
+        let sum = three * root + height.scaled(2.0);
+        let apart = Means::of(root, height, sum);
+        // The difference of the squares of the means.
+        let difference = gap / sum.scaled(4.0);
+        Self {
+            is_turned,
+            gap,
+            apart,
+            nome: nome(apart.pair, difference),
+        }
+    }
+
+    /// By the root that is first in time of the real period, where the curve is that of −E; `None` where that is infinite.
+    pub(super) fn in_time(&self) -> Option<Means> {
+        let root = self.apart.root;
+        let three = DoubleDouble::from(3.0);
+        if self.gap.high > 0.0 {
+            let gap = self.gap.sqrt();
+            let first = (root + gap).scaled(0.5);
+            let height = (gap * (three * root + gap)).scaled(0.5).sqrt();
+            Some(Means::of(first, height, three * first + height.scaled(2.0)))
+        } else if self.gap.high < 0.0 {
+            let height = self.apart.height;
+            let sum = -self.gap / (three * root + height.scaled(2.0));
+            Some(Means::of(-root, height, sum))
+        } else {
+            None
+        }
+    }
+}
+
+/// The largest root of `4E³ − G₂E − G₃`, G₃ ≥ 0: the other two, where they are real, are not above zero.
+fn largest_root(second: DoubleDouble, third: DoubleDouble) -> DoubleDouble {
+    let (g2, g3) = (second.high, third.high);
+    // From above, where Newton's method only goes down.
+    let mut root = (g2.max(0.0) / 3.0).sqrt() + (0.25 * g3).cbrt();
+    if root == 0.0 {
+        return DoubleDouble::default();
+    }
+    for _ in 0..STEPS {
+        let slope = 12.0 * root * root - g2;
+        let step = ((4.0 * root * root - g2) * root - g3) / slope;
+        root -= step;
+        if step.abs() <= 1e-12 * root.abs() {
+            break;
+        }
+    }
+    let mut root = DoubleDouble::from(root);
+    for _ in 0..2 {
+        let square = root * root;
+        let slope = (square.scaled(12.0) - second).high;
+        let rest = ((square.scaled(4.0) - second) * root - third).high;
+        if slope > 0.0 {
+            root -= (rest / slope).into();
+        }
+    }
+    root
+}
+
+/// Terms of `q = ℓ + 2ℓ⁵ + 15ℓ⁹ + …`, `ℓ = ½(1 − √k′)/(1 + √k′)`; source: Abramowitz and Stegun 17.3.21.
+const NOME: [f64; 9] = [
+    1.0,
+    2.0,
+    15.0,
+    150.0,
+    1707.0,
+    20_910.0,
+    268_616.0,
+    3_567_400.0,
+    48_555_069.0,
+];
+
+/// The nome of the modulus `√(1 − (b/a)²)`, of a, b and `a² − b²`; negative where b is the larger.
+fn nome([a, b]: [DoubleDouble; 2], difference: DoubleDouble) -> DoubleDouble {
+    let roots = a.sqrt() + b.sqrt();
+    let l = (difference / ((a + b) * (roots * roots))).scaled(0.5);
+    let square = l * l;
+    let fourth = square * square;
+    let mut sum = DoubleDouble::default();
+    for &term in NOME.iter().rev() {
+        sum = sum * fourth + term.into();
+    }
+    sum * l
+}

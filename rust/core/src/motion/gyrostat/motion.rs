@@ -1,0 +1,323 @@
+//! A gyrostat's motion from its start, and the states at any time.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::constants::{Given, Secular, moving, steady};
+use super::curve::Curve;
+use super::mode::Mode;
+use super::propagator::{At, Propagator, Sample};
+use super::quartic::Invariants;
+use super::spinor::Spinor;
+use super::start::{Start, dot};
+use crate::error::{Error, MotionFault, all_finite};
+use crate::mass::refined::{RefinedPrincipal, Vector};
+use crate::motion::free::{self, FreeMotion};
+use crate::motion::state::{ClosedForm, State};
+use crate::numerics::dispatch::dispatch;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::numerics::quad_double::QuadDouble;
+
+/// The motion of a body with constant angular momentum h inside, on which no torque acts about its centre of mass, from its
+/// state at t = 0: `I ω̇ + ω × (I ω + h) = 0`.
+///
+/// I is the tensor of the body with its wheels locked where their rates relative to it are held; with free wheels it is
+/// `I − Σ J a aᵀ`, and h what they have in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GyrostatMotion {
+    /// How it moves.
+    pub mode: Mode,
+    /// The state at t = 0.
+    pub initial: State,
+    /// h in B, to twice the precision.
+    pub rotor: Vector,
+    /// `I ω + h`, components in space: constant.
+    pub angular_momentum: Vector3<f64>,
+    /// `½ ω·I ω`: constant. The energy but for that of the wheels in their own rotation.
+    pub kinetic_energy: f64,
+    /// The time after which ω and L are again where they were in the body; infinite where they never are, or always.
+    pub period: DoubleDouble,
+    /// The rate in radians at which the body turns about L in the mean, seen each time when ω has come back. Known but for
+    /// whole turns in a period: which of them are made is a matter of what axis of the body is looked at.
+    pub mean_precession: DoubleDouble,
+    way: Way,
+}
+
+/// By which formulas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way {
+    /// Without momentum inside.
+    Free(FreeMotion),
+    Within(Propagator),
+}
+
+/// A discriminant this small beside its terms is computed again with four times the precision.
+const LOST: f64 = 1e-24;
+/// With four times the precision it is zero if it is below this part of its terms.
+const NOTHING: f64 = 1e-58;
+
+impl GyrostatMotion {
+    /// From the principal moments and axes of the tensor I, h and ω at the start, components in B, and the attitude.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`] when `rotor` or `omega` is not finite; [`MotionFault::MasslessGyrostat`] for a tensor with a
+    /// moment that is zero.
+    pub fn of(
+        principal: &RefinedPrincipal,
+        rotor: &Vector,
+        omega: &Vector3<f64>,
+        attitude: &UnitQuaternion<f64>,
+    ) -> Result<Self, Error> {
+        let rounded = Vector3::from(rotor.map(DoubleDouble::rounded));
+        all_finite("momentum", &rounded)?;
+        all_finite("omega", omega)?;
+        let initial = State {
+            attitude: *attitude,
+            omega: *omega,
+        };
+        let (angular_momentum, kinetic_energy) = kept(principal, rotor, &initial);
+        if rounded == Vector3::zeros() {
+            let motion = FreeMotion::refined(principal, omega, attitude)?;
+            return Ok(Self::free(motion, angular_momentum, kinetic_energy));
+        }
+        if principal.moments[0].high <= 0.0 {
+            return Err(MotionFault::MasslessGyrostat {
+                moment: principal.moments[0].high,
+            }
+            .into());
+        }
+        // Powers of two bring moments and rates near one.
+        let inertia = exponent(principal.moments[2].high);
+        let of_rotor = exponent(rounded.amax()) - inertia;
+        let rate = if *omega == Vector3::zeros() {
+            of_rotor
+        } else {
+            exponent(omega.amax()).max(of_rotor)
+        };
+        let by = |x: DoubleDouble, e: i32| DoubleDouble {
+            high: times_power_of_two(x.high, e),
+            low: times_power_of_two(x.low, e),
+        };
+        let moments = principal.moments.map(|moment| by(moment, -inertia));
+        let scaled_omega = omega.map(|x| times_power_of_two(x, -rate));
+        let scaled_rotor = rotor.map(|x| by(x, -inertia - rate));
+        let rotor_along = [0, 1, 2].map(|k| dot(&principal.axis(k), &scaled_rotor));
+        let rate_unit = times_power_of_two(1.0, rate);
+        let found = Solved::of(
+            principal,
+            &moments,
+            &scaled_omega,
+            &scaled_rotor,
+            &rotor_along,
+        );
+        let (mode, (propagator, secular)) = match found {
+            None => (Mode::Steady, steady(&scaled_omega, attitude)),
+            Some(solved) => {
+                let given = Given {
+                    moments: &moments,
+                    rotor: &rotor_along,
+                    principal,
+                    attitude,
+                };
+                let curve = solved.curve;
+                let mode = if curve.gap.high > 0.0 {
+                    Mode::Paired
+                } else if curve.gap.high < 0.0 {
+                    Mode::Single
+                } else if curve.is_turned {
+                    Mode::Separatrix
+                } else {
+                    Mode::Circular
+                };
+                (mode, moving(&given, &solved.start, &solved.spinor))
+            }
+        };
+        let Secular { period, precession } = secular;
+        Ok(Self {
+            mode,
+            initial,
+            rotor: *rotor,
+            angular_momentum,
+            kinetic_energy,
+            period: by(period, -rate),
+            mean_precession: by(precession, rate),
+            way: Way::Within(propagator.in_units_of(rate_unit)),
+        })
+    }
+
+    fn free(motion: FreeMotion, angular_momentum: Vector3<f64>, kinetic_energy: f64) -> Self {
+        let mode = match motion.mode {
+            free::Mode::Spherical | free::Mode::Steady => Mode::Steady,
+            free::Mode::Symmetric => Mode::Circular,
+            free::Mode::Separatrix => Mode::Separatrix,
+            free::Mode::LongAxis | free::Mode::ShortAxis => Mode::Paired,
+        };
+        Self {
+            mode,
+            initial: motion.initial,
+            rotor: [DoubleDouble::default(); 3],
+            angular_momentum,
+            kinetic_energy,
+            period: motion.secular.half_period.scaled(2.0),
+            mean_precession: motion.secular.mean_precession,
+            way: Way::Free(motion),
+        }
+    }
+
+    /// The motion by the formulas of free motion, where there is no momentum inside.
+    #[must_use]
+    pub fn as_free(&self) -> Option<&FreeMotion> {
+        match &self.way {
+            Way::Free(motion) => Some(motion),
+            Way::Within(_) => None,
+        }
+    }
+
+    /// Attitude and ω at the time t; NaN for a t that is not finite, or beyond [`ClosedForm::reach`].
+    ///
+    /// The attitude is continuous in t as a quaternion, not only as a rotation.
+    #[must_use]
+    pub fn at(&self, t: f64) -> State {
+        let propagator = match &self.way {
+            Way::Free(motion) => return motion.at(t),
+            Way::Within(propagator) => propagator,
+        };
+        let [x, y, z, w, p, q, r] = dispatch(At {
+            propagator,
+            time: t,
+        });
+        State {
+            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
+            omega: Vector3::new(p, q, r),
+        }
+    }
+
+    /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
+    ///
+    /// # Panics
+    /// If the lengths differ.
+    pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        let propagator = match &self.way {
+            Way::Free(motion) => return motion.sample(times, attitudes, omegas),
+            Way::Within(propagator) => propagator,
+        };
+        assert_eq!(times.len(), attitudes.len(), "an attitude for each time");
+        assert_eq!(
+            times.len(),
+            omegas.len(),
+            "an angular velocity for each time"
+        );
+        if times.len() < FEW {
+            for ((&time, attitude), omega) in times.iter().zip(attitudes).zip(omegas) {
+                let [x, y, z, w, p, q, r] = dispatch(At { propagator, time });
+                *attitude = [x, y, z, w];
+                *omega = [p, q, r];
+            }
+            return;
+        }
+        dispatch(Sample {
+            propagator,
+            times,
+            attitudes,
+            omegas,
+        });
+    }
+}
+
+impl ClosedForm for GyrostatMotion {
+    fn reach(&self) -> f64 {
+        match &self.way {
+            Way::Free(motion) => motion.reach(),
+            Way::Within(propagator) => propagator.reach,
+        }
+    }
+
+    fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        Self::sample(self, times, attitudes, omegas);
+    }
+}
+
+/// Fewer times than this are done one by one.
+const FEW: usize = 8;
+
+/// `I ω + h` in space, and `½ ω·I ω`.
+fn kept(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3<f64>, f64) {
+    let along = principal.components(&start.omega);
+    let axes = principal.axes();
+    let mut momentum = *rotor;
+    let mut twice = DoubleDouble::default();
+    for (k, (&moment, &rate)) in principal.moments.iter().zip(&along).enumerate() {
+        let part = moment * rate;
+        twice += part * rate;
+        for (i, sum) in momentum.iter_mut().enumerate() {
+            *sum += axes[(i, k)] * part;
+        }
+    }
+    let momentum = Vector3::from(momentum.map(DoubleDouble::rounded));
+    (start.attitude * momentum, 0.5 * twice.high)
+}
+
+/// A start with its curve and its spinor.
+struct Solved {
+    start: Start<DoubleDouble>,
+    curve: Curve,
+    spinor: Spinor,
+}
+
+impl Solved {
+    /// Of moments, ω (in B) and h (in B and along the principal axes) near one; `None` for a steady spin.
+    fn of(
+        principal: &RefinedPrincipal,
+        moments: &Vector,
+        omega: &Vector3<f64>,
+        rotor: &Vector,
+        rotor_along: &Vector,
+    ) -> Option<Self> {
+        let mut start = Start::of(moments, &principal.components(omega), rotor_along)?;
+        let mut quartic = start.quartic();
+        let mut invariants = quartic.invariants();
+        let is_degenerate = is_degenerate(moments, rotor_along);
+        if is_degenerate {
+            invariants.discriminant = DoubleDouble::default();
+        } else if invariants.discriminant.high.abs() < LOST * invariants.terms {
+            // What is left of it comes from what the axes were refined from.
+            let finest = principal.finest();
+            let unit = moments[2].high / principal.moments[2].high;
+            let finer = finest.moments.map(|moment| moment.scaled(unit));
+            let high = rotor.map(|x| x.high);
+            let low = rotor.map(|x| x.low);
+            let [high, low] =
+                [high, low].map(|parts| finest.components(&Vector3::from(parts)));
+            let inside: [QuadDouble; 3] = std::array::from_fn(|k| high[k] + low[k]);
+            let there = Start::of(&finer, &finest.components(omega), &inside)?;
+            let found = there.quartic().invariants();
+            let discriminant = if found.discriminant.rounded().abs() <= NOTHING * found.terms {
+                DoubleDouble::default()
+            } else {
+                found.discriminant.twofold()
+            };
+            start = there.twofold();
+            quartic = start.quartic();
+            invariants = Invariants {
+                second: found.second.twofold(),
+                third: found.third.twofold(),
+                discriminant,
+                terms: found.terms,
+            };
+        }
+        let curve = Curve::of(&invariants);
+        let spinor = Spinor::of(&quartic, &curve, start.across);
+        Some(Self {
+            start,
+            curve,
+            spinor,
+        })
+    }
+}
+
+/// Whether two roots are equal whatever the start: equal moments, or a symmetric body with h along its axis.
+fn is_degenerate(moments: &Vector, rotor: &Vector) -> bool {
+    let [i1, i2, i3] = *moments;
+    let [h1, h2, h3] = rotor.map(DoubleDouble::rounded);
+    i1 == i3 || (i1 == i2 && h1 == 0.0 && h2 == 0.0) || (i2 == i3 && h2 == 0.0 && h3 == 0.0)
+}

@@ -1,0 +1,307 @@
+//! The state at any time from a few constants: two theta functions for the attitude and ω alike.
+
+use crate::numerics::dispatch::Kernel;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::lane::Lane;
+use crate::numerics::planes::{Planes, ROWS};
+use crate::numerics::theta::circular;
+use crate::numerics::turns::{exp_minus, reach, sin_cos_turns, turns, whole_off};
+
+/// Θₑ and Θₒ but for a common factor, real and imaginary part of each, at the argument x.
+pub(super) trait Series {
+    fn values<L: Lane>(&self, x: L) -> [(L, L); 2];
+}
+
+/// By sines and cosines of multiples of x turns: coefficients of `cos 2jx`, `sin 2jx`, and of `cos (2j+1)x`, `sin (2j+1)x`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Circular {
+    /// Real and imaginary part, before the cosine and before the sine.
+    pub(super) even: [[f64; 4]; 3],
+    pub(super) odd: [[f64; 4]; 4],
+}
+
+impl Series for Circular {
+    #[inline(always)]
+    fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
+        let (sine, cosine) = sin_cos_turns(x);
+        let z = circular::Argument::new(sine, cosine);
+        let (mut even, mut odd) = ((L::new(0.0), L::new(0.0)), (L::new(0.0), L::new(0.0)));
+        let mut k = 4;
+        while k > 0 {
+            k -= 1;
+            let n = 2 * k + 1;
+            odd = add(odd, &self.odd[k], z.cos[n], z.sin[n]);
+            if k > 0 {
+                even = add(even, &self.even[k - 1], z.cos[2 * k], z.sin[2 * k]);
+            }
+        }
+        [(L::new(1.0) + even.0, even.1), odd]
+    }
+}
+
+#[inline(always)]
+fn add<L: Lane>((re, im): (L, L), coefficients: &[f64; 4], cosine: L, sine: L) -> (L, L) {
+    let [a, b, c, d] = coefficients.map(L::new);
+    (
+        a.mul_add(cosine, c.mul_add(sine, re)),
+        b.mul_add(cosine, d.mul_add(sine, im)),
+    )
+}
+
+/// By exponentials: with `g = e^{−|θ|}` and `Y = e^{−(end − |θ|)}`, both series over `e^{|θ|}`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Hyperbolic {
+    /// `sgn(Q)^j |Q|^{j²−j} (cos 2jφ, sin 2jφ)`, j from one.
+    pub(super) even: [[f64; 2]; 3],
+    /// `|Q|^{j²} (cos (2j+1)φ, sin (2j+1)φ)`, j from zero.
+    pub(super) odd: [[f64; 2]; 4],
+    /// θ for x = 1.
+    pub(super) unit: f64,
+    /// θ for x = ½.
+    pub(super) end: f64,
+}
+
+impl Series for Hyperbolic {
+    #[inline(always)]
+    fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
+        let (zero, one) = (L::new(0.0), L::new(1.0));
+        let theta = x * L::new(self.unit);
+        let size = theta.abs();
+        let sign = one.copysign(theta);
+        let g = exp_minus(size);
+        let end = exp_minus((L::new(self.end) - size).max(zero));
+        let (y2, g2) = (end * end, g * g);
+        let mut even = (one, zero);
+        let mut odd = (zero, zero);
+        let (mut decay, mut power) = (one, g2);
+        let mut j = 0;
+        while j < 4 {
+            let [c, s] = self.odd[j];
+            odd.0 = (L::new(c) * decay).mul_add(one + power, odd.0);
+            odd.1 = (L::new(s) * decay).mul_add(one - power, odd.1);
+            decay = decay * y2;
+            power = power * g2;
+            if j < 3 {
+                let [c, s] = self.even[j];
+                even.0 = (L::new(c) * decay).mul_add(one + power, even.0);
+                even.1 = (L::new(s) * decay).mul_add(one - power, even.1);
+            }
+            power = power * g2;
+            j += 1;
+        }
+        [(g * even.0, g * sign * even.1), (odd.0, sign * odd.1)]
+    }
+}
+
+/// Either series.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum AnySeries {
+    Circular(Circular),
+    Hyperbolic(Hyperbolic),
+}
+
+/// How x grows with time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Clock {
+    /// Whole turns of x mean nothing; x in turns for a unit of time, and at t = 0.
+    Circling {
+        rate: DoubleDouble,
+        start: DoubleDouble,
+    },
+    /// The same, but with each turn Θₒ changes its sign.
+    Alternating {
+        rate: DoubleDouble,
+        start: DoubleDouble,
+    },
+    /// x never comes back.
+    Endless { rate: f64, start: f64 },
+}
+
+/// All that a state takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Propagator {
+    /// Turns of the spinor for a unit of time.
+    pub(super) rate: DoubleDouble,
+    /// Turns of the spinor for x = 1.
+    pub(super) slope: f64,
+    pub(super) clock: Clock,
+    pub(super) series: AnySeries,
+    /// From (Re Θₑ, Im Θₑ, Re Θₒ, Im Θₒ), turned, to the components (x, y, z, w) of the attitude times √D.
+    pub(super) attitude: [[f64; 4]; 4],
+    /// From `|Θₑ|²`, `|Θₒ|²`, real and imaginary part of `Θ̄ₑΘₒ` to D ω in B.
+    pub(super) omega: [[f64; 3]; 4],
+    /// Beyond this |t| nothing is known of the phases.
+    pub(super) reach: f64,
+}
+
+impl Propagator {
+    /// The same motion where a unit of the rates is `unit`, a power of two.
+    pub(super) fn in_units_of(mut self, unit: f64) -> Self {
+        self.rate = self.rate.scaled(unit);
+        self.clock = match self.clock {
+            Clock::Circling { rate, start } => Clock::Circling {
+                rate: rate.scaled(unit),
+                start,
+            },
+            Clock::Alternating { rate, start } => Clock::Alternating {
+                rate: rate.scaled(unit),
+                start,
+            },
+            Clock::Endless { rate, start } => Clock::Endless {
+                rate: rate * unit,
+                start,
+            },
+        };
+        self.omega = self.omega.map(|column| column.map(|x| x * unit));
+        self.reach = match self.clock {
+            Clock::Circling { rate, .. } | Clock::Alternating { rate, .. } => {
+                reach(&[self.rate, rate])
+            }
+            Clock::Endless { .. } => reach(&[self.rate]),
+        };
+        self
+    }
+
+    /// (x, y, z, w) of the attitude and ω in B.
+    #[inline(always)]
+    fn state<L: Lane, const ENDLESS: bool>(&self, series: &impl Series, t: L) -> [L; 7] {
+        let (one, two) = (L::new(1.0), L::new(2.0));
+        let is_known = t.abs() <= L::new(self.reach);
+        let t = if is_known { t } else { L::new(f64::NAN) };
+        let (x, sign) = match self.clock {
+            Clock::Alternating { rate, start } if !ENDLESS => {
+                let halves = two * turns(t, rate.scaled(0.5), start.scaled(0.5));
+                let whole = halves.round();
+                (halves - whole, one - two * whole.abs())
+            }
+            Clock::Circling { rate, start } if !ENDLESS => (turns(t, rate, start), one),
+            Clock::Endless { rate, start } => (t.mul_add(L::new(rate), L::new(start)), one),
+            _ => (t, one),
+        };
+        let [even, (odd_re, odd_im)] = series.values(x);
+        let odd = (sign * odd_re, sign * odd_im);
+        let phase = turns(t, self.rate, DoubleDouble::default());
+        let phase = if ENDLESS {
+            phase
+        } else {
+            whole_off(L::new(self.slope).mul_add(x, phase))
+        };
+        let (sine, cosine) = sin_cos_turns(phase);
+        let turned = |(re, im): (L, L)| [re * cosine - im * sine, re * sine + im * cosine];
+        let ([a, b], [c, d]) = (turned(even), turned(odd));
+        let [x, y, z, w] = combine(&self.attitude, [a, b, c, d]);
+        let inverse = one / (x * x + y * y + z * z + w * w);
+        let norm = inverse.sqrt();
+        let bilinear = [
+            even.0 * even.0 + even.1 * even.1,
+            odd.0 * odd.0 + odd.1 * odd.1,
+            even.0 * odd.0 + even.1 * odd.1,
+            even.0 * odd.1 - even.1 * odd.0,
+        ];
+        let [p, q, r] = combine(&self.omega, bilinear);
+        [
+            x * norm,
+            y * norm,
+            z * norm,
+            w * norm,
+            p * inverse,
+            q * inverse,
+            r * inverse,
+        ]
+    }
+}
+
+/// Σ `numbers[k]` `columns[k]`.
+#[inline(always)]
+fn combine<L: Lane, const N: usize>(columns: &[[f64; N]; 4], numbers: [L; 4]) -> [L; N] {
+    let mut sums = [L::new(0.0); N];
+    let mut i = 0;
+    while i < N {
+        let mut sum = L::new(columns[0][i]) * numbers[0];
+        let mut k = 1;
+        while k < 4 {
+            sum = L::new(columns[k][i]).mul_add(numbers[k], sum);
+            k += 1;
+        }
+        sums[i] = sum;
+        i += 1;
+    }
+    sums
+}
+
+/// The state at one time.
+pub(super) struct At<'a> {
+    pub(super) propagator: &'a Propagator,
+    pub(super) time: f64,
+}
+
+impl Kernel for At<'_> {
+    type Output = [f64; 7];
+
+    #[inline(always)]
+    fn run<L: Lane>(self) -> [f64; 7] {
+        let (propagator, t) = (self.propagator, L::new(self.time));
+        let is_endless = matches!(propagator.clock, Clock::Endless { .. });
+        match &propagator.series {
+            AnySeries::Circular(series) => propagator.state::<L, false>(series, t),
+            AnySeries::Hyperbolic(series) if is_endless => propagator.state::<L, true>(series, t),
+            AnySeries::Hyperbolic(series) => propagator.state::<L, false>(series, t),
+        }
+        .map(L::get)
+    }
+}
+
+/// The states at many times.
+pub(super) struct Sample<'a> {
+    pub(super) propagator: &'a Propagator,
+    pub(super) times: &'a [f64],
+    pub(super) attitudes: &'a mut [[f64; 4]],
+    pub(super) omegas: &'a mut [[f64; 3]],
+}
+
+impl Kernel for Sample<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lane>(self) {
+        let propagator = *self.propagator;
+        let is_endless = matches!(propagator.clock, Clock::Endless { .. });
+        match propagator.series {
+            AnySeries::Circular(series) => self.all::<L, false>(&propagator, &series),
+            AnySeries::Hyperbolic(series) if is_endless => {
+                self.all::<L, true>(&propagator, &series);
+            }
+            AnySeries::Hyperbolic(series) => self.all::<L, false>(&propagator, &series),
+        }
+    }
+}
+
+impl Sample<'_> {
+    #[inline(always)]
+    fn all<L: Lane, const ENDLESS: bool>(self, propagator: &Propagator, series: &impl Series) {
+        let mut states = Planes::<7>::ZERO;
+        let mut times = Planes::<1>::ZERO;
+        let rows = (self.times.chunks(ROWS))
+            .zip(self.attitudes.chunks_mut(ROWS))
+            .zip(self.omegas.chunks_mut(ROWS));
+        for ((batch, attitudes), omegas) in rows {
+            for (row, &t) in batch.iter().enumerate() {
+                times.set(row, [t]);
+            }
+            for row in 0..ROWS {
+                let [t] = times.lanes::<L>(row);
+                states.set_lanes(row, propagator.state::<L, ENDLESS>(series, t));
+            }
+            write(&states, attitudes, omegas);
+        }
+    }
+}
+
+/// From planes to rows; outside the kernel, where the compiler would scatter.
+#[inline(never)]
+fn write(states: &Planes<7>, attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+    for (row, (attitude, omega)) in attitudes.iter_mut().zip(omegas).enumerate().take(ROWS) {
+        *attitude = states.get(row, 0);
+        *omega = states.get(row, 4);
+    }
+}

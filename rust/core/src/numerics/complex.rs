@@ -1,0 +1,197 @@
+//! Complex numbers of any precision that the chain of means knows.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use super::elliptic::Real;
+
+/// `re + i im`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Complex<T> {
+    /// Real part.
+    pub re: T,
+    /// Imaginary part.
+    pub im: T,
+}
+
+impl<T: Real> Complex<T> {
+    /// From real and imaginary part.
+    #[inline]
+    #[must_use]
+    pub fn new(re: T, im: T) -> Self {
+        Self { re, im }
+    }
+
+    /// Zero.
+    #[inline]
+    #[must_use]
+    pub fn zero() -> Self {
+        Self::new(0.0.into(), 0.0.into())
+    }
+
+    /// One.
+    #[inline]
+    #[must_use]
+    pub fn one() -> Self {
+        Self::new(1.0.into(), 0.0.into())
+    }
+
+    /// `i z`.
+    #[inline]
+    #[must_use]
+    pub fn times_i(self) -> Self {
+        Self::new(-self.im, self.re)
+    }
+
+    /// `z̄`.
+    #[inline]
+    #[must_use]
+    pub fn conjugate(self) -> Self {
+        Self::new(self.re, -self.im)
+    }
+
+    /// `k z` for a real k.
+    #[inline]
+    #[must_use]
+    pub fn times(self, k: T) -> Self {
+        Self::new(k * self.re, k * self.im)
+    }
+
+    /// `z` times a power of two.
+    #[inline]
+    #[must_use]
+    pub fn scaled(self, power_of_two: f64) -> Self {
+        Self::new(self.re.scaled(power_of_two), self.im.scaled(power_of_two))
+    }
+
+    /// `|z|²`.
+    #[inline]
+    #[must_use]
+    pub fn norm_squared(self) -> T {
+        self.re * self.re + self.im * self.im
+    }
+
+    /// |z| rounded.
+    #[inline]
+    #[must_use]
+    pub fn size(self) -> f64 {
+        self.re.rounded().hypot(self.im.rounded())
+    }
+
+    /// `z²`.
+    #[inline]
+    #[must_use]
+    pub fn squared(self) -> Self {
+        let product = self.re * self.im;
+        Self::new(
+            (self.re - self.im) * (self.re + self.im),
+            product.scaled(2.0),
+        )
+    }
+
+    /// `a/b`; not a number where b is zero.
+    #[inline]
+    #[must_use]
+    pub fn over(self, b: Self) -> Self {
+        let inverse = T::from(1.0) / b.norm_squared();
+        (self * b.conjugate()).times(inverse)
+    }
+
+    /// The square root in the right half plane.
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        let size = self.norm_squared().sqrt();
+        let larger = ((size + self.re.abs()).scaled(0.5)).sqrt();
+        if larger.rounded() == 0.0 {
+            return Self::zero();
+        }
+        let smaller = self.im / larger.scaled(2.0);
+        if self.re.rounded() >= 0.0 {
+            Self::new(larger, smaller)
+        } else if self.im.rounded() < 0.0 {
+            Self::new(-smaller, -larger)
+        } else {
+            Self::new(smaller, larger)
+        }
+    }
+
+    /// Whether `Re(a b̄) < 0`: a and b point to opposite sides.
+    #[inline]
+    #[must_use]
+    pub fn is_opposite_to(self, b: Self) -> bool {
+        self.re.rounded() * b.re.rounded() + self.im.rounded() * b.im.rounded() < 0.0
+    }
+}
+
+impl<T: Real> Add for Complex<T> {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.re + other.re, self.im + other.im)
+    }
+}
+
+impl<T: Real> Sub for Complex<T> {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.re - other.re, self.im - other.im)
+    }
+}
+
+impl<T: Real> Neg for Complex<T> {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        Self::new(-self.re, -self.im)
+    }
+}
+
+impl<T: Real> Mul for Complex<T> {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self::new(
+            self.re * other.re - self.im * other.im,
+            self.re * other.im + self.im * other.re,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::double_double::DoubleDouble;
+
+    #[test]
+    fn roots_and_quotients_undo_products() {
+        let number = |re: f64, im: f64| {
+            Complex::new(
+                DoubleDouble::product(re, 1.0 / 3.0),
+                DoubleDouble::product(im, 0.7),
+            )
+        };
+        for z in [
+            number(1.0, 2.0),
+            number(-3.0, 1e-9),
+            number(-3.0, -1e-9),
+            number(0.0, 4.0),
+            number(2.0, 0.0),
+            number(-2.0, 0.0),
+        ] {
+            let root = z.sqrt();
+            assert!(root.re.high >= 0.0);
+            assert!((root * root - z).size() <= 1e-30 * z.size());
+            assert!((root.squared() - z).size() <= 1e-30 * z.size());
+            let w = number(0.3, -5.0);
+            assert!(((z * w).over(w) - z).size() <= 1e-30 * z.size());
+        }
+        assert_eq!(
+            Complex::<f64>::zero().sqrt(),
+            Complex::new(0.0, 0.0)
+        );
+    }
+}

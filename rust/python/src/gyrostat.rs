@@ -1,0 +1,311 @@
+//! The classes `Gyrostat` and `GyrostatMotion`: bodies with momentum inside, and their exact motions.
+
+mod motion;
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::motion::gyrostat::{Gyrostat, Inside};
+use polhode::numerics::double_double::DoubleDouble;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::arrays::{read, write, write_of};
+use crate::attitudes::read_attitude;
+use crate::body::PyRigidBody;
+use crate::shape::tuple;
+use crate::stack::{Broadcast, Stack};
+use crate::uncertain::StartGiven;
+
+pub(crate) use motion::PyGyrostatMotion;
+
+/// A body with constant angular momentum inside, or a stack of them: made by `RigidBody.gyrostat`. Values never change.
+///
+/// Attributes
+/// ----------
+/// body : RigidBody
+///     The body, or the stack of them, its wheels locked.
+/// momentum : numpy.ndarray, shape (..., 3)
+///     What was given as such, in the body frame.
+/// wheels : tuple of Wheel
+///     The wheels.
+/// shape : tuple of int
+///     Of the stack.
+///
+/// Examples
+/// --------
+/// >>> import polhode
+/// >>> body = polhode.RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+/// >>> gyrostat = body.gyrostat(momentum=(0.0, 0.3, 0.0))
+/// >>> gyrostat.free_motion((0.01, 1.0, 0.0)).at(10.0).omega.round(6)
+/// array([0.003812, 1.000015, 0.007331])
+#[pyclass(name = "Gyrostat", module = "polhode", frozen)]
+pub(crate) struct PyGyrostat {
+    #[pyo3(get)]
+    body: Py<PyRigidBody>,
+    given: Stack<Vector3<f64>>,
+    #[pyo3(get)]
+    wheels: Py<PyTuple>,
+    pub(crate) gyrostats: Stack<Gyrostat>,
+}
+
+impl PyGyrostat {
+    fn new(
+        py: Python<'_>,
+        body: Py<PyRigidBody>,
+        given: Stack<Vector3<f64>>,
+        wheels: &Bound<'_, PyTuple>,
+    ) -> PyResult<Self> {
+        let mut inside = Broadcast::of(["momentum"], [&given.shape])?
+            .try_map(py, |[m]| Inside::of(&given[m]))?;
+        for (k, wheel) in wheels.iter().enumerate() {
+            inside = with_wheel(py, &inside, &wheel, k)?;
+        }
+        let bodies = &body.get().bodies;
+        let gyrostats = Broadcast::of(["body", "momentum"], [&bodies.shape, &inside.shape])?
+            .try_map(py, |[b, h]| Gyrostat::of(&bodies[b], &inside[h]))?;
+        Ok(Self {
+            body,
+            given,
+            wheels: wheels.clone().unbind(),
+            gyrostats,
+        })
+    }
+}
+
+/// With what a wheel of Python adds.
+fn with_wheel(
+    py: Python<'_>,
+    inside: &Stack<Inside>,
+    wheel: &Bound<'_, PyAny>,
+    k: usize,
+) -> PyResult<Stack<Inside>> {
+    let part = |name: &str| {
+        wheel.getattr(name).map_err(|_| {
+            PyTypeError::new_err(format!(
+                "wheels[{k}]: expected what polhode.wheel(axis=, inertia=, ...) makes, got {}",
+                wheel
+                    .get_type()
+                    .name()
+                    .map_or_else(|_| "something else".to_owned(), |name| name.to_string())
+            ))
+        })
+    };
+    let axis: Stack<Vector3<f64>> = read(&part("axis")?, "axis")?;
+    let inertia: Stack<f64> = read(&part("inertia")?, "inertia")?;
+    let momentum: Stack<f64> = read(&part("momentum")?, "momentum")?;
+    let mode: String = part("mode")?.extract()?;
+    let is_free = match mode.as_str() {
+        "free" => true,
+        "held" => false,
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "wheels[{k}].mode: expected 'free' or 'held', got {mode:?}"
+            )));
+        }
+    };
+    let shapes = [
+        &inside.shape[..],
+        &axis.shape,
+        &inertia.shape,
+        &momentum.shape,
+    ];
+    Broadcast::of(["wheels", "axis", "inertia", "momentum"], shapes)?
+        .try_map(py, |[i, a, j, h]| {
+            inside[i].with(&axis[a], inertia[j], momentum[h], is_free)
+        })
+}
+
+#[pymethods]
+impl PyRigidBody {
+    /// The body with constant angular momentum inside: a gyrostat.
+    ///
+    /// Parameters
+    /// ----------
+    /// momentum : array_like, shape (..., 3), optional
+    ///     Momentum relative to the body, held constant, components in the body frame.
+    /// wheels : sequence of Wheel, optional
+    ///     What :func:`polhode.wheel` makes. The inertia of this body includes them as if they were locked.
+    ///
+    /// Returns
+    /// -------
+    /// Gyrostat
+    ///     Bodies, momenta and wheels broadcast together.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInertiaError
+    ///     When free wheels have more moment than the body.
+    ///
+    /// Notes
+    /// -----
+    /// Momentum that is held obeys ``I ω̇ + ω×(I ω + h) = 0``. A free wheel keeps ``h = J (Ω + a·ω)`` instead, and I
+    /// becomes ``I − J a aᵀ``.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import polhode
+    /// >>> body = polhode.RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> wheel = polhode.wheel(axis=(0, 1, 0), inertia=0.1, rate=50.0)
+    /// >>> motion = body.gyrostat(wheels=[wheel]).free_motion((0.1, 0.2, 0.3))
+    /// >>> motion.mode, round(motion.period, 6)
+    /// ('single', 1.999363)
+    #[pyo3(signature = (momentum=None, *, wheels=None))]
+    fn gyrostat(
+        slf: Py<Self>,
+        py: Python<'_>,
+        momentum: Option<&Bound<'_, PyAny>>,
+        wheels: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyGyrostat> {
+        let given = match momentum {
+            Some(momentum) => read(momentum, "momentum")?,
+            None => Stack::one(Vector3::zeros()),
+        };
+        let wheels = match wheels {
+            Some(wheels) => {
+                let list: Vec<Bound<'_, PyAny>> =
+                    wheels.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+                PyTuple::new(py, list)?
+            }
+            None => PyTuple::empty(py),
+        };
+        PyGyrostat::new(py, slf, given, &wheels)
+    }
+}
+
+#[pymethods]
+impl PyGyrostat {
+    /// What was given as momentum.
+    #[getter]
+    fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(write(py, &self.given)?.into_any())
+    }
+
+    /// The shape of the stack.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.gyrostats.shape)
+    }
+
+    /// The motion when no torque acts about the centre of mass, exact at any time.
+    ///
+    /// Parameters
+    /// ----------
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
+    /// attitude : array_like, shape (..., 4), or rotation, optional
+    ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as SciPy's
+    ///     Rotation. The identity by default.
+    ///
+    /// Returns
+    /// -------
+    /// GyrostatMotion
+    ///     Gyrostats, angular velocities and attitudes broadcast together.
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     When `omega` is not finite, `attitude` is not a rotation, or the body has a moment that is zero.
+    ///
+    /// Examples
+    /// --------
+    /// Without momentum inside it is the free motion of the body, to the last bit:
+    ///
+    /// >>> from polhode import RigidBody
+    /// >>> body = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> motion = body.gyrostat((0, 0, 0)).free_motion((0.3, 0.2, 1.1))
+    /// >>> bool((motion.at(1e6).omega == body.free_motion((0.3, 0.2, 1.1)).at(1e6).omega).all())
+    /// True
+    #[pyo3(signature = (omega, attitude=None))]
+    fn free_motion(
+        slf: Py<Self>,
+        py: Python<'_>,
+        omega: &Bound<'_, PyAny>,
+        attitude: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyGyrostatMotion> {
+        let given = StartGiven::read(omega, attitude)?;
+        if given.uncertain.is_any() || slf.get().body.get().doubts.is_some() {
+            return Err(PyValueError::new_err(
+                "Gyrostat.free_motion: sigmas are not followed through the motion of a gyrostat yet: give plain numbers, \
+                 or follow them with polhode.uncertainty.propagate",
+            ));
+        }
+        let attitude = read_attitude(given.attitude.as_ref(), "attitude")?;
+        let omega = read(&given.omega, "omega")?;
+        PyGyrostatMotion::new(py, slf, &omega, &attitude)
+    }
+
+    /// The momentum and, of the free wheels, Σ J a aᵀ: for trajectories.
+    fn _rotor<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let momentum = write_of(py, &self.gyrostats, |one| {
+            Vector3::from(one.inside.momentum.map(DoubleDouble::rounded))
+        })?;
+        let free = write_of(py, &self.gyrostats, |one| {
+            Matrix3::from(one.inside.free.map(|row| row.map(DoubleDouble::rounded)))
+        })?;
+        Ok((momentum.into_any(), free.into_any()))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restore = py.get_type::<Self>().getattr("_from_parts")?;
+        let body = self.body.bind(py).clone().into_any();
+        let wheels = self.wheels.bind(py).clone().into_any();
+        Ok((restore, PyTuple::new(py, [body, self.momentum(py)?, wheels])?))
+    }
+
+    /// What `__reduce__` took apart; for pickle.
+    #[staticmethod]
+    fn _from_parts(
+        py: Python<'_>,
+        body: Py<PyRigidBody>,
+        momentum: &Bound<'_, PyAny>,
+        wheels: &Bound<'_, PyTuple>,
+    ) -> PyResult<Self> {
+        Self::new(py, body, read(momentum, "momentum")?, wheels)
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    /// Equal bodies with equal momenta and wheels.
+    fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(false);
+        };
+        let other = other.get();
+        let same = self.body.bind(py).eq(other.body.bind(py))?;
+        Ok(same && self.gyrostats == other.gyrostats)
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        self.body.bind(py).hash()
+    }
+
+    /// One gyrostat by what is inside; a stack by its shape.
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let wheels = match self.wheels.bind(py).len() {
+            0 => String::new(),
+            1 => ", 1 wheel".to_owned(),
+            n => format!(", {n} wheels"),
+        };
+        if !self.gyrostats.shape.is_empty() {
+            return format!(
+                "<Gyrostat stack of shape {}: {} gyrostats{wheels}>",
+                tuple(&self.gyrostats.shape),
+                self.gyrostats.rows.len()
+            );
+        }
+        let [x, y, z] = (self.gyrostats[0].inside.momentum).map(DoubleDouble::rounded);
+        format!("<Gyrostat: momentum=[{x:?}, {y:?}, {z:?}]{wheels}>")
+    }
+}

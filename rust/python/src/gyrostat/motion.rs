@@ -1,0 +1,243 @@
+//! The class `GyrostatMotion`.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use numpy::PyArrayDyn;
+use polhode::RigidBody;
+use polhode::motion::attitude::components;
+use polhode::motion::gyrostat::GyrostatMotion;
+use polhode::numerics::double_double::DoubleDouble;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use super::PyGyrostat;
+use crate::arrays::{read, write_numbers_of, write_of, write_words_of};
+use crate::body::PyRigidBody;
+use crate::closed_form::trajectory;
+use crate::shape::tuple;
+use crate::stack::{Broadcast, Stack};
+use crate::uncertain::UncertainStart;
+
+/// The motion of a gyrostat, or of a stack of them, on which no torque acts about its centre of mass.
+///
+/// Made by `Gyrostat.free_motion`. Exact at any time, by theta functions: a state a million rotations away costs
+/// as much as one close by, and is as accurate. Values never change.
+///
+/// Attributes
+/// ----------
+/// gyrostat : Gyrostat
+///     The gyrostat, or the stack of them.
+/// body : RigidBody
+///     Its body.
+/// omega : numpy.ndarray, shape (..., 3)
+///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
+/// quaternion : numpy.ndarray, shape (..., 4)
+///     R_NB at t = 0 as (x, y, z, w).
+/// shape : tuple of int
+///     Of the stack of motions: gyrostats, angular velocities and attitudes broadcast together.
+///
+/// Examples
+/// --------
+/// A wheel along the middle axis keeps a racket from turning over:
+///
+/// >>> import numpy as np
+/// >>> from polhode import RigidBody
+/// >>> racket = RigidBody.from_principal(0.3, (0.0012, 0.0164, 0.0176))
+/// >>> times = np.linspace(0, 10, 1001)
+/// >>> for momentum in (0.0, 0.2):
+/// ...     motion = racket.gyrostat((0, momentum, 0)).free_motion((0.001, 10.0, 0.0))
+/// ...     print(motion.at(times).omega[:, 1].min().round(3))
+/// -10.0
+/// 10.0
+#[pyclass(name = "GyrostatMotion", module = "polhode", frozen)]
+pub(crate) struct PyGyrostatMotion {
+    #[pyo3(get)]
+    gyrostat: Py<PyGyrostat>,
+    motions: Stack<GyrostatMotion>,
+}
+
+impl PyGyrostatMotion {
+    pub(super) fn new(
+        py: Python<'_>,
+        gyrostat: Py<PyGyrostat>,
+        omega: &Stack<Vector3<f64>>,
+        attitude: &Stack<UnitQuaternion<f64>>,
+    ) -> PyResult<Self> {
+        let all = &gyrostat.get().gyrostats;
+        let shapes = [&all.shape[..], &omega.shape, &attitude.shape];
+        let motions = Broadcast::of(["gyrostat", "omega", "attitude"], shapes)?
+            .try_map(py, |[g, w, q]| all[g].free_motion(&omega[w], &attitude[q]))?;
+        Ok(Self { gyrostat, motions })
+    }
+
+    fn numbers<'py>(
+        &self,
+        py: Python<'py>,
+        f: fn(&GyrostatMotion) -> f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        write_numbers_of(py, &self.motions, f)
+    }
+}
+
+#[pymethods]
+impl PyGyrostatMotion {
+    /// The body.
+    #[getter]
+    fn body(&self, py: Python<'_>) -> Py<PyRigidBody> {
+        self.gyrostat.get().body.clone_ref(py)
+    }
+
+    /// Angular velocity at t = 0.
+    #[getter]
+    fn omega<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(write_of(py, &self.motions, |motion| motion.initial.omega)?.into_any())
+    }
+
+    /// Attitude at t = 0.
+    #[getter]
+    fn quaternion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let attitude = |motion: &GyrostatMotion| components(&motion.initial.attitude);
+        Ok(write_of(py, &self.motions, attitude)?.into_any())
+    }
+
+    /// The shape of the stack of motions.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.motions.shape)
+    }
+
+    /// How the gyrostat moves: the first that fits of "steady", "circular", "separatrix", "paired", "single".
+    ///
+    /// In the body the angular momentum L runs along a curve on a sphere, on which the energy is constant. Steady: it
+    /// rests. Circular: elliptic functions are sines, as for equal moments or a symmetric body with its momentum along the
+    /// axis. On the separatrix it approaches an unstable steady spin for ever. Else there are two closed curves with this
+    /// energy and it is on one of them (paired, as free bodies always are), or there is one alone (single). A string, or an
+    /// array of them for a stack.
+    #[getter]
+    fn mode<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        write_words_of(py, &self.motions, |motion| motion.mode.as_str(), "<U10")
+    }
+
+    /// The time after which ω and L are again where they were in the body; infinite where they rest or never return.
+    #[getter]
+    fn period<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.numbers(py, |motion| motion.period.rounded())
+    }
+
+    /// Mean rate in radians at which the body turns about L, seen whenever ω has come back; known but for whole turns in
+    /// a period.
+    #[getter]
+    fn mean_precession<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.numbers(py, |motion| motion.mean_precession.rounded())
+    }
+
+    /// Angular momentum about the centre of mass, components in space, shape (..., 3): constant, wheels included.
+    #[getter]
+    fn angular_momentum<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        write_of(py, &self.motions, |motion| motion.angular_momentum)
+    }
+
+    /// The kinetic energy that is constant, ``½ ω·(I − Σ J a aᵀ) ω`` with the sum over free wheels: without that of the
+    /// wheels in their own rotation.
+    #[getter]
+    fn kinetic_energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.numbers(py, |motion| motion.kinetic_energy)
+    }
+
+    /// The constant momentum h inside, components in the body frame, shape (..., 3); of free wheels ``J (Ω + a·ω)``.
+    #[getter]
+    fn rotor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        write_of(py, &self.motions, |motion| {
+            Vector3::from(motion.rotor.map(DoubleDouble::rounded))
+        })
+    }
+
+    /// Attitude and angular velocity at the times asked for.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like
+    ///     Times of any shape and in any order, negative ones too; every motion is asked at each.
+    ///
+    /// Returns
+    /// -------
+    /// Trajectory
+    ///     Its ``omega`` and ``quaternion`` have the shape of the stack, then that of `t`, then their
+    ///     components. The quaternion is continuous in time. A time that is not finite gives NaN; one after more than 2⁸⁸ turns,
+    ///     of which nothing would be known, is refused. Its angular momentum includes the wheels.
+    ///
+    /// Notes
+    /// -----
+    /// The GIL is released, many states run on all cores, and Ctrl-C ends the run. A state has the
+    /// same bits alone and among others.
+    fn at<'py>(slf: &Bound<'py, Self>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, this) = (slf.py(), slf.get());
+        let gyrostat = this.gyrostat.get();
+        let rotor = this.rotor(py)?;
+        let centers = gyrostat.body.get().bodies.map(py, RigidBody::center_of_mass)?;
+        let uncertain = UncertainStart::default();
+        let motion = trajectory(
+            py,
+            &gyrostat.body,
+            &this.motions,
+            t,
+            &centers,
+            (&uncertain, slf.as_any()),
+            PyDict::new(py),
+        )?;
+        // What is carried along is computed for those who ask.
+        let known = motion.getattr("__dict__")?;
+        known.del_item("carried")?;
+        known.set_item("_rotor", (rotor, gyrostat._rotor(py)?.1))?;
+        Ok(motion)
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restore = py.get_type::<Self>().getattr("_from_start")?;
+        let gyrostat = self.gyrostat.bind(py).clone().into_any();
+        let parts = [gyrostat, self.omega(py)?, self.quaternion(py)?];
+        Ok((restore, PyTuple::new(py, parts)?))
+    }
+
+    /// The motions that `__reduce__` took apart; for pickle.
+    #[staticmethod]
+    fn _from_start(
+        py: Python<'_>,
+        gyrostat: Py<PyGyrostat>,
+        omega: &Bound<'_, PyAny>,
+        quaternion: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let quaternion: Stack<[f64; 4]> = read(quaternion, "quaternion")?;
+        let attitude = quaternion.map(py, |&[x, y, z, w]| {
+            UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) // to the last bit
+        })?;
+        Self::new(py, gyrostat, &read(omega, "omega")?, &attitude)
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    /// One motion by its start; a stack by its shape.
+    fn __repr__(&self) -> String {
+        if !self.motions.shape.is_empty() {
+            let count = self.motions.rows.len();
+            return format!(
+                "<GyrostatMotion stack of shape {}: {count} motions>",
+                tuple(&self.motions.shape)
+            );
+        }
+        let motion = &self.motions[0];
+        let [p, q, r]: [f64; 3] = motion.initial.omega.into();
+        format!("<GyrostatMotion: {}, omega=[{p:?}, {q:?}, {r:?}]>", motion.mode)
+    }
+}

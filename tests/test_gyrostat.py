@@ -1,0 +1,188 @@
+"""Gyrostats in closed form: against integration, mpmath, free motion, and the laws that they keep."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import numpy as np
+import polhode
+import pytest
+from polhode import RigidBody, loads
+from polhode.errors import InvalidInertiaError, PolhodeError
+
+BODY = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+
+
+def skew(h: np.ndarray) -> np.ndarray:
+    x, y, z = h
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def apart(a: np.ndarray, b: np.ndarray) -> float:
+    """Tell how far quaternions are from each other, whatever their signs."""
+    return float(np.minimum(np.abs(a - b).max(-1), np.abs(a + b).max(-1)).max())
+
+
+def test_without_momentum_the_bits_are_those_of_free_motion() -> None:
+    omega = [(0.3, 0.2, 1.1), (1.3, 0.2, 0.1), (0, 1, 0), (1e-9, 1, 0)]
+    times = [0.0, 1.0, 1e6, 1e12]
+    exact, free = BODY.gyrostat().free_motion(omega).at(times), BODY.free_motion(omega).at(times)
+    assert np.array_equal(exact.omega, free.omega)
+    assert np.array_equal(exact.quaternion, free.quaternion)
+
+
+@pytest.mark.parametrize(
+    ("moments", "h", "omega", "mode"),
+    [
+        ((1, 2, 2.5), (0.1, 0.2, 0.3), (1, 0.2, 0.3), "single"),
+        ((1, 2, 2.5), (0.01, 0.02, 0.03), (0.02, 1, 0.03), "paired"),
+        ((1, 2, 2.5), (0.01, 0.02, 0.03), (1, 0.2, 0.3), "paired"),
+        ((1, 2, 2.5), (0.001, 0.002, 0.003), (0.1, 1, 0.2), "paired"),
+        ((1, 2, 2), (0.3, 0, 0), (1, 0.2, 0.3), "circular"),
+        ((1, 1, 1.5), (0.3, 0.1, 0), (1, 0.2, 0.3), "paired"),
+        ((1.2, 1.2, 1.2), (0.3, 0.1, 0.2), (1, 0.2, 0.3), "circular"),
+        ((1, 2, 2.5), (0, 8, 0), (0.1, 0.2, 0.3), "single"),
+        ((1, 2, 2.5), (0, 0.3, 0), (0, 1, 0), "steady"),
+        ((1, 2, 2.5), (0.3, 0.2, 0.1), (0, 0, 0), "steady"),
+    ],
+)
+def test_integration_finds_the_same(
+    moments: tuple[float, ...], h: tuple[float, ...], omega: tuple[float, ...], mode: str
+) -> None:
+    body = RigidBody.from_principal(1.0, moments)
+    motion = body.gyrostat(h).free_motion(omega)
+    assert motion.mode == mode
+    times = np.linspace(0.0, 20.0, 41)
+    load = loads.damping(-skew(np.array(h, float)))
+    run = body.simulate(times, omega, load=load, method="taylor", rtol=1e-14)
+    exact = motion.at(times)
+    largest = np.abs(run.omega).max() or 1.0
+    assert np.abs(exact.omega - run.omega).max() <= 3e-13 * max(largest, 1.0)
+    assert apart(exact.quaternion, run.quaternion) <= 3e-12
+
+
+def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
+    rng = np.random.default_rng(16)
+    n = 1000
+    moments = np.sort(rng.uniform(1.0, 2.0, (n, 3)), axis=1)
+    bodies = RigidBody.from_principal(1.0, moments)
+    h = rng.normal(size=(n, 3)) * 10 ** rng.uniform(-3, 1, (n, 1))
+    omega = rng.normal(size=(n, 3))
+    motions = bodies.gyrostat(h).free_motion(omega)
+    assert motions.shape == (n,)
+    late = motions.at([0.0, 5.0, 1e6, 1e12])
+    assert np.isfinite(late.omega).all() and np.isfinite(late.quaternion).all()
+    size = np.linalg.norm(motions.angular_momentum, axis=-1)
+    spin = late.angular_momentum().spin
+    drift = np.linalg.norm(spin - motions.angular_momentum[:, None], axis=-1) / size[:, None]
+    assert drift.max() <= 1e-14
+    energy = late.kinetic_energy().total
+    scale = np.abs(energy).max(1) + (h**2).sum(1)
+    assert (np.abs(energy - motions.kinetic_energy[:, None]).max(1) / scale).max() <= 1e-14
+    assert np.abs(late.omega[:, 0] - omega).max() <= 1e-14
+    run = [
+        RigidBody.from_principal(1.0, moments[k]).simulate(
+            [0.0, 5.0], omega[k], load=loads.damping(-skew(h[k])), method="taylor", rtol=1e-14
+        )
+        for k in range(0, n, 5)
+    ]
+    want = np.array([one.omega[-1] for one in run])
+    largest = np.maximum(np.abs(want).max(1), np.abs(omega[::5]).max(1))
+    assert (np.abs(late.omega[::5, 1] - want).max(1) / largest).max() <= 1e-12
+    assert apart(late.quaternion[::5, 1], np.array([one.quaternion[-1] for one in run])) <= 1e-12
+
+
+def test_after_its_period_omega_is_back() -> None:
+    for h, omega in [((0.1, 0.2, 0.3), (1, 0.2, 0.3)), ((0.01, 0.02, 0.03), (0.02, 1, 0.03))]:
+        motion = BODY.gyrostat(h).free_motion(omega)
+        assert np.abs(motion.at(motion.period).omega - motion.at(0.0).omega).max() < 1e-13
+
+
+def test_rotating_the_axes_and_scaling_change_nothing() -> None:
+    rng = np.random.default_rng(3)
+    h, omega = rng.normal(size=3), rng.normal(size=3)
+    times = np.array([0.0, 3.0, 30.0])
+    plain = BODY.gyrostat(h).free_motion(omega).at(times)
+    q = np.array([0.1, 0.5, -0.3, 0.8]) / np.linalg.norm([0.1, 0.5, -0.3, 0.8])
+    turned = BODY.rotated(q).gyrostat(polhode._core.rotate(q, h)).free_motion(polhode._core.rotate(q, omega))
+    assert np.abs(polhode._core.rotate(q, plain.omega) - turned.at(times).omega).max() < 1e-13
+    for inertia, rate in [(2.0**-150, 2.0**100), (2.0**120, 2.0**-90)]:
+        body = RigidBody.from_principal(1.0, np.array([1.0, 2.0, 2.5]) * inertia)
+        scaled = body.gyrostat(h * inertia * rate).free_motion(omega * rate).at(times / rate)
+        assert np.abs(scaled.omega / rate - plain.omega).max() < 1e-14
+        assert apart(scaled.quaternion, plain.quaternion) < 1e-14
+
+
+@pytest.mark.parametrize("power", [-4, -10, -20, -100, -300])
+def test_little_momentum_is_nearly_free_motion(power: int) -> None:
+    h = np.array([0.3, -0.5, 0.7]) * 10.0**power
+    for moments in [(1, 2, 2.5), (1, 1, 1.5), (1.3, 1.3, 1.3)]:
+        body = RigidBody.from_principal(1.0, moments)
+        exact = body.gyrostat(h).free_motion((0.3, 0.2, 1.1)).at([0.0, 1.0, 10.0])
+        free = body.free_motion((0.3, 0.2, 1.1)).at([0.0, 1.0, 10.0])
+        assert np.abs(exact.omega - free.omega).max() <= 1e-14 + 20 * 10.0**power
+        assert apart(exact.quaternion, free.quaternion) <= 1e-14 + 20 * 10.0**power
+
+
+def test_a_start_next_to_the_middle_axis_turns_over_when_it_should() -> None:
+    # The time to turn over grows by ln(10)/rate with each decade.
+    gyrostat = BODY.gyrostat((0.0, 0.3, 0.0))
+    periods = [gyrostat.free_motion((10.0**-k, 1.0, 0.0)).period for k in (20, 21, 60, 61)]
+    assert abs((periods[1] - periods[0]) - (periods[3] - periods[2])) < 1e-10
+    late = gyrostat.free_motion((1e-60, 1.0, 0.0)).at(np.linspace(0, 3 * periods[2], 1000))
+    assert np.isfinite(late.omega).all()
+    assert late.omega[:, 1].min() < 0.9
+
+
+def test_free_and_held_wheels_are_two_systems() -> None:
+    axis, inertia, rate, omega = np.array([1.0, 2.0, 2.0]) / 3, 0.2, 30.0, np.array([0.1, 0.2, 0.3])
+    times = np.linspace(0, 5, 11)
+    held = polhode.wheel(axis=axis, inertia=inertia, rate=rate, mode="held")
+    motion = BODY.gyrostat(wheels=[held]).free_motion(omega)
+    plain = BODY.gyrostat(inertia * rate * axis).free_motion(omega)
+    assert np.abs(motion.at(times).omega - plain.at(times).omega).max() < 1e-13
+    free = polhode.wheel(axis=axis, inertia=inertia, rate=rate)
+    motion = BODY.gyrostat(wheels=[free]).free_motion(omega)
+    h = inertia * (rate + axis @ omega) * axis
+    assert np.abs(motion.rotor - h).max() < 1e-14
+    rest = RigidBody(1.0, np.diag([1.0, 2.0, 2.5]) - inertia * np.outer(axis, axis), rtol=0.9)
+    run = rest.simulate(times, omega, load=loads.damping(-skew(h)), method="taylor", rtol=1e-14)
+    exact = motion.at(times)
+    assert np.abs(exact.omega - run.omega).max() < 1e-12
+    assert apart(exact.quaternion, run.quaternion) < 1e-12
+    start = np.diag([1.0, 2.0, 2.5]) @ omega + inertia * rate * axis
+    assert np.abs(exact.angular_momentum().spin - start).max() < 1e-13
+    assert exact.invariants().energy_drift < 1e-13
+
+
+def test_values_do_not_change_and_survive_pickle() -> None:
+    wheel = polhode.wheel(axis=(0, 0, 1), inertia=0.1, momentum=2.0)
+    assert wheel == polhode.wheel(axis=(0, 0, 1), inertia=0.1, rate=20.0)
+    gyrostat = BODY.gyrostat((0.1, 0, 0), wheels=[wheel])
+    motion = gyrostat.free_motion([(0.1, 0.2, 0.3), (1, 0, 0)])
+    again = pickle.loads(pickle.dumps(motion))
+    assert again.gyrostat == gyrostat and copy.copy(motion) is motion
+    assert np.array_equal(again.at(3.0).omega, motion.at(3.0).omega)
+    assert repr(gyrostat) == "<Gyrostat: momentum=[0.1, 0.0, 2.0], 1 wheel>"
+    assert repr(motion) == "<GyrostatMotion stack of shape (2,): 2 motions>"
+    assert gyrostat != BODY.gyrostat((0.1, 0, 0))
+
+
+def test_what_is_refused() -> None:
+    with pytest.raises(PolhodeError, match="omega"):
+        BODY.gyrostat((1, 0, 0)).free_motion((np.nan, 0, 0))
+    with pytest.raises(PolhodeError, match="momentum"):
+        BODY.gyrostat((np.inf, 0, 0))
+    with pytest.raises(InvalidInertiaError, match="free wheels"):
+        BODY.gyrostat(wheels=[polhode.wheel(axis=(1, 0, 0), inertia=1.5, rate=1.0)])
+    with pytest.raises(InvalidInertiaError, match="thickness"):
+        RigidBody.from_principal(1.0, (0, 1, 1)).gyrostat((1, 0, 0)).free_motion((1, 0, 0))
+    with pytest.raises(PolhodeError, match="direction"):
+        BODY.gyrostat(wheels=[polhode.wheel(axis=(0, 0, 0), inertia=0.1, rate=1.0)])
+    with pytest.raises(ValueError, match="exactly one"):
+        polhode.wheel(axis=(1, 0, 0), inertia=0.1)
+    with pytest.raises(ValueError, match="'free' or 'held'"):
+        polhode.wheel(axis=(1, 0, 0), inertia=0.1, rate=1.0, mode="loose")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="polhode.wheel"):
+        BODY.gyrostat(wheels=[3])  # type: ignore[list-item]
