@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     )
     from polhode.events import Event, Events
     from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
-    from polhode.gyrostat import Wheel, wheel
+    from polhode.gyrostat import Bifurcations, Equilibria, Wheel, wheel
     from polhode.results import (
         AngularMomentum,
         ErrorBound,
@@ -74,18 +74,20 @@ else:
 
 
 _HOMES = (
+    "polhode.gyrostat",  # whose wheel is not that of loads
     "polhode._core",
     "polhode.results",
     "polhode.trajectory",
     "polhode.events",
     "polhode.free_motion",
-    "polhode.gyrostat",
 )
 """Modules whose names are public here; the other names are modules."""
 
 __all__ = [
     "AngularMomentum",
+    "Bifurcations",
     "Cones",
+    "Equilibria",
     "ErrorBar",
     "ErrorBound",
     "Event",

@@ -3,16 +3,78 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
 from polhode import _core
+from polhode._repr import short
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Wheel", "wheel"]
+    Floats = NDArray[np.float64]
+
+__all__ = ["Bifurcations", "Equilibria", "Wheel", "wheel"]
+
+
+class Bifurcations(NamedTuple):
+    """Where the number of steady rotations of a gyrostat changes, in descending order of `rotor`.
+
+    Attributes
+    ----------
+    meeting : numpy.ndarray of str, shape (n,)
+        ``"fold"``: a saddle and a stable one meet and are gone; ``"pitchfork"``: two of one kind meet in a third.
+    direction : numpy.ndarray, shape (n, 3)
+        L/|L| there, in the body frame.
+    momentum : numpy.ndarray, shape (n,)
+        The |L| of it with the h there is: those that meet are there above it.
+    rotor : numpy.ndarray, shape (n,)
+        The |h| of it with the |L| there is and this direction of h: those that meet are there below it.
+    """
+
+    meeting: NDArray[np.str_]
+    direction: Floats
+    momentum: Floats
+    rotor: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class Equilibria(NamedTuple):
+    """Steady rotations of a gyrostat that have one length of L = I ω + h, in ascending order of ω·L.
+
+    Attributes
+    ----------
+    direction : numpy.ndarray, shape (k, 3)
+        L/|L| in the body frame; of a circle of equilibria one of them.
+    omega : numpy.ndarray, shape (k, 3)
+        In the body frame, along L.
+    kinetic_energy : numpy.ndarray, shape (k,)
+        ``½ ω·I ω``.
+    squared_rate : numpy.ndarray, shape (k,)
+        The squared frequency with which L circles about a stable equilibrium in the body; negative: minus the
+        squared rate at which departures grow.
+    kind : numpy.ndarray of str, shape (k,)
+        What the energy is there among states with this |L|: ``"minimum"`` (stable, also with dissipation),
+        ``"maximum"`` (stable without), ``"saddle"`` (unstable), ``"degenerate"`` (some meet here).
+    circle : numpy.ndarray, shape (k, 3)
+        The axis of the circle that this one stands for, of a body with two equal moments; else not numbers.
+    bifurcations : Bifurcations
+        Where their number changes.
+    """
+
+    direction: Floats
+    omega: Floats
+    kinetic_energy: Floats
+    squared_rate: Floats
+    kind: NDArray[np.str_]
+    circle: Floats
+    bifurcations: Bifurcations
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from mpmath import mp, mpf
 
 __all__ = ["cases", "equilibria", "folds"]
 
-TABLE = Path(__file__).parents[2] / "rust/core/src/motion/gyrostat_equilibria/polynomial.txt"
+TABLE = Path(__file__).parents[2] / "rust/core/src/motion/gyrostat/equilibria/polynomial.txt"
 DIGITS = 120
 
 

@@ -1,6 +1,7 @@
 //! The classes `Gyrostat` and `GyrostatMotion`: bodies with momentum inside, and their exact motions.
 
 mod motion;
+mod steady;
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::motion::gyrostat::{Gyrostat, Inside};
@@ -25,7 +26,9 @@ pub(crate) use motion::PyGyrostatMotion;
 /// body : RigidBody
 ///     The body, or the stack of them, its wheels locked.
 /// momentum : numpy.ndarray, shape (..., 3)
-///     What was given as such, in the body frame.
+///     What was given as such and ``J Ω a`` of the wheels, in the body frame. Free wheels add ``J a a·ω`` of the start.
+/// inertia : numpy.ndarray, shape (..., 3, 3)
+///     The tensor of the motion: that of the body less ``J a aᵀ`` of free wheels.
 /// wheels : tuple of Wheel
 ///     The wheels.
 /// shape : tuple of int
@@ -109,10 +112,9 @@ fn with_wheel(
         &inertia.shape,
         &momentum.shape,
     ];
-    Broadcast::of(["wheels", "axis", "inertia", "momentum"], shapes)?
-        .try_map(py, |[i, a, j, h]| {
-            inside[i].with(&axis[a], inertia[j], momentum[h], is_free)
-        })
+    Broadcast::of(["wheels", "axis", "inertia", "momentum"], shapes)?.try_map(py, |[i, a, j, h]| {
+        inside[i].with(&axis[a], inertia[j], momentum[h], is_free)
+    })
 }
 
 #[pymethods]
@@ -174,10 +176,12 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyGyrostat {
-    /// What was given as momentum.
+    /// Momentum inside at rest.
     #[getter]
     fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(write(py, &self.given)?.into_any())
+        let momentum =
+            |one: &Gyrostat| Vector3::from(one.inside.momentum.map(DoubleDouble::rounded));
+        Ok(write_of(py, &self.gyrostats, momentum)?.into_any())
     }
 
     /// The shape of the stack.
@@ -235,10 +239,7 @@ impl PyGyrostat {
     }
 
     /// The momentum and, of the free wheels, Σ J a aᵀ: for trajectories.
-    fn _rotor<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    fn _rotor<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let momentum = write_of(py, &self.gyrostats, |one| {
             Vector3::from(one.inside.momentum.map(DoubleDouble::rounded))
         })?;
@@ -255,7 +256,8 @@ impl PyGyrostat {
         let restore = py.get_type::<Self>().getattr("_from_parts")?;
         let body = self.body.bind(py).clone().into_any();
         let wheels = self.wheels.bind(py).clone().into_any();
-        Ok((restore, PyTuple::new(py, [body, self.momentum(py)?, wheels])?))
+        let given = write(py, &self.given)?.into_any();
+        Ok((restore, PyTuple::new(py, [body, given, wheels])?))
     }
 
     /// What `__reduce__` took apart; for pickle.

@@ -11,9 +11,8 @@
 //! | the force in a pivot (mln24) | [`mod@pivot_reaction`] |
 //! | steady spins and whether they are stable | [`stability`] |
 //! | free motion of any body, exact at any time, and what it tells | [`free`] |
-//! | a body with constant momentum inside, exact at any time | [`gyrostat`] |
+//! | a body with constant momentum inside, exact at any time; its steady rotations | [`gyrostat`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
-//! | steady rotations of a body with a constant momentum inside | [`gyrostat_equilibria`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | attitude, ω, position and velocity together | [`state`] |
 //! | what acts on the body | [`loads`] |

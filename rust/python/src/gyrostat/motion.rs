@@ -51,8 +51,8 @@ use crate::uncertain::UncertainStart;
 #[pyclass(name = "GyrostatMotion", module = "polhode", frozen)]
 pub(crate) struct PyGyrostatMotion {
     #[pyo3(get)]
-    gyrostat: Py<PyGyrostat>,
-    motions: Stack<GyrostatMotion>,
+    pub(super) gyrostat: Py<PyGyrostat>,
+    pub(super) motions: Stack<GyrostatMotion>,
 }
 
 impl PyGyrostatMotion {
@@ -132,10 +132,7 @@ impl PyGyrostatMotion {
 
     /// Angular momentum about the centre of mass, components in space, shape (..., 3): constant, wheels included.
     #[getter]
-    fn angular_momentum<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn angular_momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         write_of(py, &self.motions, |motion| motion.angular_momentum)
     }
 
@@ -176,7 +173,11 @@ impl PyGyrostatMotion {
         let (py, this) = (slf.py(), slf.get());
         let gyrostat = this.gyrostat.get();
         let rotor = this.rotor(py)?;
-        let centers = gyrostat.body.get().bodies.map(py, RigidBody::center_of_mass)?;
+        let centers = gyrostat
+            .body
+            .get()
+            .bodies
+            .map(py, RigidBody::center_of_mass)?;
         let uncertain = UncertainStart::default();
         let motion = trajectory(
             py,
@@ -238,6 +239,9 @@ impl PyGyrostatMotion {
         }
         let motion = &self.motions[0];
         let [p, q, r]: [f64; 3] = motion.initial.omega.into();
-        format!("<GyrostatMotion: {}, omega=[{p:?}, {q:?}, {r:?}]>", motion.mode)
+        format!(
+            "<GyrostatMotion: {}, omega=[{p:?}, {q:?}, {r:?}]>",
+            motion.mode
+        )
     }
 }

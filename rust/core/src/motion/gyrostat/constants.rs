@@ -240,9 +240,8 @@ fn attitude(
     let (sine, cosine) = (TAU * turned).sin_cos();
     let mut images = [[0.0; 4]; 4];
     for (k, column) in columns.iter().enumerate() {
-        let [first, second] = column.map(|x| {
-            Complex::new(x.re.high, x.im.high) * Complex::new(cosine, sine)
-        });
+        let [first, second] =
+            column.map(|x| Complex::new(x.re.high, x.im.high) * Complex::new(cosine, sine));
         for (part, [a, b]) in [[first, second], [first.times_i(), second.times_i()]]
             .into_iter()
             .enumerate()

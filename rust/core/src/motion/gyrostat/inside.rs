@@ -6,11 +6,12 @@
 //! - A *held* wheel keeps Ω: `I ω̇ + ω × (I ω + J Ω a) = 0`.
 //! - A *free* wheel keeps `h = J (Ω + a·ω)`: `(I − J a aᵀ) ω̇ + ω × ((I − J a aᵀ) ω + h a) = 0`.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
+use super::equilibria::{Equilibria, equilibria};
 use super::motion::GyrostatMotion;
 use super::start::{direction, dot};
-use crate::error::{Error, all_finite};
+use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::numerics::double_double::DoubleDouble;
@@ -104,6 +105,43 @@ impl Gyrostat {
         Ok(Self {
             inside: *inside,
             principal,
+        })
+    }
+
+    /// Its steady rotations with `|I ω + h|` equal to `momentum`, h being what is inside and what free wheels keep where ω is
+    /// `omega`; all directions in B.
+    ///
+    /// # Errors
+    /// [`Error::OutOfDomain`] where `momentum` is not positive, [`MotionFault::MasslessGyrostat`].
+    pub fn equilibria(&self, momentum: f64, omega: &Vector3<f64>) -> Result<Equilibria, Error> {
+        finite("momentum", momentum)?;
+        if momentum <= 0.0 {
+            return Err(Error::OutOfDomain {
+                what: "momentum",
+                law: "positive: it is the length of L = I ω + h",
+                value: momentum,
+            });
+        }
+        let moment = self.principal.moments[0].high;
+        if moment <= 0.0 {
+            return Err(MotionFault::MasslessGyrostat { moment }.into());
+        }
+        let rotor = self.inside.rotor(omega);
+        let along = [0, 1, 2].map(|k| dot(&self.principal.axis(k), &rotor));
+        let found = equilibria(&self.principal.moments, &along, momentum.into());
+        Ok(found.turned(&self.principal.rounded_axes()))
+    }
+
+    /// The tensor `I − Σ J a aᵀ` in B.
+    #[must_use]
+    pub fn inertia(&self) -> Matrix3<f64> {
+        let axes = self.principal.axes();
+        Matrix3::from_fn(|i, j| {
+            let parts = (self.principal.moments.iter().enumerate())
+                .map(|(k, moment)| *moment * (axes[(i, k)] * axes[(j, k)]));
+            parts
+                .fold(DoubleDouble::default(), |sum, part| sum + part)
+                .rounded()
         })
     }
 

@@ -17,9 +17,11 @@
 //! | `spinor.rs` | M and ν from the start |
 //! | `constants.rs` | from these to what a state takes |
 //! | `propagator.rs` | the states, in lanes |
+//! | [`equilibria`] | steady rotations with one angular momentum |
 
 mod constants;
 mod curve;
+pub mod equilibria;
 mod inside;
 mod logarithm;
 pub mod mode;

@@ -286,8 +286,7 @@ impl Solved {
             let finer = finest.moments.map(|moment| moment.scaled(unit));
             let high = rotor.map(|x| x.high);
             let low = rotor.map(|x| x.low);
-            let [high, low] =
-                [high, low].map(|parts| finest.components(&Vector3::from(parts)));
+            let [high, low] = [high, low].map(|parts| finest.components(&Vector3::from(parts)));
             let inside: [QuadDouble; 3] = std::array::from_fn(|k| high[k] + low[k]);
             let there = Start::of(&finer, &finest.components(omega), &inside)?;
             let found = there.quartic().invariants();

@@ -76,9 +76,7 @@ impl<T: Real> Quartic<T> {
             second: (p + square.times(three)).re,
             third: (r - cube).re,
             discriminant: sum.re,
-            terms: 27.0 * (s2.powi(3) * s_lowest + sr * sr)
-                + 9.0 * sp * sp * s2 * s2
-                + sp.powi(3),
+            terms: 27.0 * (s2.powi(3) * s_lowest + sr * sr) + 9.0 * sp * sp * s2 * s2 + sp.powi(3),
         }
     }
 
@@ -87,7 +85,7 @@ impl<T: Real> Quartic<T> {
     pub(super) fn place(&self) -> [Complex<T>; 2] {
         let [a1, a2, a3, _] = self.a;
         let value = a2 - a1.squared();
-        let slope = a3 - a1 * (value + a2.scaled(0.5)).scaled(2.0) ;
+        let slope = a3 - a1 * (value + a2.scaled(0.5)).scaled(2.0);
         [value, slope.times_i()]
     }
 

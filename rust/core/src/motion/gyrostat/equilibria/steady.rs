@@ -1,5 +1,7 @@
 //! What is told of each steady rotation, and of where their number changes.
 
+use nalgebra::{Matrix3, Vector3};
+
 use super::axes::{Frame, Group, Vector, norm, square};
 use super::secular::{NOTHING, Place, Secular};
 use crate::numerics::double_double::DoubleDouble;
@@ -16,6 +18,19 @@ pub enum Kind {
     Saddle,
     /// The second variation does not decide: equilibria meet here.
     Degenerate,
+}
+
+impl Kind {
+    /// Its word.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Minimum => "minimum",
+            Self::Maximum => "maximum",
+            Self::Saddle => "saddle",
+            Self::Degenerate => "degenerate",
+        }
+    }
 }
 
 /// How many equilibria there are at one multiplier.
@@ -76,6 +91,25 @@ pub struct Equilibria {
     pub found: Vec<Equilibrium>,
     /// In descending order of |h|.
     pub bifurcations: Vec<Bifurcation>,
+}
+
+impl Equilibria {
+    /// With all directions in the frame in which these axes (columns) are given.
+    #[must_use]
+    pub fn turned(mut self, axes: &Matrix3<f64>) -> Self {
+        let turn = |v: &mut [f64; 3]| *v = (axes * Vector3::from(*v)).into();
+        for one in &mut self.found {
+            turn(&mut one.direction);
+            turn(&mut one.omega);
+            if let Extent::Circle(axis) = &mut one.extent {
+                turn(axis);
+            }
+        }
+        for one in &mut self.bifurcations {
+            turn(&mut one.direction);
+        }
+        self
+    }
 }
 
 /// Equilibria of a gyrostat: positive principal moments, ascending; the momentum inside in principal axes; |L| > 0.
