@@ -104,7 +104,7 @@ class TestNames:
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
         known = {"animation", "cli", "events", "free_motion", "io", "molecules", "plot", "results", "robots"}
-        known |= {"files", "trajectory", "units", "view"}
+        known |= {"files", "gyrostat", "trajectory", "units", "view"}
         assert internal <= known
 
     @pytest.mark.parametrize("name", MODULES)
