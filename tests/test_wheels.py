@@ -338,7 +338,8 @@ class TestFunctions:
 
         own = loads.with_states(rates, OMEGA, wrench, "own")
         exact = BODY.simulate(T, OMEGA, load=loads.slug(0.3, 0.4), rtol=2.3e-15)
-        for method, rtol, allowed in (("dop853", 1e-12, 1e-10), ("radau", 1e-8, 1e-6)):
+        cases: list[tuple[Any, float, float]] = [("dop853", 1e-12, 1e-10), ("radau", 1e-8, 1e-6)]
+        for method, rtol, allowed in cases:
             run = BODY.simulate(T, OMEGA, load=own, method=method, rtol=rtol)
             assert np.abs(run.omega - exact.omega).max() < allowed
             assert np.abs(run.states["own"] - exact.states["slug"]).max() < allowed
