@@ -109,10 +109,9 @@ fn with_wheel(
         &inertia.shape,
         &momentum.shape,
     ];
-    Broadcast::of(["wheels", "axis", "inertia", "momentum"], shapes)?
-        .try_map(py, |[i, a, j, h]| {
-            inside[i].with(&axis[a], inertia[j], momentum[h], is_free)
-        })
+    Broadcast::of(["wheels", "axis", "inertia", "momentum"], shapes)?.try_map(py, |[i, a, j, h]| {
+        inside[i].with(&axis[a], inertia[j], momentum[h], is_free)
+    })
 }
 
 #[pymethods]
@@ -235,10 +234,7 @@ impl PyGyrostat {
     }
 
     /// The momentum and, of the free wheels, Σ J a aᵀ: for trajectories.
-    fn _rotor<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    fn _rotor<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let momentum = write_of(py, &self.gyrostats, |one| {
             Vector3::from(one.inside.momentum.map(DoubleDouble::rounded))
         })?;
@@ -255,7 +251,10 @@ impl PyGyrostat {
         let restore = py.get_type::<Self>().getattr("_from_parts")?;
         let body = self.body.bind(py).clone().into_any();
         let wheels = self.wheels.bind(py).clone().into_any();
-        Ok((restore, PyTuple::new(py, [body, self.momentum(py)?, wheels])?))
+        Ok((
+            restore,
+            PyTuple::new(py, [body, self.momentum(py)?, wheels])?,
+        ))
     }
 
     /// What `__reduce__` took apart; for pickle.

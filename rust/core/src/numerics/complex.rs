@@ -189,9 +189,6 @@ mod tests {
             let w = number(0.3, -5.0);
             assert!(((z * w).over(w) - z).size() <= 1e-30 * z.size());
         }
-        assert_eq!(
-            Complex::<f64>::zero().sqrt(),
-            Complex::new(0.0, 0.0)
-        );
+        assert_eq!(Complex::<f64>::zero().sqrt(), Complex::new(0.0, 0.0));
     }
 }

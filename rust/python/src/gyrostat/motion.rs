@@ -132,10 +132,7 @@ impl PyGyrostatMotion {
 
     /// Angular momentum about the centre of mass, components in space, shape (..., 3): constant, wheels included.
     #[getter]
-    fn angular_momentum<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn angular_momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         write_of(py, &self.motions, |motion| motion.angular_momentum)
     }
 
@@ -178,7 +175,11 @@ impl PyGyrostatMotion {
         let fields = PyDict::new(py);
         let rotor = this.rotor(py)?;
         fields.set_item("_rotor", (rotor, gyrostat._rotor(py)?.1))?;
-        let centers = gyrostat.body.get().bodies.map(py, RigidBody::center_of_mass)?;
+        let centers = gyrostat
+            .body
+            .get()
+            .bodies
+            .map(py, RigidBody::center_of_mass)?;
         let uncertain = UncertainStart::default();
         trajectory(
             py,
@@ -235,6 +236,9 @@ impl PyGyrostatMotion {
         }
         let motion = &self.motions[0];
         let [p, q, r]: [f64; 3] = motion.initial.omega.into();
-        format!("<GyrostatMotion: {}, omega=[{p:?}, {q:?}, {r:?}]>", motion.mode)
+        format!(
+            "<GyrostatMotion: {}, omega=[{p:?}, {q:?}, {r:?}]>",
+            motion.mode
+        )
     }
 }

@@ -279,15 +279,16 @@ impl Solved {
         let is_degenerate = is_degenerate(moments, rotor_along);
         if is_degenerate {
             invariants.discriminant = DoubleDouble::default();
-        } else if invariants.discriminant.high.abs() < LOST * invariants.terms {
+        } else if !invariants.is_cusp
+            && invariants.discriminant.high.abs() < LOST * invariants.terms
+        {
             // What is left of it comes from what the axes were refined from.
             let finest = principal.finest();
             let unit = moments[2].high / principal.moments[2].high;
             let finer = finest.moments.map(|moment| moment.scaled(unit));
             let high = rotor.map(|x| x.high);
             let low = rotor.map(|x| x.low);
-            let [high, low] =
-                [high, low].map(|parts| finest.components(&Vector3::from(parts)));
+            let [high, low] = [high, low].map(|parts| finest.components(&Vector3::from(parts)));
             let inside: [QuadDouble; 3] = std::array::from_fn(|k| high[k] + low[k]);
             let there = Start::of(&finer, &finest.components(omega), &inside)?;
             let found = there.quartic().invariants();
@@ -303,10 +304,15 @@ impl Solved {
                 third: found.third.twofold(),
                 discriminant,
                 terms: found.terms,
+                is_cusp: found.is_cusp,
             };
         }
-        let curve = Curve::of(&invariants);
-        let spinor = Spinor::of(&quartic, &curve, start.across);
+        let (curve, spinor) = if invariants.is_cusp && !is_degenerate {
+            (Curve::cusp(), Spinor::cusp(&quartic, start.across))
+        } else {
+            let curve = Curve::of(&invariants);
+            (curve, Spinor::of(&quartic, &curve, start.across))
+        };
         Some(Self {
             start,
             curve,
