@@ -279,7 +279,9 @@ impl Solved {
         let is_degenerate = is_degenerate(moments, rotor_along);
         if is_degenerate {
             invariants.discriminant = DoubleDouble::default();
-        } else if invariants.discriminant.high.abs() < LOST * invariants.terms {
+        } else if !invariants.is_cusp
+            && invariants.discriminant.high.abs() < LOST * invariants.terms
+        {
             // What is left of it comes from what the axes were refined from.
             let finest = principal.finest();
             let unit = moments[2].high / principal.moments[2].high;
@@ -302,10 +304,15 @@ impl Solved {
                 third: found.third.twofold(),
                 discriminant,
                 terms: found.terms,
+                is_cusp: found.is_cusp,
             };
         }
-        let curve = Curve::of(&invariants);
-        let spinor = Spinor::of(&quartic, &curve, start.across);
+        let (curve, spinor) = if invariants.is_cusp && !is_degenerate {
+            (Curve::cusp(), Spinor::cusp(&quartic, start.across))
+        } else {
+            let curve = Curve::of(&invariants);
+            (curve, Spinor::of(&quartic, &curve, start.across))
+        };
         Some(Self {
             start,
             curve,

@@ -93,11 +93,31 @@ impl Series for Hyperbolic {
     }
 }
 
-/// Either series.
+/// One and the square of x + iy, both over 1 + x².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rational {
+    /// y.
+    pub(super) imaginary: f64,
+}
+
+impl Series for Rational {
+    #[inline(always)]
+    fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
+        let (y, one) = (L::new(self.imaginary), L::new(1.0));
+        let over = one / (one + x * x);
+        [
+            (over, L::new(0.0)),
+            ((x - y) * (x + y) * over, (x + x) * y * over),
+        ]
+    }
+}
+
+/// One of the series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AnySeries {
     Circular(Circular),
     Hyperbolic(Hyperbolic),
+    Rational(Rational),
 }
 
 /// How x grows with time.
@@ -246,6 +266,7 @@ impl Kernel for At<'_> {
             AnySeries::Circular(series) => propagator.state::<L, false>(series, t),
             AnySeries::Hyperbolic(series) if is_endless => propagator.state::<L, true>(series, t),
             AnySeries::Hyperbolic(series) => propagator.state::<L, false>(series, t),
+            AnySeries::Rational(series) => propagator.state::<L, true>(series, t),
         }
         .map(L::get)
     }
@@ -272,6 +293,7 @@ impl Kernel for Sample<'_> {
                 self.all::<L, true>(&propagator, &series);
             }
             AnySeries::Hyperbolic(series) => self.all::<L, false>(&propagator, &series),
+            AnySeries::Rational(series) => self.all::<L, true>(&propagator, &series),
         }
     }
 }
