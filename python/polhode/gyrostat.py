@@ -61,7 +61,7 @@ class Equilibria(NamedTuple):
         What the energy is there among states with this |L|: ``"minimum"`` (stable, also with dissipation),
         ``"maximum"`` (stable without), ``"saddle"`` (unstable), ``"degenerate"`` (some meet here).
     circle : numpy.ndarray, shape (k, 3)
-        The axis of the circle that this one stands for, of a body with two equal moments; else not numbers.
+        The axis of the circle that this one stands for, of a body with two equal moments; else zero.
     bifurcations : Bifurcations
         Where their number changes.
     """
