@@ -109,10 +109,10 @@ pub(super) fn moving(
         Course::Rational => Pace {
             clock: Clock::Endless {
                 rate: 1.0,
-                start: spinor.argument.re.high,
+                start: 0.0,
             },
             series: AnySeries::Rational(Rational {
-                imaginary: spinor.argument.im.high,
+                curvature: [spinor.argument.re.high, spinor.argument.im.high],
             }),
             phase: spinor.phase,
             slope: 0.0,

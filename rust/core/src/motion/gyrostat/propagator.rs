@@ -93,21 +93,22 @@ impl Series for Hyperbolic {
     }
 }
 
-/// One and the square of x + iy, both over 1 + x².
+/// One and `x + k x²`, both over 1 + x².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rational {
-    /// y.
-    pub(super) imaginary: f64,
+    /// Real and imaginary part of k.
+    pub(super) curvature: [f64; 2],
 }
 
 impl Series for Rational {
     #[inline(always)]
     fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
-        let (y, one) = (L::new(self.imaginary), L::new(1.0));
-        let over = one / (one + x * x);
+        let [re, im] = self.curvature.map(L::new);
+        let square = x * x;
+        let over = L::new(1.0) / (L::new(1.0) + square);
         [
             (over, L::new(0.0)),
-            ((x - y) * (x + y) * over, (x + x) * y * over),
+            (re.mul_add(square, x) * over, im * square * over),
         ]
     }
 }

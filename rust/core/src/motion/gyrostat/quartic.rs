@@ -29,7 +29,7 @@ pub(super) struct Invariants<T> {
     pub(super) is_cusp: bool,
 }
 
-/// What inputs that are rounded make of invariants that are zero, and less.
+/// What inputs that are rounded make of invariants that are zero, and less; the unit of the start is one.
 const CUSP: f64 = 1e-18;
 
 impl<T: Real> Quartic<T> {
@@ -79,8 +79,8 @@ impl<T: Real> Quartic<T> {
         let s_lowest = 3.0 * s2 * s4 + 2.0 * (s3 * s3 + s1 * s1 * s4);
         let (second, third) = ((p + square.times(three)).re, (r - cube).re);
         Invariants {
-            is_cusp: second.rounded().abs() <= CUSP * (sp + 3.0 * s2 * s2)
-                && third.rounded().abs() <= CUSP * (sr + s2.powi(3)),
+            is_cusp: second.rounded().abs() <= CUSP * (1.0 + sp + 3.0 * s2 * s2)
+                && third.rounded().abs() <= CUSP * (1.0 + sr + s2.powi(3)),
             second,
             third,
             discriminant: sum.re,
@@ -88,7 +88,7 @@ impl<T: Real> Quartic<T> {
         }
     }
 
-    /// Weierstrass' function P and its derivative, `P′² = 4P³ − G₂P + G₃`, of twice the way from where the spinor turns back
+    /// Weierstrass' function P and minus its derivative, `P′² = 4P³ − G₂P + G₃`, of twice the way from where the spinor turns back
     /// to the start: `P = a₂ − a₁²`, `P′ = i(a₃ − 3a₁a₂ + 2a₁³)`.
     pub(super) fn place(&self) -> [Complex<T>; 2] {
         let [a1, a2, a3, _] = self.a;

@@ -43,7 +43,7 @@ pub(super) enum Course {
     Circular,
     /// As the exponential of the time.
     Hyperbolic,
-    /// On the curve with three equal roots: `Θₑ = 1`, `Θₒ = (t − s)²`, and `argument` is −s.
+    /// On the curve with three equal roots: `Θₑ = 1`, `Θₒ = t + k t²`, and `argument` is k.
     Rational,
 }
 
@@ -123,13 +123,15 @@ impl Spinor {
         }
     }
 
-    /// Of a curve with three equal roots: `P = (t − s)⁻²`.
+    /// Of a curve with three equal roots: `P = (t − s)⁻²`, which is zero for a quartic with four equal zeros.
     pub(super) fn cusp(quartic: &Quartic<DoubleDouble>, rho: DoubleDouble) -> Self {
         let [value, derivative] = quartic.place();
-        let since = -(value.scaled(2.0).over(derivative));
-        let slope = Complex::one().over(since);
+        let mut slope = value.sqrt();
+        if (slope * value).is_opposite_to(derivative) {
+            slope = -slope;
+        }
         let even = [Complex::one(), Complex::zero()];
-        let odd = [since.squared(), since.scaled(2.0)];
+        let odd = [Complex::zero(), Complex::one()];
         let zero = DoubleDouble::default();
         Self {
             course: Course::Rational,
@@ -138,7 +140,7 @@ impl Spinor {
             rate: zero,
             sense: 1.0,
             start: Complex::zero(),
-            argument: since,
+            argument: slope.scaled(0.5),
             columns: columns(quartic, slope, [even, odd], rho),
             phase: -slope.im.scaled(0.5),
             in_time: None,

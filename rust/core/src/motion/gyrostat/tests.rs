@@ -94,7 +94,8 @@ fn modes_and_starts_and_what_is_kept() {
         let motion = motion(moments, h, omega);
         assert_eq!(motion.mode, mode, "{moments:?} {h:?} {omega:?}");
         let start = motion.at(0.0);
-        assert!((start.omega - motion.initial.omega).norm() < 2e-14);
+        let rest = (start.omega - motion.initial.omega).norm();
+        assert!(rest < 2e-14, "{moments:?} {h:?} {omega:?} {rest:e}");
         assert!(start.attitude.angle_to(&motion.initial.attitude) < 2e-14);
         let (tensor, h) = (Matrix3::from_diagonal(&moments.into()), Vector3::from(h));
         for t in [0.7, 13.0, -200.0, 1e5, 1e12] {
@@ -124,7 +125,8 @@ fn the_equations_of_motion_hold() {
                 "{moments:?} {h:?} {torque}"
             );
             let turned = (before.attitude.inverse() * after.attitude).scaled_axis() / (2.0 * step);
-            assert!((turned - now.omega).norm() < 1e-5 * size.powi(3));
+            let rest = (turned - now.omega).norm();
+            assert!(rest < 1e-5 * size.powi(3), "{moments:?} {h:?} {rest:e}");
         }
     }
 }
