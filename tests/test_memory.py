@@ -48,7 +48,16 @@ SIZELESS = {
     "MassAccumulator.merge",
     "MassAccumulator.moment_bounds",
 }
-CLASSES = ("RigidBody", "FreeMotion", "Gyrostat", "GyrostatMotion", "HeavyTop", "Load", "MassAccumulator", "Region")
+CLASSES = (
+    "RigidBody",
+    "FreeMotion",
+    "Gyrostat",
+    "GyrostatMotion",
+    "HeavyTop",
+    "Load",
+    "MassAccumulator",
+    "Region",
+)
 
 LIMITED = """
 import resource, runpy, sys

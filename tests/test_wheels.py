@@ -463,7 +463,9 @@ class TestEnergySink:
             expected = fate.time(start, end)
             omega = (np.sin(start), 0.0, np.cos(start) / axial)
             there = Event(
-                lambda _t, w, *_: abs(w[2]) * axial - np.cos(end) * np.hypot(np.hypot(w[0], w[1]), w[2] * axial),
+                lambda _t, w, *_: (
+                    abs(w[2]) * axial - np.cos(end) * np.hypot(np.hypot(w[0], w[1]), w[2] * axial)
+                ),
                 terminal=True,
             )
             load = loads.slug(inertia, 0.7 * inertia)
@@ -483,7 +485,7 @@ class TestEnergySink:
         assert fate.angle(0.3, 1e9) == pytest.approx([np.pi / 2, 0.3, 0.0], abs=1e-15)
         one = tops.nutation_damping(bodies[0], 1.0, inertia=1e-3, damping=1e-3)
         assert one.verdict == "flat spin"
-        with pytest.raises(PolhodeError, match="two of its principal moments are equal|symmetric top"):
+        with pytest.raises(PolhodeError, match=r"no two of .* are equal|symmetric top"):
             tops.nutation_damping(BODY, 1.0, inertia=1e-3, damping=1e-3)
         with pytest.raises(PolhodeError, match="damping must be positive, got 0"):
             tops.nutation_damping(bodies[0], 1.0, inertia=1e-3, damping=0.0)
