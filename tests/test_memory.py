@@ -16,6 +16,7 @@ from polhode import RigidBody, _core
 
 #: Callables without an argument whose size the caller chooses: functions, and properties of what exists.
 SIZELESS = {
+    "Gyrostat.equilibria",
     "callback",
     "compiled",
     "read_plates",

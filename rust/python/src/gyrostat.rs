@@ -187,7 +187,11 @@ impl PyGyrostat {
     }
 
     /// The momentum and, of the free wheels, Σ J a aᵀ: for trajectories.
-    fn _rotor<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    #[pyo3(name = "_rotor")]
+    pub(crate) fn rotor<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let momentum = write_of(py, &self.gyrostats, |one| {
             Vector3::from(one.inside.momentum.map(DoubleDouble::rounded))
         })?;

@@ -244,7 +244,7 @@ impl PyGyrostatMotion {
         // What is carried along is computed for those who ask.
         let known = motion.getattr("__dict__")?;
         known.del_item("carried")?;
-        known.set_item("_rotor", (rotor, gyrostat._rotor(py)?.1))?;
+        known.set_item("_rotor", (rotor, gyrostat.rotor(py)?.1))?;
         Ok(motion)
     }
 

@@ -40,10 +40,10 @@ impl PyGyrostat {
     ///
     /// >>> import polhode
     /// >>> body = polhode.RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
-    /// >>> body.gyrostat((0, 0.2, 0)).equilibria(2.0).kind.tolist()
-    /// ['minimum', 'minimum', 'saddle', 'saddle', 'maximum', 'maximum']
-    /// >>> body.gyrostat((0, 2.5, 0)).equilibria(2.0).kind.tolist()
-    /// ['minimum', 'maximum']
+    /// >>> print(*body.gyrostat((0, 0.2, 0)).equilibria(2.0).kind)
+    /// minimum minimum saddle saddle maximum maximum
+    /// >>> print(*body.gyrostat((0, 2.5, 0)).equilibria(2.0).kind)
+    /// minimum maximum
     fn equilibria<'py>(&self, py: Python<'py>, momentum: f64) -> PyResult<Bound<'py, PyAny>> {
         let [one] = &self.gyrostats.rows[..] else {
             return Err(PyValueError::new_err(

@@ -13,7 +13,9 @@ fn motion(moments: [f64; 3], rotor: [f64; 3], omega: [f64; 3]) -> GyrostatMotion
 }
 
 /// Moments, h, ω at the start and the mode.
-const CASES: [([f64; 3], [f64; 3], [f64; 3], Mode); 12] = [
+type Case = ([f64; 3], [f64; 3], [f64; 3], Mode);
+
+const CASES: [Case; 12] = [
     (
         [1.0, 2.0, 2.5],
         [0.1, 0.2, 0.3],
