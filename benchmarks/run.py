@@ -26,6 +26,7 @@ FILES_OF_ROWS = (
     "voxels",
     "meshes",
     "free_motion",
+    "gyrostat",
     "heavy_top",
     "simulate",
     "callbacks",

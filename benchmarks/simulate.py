@@ -34,10 +34,12 @@ WEIGHT = np.array([0.0, 0.0, -1.0])
 
 
 class Case:
-    """A body about its fixed point or centre: moments there, where its weight acts, and how it starts."""
+    """A body about its fixed point or centre: its moments, its weight or a rotor in it, and how it starts."""
 
-    def __init__(self, name: str, moments: Any, center: Any, omega: Any) -> None:
-        self.name = name
+    def __init__(
+        self, name: str, moments: Any, center: Any, omega: Any, rotor: Any = None, bar: float = 1.4
+    ) -> None:
+        self.name, self.rotor, self.bar = name, rotor, bar
         self.moments, self.center = np.array(moments), np.array(center)
         self.omega = np.array(omega)
         self.time = 2 * np.pi * ROTATIONS / float(np.linalg.norm(omega))
@@ -45,6 +47,8 @@ class Case:
         about_center = np.diag(self.moments) - (c @ c * np.eye(3) - np.outer(c, c))
         self.body = RigidBody(1.0, about_center, c)
         self.load = loads.uniform_gravity(WEIGHT) if c.any() else None
+        if rotor is not None:
+            self.load = loads.rotor(rotor)
 
     def ours(self, omega: Any, rtol: float = TIGHTEST) -> NDArray[np.float64]:
         """Rates and attitudes at the end."""
@@ -64,7 +68,11 @@ class Case:
         (i1, i2, i3), (c1, c2, c3) = self.moments, self.center
         x, y, z, s = q
         change = [(i2 - i3) * w[1] * w[2], (i3 - i1) * w[2] * w[0], (i1 - i2) * w[0] * w[1]]
-        if self.load is not None:
+        if self.rotor is not None:
+            h1, h2, h3 = self.rotor
+            torque = [h2 * w[2] - h3 * w[1], h3 * w[0] - h1 * w[2], h1 * w[1] - h2 * w[0]]
+            change = [a + b for a, b in zip(change, torque, strict=True)]
+        elif self.load is not None:
             f = [-2 * (x * z - y * s), -2 * (y * z + x * s), -(1 - 2 * (x * x + y * y))]
             torque = [c2 * f[2] - c3 * f[1], c3 * f[0] - c1 * f[2], c1 * f[1] - c2 * f[0]]
             change = [a + b for a, b in zip(change, torque, strict=True)]
@@ -121,6 +129,7 @@ CASES = (
     Case("free, asymmetric", (1.0, 2.0, 2.5), (0.0, 0.0, 0.0), (0.3, 0.4, 1.1)),
     Case("heavy symmetric top", (1.25, 1.25, 0.4), (0.0, 0.0, 0.5), (0.2, 0.1, 5.0)),
     Case("heavy asymmetric top", (1.0, 2.0, 2.5), (0.1, -0.2, 0.4), (0.3, -0.2, 3.0)),
+    Case("gyrostat", (1.0, 2.0, 2.5), (0.0, 0.0, 0.0), (0.3, 0.4, 1.1), (0.4, -0.2, 0.9), 1.8),
 )
 
 
@@ -157,7 +166,7 @@ def beside_heyoka(case: Case) -> Iterator[Row]:
     exact_one, exact_some = case.exact(one), case.exact(some)
     alone = {tolerance: heyoka_alone(case, tolerance) for tolerance in THEIRS}
     batch = {tolerance: heyoka_batch(case, tolerance) for tolerance in THEIRS}
-    for kind, bar in (("equal errors", 1.4), ("at the tightest", None)):
+    for kind, bar in (("equal errors", case.bar), ("at the tightest", None)):
         ours, theirs = TIGHTEST, THEIRS[0]
         if bar is not None:
             ours = case.loosest(lambda rtol: case.ours(case.omega, rtol), OURS, exact_one)

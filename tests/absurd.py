@@ -30,6 +30,7 @@ POINTS, FACES = np.eye(4)[:, :3], np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1,
 MOTION, HEAVY = BODY.free_motion(V), TOP.heavy_top(V, (np.sin(0.2), 0.0, 0.0, np.cos(0.2)), WEIGHT)
 MOTIONS, HEAVIES = COLUMN.free_motion(V), COLUMN.heavy_top(V, (np.sin(0.2), 0, 0, np.cos(0.2)), WEIGHT)
 LOAD = _core.constant_torque(V)
+GYROSTAT = BODY.gyrostat(V)
 LOADS = _core.constant_torque(np.ones((SIDE, 1, 3)))
 REGION = regions.ball(1.0)
 
@@ -112,6 +113,9 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "FreeMotion.sensitivity": (MOTION.sensitivity, {"t": 1.0}),
     "FreeMotion.error_bar": (MOTION.error_bar, {"t": 1.0}),
     "FreeMotion.at": (MOTION.at, {"t": 1.0}),
+    "RigidBody.gyrostat": (BODY.gyrostat, {"momentum": V}),
+    "Gyrostat.free_motion": (GYROSTAT.free_motion, {"omega": V, "attitude": Q}),
+    "GyrostatMotion.at": (GYROSTAT.free_motion(V).at, {"t": 1.0}),
     "HeavyTop.at": (HEAVY.at, {"t": 1.0}),
     "HeavyTop.effective_potential": (HEAVY.effective_potential, {"inclination": 1.0}),
     "Load.torque": (lambda **rows: LOAD.torque(0.0, **rows), {"omega": V, "quaternion": Q}),
@@ -126,6 +130,10 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "gravity_gradient": (_core.gravity_gradient, {"mu": 1.0, "position": V, "velocity": V}),
     "damping": (_core.damping, {"matrix": T, "quadratic": T}),
     "feedback": (_core.feedback, {"K": T, "D": T, "target": Q}),
+    "nutation_damping": (
+        lambda **rows: _core.nutation_damping(TOP, **rows),
+        {"momentum": 1.0, "inertia": 1.0, "damping": 1.0},
+    ),
     "rotor": (_core.rotor, {"momentum": V}),
     "wheel": (_core.wheel, {"axis": V, "inertia": 1.0, "rate": 1.0, "friction": 1.0}),
     "slug": (_core.slug, {"inertia": 1.0, "damping": 1.0}),

@@ -103,8 +103,19 @@ class TestNames:
         modules = {name for name in visible if isinstance(getattr(polhode, name), types.ModuleType)}
         internal = modules - set(polhode.__all__)
         assert visible - internal == set(polhode.__all__)
-        known = {"animation", "cli", "events", "free_motion", "io", "molecules", "plot", "results", "robots"}
-        known |= {"files", "gyrostat", "trajectory", "units", "view"}
+        known = {
+            "animation",
+            "cli",
+            "events",
+            "free_motion",
+            "gyrostat",
+            "io",
+            "molecules",
+            "plot",
+            "results",
+            "robots",
+        }
+        known |= {"files", "trajectory", "units", "view"}
         assert internal <= known
 
     @pytest.mark.parametrize("name", MODULES)

@@ -16,6 +16,7 @@ from polhode import RigidBody, _core
 
 #: Callables without an argument whose size the caller chooses: functions, and properties of what exists.
 SIZELESS = {
+    "Gyrostat.equilibria",
     "callback",
     "compiled",
     "read_plates",
@@ -48,7 +49,16 @@ SIZELESS = {
     "MassAccumulator.merge",
     "MassAccumulator.moment_bounds",
 }
-CLASSES = ("RigidBody", "FreeMotion", "HeavyTop", "Load", "MassAccumulator", "Region")
+CLASSES = (
+    "RigidBody",
+    "FreeMotion",
+    "Gyrostat",
+    "GyrostatMotion",
+    "HeavyTop",
+    "Load",
+    "MassAccumulator",
+    "Region",
+)
 
 LIMITED = """
 import resource, runpy, sys

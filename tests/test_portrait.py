@@ -50,7 +50,7 @@ class Gyrostat:
         return SimpleNamespace(
             direction=np.array(directions),
             kind=kinds,
-            circle=np.full((len(kinds), 3), np.nan),
+            circle=np.zeros((len(kinds), 3)),
             bifurcations=SimpleNamespace(rotor=rotor),
         )
 
@@ -81,7 +81,7 @@ def test_marks_and_curves() -> None:
 def test_a_circle_of_equilibria_is_drawn() -> None:
     # Moments 1, 1, 2 and h = (0, 0, 0.2): L₃ = −h on the circle, of most energy.
     n = np.array([np.sqrt(1 - 0.01), 0.0, -0.1])
-    none = np.full(3, np.nan)
+    none = np.zeros(3)
     found = SimpleNamespace(
         direction=np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], n]),
         kind=["minimum", "minimum", "maximum"],

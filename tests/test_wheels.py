@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from polhode import Event, RigidBody, Trajectory, loads
+from polhode import Event, RigidBody, Trajectory, loads, tops
 from polhode.errors import InvalidInertiaError, PolhodeError
 from scipy.integrate import solve_ivp
 
@@ -338,7 +338,8 @@ class TestFunctions:
 
         own = loads.with_states(rates, OMEGA, wrench, "own")
         exact = BODY.simulate(T, OMEGA, load=loads.slug(0.3, 0.4), rtol=2.3e-15)
-        for method, rtol, allowed in (("dop853", 1e-12, 1e-10), ("radau", 1e-8, 1e-6)):
+        cases: list[tuple[Any, float, float]] = [("dop853", 1e-12, 1e-10), ("radau", 1e-8, 1e-6)]
+        for method, rtol, allowed in cases:
             run = BODY.simulate(T, OMEGA, load=own, method=method, rtol=rtol)
             assert np.abs(run.omega - exact.omega).max() < allowed
             assert np.abs(run.states["own"] - exact.states["slug"]).max() < allowed
@@ -451,29 +452,40 @@ def test_what_is_refused(call: Callable[[], Any], kind: type[Exception], message
 
 
 class TestEnergySink:
-    """A prolate body with a small slug goes over into a flat spin; the energy-sink model says how fast."""
+    """A small slug against the energy-sink model, which is of first order in its moment."""
 
-    def test_time_to_half_way(self) -> None:
-        """To first order in J the energy falls as a slug takes it that the free motion drives."""
-        body = RigidBody.from_principal(1.0, (0.5, 1.0, 1.0))
-        i_s, i_t = 0.5, 1.0
-        theta0, theta1, momentum = 0.2, 1.2, 1.0
+    @pytest.mark.parametrize(("axial", "start", "end"), [(0.5, 0.2, 1.2), (1.7, 1.2, 0.2)])
+    def test_the_error_goes_with_the_moment(self, axial: float, start: float, end: float) -> None:
+        body = RigidBody.from_principal(1.0, (1.0, 1.0, axial))
         found = []
-        for inertia in (2e-3, 1e-3, 5e-4):
-            damping = inertia * 0.7
-            # In space ω circles L with the rate L/I_t: η = σ − ω obeys η̇ = −(k/J) η − ω̇ there.
-            theta = np.linspace(theta0, theta1, 4001)
-            nu = momentum / i_t
-            across = momentum * np.sin(theta) * np.cos(theta) * (1 / i_s - 1 / i_t)
-            power = damping * across**2 * nu**2 / ((damping / inertia) ** 2 + nu**2)
-            # T = L²/2 (cos²θ/I_s + sin²θ/I_t).
-            slope = momentum**2 * np.sin(theta) * np.cos(theta) * (1 / i_s - 1 / i_t)
-            predicted = np.trapezoid(slope / power, theta)
-            start = np.array([momentum * np.cos(theta0) / i_s, momentum * np.sin(theta0) / i_t, 0.0])
-            half = Event(lambda _t, w, *_: abs(w[0]) * i_s - momentum * np.cos(theta1), terminal=True)
-            motion = body.simulate(
-                np.array([0, 3 * predicted]), start, load=loads.slug(inertia, damping), events=half
+        for inertia in (4e-3, 2e-3, 1e-3):
+            fate = tops.nutation_damping(body, 1.0, inertia=inertia, damping=0.7 * inertia)
+            expected = fate.time(start, end)
+            omega = (np.sin(start), 0.0, np.cos(start) / axial)
+            there = Event(
+                lambda _t, w, *_: (
+                    abs(w[2]) * axial - np.cos(end) * np.hypot(np.hypot(w[0], w[1]), w[2] * axial)
+                ),
+                terminal=True,
             )
-            found.append(motion.events.t[0] / predicted - 1)
-        assert abs(found[2]) < 5e-3
-        assert abs(found[2]) < 0.6 * abs(found[1]) < 0.36 * abs(found[0]) + 1e-4
+            load = loads.slug(inertia, 0.7 * inertia)
+            run = body.simulate(np.array([0.0, 2 * expected]), omega, load=load, events=there)
+            found.append(run.events.t[0] / expected - 1)
+            assert fate.angle(start, expected) == pytest.approx(end, abs=1e-12)
+        assert abs(found[2]) < 0.01
+        assert found[0] / found[1] == pytest.approx(2.0, abs=0.2)
+        assert found[1] / found[2] == pytest.approx(2.0, abs=0.2)
+
+    def test_the_major_axis_rule(self) -> None:
+        moments = [(1.0, 1.0, 0.5), (1.0, 1.0, 1.0), (1.0, 1.0, 1.7)]
+        bodies = RigidBody.stack([RigidBody.from_principal(1.0, m) for m in moments])
+        fate = tops.nutation_damping(bodies, 1.0, inertia=1e-3, damping=1e-3)
+        assert fate.verdict.tolist() == ["flat spin", "neutral", "damps"]
+        assert fate.time_constant[1] == np.inf
+        assert fate.angle(0.3, 1e9) == pytest.approx([np.pi / 2, 0.3, 0.0], abs=1e-15)
+        one = tops.nutation_damping(bodies[0], 1.0, inertia=1e-3, damping=1e-3)
+        assert one.verdict == "flat spin"
+        with pytest.raises(PolhodeError, match=r"no two of .* are equal|symmetric top"):
+            tops.nutation_damping(BODY, 1.0, inertia=1e-3, damping=1e-3)
+        with pytest.raises(PolhodeError, match="damping must be positive, got 0"):
+            tops.nutation_damping(bodies[0], 1.0, inertia=1e-3, damping=0.0)

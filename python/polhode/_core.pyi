@@ -16,6 +16,7 @@ from polhode.results import (
     FreePrecession,
     KineticEnergy,
     MotionSensitivity,
+    NutationDamping,
     Particles,
     PrincipalAxes,
     Provenance,
@@ -70,6 +71,7 @@ __all__ = [
     "least_spin",
     "motion_sensitivity",
     "nearest_valid",
+    "nutation_damping",
     "polygon",
     "principal_axes",
     "principal_derivative",
@@ -837,6 +839,14 @@ def free_precession(
 def least_spin(
     body: RigidBody, gravity: ArrayLike, inclination: ArrayLike = 0.0, *, rtol: float = 1e-6
 ) -> Any: ...
+def nutation_damping(
+    body: RigidBody,
+    momentum: ArrayLike,
+    *,
+    inertia: ArrayLike,
+    damping: ArrayLike,
+    rtol: float = 1e-06,
+) -> NutationDamping: ...
 def steady_precession(
     body: RigidBody,
     spin: ArrayLike,

@@ -24,7 +24,8 @@ class Bifurcations(NamedTuple):
     Attributes
     ----------
     meeting : numpy.ndarray of str, shape (n,)
-        ``"fold"``: a saddle and a stable one meet and are gone; ``"pitchfork"``: two of one kind meet in a third.
+        ``"fold"``: a saddle and a stable one meet and are gone; ``"pitchfork"``: two of one kind meet
+        in a third.
     direction : numpy.ndarray, shape (n, 3)
         L/|L| there, in the body frame.
     momentum : numpy.ndarray, shape (n,)
@@ -60,7 +61,7 @@ class Equilibria(NamedTuple):
         What the energy is there among states with this |L|: ``"minimum"`` (stable, also with dissipation),
         ``"maximum"`` (stable without), ``"saddle"`` (unstable), ``"degenerate"`` (some meet here).
     circle : numpy.ndarray, shape (k, 3)
-        The axis of the circle that this one stands for, of a body with two equal moments; else not numbers.
+        The axis of the circle that this one stands for, of a body with two equal moments; else zero.
     bifurcations : Bifurcations
         Where their number changes.
     """
@@ -155,10 +156,10 @@ def wheel(
     if mode not in ("free", "held"):
         raise ValueError(f"mode: {mode!r} is not 'free' or 'held'")
     moment = _core.real_numbers(inertia, "inertia")
-    if rate is not None:
-        spin = moment * _core.real_numbers(rate, "rate")
-    else:
+    if momentum is not None:
         spin = _core.real_numbers(momentum, "momentum")
+    elif rate is not None:
+        spin = moment * _core.real_numbers(rate, "rate")
     place = _core.real_numbers(axis, "axis")
     if place.shape[-1:] != (3,):
         raise ValueError(f"axis: expected shape (..., 3), got {place.shape}")

@@ -11,7 +11,7 @@ from polhode._principal import TOP_RTOL, PrincipalAxes, PrincipalDerivative, Pri
 from polhode._repr import one_line, short
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     Floats = NDArray[np.float64]
 
@@ -26,6 +26,7 @@ __all__ = [
     "Linear",
     "MotionSensitivity",
     "NearestValid",
+    "NutationDamping",
     "Particles",
     "PrincipalAxes",
     "PrincipalDerivative",
@@ -249,6 +250,62 @@ class Particles(NamedTuple):
 
     masses: Floats
     positions: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class NutationDamping(NamedTuple):
+    """What a small slug does to the nutation of a free symmetric top: ``tan θ = tan θ0 exp(rate t)``.
+
+    Attributes
+    ----------
+    rate : float or numpy.ndarray, shape (...)
+        Positive: the angle θ between the symmetry axis and L grows to a right angle; negative: it decays.
+    """
+
+    rate: Any
+
+    @property
+    def time_constant(self) -> Any:
+        """``1/|rate|``; infinite for three equal moments."""
+        with np.errstate(divide="ignore"):
+            return np.true_divide(1.0, np.abs(self.rate))[()]
+
+    @property
+    def verdict(self) -> Any:
+        """In a word: ``"damps"``, ``"flat spin"``, or ``"neutral"`` for three equal moments."""
+        words = np.array(["damps", "neutral", "flat spin"])[np.sign(self.rate).astype(int) + 1]
+        return words if words.ndim else str(words)
+
+    def angle(self, start: ArrayLike, t: ArrayLike) -> Any:
+        """θ at a time after it was `start`, both in radians from 0 to a right angle.
+
+        Parameters
+        ----------
+        start, t : array_like, shape (...)
+
+        Returns
+        -------
+        float or numpy.ndarray, shape (...)
+        """
+        half = np.clip(0.5 * np.multiply(self.rate, t), -350.0, 350.0)
+        return np.arctan2(np.sin(start) * np.exp(half), np.cos(start) * np.exp(-half))[()]
+
+    def time(self, start: ArrayLike, end: ArrayLike) -> Any:
+        """Time in which θ comes from `start` to `end`; negative where it runs the other way.
+
+        Parameters
+        ----------
+        start, end : array_like, shape (...)
+            In radians, between 0 and a right angle.
+
+        Returns
+        -------
+        float or numpy.ndarray, shape (...)
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.true_divide(np.log(np.tan(end)) - np.log(np.tan(start)), self.rate)[()]
 
     def __repr__(self) -> str:
         return short(self)

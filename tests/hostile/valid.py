@@ -93,7 +93,7 @@ VALUES: dict[str, Any] = {
     "unwrap": False, "options": {}, "unit": "MHz", "factor": 2.0, "key": 0, "user_data": None,
     "labels_of_atoms": ["C", "O"], "states": None, "momentum": [0.0, 0.5, 2.0], "speed": None,
     "times": None, "friction": 0.25, "initial": [0.5, 0.0], "wrench": None, "update": None, "period": None,
-    "scale": None,
+    "scale": None, "wheels": None,
     "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
 }  # fmt: skip
 """What a parameter of this name takes; numbers that float32 has too."""
@@ -141,8 +141,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "sampled": {"t": [-1.0, 0.5, 2.0], "torque": [[0.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]]},
     "wheel": {"axis": [0.0, 0.5, 1.0], "inertia": 0.25, "torque": 0.5},
     "slug": {"inertia": 0.25, "damping": 0.5},
+    "nutation_damping": {"body": TOP, "momentum": 2.0, "inertia": 0.25, "damping": 0.5},
     "with_states": {"rates": None},
     "Load.carried": {"t": 0.5},
+    "Gyrostat.equilibria": {"momentum": 2.0},
     "schedule": {"load": loads.constant_torque((0.5, 0.0, 0.25))},
     "callback": {"function": push},
     "from_pseudo_inertia": {"pseudo_inertia": _core.to_pseudo_inertia(TUMBLER).tolist()},
@@ -210,6 +212,11 @@ def receivers() -> dict[str, tuple[Any, ...]]:
     return {
         "RigidBody": (TUMBLER, TOP, STACK),
         "FreeMotion": (TUMBLER.free_motion(OMEGA), STACK.free_motion(OMEGA), TOP.free_motion(OMEGA)),
+        "Gyrostat": (TUMBLER.gyrostat((0.0, 0.5, 2.0)),),
+        "GyrostatMotion": (
+            TUMBLER.gyrostat((0.0, 0.5, 2.0)).free_motion(OMEGA),
+            STACK.gyrostat((0.0, 0.5, 2.0)).free_motion(OMEGA),
+        ),
         "HeavyTop": (TOP.heavy_top(OMEGA, QUATERNION, (0.0, 0.0, -8.0)),),
         "Load": (loads.constant_torque((0.5, 0.0, 0.25)), load_of_all()),
         "MassAccumulator": (accumulator,),

@@ -102,7 +102,7 @@ def portrait(
         for curve in _curves(inverse, inside, level):
             curve_on(ax, curve, curve, AXIS_COLORS[1], linewidth=1.6)
     for n, axis, kind in zip(points, np.asarray(found.circle), kinds, strict=True):
-        if np.isfinite(axis).all():
+        if np.any(axis):
             ring = _circle(n, axis)
             curve_on(ax, ring, ring, _LOOKS[kind][0], linewidth=2.4)
     _marks(ax, points, kinds, labels)

@@ -91,7 +91,9 @@ mod _core {
     #[pymodule_export]
     use crate::free_motion::PyFreeMotion;
     #[pymodule_export]
-    use crate::gyrostat::{PyGyrostat, PyGyrostatMotion};
+    use crate::gyrostat::PyGyrostat;
+    #[pymodule_export]
+    use crate::gyrostat::motion::PyGyrostatMotion;
     #[pymodule_export]
     use crate::heavy_top::PyHeavyTop;
     #[pymodule_export]
@@ -131,7 +133,7 @@ mod _core {
         prism, pyramid, sphere, tetrahedron, torus, tube, wedge,
     };
     #[pymodule_export]
-    use crate::tops::{free_precession, least_spin, steady_precession};
+    use crate::tops::{free_precession, least_spin, nutation_damping, steady_precession};
     #[pymodule_export]
     use crate::uncertain::PyUncertain;
 

@@ -5,6 +5,7 @@ use numpy::PyArrayDyn;
 use polhode::Error;
 use polhode::motion::free_precession::{FreePrecession, free_precession as free_precession_of};
 use polhode::motion::heavy_top::PivotedTop;
+use polhode::motion::nutation_damping::nutation_damping as nutation_damping_of;
 use polhode::principal::{SymmetricTop, TOP_RTOL};
 use pyo3::prelude::*;
 
@@ -82,6 +83,71 @@ pub(crate) fn free_precession<'py>(
     py.import("polhode.results")?
         .getattr("FreePrecession")?
         .call1(parts)
+}
+
+/// What a small slug does to the nutation of a free symmetric top: the energy-sink model and the major-axis rule.
+///
+/// The angle θ between the symmetry axis and L follows ``tan θ = tan θ0 exp(rate t)``, to first order in the moment of the slug.
+///
+/// Parameters
+/// ----------
+/// body : RigidBody
+///     Two principal moments equal to `rtol`, of which the mean is taken.
+/// momentum : array_like, shape (...)
+///     The length of L.
+/// inertia, damping : array_like, shape (...)
+///     Those of :func:`polhode.loads.slug`.
+/// rtol : float, optional
+///     Moments closer than this times the largest count as equal.
+///
+/// Returns
+/// -------
+/// NutationDamping
+///
+/// Raises
+/// ------
+/// PolhodeError
+///     For a body that is no symmetric top, and for numbers that are not positive.
+///
+/// Examples
+/// --------
+/// A rod that spins about its axis goes over into a flat spin, a disk comes to rest in its nutation:
+///
+/// >>> from polhode import RigidBody, tops
+/// >>> for moments in [(0.5, 1.0, 1.0), (1.0, 1.0, 1.8)]:
+/// ...     fate = tops.nutation_damping(RigidBody.from_principal(1.0, moments), 2.0, inertia=1e-3, damping=2e-3)
+/// ...     print(fate.verdict, round(fate.time_constant, 1))
+/// flat spin 1000.0
+/// damps 2250.0
+#[pyfunction]
+#[pyo3(signature = (body, momentum, *, inertia, damping, rtol=TOP_RTOL))]
+pub(crate) fn nutation_damping<'py>(
+    py: Python<'py>,
+    body: &Bound<'py, PyRigidBody>,
+    momentum: &Bound<'py, PyAny>,
+    inertia: &Bound<'py, PyAny>,
+    damping: &Bound<'py, PyAny>,
+    rtol: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let bodies = &body.get().bodies;
+    let momentum: Stack<f64> = read(momentum, "momentum")?;
+    let (inertia, damping): (Stack<f64>, Stack<f64>) =
+        (read(inertia, "inertia")?, read(damping, "damping")?);
+    let shapes = [
+        &bodies.shape[..],
+        &momentum.shape,
+        &inertia.shape,
+        &damping.shape,
+    ];
+    let grid = Broadcast::of(["body", "momentum", "inertia", "damping"], shapes)?;
+    let found = grid.try_map(py, |[b, h, j, k]| {
+        let top = SymmetricTop::of(&bodies[b].principal(), rtol)?;
+        nutation_damping_of(&top, momentum[h], inertia[j], damping[k])
+    })?;
+    let rate = write_numbers_of(py, &found, |fate| fate.rate)?;
+    py.import("polhode.results")?
+        .getattr("NutationDamping")?
+        .call1((rate,))
 }
 
 /// Least spin with which a heavy symmetric top precesses steadily: ``2 √(I_t m g l cos θ)/I_s``.

@@ -20,7 +20,7 @@ pub enum MotionFault {
     /// Momentum inside a body that has a moment of zero.
     #[error(
         "a gyrostat's principal moments must be positive, got {moment:?}: the momentum inside would turn such a body \
-         infinitely fast; give the body a thickness, or give momentum=(0, 0, 0)"
+         infinitely fast; give the body a thickness, or nothing inside"
     )]
     MasslessGyrostat {
         /// The least principal moment.

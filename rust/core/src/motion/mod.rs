@@ -13,6 +13,7 @@
 //! | free motion of any body, exact at any time, and what it tells | [`free`] |
 //! | a body with constant momentum inside, exact at any time; its steady rotations | [`gyrostat`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
+//! | what internal dissipation does to its nutation | [`mod@nutation_damping`] |
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | attitude, ω, position and velocity together | [`state`] |
 //! | what acts on the body | [`loads`] |
@@ -32,6 +33,7 @@ pub mod integrate;
 pub mod kinematics;
 pub mod kinetic_energy;
 pub mod loads;
+pub mod nutation_damping;
 pub mod pivot_reaction;
 pub mod problem;
 pub mod simulate;

@@ -6,16 +6,18 @@ use polhode::RigidBody;
 use polhode::motion::attitude::components;
 use polhode::motion::gyrostat::GyrostatMotion;
 use polhode::numerics::double_double::DoubleDouble;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::PyGyrostat;
 use crate::arrays::{read, write_numbers_of, write_of, write_words_of};
+use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
-use crate::uncertain::UncertainStart;
+use crate::uncertain::{StartGiven, UncertainStart};
 
 /// The motion of a gyrostat, or of a stack of them, on which no torque acts about its centre of mass.
 ///
@@ -75,6 +77,57 @@ impl PyGyrostatMotion {
         f: fn(&GyrostatMotion) -> f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         write_numbers_of(py, &self.motions, f)
+    }
+}
+
+#[pymethods]
+impl PyGyrostat {
+    /// The motion when no torque acts about the centre of mass, exact at any time.
+    ///
+    /// Parameters
+    /// ----------
+    /// omega : array_like, shape (..., 3)
+    ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
+    /// attitude : array_like, shape (..., 4), or rotation, optional
+    ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as SciPy's
+    ///     Rotation. The identity by default.
+    ///
+    /// Returns
+    /// -------
+    /// GyrostatMotion
+    ///     Gyrostats, angular velocities and attitudes broadcast together.
+    ///
+    /// Raises
+    /// ------
+    /// PolhodeError
+    ///     When `omega` is not finite, `attitude` is not a rotation, or the body has a moment that is zero.
+    ///
+    /// Examples
+    /// --------
+    /// Without momentum inside it is the free motion of the body, to the last bit:
+    ///
+    /// >>> from polhode import RigidBody
+    /// >>> body = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
+    /// >>> motion = body.gyrostat((0, 0, 0)).free_motion((0.3, 0.2, 1.1))
+    /// >>> bool((motion.at(1e6).omega == body.free_motion((0.3, 0.2, 1.1)).at(1e6).omega).all())
+    /// True
+    #[pyo3(signature = (omega, attitude=None))]
+    fn free_motion(
+        slf: Py<Self>,
+        py: Python<'_>,
+        omega: &Bound<'_, PyAny>,
+        attitude: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyGyrostatMotion> {
+        let given = StartGiven::read(omega, attitude)?;
+        if given.uncertain.is_any() || slf.get().body.get().doubts.is_some() {
+            return Err(PyValueError::new_err(
+                "Gyrostat.free_motion: sigmas are not followed through the motion of a gyrostat yet: give plain numbers, \
+                 or follow them with polhode.uncertainty.propagate",
+            ));
+        }
+        let attitude = read_attitude(given.attitude.as_ref(), "attitude")?;
+        let omega = read(&given.omega, "omega")?;
+        PyGyrostatMotion::new(py, slf, &omega, &attitude)
     }
 }
 
@@ -191,7 +244,7 @@ impl PyGyrostatMotion {
         // What is carried along is computed for those who ask.
         let known = motion.getattr("__dict__")?;
         known.del_item("carried")?;
-        known.set_item("_rotor", (rotor, gyrostat._rotor(py)?.1))?;
+        known.set_item("_rotor", (rotor, gyrostat.rotor(py)?.1))?;
         Ok(motion)
     }
 

@@ -8,7 +8,8 @@ use polhode::motion::gyrostat::equilibria::{
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::{PyGyrostat, PyGyrostatMotion};
+use super::PyGyrostat;
+use super::motion::PyGyrostatMotion;
 use crate::arrays::{write_of, write_words_of};
 use crate::errors::to_py;
 use crate::stack::Stack;
@@ -39,10 +40,10 @@ impl PyGyrostat {
     ///
     /// >>> import polhode
     /// >>> body = polhode.RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))
-    /// >>> body.gyrostat((0, 0.2, 0)).equilibria(2.0).kind.tolist()
-    /// ['minimum', 'minimum', 'saddle', 'saddle', 'maximum', 'maximum']
-    /// >>> body.gyrostat((0, 1.5, 0)).equilibria(2.0).kind.tolist()
-    /// ['maximum', 'minimum']
+    /// >>> print(*body.gyrostat((0, 0.2, 0)).equilibria(2.0).kind)
+    /// minimum minimum saddle saddle maximum maximum
+    /// >>> print(*body.gyrostat((0, 2.5, 0)).equilibria(2.0).kind)
+    /// minimum maximum
     fn equilibria<'py>(&self, py: Python<'py>, momentum: f64) -> PyResult<Bound<'py, PyAny>> {
         let [one] = &self.gyrostats.rows[..] else {
             return Err(PyValueError::new_err(
@@ -101,10 +102,9 @@ fn table(py: Python<'_>, found: Equilibria) -> PyResult<Bound<'_, PyAny>> {
         shape: stack(found.bifurcations.len()),
         rows: found.bifurcations,
     };
-    let nan = [f64::NAN; 3];
     let circle = |one: &Equilibrium| match one.extent {
         Extent::Circle(axis) => axis,
-        Extent::Point | Extent::Sphere => nan,
+        Extent::Point | Extent::Sphere => [0.0; 3],
     };
     let word = |one: &Bifurcation| match one.meeting {
         Meeting::Fold => "fold",

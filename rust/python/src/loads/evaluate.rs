@@ -25,6 +25,9 @@ use crate::interrupt::Beat;
 use crate::memory;
 use crate::stack::{BLOCK, Broadcast, Stack};
 
+/// An array of float64.
+type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
+
 impl PyLoad {
     /// Force and torque at each row of times, states and bodies.
     #[expect(clippy::too_many_arguments, reason = "a state has many parts")]
@@ -211,7 +214,7 @@ impl PyLoad {
         t: &Bound<'py, PyAny>,
         omega: &Bound<'py, PyAny>,
         states: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>)> {
+    ) -> PyResult<(Floats<'py>, Floats<'py>)> {
         let (terms, t): (_, Stack<f64>) = (self.terms(py)?, read(t, "t")?);
         let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
         let states = self.read_states(states, true)?;

@@ -89,7 +89,8 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 /// >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
 /// >>> wheel = loads.wheel(axis=(0, 0, 1), inertia=0.5, torque=0.1)
 /// >>> motion = body.simulate([0, 10], omega=(0, 0, 0), load=wheel)
-/// >>> motion.omega[-1].round(9), motion.states["wheel"][-1].round(9)
+/// >>> (momentum,) = motion.states.values()
+/// >>> motion.omega[-1].round(9), momentum[-1].round(9)
 /// (array([ 0. ,  0. , -0.5]), array([1.]))
 #[pyfunction]
 #[pyo3(signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None, name="wheel"))]

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::propagator::{AnySeries, Circular, Clock, Hyperbolic, Propagator};
-use super::spinor::Spinor;
+use super::propagator::{AnySeries, Circular, Clock, Hyperbolic, Propagator, Rational};
+use super::spinor::{Course, Spinor};
 use super::start::Start;
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::motion::attitude::from_axes;
@@ -77,6 +77,20 @@ fn components(q: &Quaternion<f64>) -> [f64; 4] {
     [q.i, q.j, q.k, q.w]
 }
 
+/// How x goes with time, what the series of it are, and what turns the spinor beside them.
+struct Pace {
+    clock: Clock,
+    series: AnySeries,
+    /// ν in the mean, but for what all bodies have, in the units of the start.
+    phase: DoubleDouble,
+    /// Turns of the spinor for x = 1.
+    slope: f64,
+    /// Those that it has at the start, which are to be taken off.
+    turned: f64,
+    /// In units of the start; infinite where x never returns.
+    period: DoubleDouble,
+}
+
 /// The motion of a start that is not steady.
 pub(super) fn moving(
     given: &Given<'_>,
@@ -84,87 +98,115 @@ pub(super) fn moving(
     spinor: &Spinor,
 ) -> (Propagator, Secular) {
     let unit = start.unit;
-    let in_units = |x: DoubleDouble| x.scaled(unit);
-    let base = start.transverse.scaled(0.5);
-    let phase = base + in_units(spinor.phase);
     let mut columns = spinor.columns;
-    let (mut slope, mut turned) = (0.0, 0.0);
-    let (clock, series, rate, period);
-    if spinor.is_hyperbolic {
-        // Z in the middle of its course has the size one.
-        columns[1] = columns[1].map(|x| x.over(spinor.argument));
-        let angle = spinor.argument.im.high.atan2(spinor.argument.re.high);
-        let before = spinor.argument.size().ln();
-        let growth = in_units(spinor.rate).scaled(spinor.sense);
-        if let Some((turn, in_time)) = spinor.in_time {
-            let is_alternating = spinor.is_alternating;
-            let step = if is_alternating {
-                turn.scaled(0.5)
-            } else {
-                turn
-            };
-            let end = 0.5 * (spinor.rate * step).high;
-            let from = before / (2.0 * end);
-            // What a step turns the spinor by, which is what it does in the mean, but for half turns.
-            let square = 2.0 * spinor.sense * angle + if is_alternating { PI } else { 0.0 };
-            let by_step = (spinor.phase * step).high + square;
-            let mean = (in_time * step).high;
-            let halves = ((by_step - mean) / PI).round();
-            let in_time = if halves % 2.0 == 0.0 {
-                in_time
-            } else {
-                in_time + DoubleDouble::PI / step
-            };
-            slope = ((spinor.phase - in_time) * step).high / TAU * spinor.sense;
-            turned = -slope * from;
-            let pace = DoubleDouble::from(spinor.sense * unit) / step;
-            clock = if is_alternating {
-                Clock::Alternating {
-                    rate: pace,
-                    start: from.into(),
-                }
-            } else {
-                Clock::Circling {
-                    rate: pace,
-                    start: from.into(),
-                }
-            };
-            series = hyperbolic(spinor, angle, 2.0 * end, end);
-            rate = base + in_units(in_time);
-            period = turn.scaled(1.0 / unit);
-        } else {
-            clock = Clock::Endless {
-                rate: growth.high,
-                start: before,
-            };
-            series = hyperbolic(spinor, angle, 1.0, f64::INFINITY);
-            rate = phase;
-            period = f64::INFINITY.into();
+    let pace = match spinor.course {
+        Course::Circular => circling(spinor),
+        Course::Hyperbolic => {
+            // Z in the middle of its course has the size one.
+            columns[1] = columns[1].map(|x| x.over(spinor.argument));
+            passing(spinor)
         }
-    } else {
-        let pace = turns_of(in_units(spinor.rate));
-        clock = Clock::Circling {
-            rate: pace.scaled(spinor.sense),
-            start: DoubleDouble::default(),
-        };
-        series = circular(spinor);
-        rate = phase;
-        period = DoubleDouble::from(1.0) / pace;
-    }
+        Course::Rational => Pace {
+            clock: Clock::Endless {
+                rate: 1.0,
+                start: 0.0,
+            },
+            series: AnySeries::Rational(Rational {
+                curvature: [spinor.argument.re.high, spinor.argument.im.high],
+            }),
+            phase: spinor.phase,
+            slope: 0.0,
+            turned: 0.0,
+            period: f64::INFINITY.into(),
+        },
+    };
     let propagator = Propagator {
-        rate: turns_of(rate),
-        slope,
-        clock,
-        series,
-        attitude: attitude(given, start, &columns, turned),
+        rate: turns_of(pace.phase),
+        slope: pace.slope,
+        clock: pace.clock,
+        series: pace.series,
+        attitude: attitude(given, start, &columns, pace.turned),
         omega: omega(given, start, &columns),
         reach: f64::INFINITY,
     };
+    // ω is in units of the rates already.
+    let omega = propagator.omega;
+    let mut propagator = propagator.in_units_of(unit);
+    propagator.omega = omega;
+    let rate = start.transverse.scaled(0.5) + pace.phase.scaled(unit);
+    propagator.rate = turns_of(rate);
     let secular = Secular {
-        period,
+        period: pace.period.scaled(1.0 / unit),
         precession: rate.scaled(2.0),
     };
     (propagator, secular)
+}
+
+fn circling(spinor: &Spinor) -> Pace {
+    let rate = turns_of(spinor.rate);
+    Pace {
+        clock: Clock::Circling {
+            rate: rate.scaled(spinor.sense),
+            start: DoubleDouble::default(),
+        },
+        series: circular(spinor),
+        phase: spinor.phase,
+        slope: 0.0,
+        turned: 0.0,
+        period: DoubleDouble::from(1.0) / rate,
+    }
+}
+
+fn passing(spinor: &Spinor) -> Pace {
+    let angle = spinor.argument.im.high.atan2(spinor.argument.re.high);
+    let before = spinor.argument.size().ln();
+    let Some((turn, in_time)) = spinor.in_time else {
+        return Pace {
+            clock: Clock::Endless {
+                rate: spinor.sense * spinor.rate.high,
+                start: before,
+            },
+            series: hyperbolic(spinor, angle, 1.0, f64::INFINITY),
+            phase: spinor.phase,
+            slope: 0.0,
+            turned: 0.0,
+            period: f64::INFINITY.into(),
+        };
+    };
+    let is_alternating = spinor.is_alternating;
+    let step = if is_alternating {
+        turn.scaled(0.5)
+    } else {
+        turn
+    };
+    let end = 0.5 * (spinor.rate * step).high;
+    let from = before / (2.0 * end);
+    // What a step turns the spinor by, which is what it does in the mean, but for half turns.
+    let square = 2.0 * spinor.sense * angle + if is_alternating { PI } else { 0.0 };
+    let by_step = (spinor.phase * step).high + square;
+    let halves = ((by_step - (in_time * step).high) / PI).round();
+    let phase = if halves % 2.0 == 0.0 {
+        in_time
+    } else {
+        in_time + DoubleDouble::PI / step
+    };
+    let slope = ((spinor.phase - phase) * step).high / TAU * spinor.sense;
+    let (rate, start) = (
+        DoubleDouble::from(spinor.sense) / step,
+        DoubleDouble::from(from),
+    );
+    Pace {
+        clock: if is_alternating {
+            Clock::Alternating { rate, start }
+        } else {
+            Clock::Circling { rate, start }
+        },
+        series: hyperbolic(spinor, angle, 2.0 * end, end),
+        phase,
+        slope,
+        turned: -slope * from,
+        period: turn,
+    }
 }
 
 fn hyperbolic(spinor: &Spinor, angle: f64, unit: f64, end: f64) -> AnySeries {

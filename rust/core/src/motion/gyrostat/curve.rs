@@ -53,14 +53,7 @@ impl Curve {
         let three = DoubleDouble::from(3.0);
         let square = three * (root * root) - second.scaled(0.25);
         if square.high <= 0.0 {
-            // Three equal roots.
-            let zero = DoubleDouble::default();
-            return Self {
-                is_turned,
-                gap: zero,
-                apart: Means::of(zero, zero, zero),
-                nome: zero,
-            };
+            return Self::cusp();
         }
         let gap = invariants.discriminant.scaled(1.0 / 16.0) / (square * square);
         let height = square.sqrt();
@@ -73,6 +66,17 @@ impl Curve {
             gap,
             apart,
             nome: nome(apart.pair, difference),
+        }
+    }
+
+    /// With three equal roots: the elliptic functions are powers of the time.
+    pub(super) fn cusp() -> Self {
+        let zero = DoubleDouble::default();
+        Self {
+            is_turned: true,
+            gap: zero,
+            apart: Means::of(zero, zero, zero),
+            nome: zero,
         }
     }
 

@@ -44,6 +44,10 @@ pub struct GyrostatMotion {
 }
 
 /// By which formulas.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a motion is a value that is copied, and rarely in great number"
+)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
     /// Without momentum inside.
@@ -78,7 +82,7 @@ impl GyrostatMotion {
         let (angular_momentum, kinetic_energy) = kept(principal, rotor, &initial);
         if rounded == Vector3::zeros() {
             let motion = FreeMotion::refined(principal, omega, attitude)?;
-            return Ok(Self::free(motion, angular_momentum, kinetic_energy));
+            return Ok(Self::free(&motion, angular_momentum, kinetic_energy));
         }
         if principal.moments[0].high <= 0.0 {
             return Err(MotionFault::MasslessGyrostat {
@@ -145,7 +149,7 @@ impl GyrostatMotion {
         })
     }
 
-    fn free(motion: FreeMotion, angular_momentum: Vector3<f64>, kinetic_energy: f64) -> Self {
+    fn free(motion: &FreeMotion, angular_momentum: Vector3<f64>, kinetic_energy: f64) -> Self {
         let mode = match motion.mode {
             free::Mode::Spherical | free::Mode::Steady => Mode::Steady,
             free::Mode::Symmetric => Mode::Circular,
@@ -160,7 +164,7 @@ impl GyrostatMotion {
             kinetic_energy,
             period: motion.secular.half_period.scaled(2.0),
             mean_precession: motion.secular.mean_precession,
-            way: Way::Free(motion),
+            way: Way::Free(*motion),
         }
     }
 
@@ -279,7 +283,9 @@ impl Solved {
         let is_degenerate = is_degenerate(moments, rotor_along);
         if is_degenerate {
             invariants.discriminant = DoubleDouble::default();
-        } else if invariants.discriminant.high.abs() < LOST * invariants.terms {
+        } else if !invariants.is_cusp
+            && invariants.discriminant.high.abs() < LOST * invariants.terms
+        {
             // What is left of it comes from what the axes were refined from.
             let finest = principal.finest();
             let unit = moments[2].high / principal.moments[2].high;
@@ -302,10 +308,15 @@ impl Solved {
                 third: found.third.twofold(),
                 discriminant,
                 terms: found.terms,
+                is_cusp: found.is_cusp,
             };
         }
-        let curve = Curve::of(&invariants);
-        let spinor = Spinor::of(&quartic, &curve, start.across);
+        let (curve, spinor) = if invariants.is_cusp && !is_degenerate {
+            (Curve::cusp(), Spinor::cusp(&quartic, start.across))
+        } else {
+            let curve = Curve::of(&invariants);
+            (curve, Spinor::of(&quartic, &curve, start.across))
+        };
         Some(Self {
             start,
             curve,

@@ -93,11 +93,32 @@ impl Series for Hyperbolic {
     }
 }
 
-/// Either series.
+/// One and `x + k x²`, both over 1 + x².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rational {
+    /// Real and imaginary part of k.
+    pub(super) curvature: [f64; 2],
+}
+
+impl Series for Rational {
+    #[inline(always)]
+    fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
+        let [re, im] = self.curvature.map(L::new);
+        let square = x * x;
+        let over = L::new(1.0) / (L::new(1.0) + square);
+        [
+            (over, L::new(0.0)),
+            (re.mul_add(square, x) * over, im * square * over),
+        ]
+    }
+}
+
+/// One of the series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AnySeries {
     Circular(Circular),
     Hyperbolic(Hyperbolic),
+    Rational(Rational),
 }
 
 /// How x grows with time.
@@ -246,6 +267,7 @@ impl Kernel for At<'_> {
             AnySeries::Circular(series) => propagator.state::<L, false>(series, t),
             AnySeries::Hyperbolic(series) if is_endless => propagator.state::<L, true>(series, t),
             AnySeries::Hyperbolic(series) => propagator.state::<L, false>(series, t),
+            AnySeries::Rational(series) => propagator.state::<L, true>(series, t),
         }
         .map(L::get)
     }
@@ -272,6 +294,7 @@ impl Kernel for Sample<'_> {
                 self.all::<L, true>(&propagator, &series);
             }
             AnySeries::Hyperbolic(series) => self.all::<L, false>(&propagator, &series),
+            AnySeries::Rational(series) => self.all::<L, true>(&propagator, &series),
         }
     }
 }

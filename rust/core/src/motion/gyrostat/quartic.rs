@@ -25,7 +25,12 @@ pub(super) struct Invariants<T> {
     pub(super) discriminant: T,
     /// The sizes of the terms that the discriminant is the sum of.
     pub(super) terms: f64,
+    /// Whether all three roots are equal: `G₂` and `G₃` are nothing beside their terms.
+    pub(super) is_cusp: bool,
 }
+
+/// What inputs that are rounded make of invariants that are zero, and less; the unit of the start is one.
+const CUSP: f64 = 1e-18;
 
 impl<T: Real> Quartic<T> {
     /// From `B₁₁, B₁₂, B₁₃, B₂₂, B₂₃, B₃₃` and ρ.
@@ -72,15 +77,18 @@ impl<T: Real> Quartic<T> {
         let sp = s4 + 4.0 * s1 * s3;
         let sr = s2 * s4 + 2.0 * s1 * s2 * s3 + s3 * s3 + s1 * s1 * s4;
         let s_lowest = 3.0 * s2 * s4 + 2.0 * (s3 * s3 + s1 * s1 * s4);
+        let (second, third) = ((p + square.times(three)).re, (r - cube).re);
         Invariants {
-            second: (p + square.times(three)).re,
-            third: (r - cube).re,
+            is_cusp: second.rounded().abs() <= CUSP * (1.0 + sp + 3.0 * s2 * s2)
+                && third.rounded().abs() <= CUSP * (1.0 + sr + s2.powi(3)),
+            second,
+            third,
             discriminant: sum.re,
             terms: 27.0 * (s2.powi(3) * s_lowest + sr * sr) + 9.0 * sp * sp * s2 * s2 + sp.powi(3),
         }
     }
 
-    /// Weierstrass' function P and its derivative, `P′² = 4P³ − G₂P + G₃`, of twice the way from where the spinor turns back
+    /// Weierstrass' function P and minus its derivative, `P′² = 4P³ − G₂P + G₃`, of twice the way from where the spinor turns back
     /// to the start: `P = a₂ − a₁²`, `P′ = i(a₃ − 3a₁a₂ + 2a₁³)`.
     pub(super) fn place(&self) -> [Complex<T>; 2] {
         let [a1, a2, a3, _] = self.a;

@@ -15,8 +15,7 @@ type Number = Complex<DoubleDouble>;
 /// The theta functions of a motion and what stands before them; the second one over Z₀.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spinor {
-    /// Whether Z grows as the exponential of the time, instead of circling.
-    pub(super) is_hyperbolic: bool,
+    pub(super) course: Course,
     /// Q; zero where it does not matter.
     pub(super) nome: DoubleDouble,
     /// Whether Q is negative, however small.
@@ -35,6 +34,17 @@ pub(super) struct Spinor {
     pub(super) phase: DoubleDouble,
     /// Of a motion that is hyperbolic and periodic: its period and its ν.
     pub(super) in_time: Option<(DoubleDouble, DoubleDouble)>,
+}
+
+/// How Z moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Course {
+    /// In a circle.
+    Circular,
+    /// As the exponential of the time.
+    Hyperbolic,
+    /// On the curve with three equal roots: `Θₑ = 1`, `Θₒ = t + k t²`, and `argument` is k.
+    Rational,
 }
 
 fn real(x: DoubleDouble) -> Number {
@@ -78,14 +88,7 @@ impl Spinor {
         };
         let rate = rate.scaled(sense);
         let [even, odd] = series(nome, start, rate);
-        // ½(d log ϑ₁ − d log ẋ) − iν, with the phase of ψ that ω_n makes.
-        let drift = (slope + quartic.turning()).scaled(0.5);
-        let wronskian = Complex::<DoubleDouble>::one().over(even[0] * odd[1] - odd[0] * even[1]);
-        let half = Complex::new(DoubleDouble::default(), rho.scaled(0.5)) * wronskian;
-        let mut columns = [
-            [(odd[1] - drift * odd[0]) * wronskian, -(half * odd[0])],
-            [(drift * even[0] - even[1]) * wronskian, half * even[0]],
-        ];
+        let mut columns = columns(quartic, slope, [even, odd], rho);
         if rho.high < NEAR {
             // One column is nearly (0, 1), and what it has of the first component a difference of far larger ones.
             let root = curve.apart.root;
@@ -103,7 +106,11 @@ impl Spinor {
                 (turn, -found.slope.im.scaled(0.5))
             });
         Self {
-            is_hyperbolic: curve.is_turned,
+            course: if curve.is_turned {
+                Course::Hyperbolic
+            } else {
+                Course::Circular
+            },
             nome,
             is_alternating: curve.gap.high < 0.0,
             rate: found.mean,
@@ -115,6 +122,47 @@ impl Spinor {
             in_time,
         }
     }
+
+    /// Of a curve with three equal roots: `P = (t − s)⁻²`, which is zero for a quartic with four equal zeros.
+    pub(super) fn cusp(quartic: &Quartic<DoubleDouble>, rho: DoubleDouble) -> Self {
+        let [value, derivative] = quartic.place();
+        let mut slope = value.sqrt();
+        if (slope * value).is_opposite_to(derivative) {
+            slope = -slope;
+        }
+        let even = [Complex::one(), Complex::zero()];
+        let odd = [Complex::zero(), Complex::one()];
+        let zero = DoubleDouble::default();
+        Self {
+            course: Course::Rational,
+            nome: zero,
+            is_alternating: false,
+            rate: zero,
+            sense: 1.0,
+            start: Complex::zero(),
+            argument: slope.scaled(0.5),
+            columns: columns(quartic, slope, [even, odd], rho),
+            phase: -slope.im.scaled(0.5),
+            in_time: None,
+        }
+    }
+}
+
+/// `Mₑ` and `Mₒ` from `d log ϑ₁`, the two functions with their rates, and ρ.
+fn columns(
+    quartic: &Quartic<DoubleDouble>,
+    slope: Number,
+    [even, odd]: [[Number; 2]; 2],
+    rho: DoubleDouble,
+) -> [[Number; 2]; 2] {
+    // ½(d log ϑ₁ − d log ẋ) − iν, with the phase of ψ that ω_n makes.
+    let drift = (slope + quartic.turning()).scaled(0.5);
+    let wronskian = Complex::<DoubleDouble>::one().over(even[0] * odd[1] - odd[0] * even[1]);
+    let half = Complex::new(DoubleDouble::default(), rho.scaled(0.5)) * wronskian;
+    [
+        [(odd[1] - drift * odd[0]) * wronskian, -(half * odd[0])],
+        [(drift * even[0] - even[1]) * wronskian, half * even[0]],
+    ]
 }
 
 /// The sense in which Z moves, Z₀ and y: `e^{iv}` or `e^{−iv}`, whichever is larger.

@@ -1,0 +1,74 @@
+"""The gyrostat in closed form beside SciPy's integrator."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from harness import Row
+from polhode import RigidBody
+from scipy.integrate import solve_ivp
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MOMENTS = np.array([1.0, 2.0, 2.5])
+ROTOR = np.array([0.4, -0.2, 0.9])
+OMEGA = np.array([0.3, 0.4, 1.1])
+ROTATION = 2 * np.pi / np.linalg.norm(OMEGA)
+STATES = 100_000
+FAR = 10_000
+INTEGRATED = 10
+
+
+def integrated(t: float) -> Any:
+    """ω and quaternion at t by DOP853 at 1e-12."""
+
+    def rhs(_t: float, s: Any) -> list[float]:
+        p, q, r, x, y, z, w = s.tolist()
+        a, b, c = MOMENTS * (p, q, r) + ROTOR
+        return [
+            (b * r - c * q) / MOMENTS[0],
+            (c * p - a * r) / MOMENTS[1],
+            (a * q - b * p) / MOMENTS[2],
+            0.5 * (w * p + y * r - z * q),
+            0.5 * (w * q + z * p - x * r),
+            0.5 * (w * r + x * q - y * p),
+            -0.5 * (x * p + y * q + z * r),
+        ]
+
+    return solve_ivp(rhs, (0, t), [*OMEGA, 0, 0, 0, 1], method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
+
+
+def rows() -> Iterator[Row]:
+    """Yield the comparisons of this file."""
+    gyrostat = RigidBody.from_principal(1.0, MOMENTS).gyrostat(ROTOR)
+    motion = gyrostat.free_motion(OMEGA)
+    times = np.linspace(0, 100 * ROTATION, STATES)
+
+    def same(_ours: Any, theirs: Any) -> None:
+        near = motion.at(INTEGRATED * ROTATION)
+        assert np.abs(near.omega - theirs[:3]).max() < 1e-8
+        assert 1 - abs(near.quaternion @ theirs[3:]) / np.linalg.norm(theirs[3:]) < 1e-12
+
+    # The peer integrates part of the way; times are for each rotation.
+    yield Row(
+        name=f"gyrostat, one state after {FAR:.0e} rotations, set-up included",
+        peer=f"SciPy DOP853 at 1e-12, {INTEGRATED} rotations",
+        ours=lambda: gyrostat.free_motion(OMEGA).at(FAR * ROTATION),
+        theirs=lambda: integrated(INTEGRATED * ROTATION),
+        compare=same,
+        items=FAR,
+        peer_items=INTEGRATED,
+        at_least=1000,
+    )
+    # What of a state is computed: beside one of the free motion.
+    free = RigidBody.from_principal(1.0, MOMENTS).free_motion(OMEGA)
+    yield Row(
+        name=f"gyrostat, {STATES:.0e} states",
+        peer="our free motion",
+        ours=lambda: motion.at(times),
+        theirs=lambda: free.at(times),
+        compare=lambda _ours, _theirs: None,
+        items=STATES,
+    )
