@@ -150,7 +150,7 @@ class GyrostatKind:
         found = motion.equilibria
         rows: list[dict[str, Any]] = []
         for k, kind in enumerate(found.kind.tolist()):
-            circle = None if np.isnan(found.circle[k]).any() else _clean(found.circle[k] @ self._axes)
+            circle = _clean(found.circle[k] @ self._axes) if found.circle[k].any() else None
             words = _KINDS[kind]
             if circle is not None:
                 words += f", one of a circle about ({' '.join(f'{x:.4g}' for x in circle)})"
