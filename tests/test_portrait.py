@@ -9,7 +9,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from oracles.gyrostat_equilibria import equilibria, folds
-from polhode import plot
+from polhode import RigidBody, plot
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
@@ -103,6 +103,47 @@ def test_a_row_has_one_for_each_number_of_equilibria() -> None:
     words = [ax.texts[-1].get_text() for ax in row]
     assert [word.split(": ")[1] for word in words] == ["6 equilibria", "4 equilibria", "2 equilibria"]
     assert len(plot.portraits(gyrostat, 2.0, (0.5, 1.0))) == 2
+
+
+@pytest.mark.parametrize(
+    ("inside", "omega"),
+    [
+        (INSIDE, (0.3, 0.2, 0.7)),
+        (INSIDE, (1.5, 0.3, 0.1)),
+        ((0.0, 0.0, 0.0), (0.3, 0.5, 0.7)),
+        ((0.0, 0.6, 0.0), (0.0, 1.0, 0.0)),
+    ],
+)
+def test_a_motion_draws_its_own_path(inside: tuple[float, ...], omega: tuple[float, ...]) -> None:
+    motion = RigidBody.from_principal(1.0, MOMENTS).gyrostat(inside).free_motion(omega)
+    ax: Any = plot.portrait(motion)
+    total = np.array(MOMENTS) * omega + inside
+    start = total / np.linalg.norm(total)
+    black = [np.array(line.get_data_3d()).T for line in ax.get_lines() if line.get_color() == "#111111"]
+    (mark,) = (line[0] for line in black if len(line) == 1)
+    np.testing.assert_allclose(mark, 1.005 * start, rtol=1e-12)
+    paths = [line for line in black if len(line) > 1]
+    assert len(paths) == (0 if motion.mode == "steady" else 2)  # near and far
+    for path in paths:
+        shown = path[np.isfinite(path[:, 0])] / 1.002
+        np.testing.assert_allclose(np.linalg.norm(shown, axis=1), 1.0, rtol=1e-12)
+        of_start, *of_path = (
+            ((n * np.linalg.norm(total) - inside) ** 2 / MOMENTS).sum() for n in (start, *shown)
+        )
+        np.testing.assert_allclose(of_path, of_start, rtol=1e-12)
+    if paths:
+        assert sum(np.isfinite(path[:, 0]).sum() for path in paths) >= 1441  # all the way round
+
+
+def test_what_a_motion_and_a_gyrostat_need() -> None:
+    gyrostat = RigidBody.from_principal(1.0, MOMENTS).gyrostat(INSIDE)
+    with pytest.raises(ValueError, match="momentum: say how long"):
+        plot.portrait(gyrostat)
+    with pytest.raises(ValueError, match=r"momentum: the motion has its own; leave 2 out"):
+        plot.portrait(gyrostat.free_motion((1.0, 0.0, 0.0)), 2.0)
+    still = gyrostat.body.gyrostat((0.5, 0.0, 0.0)).free_motion((-0.5, 0.0, 0.0))
+    with pytest.raises(ValueError, match="is zero; it has no direction"):
+        plot.portrait(still)
 
 
 def test_what_cannot_be_drawn() -> None:

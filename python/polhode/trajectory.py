@@ -12,6 +12,7 @@ from polhode import _acting, _core, _doubts, _going_on, _outlets
 from polhode._drift import drift
 from polhode._lengths import lengths
 from polhode.events import Events
+from polhode.gyrostat import wheel
 from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
 
 if TYPE_CHECKING:
@@ -369,6 +370,22 @@ class Trajectory:
         if self.load is None or not self.load.carries:
             return None
         return self._over_time(self.load).carried(self.t, self.omega, self._own_states())
+
+    def _exact(self) -> _core.FreeMotion | _core.GyrostatMotion | None:
+        """Give the motion in closed form from the first state on, of one body; None where none is known."""
+        if self.load is not None or self.pivoted:
+            return None
+        if "_rotor" not in self.__dict__:
+            return self.body.free_motion(self.omega[0], self.quaternion[0]) if self.carried is None else None
+        momentum, free = self.__dict__["_rotor"]
+        inertias, axes = np.linalg.eigh(free)  # of at most three wheels that are free together
+        wheels = [
+            wheel(axis=axis, inertia=inertia, momentum=0.0)
+            for inertia, axis in zip(inertias, axes.T, strict=True)
+            if inertia > 0.0
+        ]
+        gyrostat = self.body.gyrostat(momentum - free @ self.omega[0], wheels=wheels)
+        return gyrostat.free_motion(self.omega[0], self.quaternion[0])
 
     def _about_word(self) -> Literal["origin", "center_of_mass"]:
         return "origin" if self.pivoted else "center_of_mass"

@@ -12,7 +12,7 @@ from polhode._scene.sampling import COARSE, MOST, TURN, fastest, motion_times, t
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from polhode import FreeMotion, HeavyTop, Trajectory
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
 
     Floats = NDArray[np.float64]
 
@@ -95,7 +95,7 @@ def of_samples(
 
 
 def of_motion(
-    motion: FreeMotion | HeavyTop,
+    motion: FreeMotion | HeavyTop | GyrostatMotion,
     samples: Trajectory,
     *,
     duration: float | None,
@@ -106,7 +106,7 @@ def of_motion(
 
     Parameters
     ----------
-    motion : FreeMotion or HeavyTop
+    motion : FreeMotion, HeavyTop or GyrostatMotion
         Of one body; its time 0 is that of the first sample.
     samples : Trajectory
         Of the same motion. A page shows these and what is between them, a film the span from the first to the

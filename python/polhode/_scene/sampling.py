@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from polhode import FreeMotion, HeavyTop
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop
 
     Floats = NDArray[np.float64]
 
@@ -33,6 +33,7 @@ __all__ = [
     "fastest",
     "follow",
     "motion_times",
+    "once_round",
     "turns",
 ]
 
@@ -47,6 +48,10 @@ MOST: Final = 12_000
 _DRAWN: Final = 50_000
 """Points of a curve in a picture that does not move."""
 _PER_NUTATION: Final = 24
+_PER_PERIOD: Final = 1440
+"""States in which the fastest of a gyrostat is looked for."""
+_GROWTHS: Final = 40.0
+"""In so many times of growth by e a departure goes from rounding to its full size."""
 
 
 class Span(NamedTuple):
@@ -77,10 +82,12 @@ def turns(t: Floats, omega: Floats) -> Floats:
     return angles
 
 
-def fastest(motion: FreeMotion | HeavyTop) -> float:
+def fastest(motion: FreeMotion | HeavyTop | GyrostatMotion) -> float:
     """Find the greatest angular velocity of one body's motion at any time."""
     if isinstance(motion, _core.FreeMotion):
         return float(np.linalg.norm(motion.polhode(721), axis=-1).max())
+    if isinstance(motion, _core.GyrostatMotion):
+        return float(np.linalg.norm(motion.at(once_round(motion)).omega, axis=-1).max())
     # The energy: ½ I_t ω_t² + m g l cos θ is constant, as is the rate about the axis.
     body, start = motion.body, motion.at([0.0])
     center = body.center_of_mass
@@ -93,6 +100,24 @@ def fastest(motion: FreeMotion | HeavyTop) -> float:
     height = -float(start.point("center_of_mass")[0] @ gravity)
     lowest = arm * float(np.linalg.norm(gravity)) * np.cos(motion.nutation_limits[1])
     return float(np.sqrt(square + 2.0 * float(body.mass) * max(0.0, height - lowest) / transverse))
+
+
+def once_round(motion: GyrostatMotion) -> Floats:
+    """Give times in which ω of one gyrostat comes to every place in the body to which it ever comes."""
+    period = float(motion.period)
+    if str(motion.mode) == "steady":
+        return np.zeros(1)
+    if np.isfinite(period):
+        return np.linspace(0.0, period, _PER_PERIOD + 1)
+    reach = _GROWTHS / _quickest(motion)
+    return np.linspace(-reach, reach, _PER_PERIOD + 1)
+
+
+def _quickest(motion: GyrostatMotion) -> float:
+    """Find the greatest rate at which L circles about an equilibrium of one gyrostat, or departs from it."""
+    if str(motion.mode) == "steady":
+        return 0.0
+    return float(np.sqrt(np.abs(motion.equilibria.squared_rate).max()))
 
 
 def follow(curve: Callable[[Floats], Floats], t: Floats, *, step: float, most: int = MOST) -> Span:
@@ -152,24 +177,33 @@ def _divided(t: Floats, step: float, most: int) -> Span:
     return Span(divided, is_whole=bool(count == ends[-1]))
 
 
-def motion_times(motion: FreeMotion | HeavyTop, t: Floats, *, most: int = MOST) -> Span:
+def motion_times(motion: FreeMotion | HeavyTop | GyrostatMotion, t: Floats, *, most: int = MOST) -> Span:
     """Put times between those given, so that the turns of one body and the paths of its ω are followed."""
     size = fastest(motion)
     if size == 0.0:
         return Span(t, is_whole=True)
-    about = "center_of_mass" if isinstance(motion, _core.FreeMotion) else "origin"
-    principal = motion.body.principal_about(about)
-    roots = np.sqrt(principal.moments)
+    moments, axes = _ellipsoid(motion)
+    roots = np.sqrt(moments)
 
     def curve(t: Floats) -> Floats:
         found = motion.at(t)
-        on_ellipsoid = (found.omega @ principal.axes) * roots
+        on_ellipsoid = (found.omega @ axes) * roots
         radius = np.linalg.norm(on_ellipsoid, axis=-1, keepdims=True)
         on_sphere = np.divide(on_ellipsoid, radius, out=np.zeros_like(on_ellipsoid), where=radius > 0.0)
         return np.stack([on_sphere, _core.rotate(found.quaternion, found.omega) / size], axis=-2)
 
     step = min(TURN / size, _nutation_step(motion))
     return follow(curve, t, step=step, most=most)
+
+
+def _ellipsoid(motion: FreeMotion | HeavyTop | GyrostatMotion) -> tuple[Floats, Floats]:
+    """Give moments and axes of the ellipsoid ω·Iω = 2T on which ω is, or near which."""
+    if isinstance(motion, _core.GyrostatMotion):
+        moments, axes = np.linalg.eigh(motion.gyrostat.inertia)
+        return moments, axes
+    about = "center_of_mass" if isinstance(motion, _core.FreeMotion) else "origin"
+    principal = motion.body.principal_about(about)
+    return principal.moments, principal.axes
 
 
 def axis_times(top: HeavyTop, t: Floats, *, most: int = MOST) -> Span:
@@ -181,13 +215,13 @@ def axis_times(top: HeavyTop, t: Floats, *, most: int = MOST) -> Span:
 
 
 def drawn_times(
-    motion: FreeMotion | HeavyTop, t: ArrayLike, choose: Callable[..., Span] = motion_times
+    motion: FreeMotion | HeavyTop | GyrostatMotion, t: ArrayLike, choose: Callable[..., Span] = motion_times
 ) -> Floats:
     """Put times between those that a picture was asked for, or say why no curve can follow.
 
     Parameters
     ----------
-    motion : FreeMotion or HeavyTop
+    motion : FreeMotion, HeavyTop or GyrostatMotion
         Of one body.
     t : array_like, shape (T,)
         Times between which curves are drawn.
@@ -206,7 +240,10 @@ def drawn_times(
     return span.t
 
 
-def _nutation_step(motion: FreeMotion | HeavyTop) -> float:
+def _nutation_step(motion: FreeMotion | HeavyTop | GyrostatMotion) -> float:
     if isinstance(motion, _core.FreeMotion):
         return np.inf  # |dω/dt| is at most ω²/√3: nothing is faster than the turn
+    if isinstance(motion, _core.GyrostatMotion):
+        rate = _quickest(motion)
+        return 2.0 * np.pi / (rate * _PER_NUTATION) if rate > 0.0 else np.inf
     return float(motion.nutation_period) / _PER_NUTATION

@@ -14,7 +14,7 @@ from polhode._scene.shape import Shape, equivalent_box, given_shape
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from polhode import FreeMotion, HeavyTop, Trajectory
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
     from polhode._scene.footage import Footage
 
     Floats = NDArray[np.float64]
@@ -37,7 +37,9 @@ class Scene:
     path : numpy.ndarray, shape (T, 3)
         The angular velocity at every sample, components in space.
     momentum : numpy.ndarray, shape (F, 3)
-        Spin angular momentum about the point of reference, components in space.
+        Spin angular momentum about the point of reference, wheels included, components in space.
+    inside : numpy.ndarray, shape (F, 3), or None
+        What of it the body carries along beside I ω, components in the body frame.
     ellipsoid : numpy.ndarray, shape (F, 3)
         Semi-axes of ω·Iω = 2T, along the principal axes about the point of reference.
     axes : numpy.ndarray, shape (3, 3)
@@ -58,6 +60,7 @@ class Scene:
     sample: NDArray[np.int64]
     path: Floats
     momentum: Floats
+    inside: Floats | None
     ellipsoid: Floats
     axes: Floats
     shape: Shape
@@ -93,8 +96,8 @@ class Scene:
         if not len(trajectory):
             raise ValueError("animate: the motion has no times; ask for some")
         _check_duration(duration)
-        if frames is None and trajectory.load is None and not trajectory.pivoted:
-            motion = trajectory.body.free_motion(trajectory.omega[0], trajectory.quaternion[0])
+        motion = trajectory._exact() if frames is None else None
+        if motion is not None:
             footage = of_motion(motion, trajectory, duration=duration, is_film=is_film, time_unit=time_unit)
         else:
             footage = of_samples(
@@ -105,7 +108,7 @@ class Scene:
     @classmethod
     def of_motion(
         cls,
-        motion: FreeMotion | HeavyTop,
+        motion: FreeMotion | HeavyTop | GyrostatMotion,
         end: float,
         *,
         shape: tuple[ArrayLike, ArrayLike] | None,
@@ -139,6 +142,7 @@ class Scene:
             sample=chosen,
             path=_core.rotate(trajectory.quaternion, trajectory.omega),
             momentum=momentum,
+            inside=None if trajectory.carried is None else trajectory.carried[0][chosen],
             ellipsoid=ellipsoid,
             axes=principal.axes,
             shape=equivalent_box(trajectory.body, about) if shape is None else given_shape(*shape, about),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["AXIS_COLORS", "AXIS_DASHES", "MOMENTUM_COLOR", "OMEGA_COLOR", "OUTLINE_COLOR"]
+__all__ = ["AXIS_COLORS", "AXIS_DASHES", "INSIDE_COLOR", "MOMENTUM_COLOR", "OMEGA_COLOR", "OUTLINE_COLOR"]
 
 AXIS_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
 """Blue, vermilion and bluish green: first, second and third axis."""
@@ -14,5 +14,7 @@ OMEGA_COLOR: Final = "#B0479A"
 """Reddish purple: the angular velocity."""
 MOMENTUM_COLOR: Final = "#111111"
 """Nearly black: the angular momentum."""
+INSIDE_COLOR: Final = "#7A4A00"
+"""Of the momentum that the body carries along."""
 OUTLINE_COLOR: Final = (0.17, 0.18, 0.22)
 """Red, green and blue of a body's edges."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from polhode import FreeMotion, HeavyTop, Trajectory
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
 
 __all__ = ["ANIMATION_SUFFIXES", "animate"]
 
@@ -41,10 +41,10 @@ def animate(
     trajectory : Trajectory
         The motion of one body.
     path : str or os.PathLike
-        ``.html`` is an interactive page that needs no network: the body, its principal axes, ω, L and their
-        paths in space, and the path of ω on the ellipsoid of inertia in the body; with a slider for time, and
-        views that turn with the pointer. ``.gif`` and ``.mp4`` need matplotlib, the latter also ffmpeg, which
-        the extra ``film`` brings.
+        ``.html`` is an interactive page that needs no network: the body, its principal axes, ω, L (with that
+        of wheels, and theirs as h) and their paths in space, and the path of ω on the ellipsoid of inertia in
+        the body; with a slider for time, and views that turn with the pointer. ``.gif`` and ``.mp4`` need
+        matplotlib, the latter also ffmpeg, which the extra ``film`` brings.
     shape : (vertices, faces), optional
         A mesh of the body in its frame, (n, 3) and (m, 3). By default the uniform box that has its inertia.
     frames : int, optional
@@ -91,7 +91,7 @@ def animate(
 
 
 def animate_motion(
-    motion: FreeMotion | HeavyTop,
+    motion: FreeMotion | HeavyTop | GyrostatMotion,
     end: float,
     path: str | PathLike[str],
     *,
@@ -103,7 +103,7 @@ def animate_motion(
 
     Parameters
     ----------
-    motion : FreeMotion or HeavyTop
+    motion : FreeMotion, HeavyTop or GyrostatMotion
         Of one body.
     end : float
         What is shown is from 0 s to this time.

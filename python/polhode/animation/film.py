@@ -12,7 +12,7 @@ import numpy as np
 from polhode import _core
 from polhode._extras import require
 from polhode._scene.shape import longest
-from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
+from polhode._scene.style import AXIS_COLORS, INSIDE_COLOR, MOMENTUM_COLOR, OMEGA_COLOR
 from polhode._scene.triangles import unit_normals
 from polhode.files.writing import replacing
 from polhode.plot._style import show_around
@@ -119,8 +119,14 @@ def _draw(ax: Any, scene: Scene, frame: int) -> None:
         ax.plot(*(to_space @ ends), color=color, linestyle=dash, linewidth=1.2, zorder=3)
     tips = scene.path[: scene.sample[frame] + 1] / longest(scene.path)
     ax.plot(*tips.T, color=OMEGA_COLOR, alpha=0.5, linewidth=1.0, zorder=3)
-    momentum = 1.25 * scene.momentum[frame] / longest(scene.momentum)
-    for tip, color, name in ((momentum, MOMENTUM_COLOR, "L"), (tips[-1], OMEGA_COLOR, "ω")):
+    arrows = [(scene.momentum[frame], MOMENTUM_COLOR, "L")]
+    strongest = longest(scene.momentum)
+    if scene.inside is not None:
+        strongest = longest(np.concatenate([scene.momentum, scene.inside]))
+        if scene.inside[frame].any():
+            arrows.insert(0, (to_space @ scene.inside[frame], INSIDE_COLOR, "h"))
+    arrows = [(1.25 * vector / strongest, color, name) for vector, color, name in arrows]
+    for tip, color, name in (*arrows, (tips[-1], OMEGA_COLOR, "ω")):
         arrow(ax, tip, color, name, order=4, ha="left", va="baseline", weight="bold", zorder=5)
     ax.text2D(0.03, 0.95, scene.title, transform=ax.transAxes, fontsize=11, weight="bold")
     ax.text2D(0.03, 0.03, f"t = {scene.t[frame]:.4g} {scene.time_unit}", transform=ax.transAxes)

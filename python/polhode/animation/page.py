@@ -30,6 +30,8 @@ def page(scene: Scene) -> str:
     """
     vertices = scene.shape.vertices
     size = longest(vertices)
+    inside = scene.inside
+    strongest = longest(scene.momentum if inside is None else np.concatenate([scene.momentum, inside]))
     motion = {
         "title": scene.title,
         "time_unit": scene.time_unit,
@@ -37,7 +39,8 @@ def page(scene: Scene) -> str:
         "t": scene.t.tolist(),
         "quaternion": _rounded(scene.quaternion),
         "omega": _rounded(scene.omega / longest(scene.omega)),
-        "momentum": _rounded(scene.momentum / longest(scene.momentum)),
+        "momentum": _rounded(scene.momentum / strongest),
+        "inside": None if inside is None else _rounded(inside / strongest),
         "ellipsoid": _rounded(scene.ellipsoid / longest(scene.omega)),
         "axes": _rounded(scene.axes.T),
         "shape": {

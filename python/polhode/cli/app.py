@@ -155,7 +155,7 @@ def spin(
     body: Body = AS_STORED,
     output: Output = SHOWN,
 ) -> int:
-    """Tell how a body moves, freely or as a top: mode, periods, stability, invariants; exact at any time.
+    """Tell how a body moves, free, with wheels or as a top: mode, periods, stability; exact at any time.
 
     Parameters
     ----------

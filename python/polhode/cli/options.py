@@ -216,6 +216,11 @@ class SpinOptions:
     gravity
         A top: the origin of the body stays where it is and this acceleration pulls along -z, as in 9.81; a
         bare number is m/s^2. The centre of mass and the origin have to lie on the symmetry axis.
+    wheel
+        A wheel that turns in the body: its axis, along the axes of --omega, and its momentum relative to the
+        body, which is held, as in "z, 2.5 kg m^2/s" or "0, 0.6, 0.8, 1.2 N m s"; x, y and z name those axes,
+        e1, e2 and e3 the principal ones. A bare number is in the report's unit of |L|. May be repeated. The
+        moments of the body are those with its wheels locked.
     attitude
         Euler angles phi theta psi (ZXZ) at the start, as in "0 30 0 deg"; a bare number is in radians.
     until
@@ -247,6 +252,7 @@ class SpinOptions:
     ] = ()
     mode: Annotated[Literal["long-axis", "short-axis"], Parameter(name="--mode")] = "long-axis"
     gravity: Annotated[str | None, Parameter(name="--gravity")] = None
+    wheel: Annotated[Words, Parameter(name="--wheel", negative="", show_default=False)] = ()
     attitude: Annotated[
         Words, Parameter(name="--attitude", negative="", consume_multiple=True, show_default=False)
     ] = ()

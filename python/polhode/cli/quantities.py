@@ -45,6 +45,7 @@ _EXAMPLES: Final = {
     "rad/s": "30 deg/s",
     "m/s^2": "9.81 m/s^2",
     "kg m^2": "12 g cm^2",
+    "kg m^2/s": "2.5 N m s",
     "rad": "30 deg",
 }
 

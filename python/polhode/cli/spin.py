@@ -14,6 +14,7 @@ from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.quantities import amount, amounts, quantities, quantity, vector
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
+from polhode.cli.spin_gyrostat import GyrostatKind, momentum_inside
 from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
 from polhode.cli.spin_sigmas import attitude_field, of_end, of_start
@@ -24,7 +25,7 @@ from polhode.euler_angles import to_quaternion
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from polhode import FreeMotion, HeavyTop
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop
     from polhode.cli.options import BodyOptions, SpinOptions
 
     Floats = NDArray[np.float64]
@@ -38,9 +39,12 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     loaded = _body(file, spin, options)
     body = loaded.body
     axes = body.principal.axes if spin.axes == "principal" else np.eye(3)
-    motion: FreeMotion | HeavyTop
-    kind: FreeKind | TopKind
-    if spin.gravity is None:
+    motion: FreeMotion | HeavyTop | GyrostatMotion
+    kind: FreeKind | TopKind | GyrostatKind
+    if spin.wheel:
+        motion = _gyrostat_motion(loaded, axes, spin)
+        kind = GyrostatKind(motion, axes)
+    elif spin.gravity is None:
         motion = _free_motion(body, axes, spin)
         kind = FreeKind(motion)
     else:
@@ -126,6 +130,15 @@ def _checked(file: Path | None, spin: SpinOptions) -> float | None:
         raise PolhodeError("--attitude: --periods starts with the angular momentum along z; leave it out")
     if spin.periods and spin.gravity is not None:
         raise PolhodeError("--gravity: --periods are those of a free body; start a top with --omega")
+    if spin.wheel and spin.periods:
+        raise PolhodeError(
+            "--wheel: --periods are those of a body without wheels; state the start by --omega"
+        )
+    if spin.wheel and spin.gravity is not None:
+        raise PolhodeError(
+            "--wheel: the motion of a top with a wheel is not known in closed form; leave out --gravity, or "
+            "integrate with RigidBody.simulate and loads.rotor in Python"
+        )
     if spin.save and spin.until is None:
         raise PolhodeError('--save: state the time of the end with --until, as in "20 s"')
     if spin.samples < 2:
@@ -139,7 +152,7 @@ def _checked(file: Path | None, spin: SpinOptions) -> float | None:
     return until
 
 
-def _check_end(motion: FreeMotion | HeavyTop, until: float) -> None:
+def _check_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> None:
     """Refuse a time after so many turns that the last digit of the angular velocity is a turn or more."""
     rate = fastest(motion)
     digit = rate * np.finfo(float).eps
@@ -194,6 +207,17 @@ def _free_motion(body: RigidBody, axes: Floats, spin: SpinOptions) -> FreeMotion
         return body.free_motion(_omega(axes, spin), _attitude(spin))
     rotation, precession = quantities(spin.periods, 2, "s", "--periods")
     return body.free_motion_from_periods(rotation, precession, mode=spin.mode)
+
+
+def _gyrostat_motion(loaded: LoadedBody, axes: Floats, spin: SpinOptions) -> GyrostatMotion:
+    inside = momentum_inside(spin.wheel, axes, loaded)
+    omega = _omega(axes, spin)
+    if isinstance(omega, Uncertain):
+        raise PolhodeError(
+            "--omega: its sigma is not followed through the motion of a body with wheels; write the numbers "
+            "alone, or leave out --wheel"
+        )
+    return loaded.body.gyrostat(inside).free_motion(omega, _attitude(spin))
 
 
 def _heavy_top(body: RigidBody, axes: Floats, spin: SpinOptions) -> HeavyTop:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["FreeKind", "TopKind"]
+__all__ = ["FreeKind", "TopKind", "period_fields"]
 
 
 class FreeKind:
@@ -40,17 +40,17 @@ class FreeKind:
 
         return [
             Field("mode", "mode", str(motion.mode)),
-            *_period(
+            *period_fields(
                 "rotation_period", "rotation period", periods.rotation, "P_psi, about e1", told("rotation")
             ),
-            *_period(
+            *period_fields(
                 "precession_period",
                 "precession period",
                 periods.precession,
                 "P_phi, mean, of e1 about L",
                 told("precession"),
             ),
-            *_period("flip_period", "flips every", periods.flip, "the intermediate axis", told("flip")),
+            *period_fields("flip_period", "flips every", periods.flip, "the intermediate axis", told("flip")),
             Field(
                 "mean_precession",
                 "mean precession",
@@ -119,7 +119,7 @@ class TopKind:
         return [
             Field("path", "path of the axis", str(motion.path)),
             Field("nutation_limits", "axis from vertical", limits, "deg", "least, greatest"),
-            *_period("nutation_period", "nutation period", motion.nutation_period, "", {}),
+            *period_fields("nutation_period", "nutation period", motion.nutation_period, "", {}),
             Field(
                 "mean_precession", "mean precession", motion.mean_precession * rate, rate_unit, "mean of phi'"
             ),
@@ -163,7 +163,7 @@ class TopKind:
         return trajectory.kinetic_energy().total, float(trajectory.body.mass) * height
 
 
-def _period(key: str, label: str, seconds: float, hint: str, told: Told) -> list[Field]:
+def period_fields(key: str, label: str, seconds: float, hint: str, told: Told) -> list[Field]:
     """Give a period in seconds, and a long one in days too."""
     fields = [Field(key, label, seconds, "s", hint, **told)]
     if np.isfinite(seconds) and seconds >= 3600.0:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode import FreeMotion, HeavyTop, Trajectory
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
     from polhode.cli.loading import LoadedBody
     from polhode.cli.options import BodyOptions, SpinOptions
 
@@ -61,7 +61,7 @@ def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str
 
 
 def save(
-    motion: FreeMotion | HeavyTop,
+    motion: FreeMotion | HeavyTop | GyrostatMotion,
     samples: Trajectory,
     path: Path,
     spin: SpinOptions,

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode import _core
 from polhode.cli.layout import Field
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from polhode import FreeMotion, HeavyTop
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop
     from polhode.cli.sigmas import Told
 
     Floats = NDArray[np.float64]
@@ -19,15 +20,15 @@ if TYPE_CHECKING:
 __all__ = ["attitude_field", "of_end", "of_start"]
 
 
-def of_start(motion: FreeMotion | HeavyTop, axes: Floats, rate: float) -> Told:
+def of_start(motion: FreeMotion | HeavyTop | GyrostatMotion, axes: Floats, rate: float) -> Told:
     """Sigma of the angular velocity at the start, along these axes; `rate` units are one rad/s."""
-    omega = motion.uncertain_start[0]
+    omega = None if isinstance(motion, _core.GyrostatMotion) else motion.uncertain_start[0]
     if omega is None:
         return {}
     return {"sigma": rate * _along(axes, omega.covariance), "linear": np.ones(3, dtype=bool)}
 
 
-def of_end(motion: FreeMotion | HeavyTop, until: float, axes: Floats, rate: float) -> Told:
+def of_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float, axes: Floats, rate: float) -> Told:
     """Give it at the end."""
     found = _end(motion, until)
     if found is None:
@@ -37,7 +38,7 @@ def of_end(motion: FreeMotion | HeavyTop, until: float, axes: Floats, rate: floa
     return {"sigma": rate * _along(axes, covariance[3:, 3:]), "linear": np.full(3, is_linear)}
 
 
-def attitude_field(motion: FreeMotion | HeavyTop, until: float) -> list[Field]:
+def attitude_field(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> list[Field]:
     """Sigmas of the small angles by which the body may be turned at the end."""
     found = _end(motion, until)
     if found is None:
@@ -55,7 +56,7 @@ def attitude_field(motion: FreeMotion | HeavyTop, until: float) -> list[Field]:
     ]
 
 
-def _end(motion: FreeMotion | HeavyTop, until: float) -> tuple[Floats, Any] | None:
+def _end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> tuple[Floats, Any] | None:
     """Give the covariance of attitude and angular velocity at the end, and what of it is linear."""
     run = motion.at([0.0, until])
     if run.covariance is None or run.sigma is None:

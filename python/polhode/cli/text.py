@@ -22,6 +22,7 @@ _WAYS_OUT: Final = (
     ("pass overwrite=True", "pass --overwrite"),
     ("pass ignore= with its name", "pass --ignore with its name"),
     ("pass the edges as tree=", "pass the edges as --tree"),
+    ("give momentum=(0, 0, 0)", "leave out --wheel"),
     ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
 )
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode import _core
 from polhode._extras import require
+from polhode._scene.sampling import once_round
 from polhode._scene.shape import check_one
-from polhode._scene.style import AXIS_COLORS, AXIS_DASHES
+from polhode._scene.style import AXIS_COLORS, AXIS_DASHES, MOMENTUM_COLOR
 from polhode.plot._style import axes_3d, matplotlib
 from polhode.plot._surfaces import curve_on, plain_frame, solid_ellipsoid, toward_viewer
 
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
     from numpy.typing import NDArray
 
-    from polhode import Gyrostat
+    from polhode import Equilibria, Gyrostat, GyrostatMotion
 
     Floats = NDArray[np.float64]
 
@@ -39,8 +41,8 @@ _CELLS: Final = 160
 
 
 def portrait(
-    gyrostat: Gyrostat,
-    momentum: float,
+    gyrostat: Gyrostat | GyrostatMotion,
+    momentum: float | None = None,
     ax: Axes3D | None = None,
     *,
     levels: int = 4,
@@ -57,10 +59,10 @@ def portrait(
 
     Parameters
     ----------
-    gyrostat : Gyrostat
-        One gyrostat.
-    momentum : float
-        The length of L.
+    gyrostat : Gyrostat or GyrostatMotion
+        One gyrostat; or one motion, whose own path is drawn too, black and thick, with its start.
+    momentum : float, optional
+        The length of L, for a gyrostat; a motion has its own.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default.
     levels : int
@@ -73,17 +75,14 @@ def portrait(
     mpl_toolkits.mplot3d.axes3d.Axes3D
     """
     check_one(gyrostat.shape, "gyrostat")
-    if not 0.0 < momentum < np.inf:
-        raise ValueError(f"momentum: {momentum} is not positive and finite; it is the length of L = I ω + h")
     if levels < 0:
         raise ValueError(f"levels: {levels} is negative")
+    inertia, inside, found, path = _asked(gyrostat, momentum)
     new = ax is None
     ax = axes_3d(ax)
     if new:
         ax.view_init(elev=20.0, azim=35.0)
-    inverse = np.linalg.inv(gyrostat.inertia) * np.max(np.abs(gyrostat.inertia))
-    inside = np.asarray(gyrostat.momentum, dtype=np.float64) / momentum
-    found = gyrostat.equilibria(momentum)
+    inverse = np.linalg.inv(inertia) * np.max(np.abs(inertia))
     points, kinds = np.asarray(found.direction), list(found.kind)
     solid_ellipsoid(ax, np.ones(3), np.eye(3), np.zeros(3), 1.0)
     energies = [float(_energy(inverse, inside, n)) for n in points]
@@ -107,6 +106,8 @@ def portrait(
             ring = _circle(n, axis)
             curve_on(ax, ring, ring, _LOOKS[kind][0], linewidth=2.4)
     _marks(ax, points, kinds, labels)
+    if path is not None:
+        _draw_path(ax, path)
     if labels:
         _names(ax, inside)
     plain_frame(ax, 3 * [-1.15], 3 * [1.15])
@@ -164,6 +165,40 @@ def portraits(
     handles = [_mark(kind) for kind in _LOOKS if kind in shown]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
     return np.asarray(row[0])
+
+
+def _asked(
+    gyrostat: Gyrostat | GyrostatMotion, momentum: float | None
+) -> tuple[Floats, Floats, Equilibria, Floats | None]:
+    """Give the tensor, h/|L|, the equilibria and, of a motion, its path of L/|L| in the body."""
+    if not isinstance(gyrostat, _core.GyrostatMotion):
+        if momentum is None:
+            raise ValueError("momentum: say how long L = I ω + h is; only a motion has one of its own")
+        if not 0.0 < momentum < np.inf:
+            raise ValueError(
+                f"momentum: {momentum} is not positive and finite; it is the length of L = I ω + h"
+            )
+        inside = np.asarray(gyrostat.momentum, dtype=np.float64) / momentum
+        return gyrostat.inertia, inside, gyrostat.equilibria(momentum), None
+    motion = gyrostat
+    if momentum is not None:
+        raise ValueError(f"momentum: the motion has its own; leave {momentum:g} out, or pass motion.gyrostat")
+    size = float(np.linalg.norm(motion.angular_momentum))
+    if not size > 0.0:
+        raise ValueError(
+            "gyrostat: the angular momentum of this motion is zero; it has no direction in the body"
+        )
+    inertia = motion.gyrostat.inertia
+    path = (motion.at(once_round(motion)).omega @ inertia + motion.rotor) / size
+    return inertia, motion.rotor / size, motion.equilibria, path
+
+
+def _draw_path(ax: Axes3D, path: Floats) -> None:
+    if len(path) > 1:
+        curve_on(ax, 1.002 * path, path, MOMENTUM_COLOR, linewidth=2.6, zorder=5)
+    order = 8 if path[0] @ toward_viewer(ax) >= 0.0 else 3
+    style = {"linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": order}
+    ax.plot(*(1.005 * path[0])[:, np.newaxis], color=MOMENTUM_COLOR, **style)
 
 
 def _energy(inverse: Floats, inside: Floats, n: Floats) -> Any:
@@ -262,4 +297,5 @@ def _names(ax: Axes3D, inside: Floats) -> None:
         order = 6 if unit @ viewer >= 0.0 else 1
         ax.plot(*np.stack([unit, 1.3 * unit], axis=-1), color="0.0", linewidth=2.4, zorder=order)
         ax.plot(*unit[:, np.newaxis], linestyle="none", marker="o", markersize=3.5, color="0.0", zorder=order)
-        ax.text(*(1.42 * unit), "h", color="0.0", ha="center", va="center", fontsize=12, zorder=8)
+        beyond = 1.58 if np.abs(unit).max() > 0.97 else 1.42  # the name of an axis may stand there
+        ax.text(*(beyond * unit), "h", color="0.0", ha="center", va="center", fontsize=12, zorder=8)

@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode._scene.scene import Scene
 from polhode._scene.shape import longest
-from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
+from polhode._scene.style import AXIS_COLORS, INSIDE_COLOR, MOMENTUM_COLOR, OMEGA_COLOR
 from polhode.view._bodies import add_surface
 from polhode.view._style import AXIS_STYLE, add_name, arrow, line, new_plotter, pyvista, show_all
 
@@ -43,6 +43,8 @@ def motion(
     name: str = "motion",
 ) -> Plotter:
     """Show the motion of one body about its point of reference, with ω, its path in space, and L.
+
+    L is with that of wheels, which is also shown by itself, as h.
 
     In a window the slider chooses the time and the space bar lets the motion run and stop.
 
@@ -117,7 +119,9 @@ class _Player:
         self._is_running = False
         self._slider: Any = None
         self._tips = self._scaled(_core.rotate(scene.quaternion, scene.omega))
-        self._momenta = self._scaled(scene.momentum)
+        inside = np.zeros((0, 3)) if scene.inside is None else _core.rotate(scene.quaternion, scene.inside)
+        momenta = self._scaled(np.concatenate([scene.momentum, inside]))
+        self._momenta, self._inside = momenta[: len(scene.t)], momenta[len(scene.t) :]
         self._bodies = add_surface(plotter, scene.shape, f"{name}-body", 1.0)
         for k, (color, axis) in enumerate(zip(AXIS_COLORS, scene.axes.T, strict=True)):
             reach = 1.2 * self._reach
@@ -192,6 +196,8 @@ class _Player:
         placed[:3, :3] = _core.rotate(self._scene.quaternion[index], np.eye(3)).T
         for actor in self._bodies:
             actor.user_matrix = placed
+        if len(self._inside):
+            self._add_arrow("h  ", self._inside[index], INSIDE_COLOR, "right")
         self._add_arrow("L  ", self._momenta[index], MOMENTUM_COLOR, "right")
         self._add_arrow("  omega", self._tips[index], OMEGA_COLOR, "left")  # VTK's fonts have no ω
         instant = f"t = {self._scene.t[index]:.4g} {self._scene.time_unit}"
