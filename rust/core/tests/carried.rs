@@ -1,5 +1,8 @@
 //! Wheels, rotors and slugs: every method solves the same motion, and keeps what the motion keeps.
 
+// Failing to make a test's own input fails the test.
+#![allow(clippy::expect_used)]
+
 use std::ops::ControlFlow;
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};

@@ -29,7 +29,7 @@ pub(super) struct Invariants<T> {
     pub(super) is_cusp: bool,
 }
 
-/// What inputs that are rounded make of invariants that are zero, and less; the unit of the start is one.
+/// What inputs that are rounded make of invariants that are zero, and less; of coefficients too, as ρ is near one where they vanish.
 const CUSP: f64 = 1e-18;
 
 impl<T: Real> Quartic<T> {
@@ -79,8 +79,9 @@ impl<T: Real> Quartic<T> {
         let s_lowest = 3.0 * s2 * s4 + 2.0 * (s3 * s3 + s1 * s1 * s4);
         let (second, third) = ((p + square.times(three)).re, (r - cube).re);
         Invariants {
-            is_cusp: second.rounded().abs() <= CUSP * (1.0 + sp + 3.0 * s2 * s2)
-                && third.rounded().abs() <= CUSP * (1.0 + sr + s2.powi(3)),
+            is_cusp: s2.max(s3).max(s4) <= CUSP
+                || second.rounded().abs() <= CUSP * (sp + 3.0 * s2 * s2)
+                    && third.rounded().abs() <= CUSP * (sr + s2.powi(3)),
             second,
             third,
             discriminant: sum.re,
