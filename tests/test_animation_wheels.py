@@ -88,7 +88,7 @@ def test_on_the_separatrix() -> None:
 
 
 def test_a_motion_that_only_knows_its_samples(tmp_path: Path) -> None:
-    """A copy holds no closed form; what it shows are its samples, not the motion without wheels."""
+    """What a file holds are samples; they are shown, not the motion without wheels."""
     motion = BODY.gyrostat((0.0, 0.2, 1.0)).free_motion((0.3, 0.2, 1.1))
     shown = copy.deepcopy(motion.at(np.linspace(0.0, 5.0, 101)))
     saved = tmp_path / "motion.npz"

@@ -58,7 +58,7 @@ def sensitivity(self: Trajectory) -> MotionSensitivity:
         raise ValueError("sensitivity: these are states of a FreeMotion, whose sensitivity(t) is exact")
     start = self.state(0)
     return _core.motion_sensitivity(
-        self.body, self.t, start.omega, start.attitude, self.load, self._about_word()
+        self.body, self.t, start.omega, start.attitude, self._acting("sensitivity"), self._about_word()
     )
 
 
@@ -94,8 +94,10 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     given = state._asdict()
     if "load" in options:
         del given["states"]  # another load has others
-    elif self.load is not None:
-        options["load"] = self.load.anchored(float(self.t[0]))
+    else:
+        load = self._acting("resume")
+        if load is not None:
+            options["load"] = load.anchored(float(self.t[0]))
     options.setdefault("about", self._about_word())
     if self.pivoted:
         del given["velocity"]

@@ -131,7 +131,8 @@ class Trajectory:
 
     def __getstate__(self) -> dict[str, Any]:
         """Give all attributes, for copy and pickle."""
-        return {one.name: getattr(self, one.name) for one in fields(self)}
+        held = {name: self.__dict__[name] for name in ("_rotor", "_was_loaded") if name in self.__dict__}
+        return held | {one.name: getattr(self, one.name) for one in fields(self)}
 
     def __len__(self) -> int:
         """Count the times."""
@@ -332,7 +333,11 @@ class Trajectory:
         """
         from polhode.files.saved_motion import read_motion
 
-        return Trajectory(**read_motion(path))
+        known, was_loaded = read_motion(path)
+        motion = Trajectory(**known)
+        if was_loaded:
+            motion.__dict__["_was_loaded"] = True
+        return motion
 
     def _bodies(self) -> _core.RigidBody:
         """Give the body or stack with axes for time, along which it broadcasts."""
@@ -371,9 +376,30 @@ class Trajectory:
             return None
         return self._over_time(self.load).carried(self.t, self.omega, self._own_states())
 
+    def _acting(self, what: str) -> _core.Load | None:
+        """Give the load under which a simulation finds this motion; of a gyrostat a rotor."""
+        if self.load is not None or self.carried is None:
+            return self.load
+        momentum, free = self.__dict__.get("_rotor", (None, None))
+        if momentum is None:
+            raise ValueError(
+                f"{what}: the body carries something along of which these states tell the momentum alone, "
+                "not the load; a file does not hold it"
+            )
+        if np.any(free):
+            raise ValueError(
+                f"{what}: a simulation follows free wheels under loads.wheel; of this motion "
+                "GyrostatMotion.at gives the state at any time"
+            )
+        return _core.rotor(momentum)
+
+    def _is_loaded(self) -> bool:
+        """Tell whether a load acted, which a motion from a file does not have."""
+        return self.load is not None or "_was_loaded" in self.__dict__
+
     def _exact(self) -> _core.FreeMotion | _core.GyrostatMotion | None:
         """Give the motion in closed form from the first state on, of one body; None where none is known."""
-        if self.load is not None or self.pivoted:
+        if self._is_loaded() or self.pivoted:
             return None
         if "_rotor" not in self.__dict__:
             return self.body.free_motion(self.omega[0], self.quaternion[0]) if self.carried is None else None

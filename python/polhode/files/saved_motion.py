@@ -126,7 +126,7 @@ def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
     fields: dict[str, Any] = {"format": _FORMAT}
     fields["body"] = in_json(body_fields(trajectory.body), path)
     fields |= {name: getattr(trajectory, name) for name in _FIELDS}
-    fields[_LOADED] = trajectory.load is not None
+    fields[_LOADED] = trajectory._is_loaded()
     fields |= _carried_of(trajectory)
     if trajectory.states:
         fields[_STATES_OF_LOAD] = in_json(trajectory.states, path)
@@ -142,7 +142,7 @@ def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
     path : pathlib.Path
     """
     arrays = {name: getattr(trajectory, name) for name in _FIELDS}
-    arrays[_LOADED] = np.array(trajectory.load is not None)
+    arrays[_LOADED] = np.array(trajectory._is_loaded())
     arrays |= _carried_of(trajectory)
     arrays |= {f"{_STATES_OF_LOAD}_{name}": values for name, values in trajectory.states.items()}
     arrays |= {name: getattr(trajectory.body, name) for name in BODY_ARRAYS}
@@ -154,8 +154,8 @@ def _carried_of(trajectory: Trajectory) -> dict[str, Any]:
     return {} if trajectory.carried is None else dict(zip(_CARRIED, trajectory.carried, strict=True))
 
 
-def read_motion(path: str | PathLike[str]) -> dict[str, Any]:
-    """Read the fields of a motion, under the names of the attributes of :class:`polhode.Trajectory`.
+def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], bool]:
+    """Read the attributes of a :class:`polhode.Trajectory` by name, and whether it had a load.
 
     Parameters
     ----------
@@ -202,9 +202,10 @@ def read_motion(path: str | PathLike[str]) -> dict[str, Any]:
         "status": _status(fields, file, stack),
         "pivoted": _flag(fields, "pivoted", file),
     }
-    if _flag(fields, _LOADED, file) and body._doubts() is not None:
+    was_loaded = _flag(fields, _LOADED, file)
+    if was_loaded and body._doubts() is not None:
         ended["uncertain_start"] = None  # what the body's doubts do to the motion the load decides, too
-    return {"body": body, **states, **given, **ended}
+    return {"body": body, **states, **given, **ended}, was_loaded
 
 
 def _stack(shape: tuple[int, ...], bodies: tuple[int, ...], axes_of_time: int) -> tuple[int, ...]:
