@@ -55,6 +55,8 @@ def force(self: Trajectory) -> Floats:
     numpy.ndarray, shape (..., T, 3)
     """
     if self.load is None:
+        if self._is_loaded():
+            self._acting("force")
         return np.zeros_like(self.omega)
     return self._over_time(self.load).force(*self._states(), **self._subject(), states=self._own_states())
 

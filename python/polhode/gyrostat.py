@@ -160,13 +160,21 @@ def wheel(
         spin = _core.real_numbers(momentum, "momentum")
     elif rate is not None:
         spin = moment * _core.real_numbers(rate, "rate")
-    place = _core.real_numbers(axis, "axis")
+    place = np.array(_core.real_numbers(axis, "axis"))  # not the caller's
     if place.shape[-1:] != (3,):
         raise ValueError(f"axis: expected shape (..., 3), got {place.shape}")
+    if not (np.isfinite(place).all() and np.any(place, axis=-1).all()):
+        raise ValueError(f"axis: expected finite vectors other than zero, got {place.tolist()}")
+    if not (np.isfinite(moment).all() and np.min(moment, initial=0.0) >= 0.0):
+        raise ValueError(f"inertia: expected finite numbers that are not negative, got {moment.tolist()}")
+    if not np.isfinite(spin).all():
+        raise ValueError(f"{'rate' if momentum is None else 'momentum'}: J Ω must be finite, got {spin.tolist()}")
+    place.flags.writeable = False
     return Wheel(place, _plain(moment), _plain(spin), mode)
 
 
 def _plain(numbers: Any) -> Any:
     """Give a float for a single number."""
-    array = np.asarray(numbers)
+    array = np.array(numbers)
+    array.flags.writeable = False
     return float(array) if array.ndim == 0 else array

@@ -378,6 +378,8 @@ class Trajectory:
 
     def _acting(self, what: str) -> _core.Load | None:
         """Give the load under which a simulation finds this motion; of a gyrostat a rotor."""
+        if self.load is None and self._is_loaded() and self.carried is None:
+            raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
         if self.load is not None or self.carried is None:
             return self.load
         momentum, free = self.__dict__.get("_rotor", (None, None))
@@ -421,14 +423,16 @@ class Trajectory:
 
     def _potential(self) -> Floats | None:
         if self.load is None:
-            return np.zeros(self.omega.shape[:-1])
+            return None if self._is_loaded() else np.zeros(self.omega.shape[:-1])
         return self._over_time(self.load).potential(
             self._bodies(), self.quaternion, self.position, self._about_word()
         )
 
     def _kept_directions(self) -> Any:
         """Give the directions along which L is conserved: True for all, unit vectors, or None."""
-        return True if self.load is None else self.load.keeps_momentum(self._about_word())
+        if self.load is None:
+            return None if self._is_loaded() else True
+        return self.load.keeps_momentum(self._about_word())
 
 
 def _unwrapped(angles: Floats) -> Floats:

@@ -121,8 +121,7 @@ impl PyGyrostat {
         let given = StartGiven::read(omega, attitude)?;
         if given.uncertain.is_any() || slf.get().body.get().doubts.is_some() {
             return Err(PyValueError::new_err(
-                "Gyrostat.free_motion: sigmas are not followed through the motion of a gyrostat yet: give plain numbers, \
-                 or follow them with polhode.uncertainty.propagate",
+                "Gyrostat.free_motion: sigmas are not followed through the motion of a gyrostat: give plain numbers",
             ));
         }
         let attitude = read_attitude(given.attitude.as_ref(), "attitude")?;

@@ -90,7 +90,7 @@ impl PyLoad {
                 beat.mark()?;
             }
             let wrench = || {
-                if quaternion[q].iter().any(|x| x.is_nan()) {
+                if quaternion[q].iter().chain(&states[s]).any(|x| x.is_nan()) {
                     let nan = Vector3::repeat(f64::NAN);
                     return Ok(Wrench {
                         force: nan,

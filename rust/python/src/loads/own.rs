@@ -46,15 +46,8 @@ impl PyLoad {
                 if of_kind != kind || count == 0 {
                     continue;
                 }
-                let name = part.name.as_deref().unwrap_or("states");
-                let same = |slot: &&Slot| slot.name == name || is_numbered(&slot.name, name);
-                let before = slots.iter().filter(same).count();
                 slots.push(Slot {
-                    name: if before == 0 {
-                        name.to_owned()
-                    } else {
-                        format!("{name}_{}", before + 1)
-                    },
+                    name: unused(part.name.as_deref().unwrap_or("states"), &slots),
                     first,
                     count,
                 });
@@ -151,7 +144,7 @@ impl PyLoad {
         let mut found = Stack::one(Vec::new());
         for slot in &slots {
             let values = match given.get_item(&slot.name)? {
-                Some(values) => one(&values, slot)?,
+                Some(values) => one(&values, slot, all)?,
                 None if all => {
                     return Err(PyTypeError::new_err(format!(
                         "states: {:?} is missing",
@@ -185,16 +178,20 @@ pub(crate) fn named<'py>(
     Ok(named)
 }
 
-/// Whether a name is another one with a number.
-fn is_numbered(name: &str, of: &str) -> bool {
-    let rest = name
-        .strip_prefix(of)
-        .and_then(|rest| rest.strip_prefix('_'));
-    rest.is_some_and(|number| number.parse::<usize>().is_ok())
+/// A name that no slot has yet: the one that is asked for, or with the first number that makes it one.
+fn unused(name: &str, slots: &[Slot]) -> String {
+    let is_taken = |name: &str| slots.iter().any(|slot| slot.name == name);
+    let mut found = name.to_owned();
+    let mut number = 2;
+    while is_taken(&found) {
+        found = format!("{name}_{number}");
+        number += 1;
+    }
+    found
 }
 
-/// The states of one part, shape (..., k).
-fn one(values: &Bound<'_, PyAny>, slot: &Slot) -> PyResult<Stack<Vec<f64>>> {
+/// The states of one part, shape (..., k); those after the end of a run are not numbers.
+fn one(values: &Bound<'_, PyAny>, slot: &Slot, with_holes: bool) -> PyResult<Stack<Vec<f64>>> {
     let name = format!("states[{:?}]", slot.name);
     let array = floats(values, &name)?;
     let shape = array.shape();
@@ -206,7 +203,8 @@ fn one(values: &Bound<'_, PyAny>, slot: &Slot) -> PyResult<Stack<Vec<f64>>> {
         )));
     }
     let numbers = array.as_slice()?;
-    if let Some(bad) = numbers.iter().find(|x| !x.is_finite()) {
+    let is_bad = |x: &&f64| !(x.is_finite() || with_holes && x.is_nan());
+    if let Some(bad) = numbers.iter().find(is_bad) {
         return Err(PyValueError::new_err(format!(
             "{name}: must be finite, got {bad}"
         )));

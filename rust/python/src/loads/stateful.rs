@@ -295,10 +295,29 @@ pub(super) fn initial(
 /// The most states of a load.
 pub(crate) const MOST_STATES: usize = 51;
 
+/// What the motion itself has, in tables and datasets.
+const TAKEN: [&str; 8] = [
+    "t",
+    "time",
+    "omega",
+    "quaternion",
+    "position",
+    "velocity",
+    "component",
+    "quaternion_component",
+];
+
 /// That a name is one.
 pub(super) fn check_name(name: &str) -> PyResult<()> {
-    if name.is_empty() {
-        return Err(PyValueError::new_err("name: must not be empty"));
+    if name.is_empty() || name.contains('\0') {
+        return Err(PyValueError::new_err(
+            "name: must not be empty, nor hold the character 0",
+        ));
+    }
+    if TAKEN.contains(&name) {
+        return Err(PyValueError::new_err(format!(
+            "name: {name:?} is a name of the motion itself; take another"
+        )));
     }
     Ok(())
 }

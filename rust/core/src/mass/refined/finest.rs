@@ -51,6 +51,8 @@ impl Source {
 
 /// Corrections at most: each squares the error, and one is enough unless moments are close.
 const CORRECTIONS: usize = 3;
+/// Axes that are known to twice the precision are not corrected by more than that.
+const ARBITRARY: f64 = 1e-8;
 /// What a correction of this size leaves is below rounding.
 const SMALL: f64 = 1e-30;
 
@@ -83,6 +85,9 @@ impl Finest {
                     }
                     // The rest and the gap are small differences; their quotient needs no more than twice the precision.
                     let part = rest.twofold() / gap.twofold();
+                    if part.high.abs() > ARBITRARY {
+                        continue; // moments so close that the axes stay where they are
+                    }
                     largest = largest.max(part.high.abs());
                     for (x, &other) in axis.iter_mut().zip(&v[i]) {
                         *x = *x + QuadDouble::from(part) * other;

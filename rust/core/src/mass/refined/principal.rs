@@ -84,12 +84,43 @@ impl RefinedPrincipal {
         let PrincipalAxes { moments, axes } = principal_axes(&rounded);
         let mut refined = Self::given(&moments, &axes);
         refined.refine(&tensor);
+        refined.snap();
         let moment = refined.moments[0].rounded();
         if moment > ROUNDING * self.moments[2].rounded() {
             Ok(refined)
         } else {
             Err(MotionFault::WheelsTooHeavy { moment }.into())
         }
+    }
+
+    /// Moments that differ by rounding alone are equal: two at a time, or all three.
+    fn snap(&mut self) {
+        let [a, b, c] = self.moments;
+        let alike = |x: DoubleDouble, y: DoubleDouble| (y - x).rounded() <= ALIKE * c.rounded();
+        let mean = |x: DoubleDouble, y: DoubleDouble| (x + y).scaled(0.5);
+        self.moments = match (alike(a, b), alike(b, c)) {
+            (true, true) => [b; 3],
+            (true, false) => [mean(a, b), mean(a, b), c],
+            (false, true) => [a, mean(b, c), mean(b, c)],
+            (false, false) => return,
+        };
+    }
+
+    /// The components of a vector along the axes. Across the axis of a symmetric body what is rounding alone is zero.
+    #[must_use]
+    pub fn along(&self, vector: &Vector) -> Vector {
+        let mut along = self.axes.map(|axis| dot(&axis, vector));
+        let size = along
+            .iter()
+            .fold(0.0, |most: f64, x| most.max(x.rounded().abs()));
+        let [a, b, c] = self.moments;
+        for (x, y, i, j) in [(a, b, 0, 1), (b, c, 1, 2)] {
+            let across = along[i].rounded().hypot(along[j].rounded());
+            if x == y && across <= ALIKE * size {
+                (along[i], along[j]) = (DoubleDouble::default(), DoubleDouble::default());
+            }
+        }
+        along
     }
 
     /// Of the tensor less `Σ J a aᵀ`, with moments J about axes a of any length.
@@ -221,6 +252,8 @@ impl RefinedPrincipal {
     }
 }
 
+/// What differs by less than this part is alike to twice the precision.
+const ALIKE: f64 = 1e-29;
 /// Below this tangent `tan 2φ = 2 tan φ` and `1 − cos φ = ½ tan² φ`, to what a sweep needs.
 const SMALL: f64 = 1e-9;
 /// The most sweeps; two or three are enough.

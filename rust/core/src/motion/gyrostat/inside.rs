@@ -127,7 +127,7 @@ impl Gyrostat {
             return Err(MotionFault::MasslessGyrostat { moment }.into());
         }
         let rotor = self.inside.rotor(omega);
-        let along = [0, 1, 2].map(|k| dot(&self.principal.axis(k), &rotor));
+        let along = self.principal.along(&rotor);
         let found = equilibria(&self.principal.moments, &along, momentum.into());
         Ok(found.turned(&self.principal.rounded_axes()))
     }

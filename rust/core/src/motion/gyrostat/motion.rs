@@ -8,7 +8,7 @@ use super::mode::Mode;
 use super::propagator::{At, Propagator, Sample};
 use super::quartic::Invariants;
 use super::spinor::Spinor;
-use super::start::{Start, dot};
+use super::start::Start;
 use crate::error::{Error, MotionFault, all_finite};
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::motion::free::{self, FreeMotion};
@@ -105,7 +105,7 @@ impl GyrostatMotion {
         let moments = principal.moments.map(|moment| by(moment, -inertia));
         let scaled_omega = omega.map(|x| times_power_of_two(x, -rate));
         let scaled_rotor = rotor.map(|x| by(x, -inertia - rate));
-        let rotor_along = [0, 1, 2].map(|k| dot(&principal.axis(k), &scaled_rotor));
+        let rotor_along = principal.along(&scaled_rotor);
         let rate_unit = times_power_of_two(1.0, rate);
         let found = Solved::of(
             principal,

@@ -26,6 +26,16 @@ where
     let own = span.phase.inner.len();
     if own > 0 {
         return match method {
+            Method::Radau | Method::Dop853 | Method::Auto | Method::Taylor
+                if own > MANY - MOVING =>
+            {
+                Err(Error::Motion(MotionFault::MethodCannotServe {
+                    method: method.name(),
+                    needs: "a load with 51 states of its own at most",
+                    instead: "taylor",
+                })
+                .into())
+            }
             Method::Exact | Method::Splitting => {
                 Err(Error::Motion(MotionFault::MethodCannotServe {
                     method: method.name(),

@@ -32,7 +32,13 @@ impl Method {
                 terms.is_empty()
             }
         });
-        let of_steps = if terms.is_some() {
+        // A gradient's series has the tensor of the equations, not that of a body whose wheels turn freely.
+        let has_series = terms.is_some_and(|terms| {
+            let turns = |term: &Term| term.carried().is_some_and(|it| it.turning().is_some());
+            let pulls = |term: &Term| term.character(pivoted).parts.gradients > 0;
+            !(terms.iter().any(turns) && terms.iter().any(pulls))
+        });
+        let of_steps = if has_series {
             Self::Taylor
         } else {
             Self::Dop853
@@ -55,6 +61,7 @@ impl Method {
             Self::Taylor if terms.is_none() => {
                 "analytic loads, no callbacks and no compiled functions"
             }
+            Self::Taylor if !has_series => "no gravity gradient beside wheels that turn freely",
             method if is_beyond_doubles && method != Self::Taylor => {
                 "an rtol of 2.3e-15 or more (ten units of rounding)"
             }

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 use crate::motion::attitude::{from_axes, rate};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::integrate::{Compensated, System};
-use crate::motion::loads::{Load, Switch};
+use crate::motion::loads::{Load, Subject, Switch};
 use crate::motion::problem::Tolerance;
 use crate::motion::state::Phase;
 
@@ -41,6 +41,8 @@ pub(super) struct Scales {
 pub(super) struct Equations<'a, L, const N: usize> {
     euler: EulerEquations,
     mass: f64,
+    /// Whether the reference point is fixed in N.
+    is_held: bool,
     axes: Axes,
     load: &'a mut L,
     tolerance: Tolerance,
@@ -55,7 +57,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
     /// From the state `phase` at the time `start`.
     pub(super) fn new(
         euler: &EulerEquations,
-        mass: f64,
+        subject: &Subject,
         start: f64,
         phase: &Phase,
         load: &'a mut L,
@@ -74,7 +76,8 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
         Self {
             sizes: load.sizes(),
             euler: *euler,
-            mass,
+            mass: subject.mass,
+            is_held: subject.pivoted,
             axes: Axes {
                 q_bp: from_axes(euler.axes()),
                 columns: *euler.axes(),
@@ -168,7 +171,12 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
             slope[4 + i] = turning[i];
         }
         if N >= MOVING {
-            let moving = wrench.force / self.mass;
+            // What is held does not move.
+            let moving = if self.is_held {
+                Vector3::zeros()
+            } else {
+                wrench.force / self.mass
+            };
             for i in 0..3 {
                 slope[7 + i] = y[10 + i];
                 slope[10 + i] = moving[i];
@@ -216,11 +224,12 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
             let size = error[MOVING + i].abs();
             let [per_omega, least] = self.sizes[i];
             let natural = (per_omega * self.scales.omega).max(least);
-            let largest = self.scales.own[i].max(y_new[MOVING + i].abs());
-            if size == 0.0 {
+            let scale = self.scales.own[i].max(y_new[MOVING + i].abs()).max(natural);
+            // Of a state that begins at zero nobody knows yet what is large.
+            if size == 0.0 || scale == 0.0 {
                 0.0
             } else {
-                size / (relative * largest.max(natural))
+                size / (relative * scale)
             }
         });
         let body = parts.iter().chain(&moving).fold(0.0, largest_or_nan);

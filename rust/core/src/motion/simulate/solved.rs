@@ -18,7 +18,7 @@ impl<'a, L: Load, M: RungeKutta<N>, const N: usize> Solved<'a, L, M, N> {
     pub(super) fn new(task: &Task<'_>, span: &Span, load: &'a mut L) -> Result<Self, L::Error> {
         let mut equations = Equations::new(
             &task.euler,
-            task.subject.mass,
+            &task.subject,
             span.from,
             &span.phase,
             load,

@@ -184,6 +184,13 @@ impl<'a, X: Precision> Course<'a, X> {
                 let (size, matrix) = (vector.map(X::rounded).norm(), matrix.map(X::rounded));
                 parts.push((matrix.row(n).norm() * size, matrix.norm() * size));
             }
+            for own in &linear.own {
+                let (torque, momentum) = (own.torque.map(X::rounded), own.momentum.map(X::rounded));
+                let mut across = momentum;
+                across[n] = 0.0;
+                parts.push((torque[n].abs(), torque.norm()));
+                parts.push((across.norm(), momentum.norm()));
+            }
             let axis = self.axes.column(n).map(X::rounded);
             for (_, timed) in &linear.timed {
                 parts.extend(timed.torques_along(&axis, self.middle()));
