@@ -180,7 +180,7 @@ def test_what_is_refused() -> None:
         BODY.gyrostat(wheels=[polhode.wheel(axis=(1, 0, 0), inertia=1.5, rate=1.0)])
     with pytest.raises(InvalidInertiaError, match="thickness"):
         RigidBody.from_principal(1.0, (0, 1, 1)).gyrostat((1, 0, 0)).free_motion((1, 0, 0))
-    with pytest.raises(PolhodeError, match="direction"):
+    with pytest.raises(ValueError, match="other than zero"):
         BODY.gyrostat(wheels=[polhode.wheel(axis=(0, 0, 0), inertia=0.1, rate=1.0)])
     with pytest.raises(ValueError, match="exactly one"):
         polhode.wheel(axis=(1, 0, 0), inertia=0.1)

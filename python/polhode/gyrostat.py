@@ -168,7 +168,8 @@ def wheel(
     if not (np.isfinite(moment).all() and np.min(moment, initial=0.0) >= 0.0):
         raise ValueError(f"inertia: expected finite numbers that are not negative, got {moment.tolist()}")
     if not np.isfinite(spin).all():
-        raise ValueError(f"{'rate' if momentum is None else 'momentum'}: J Ω must be finite, got {spin.tolist()}")
+        given = "rate" if momentum is None else "momentum"
+        raise ValueError(f"{given}: J Ω must be finite, got {spin.tolist()}")
     place.flags.writeable = False
     return Wheel(place, _plain(moment), _plain(spin), mode)
 
