@@ -120,7 +120,10 @@ pub(crate) fn free_precession<'py>(
 /// flat spin 1000.0
 /// damps 2250.0
 #[pyfunction]
-#[pyo3(signature = (body, momentum, *, inertia, damping, rtol=TOP_RTOL))]
+#[pyo3(
+    signature = (body, momentum, *, inertia, damping, rtol=TOP_RTOL),
+    text_signature = "(body, momentum, *, inertia, damping, rtol=1e-06)"
+)]
 pub(crate) fn nutation_damping<'py>(
     py: Python<'py>,
     body: &Bound<'py, PyRigidBody>,
