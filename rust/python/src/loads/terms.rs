@@ -179,6 +179,9 @@ pub(crate) fn gravity_gradient(
 
 /// A torque against the angular velocity, ``-D ω - E |ω| ω``.
 ///
+/// It comes from outside, as of the air: the angular momentum falls. What is lost inside a body, which keeps its momentum, is
+/// :func:`slug`; a momentum that turns with the body is :func:`rotor`.
+///
 /// Parameters
 /// ----------
 /// matrix : array_like, shape (..., 3, 3), or a number
