@@ -451,6 +451,23 @@ def test_what_is_refused(call: Callable[[], Any], kind: type[Exception], message
         call()
 
 
+@pytest.mark.parametrize(("rtol", "allowed"), [(1e-20, 1e-14), (2.3e-15, 2e-13)])
+@pytest.mark.parametrize("name", ["slug", "driven"])
+def test_momentum_over_ten_thousand_rotations(name: str, rtol: float, allowed: float) -> None:
+    """At the tightest that doubles allow its error grows as the root of the steps; beyond, nothing is lost."""
+    body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+    omega = np.array([0.3, 0.4, 1.1])
+    end = 2e4 * np.pi / np.linalg.norm(omega)
+    times = np.linspace(0, end, 1000, endpoint=False)
+    all_loads = {
+        "slug": loads.slug(0.1, 1e-3),
+        "driven": loads.wheel((1, 2, 2), 0.1, 3.0, torque=np.tile([0.01, -0.01], 500), times=times),
+    }
+    run = body.simulate(np.array([0, end / 2, end]), omega, load=all_loads[name], method="taylor", rtol=rtol)
+    spin = run.angular_momentum().spin
+    assert np.linalg.norm(spin - spin[0], axis=1).max() <= allowed * np.linalg.norm(spin[0])
+
+
 class TestEnergySink:
     """A small slug against the energy-sink model, which is of first order in its moment."""
 
