@@ -454,7 +454,7 @@ def test_what_is_refused(call: Callable[[], Any], kind: type[Exception], message
 @pytest.mark.parametrize(("rtol", "allowed"), [(1e-20, 1e-14), (2.3e-15, 2e-13)])
 @pytest.mark.parametrize("name", ["slug", "driven"])
 def test_momentum_over_ten_thousand_rotations(name: str, rtol: float, allowed: float) -> None:
-    """At the tightest that doubles allow its error grows as the root of the steps; beyond, nothing is lost."""
+    """In doubles its error grows as the root of the steps; beyond them nothing is lost."""
     body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
     omega = np.array([0.3, 0.4, 1.1])
     end = 2e4 * np.pi / np.linalg.norm(omega)
