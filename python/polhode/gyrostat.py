@@ -27,11 +27,12 @@ class Bifurcations(NamedTuple):
         ``"fold"``: a saddle and a stable one meet and are gone; ``"pitchfork"``: two of one kind meet
         in a third.
     direction : numpy.ndarray, shape (n, 3)
-        L/|L| there, in the body frame.
+        ``L/|L|`` there, in the body frame.
     momentum : numpy.ndarray, shape (n,)
-        The |L| of it with the h there is: those that meet are there above it.
+        The ``|L|`` of it with the h there is: those that meet are there above it.
     rotor : numpy.ndarray, shape (n,)
-        The |h| of it with the |L| there is and this direction of h: those that meet are there below it.
+        The ``|h|`` of it with the ``|L|`` there is and this direction of h: those that meet are there
+        below it.
     """
 
     meeting: NDArray[np.str_]
@@ -49,7 +50,7 @@ class Equilibria(NamedTuple):
     Attributes
     ----------
     direction : numpy.ndarray, shape (k, 3)
-        L/|L| in the body frame; of a circle of equilibria one of them.
+        ``L/|L|`` in the body frame; of a circle of equilibria one of them.
     omega : numpy.ndarray, shape (k, 3)
         In the body frame, along L.
     kinetic_energy : numpy.ndarray, shape (k,)
@@ -58,8 +59,8 @@ class Equilibria(NamedTuple):
         The squared frequency with which L circles about a stable equilibrium in the body; negative: minus the
         squared rate at which departures grow.
     kind : numpy.ndarray of str, shape (k,)
-        What the energy is there among states with this |L|: ``"minimum"`` (stable, also with dissipation),
-        ``"maximum"`` (stable without), ``"saddle"`` (unstable), ``"degenerate"`` (some meet here).
+        What the energy is there among states with this ``|L|``: ``"minimum"`` (stable, also with
+        dissipation), ``"maximum"`` (stable without), ``"saddle"`` (unstable), ``"degenerate"`` (some meet here).
     circle : numpy.ndarray, shape (k, 3)
         The axis of the circle that this one stands for, of a body with two equal moments; else zero.
     bifurcations : Bifurcations
