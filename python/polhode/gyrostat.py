@@ -60,7 +60,8 @@ class Equilibria(NamedTuple):
         squared rate at which departures grow.
     kind : numpy.ndarray of str, shape (k,)
         What the energy is there among states with this ``|L|``: ``"minimum"`` (stable, also with
-        dissipation), ``"maximum"`` (stable without), ``"saddle"`` (unstable), ``"degenerate"`` (some meet here).
+        dissipation), ``"maximum"`` (stable without), ``"saddle"`` (unstable), ``"degenerate"`` (some meet
+        here).
     circle : numpy.ndarray, shape (k, 3)
         The axis of the circle that this one stands for, of a body with two equal moments; else zero.
     bifurcations : Bifurcations
