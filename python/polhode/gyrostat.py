@@ -117,7 +117,7 @@ class Wheel:
         )
 
     def __hash__(self) -> int:
-        return hash((self.mode, np.asarray(self.axis).tobytes()))
+        return hash((self.mode, (self.axis + 0.0).tobytes()))  # zeros of both signs are equal
 
 
 def wheel(
@@ -158,10 +158,17 @@ def wheel(
     if mode not in ("free", "held"):
         raise ValueError(f"mode: {mode!r} is not 'free' or 'held'")
     moment = _core.real_numbers(inertia, "inertia")
-    if momentum is not None:
-        spin = _core.real_numbers(momentum, "momentum")
-    elif rate is not None:
-        spin = moment * _core.real_numbers(rate, "rate")
+    given = "rate" if momentum is None else "momentum"
+    spin = _core.real_numbers(rate if momentum is None else momentum, given)  # type: ignore[arg-type] # one is
+    try:
+        np.broadcast_shapes(moment.shape, spin.shape)
+    except ValueError:
+        raise ValueError(
+            f"inertia and {given}: shapes {moment.shape} and {spin.shape} do not broadcast"
+        ) from None
+    if momentum is None:
+        with np.errstate(over="ignore"):
+            spin = moment * spin
     place = np.array(_core.real_numbers(axis, "axis"))  # not the caller's
     if place.shape[-1:] != (3,):
         raise ValueError(f"axis: expected shape (..., 3), got {place.shape}")
@@ -170,7 +177,6 @@ def wheel(
     if not (np.isfinite(moment).all() and np.min(moment, initial=0.0) >= 0.0):
         raise ValueError(f"inertia: expected finite numbers that are not negative, got {moment.tolist()}")
     if not np.isfinite(spin).all():
-        given = "rate" if momentum is None else "momentum"
         raise ValueError(f"{given}: J Ω must be finite, got {spin.tolist()}")
     place.flags.writeable = False
     return Wheel(place, _plain(moment), _plain(spin), mode)
