@@ -313,7 +313,7 @@ class TestTrajectories:
             motion.animate(tmp_path / "a.html", duration=needed / 2)
 
     def test_no_times(self, tmp_path: Path) -> None:
-        with pytest.raises(ValueError, match="the motion has no times"):
+        with pytest.raises(ValueError, match="animate: needs a series of times"):
             BRICK.free_motion((0.0, 0.0, 1.0)).at([]).animate(tmp_path / "a.html")
         one = BRICK.free_motion((0.0, 0.0, 1.0)).at([2.0]).animate(tmp_path / "one.html")
         assert data(one)["t"] == [2.0]

@@ -71,7 +71,7 @@ def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
     omega = rng.normal(size=(n, 3))
     motions = bodies.gyrostat(h).free_motion(omega)
     assert motions.shape == (n,)
-    late = motions.at([0.0, 5.0, 1e6, 1e12])
+    late = motions.at([0.0, 5.0, 50.0, 1e6, 1e12])
     assert np.isfinite(late.omega).all()
     assert np.isfinite(late.quaternion).all()
     size = np.linalg.norm(motions.angular_momentum, axis=-1)
@@ -81,17 +81,10 @@ def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
     energy = late.kinetic_energy().total
     scale = np.abs(energy).max(1) + (h**2).sum(1)
     assert (np.abs(energy - motions.kinetic_energy[:, None]).max(1) / scale).max() <= 1e-14
-    assert np.abs(late.omega[:, 0] - omega).max() <= 1e-14
-    run = [
-        RigidBody.from_principal(1.0, moments[k]).simulate(
-            [0.0, 5.0], omega[k], load=loads.damping(-skew(h[k])), method="taylor", rtol=1e-14
-        )
-        for k in range(0, n, 5)
-    ]
-    want = np.array([one.omega[-1] for one in run])
-    largest = np.maximum(np.abs(want).max(1), np.abs(omega[::5]).max(1))
-    assert (np.abs(late.omega[::5, 1] - want).max(1) / largest).max() <= 1e-12
-    assert apart(late.quaternion[::5, 1], np.array([one.quaternion[-1] for one in run])) <= 1e-12
+    run = bodies.simulate([0.0, 5.0, 50.0], omega, load=loads.rotor(h), method="taylor", rtol=1e-22)
+    largest = np.linalg.norm(run.omega, axis=-1).max(1)
+    assert (np.abs(late.omega[:, :3] - run.omega).max((1, 2)) / largest).max() <= 3e-15
+    assert apart(late.quaternion[:, :3], run.quaternion) <= 3e-15
 
 
 def test_after_its_period_omega_is_back() -> None:
@@ -116,14 +109,16 @@ def test_rotating_the_axes_and_scaling_change_nothing() -> None:
 
 
 @pytest.mark.parametrize("power", [-4, -10, -20, -100, -300])
-def test_little_momentum_is_nearly_free_motion(power: int) -> None:
-    h = np.array([0.3, -0.5, 0.7]) * 10.0**power
+def test_little_momentum(power: int) -> None:
+    h, times = np.array([0.3, -0.5, 0.7]) * 10.0**power, [0.0, 1.0, 10.0]
     for moments in [(1, 2, 2.5), (1, 1, 1.5), (1.3, 1.3, 1.3)]:
         body = RigidBody.from_principal(1.0, moments)
-        exact = body.gyrostat(h).free_motion((0.3, 0.2, 1.1)).at([0.0, 1.0, 10.0])
-        free = body.free_motion((0.3, 0.2, 1.1)).at([0.0, 1.0, 10.0])
-        assert np.abs(exact.omega - free.omega).max() <= 1e-14 + 20 * 10.0**power
-        assert apart(exact.quaternion, free.quaternion) <= 1e-14 + 20 * 10.0**power
+        exact = body.gyrostat(h).free_motion((0.3, 0.2, 1.1)).at(times)
+        run = body.simulate(times, (0.3, 0.2, 1.1), load=loads.rotor(h), method="taylor", rtol=1e-25)
+        assert np.abs(exact.omega - run.omega).max() <= 2e-15
+        assert apart(exact.quaternion, run.quaternion) <= 2e-15
+        free = body.free_motion((0.3, 0.2, 1.1)).at(times)
+        assert np.abs(exact.omega - free.omega).max() <= 2e-15 + 20 * 10.0**power
 
 
 def test_a_start_next_to_the_middle_axis_turns_over_when_it_should() -> None:

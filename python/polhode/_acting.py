@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import _core
+from polhode._carried import of_rotor
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -28,23 +29,11 @@ def torque(self: Trajectory) -> Floats:
     numpy.ndarray, shape (..., T, 3)
     """
     if self.load is None and "_rotor" in self.__dict__:
-        return _of_rotor(self)
+        return of_rotor(self)
     if self._acting("torque") is None:
         return np.zeros_like(self.omega)
     assert self.load is not None
     return self._over_time(self.load).torque(*self._states(), **self._subject(), states=self._own_states())
-
-
-def _of_rotor(self: Trajectory) -> Floats:
-    """Torque of the momentum inside a gyrostat: its own ``(I − F) ω̇ + ω × ((I − F) ω + h) = 0``."""
-    momentum, free = self.__dict__["_rotor"]
-    tensor = self._bodies().inertia_about(self._reference())
-    inertias = free[(..., *self._time_axes(), slice(None), slice(None))]
-    total = np.einsum("...ij,...j->...i", tensor - inertias, self.omega) + self._per_time(momentum)
-    rate = np.linalg.solve(tensor - inertias, -np.cross(self.omega, total)[..., np.newaxis])
-    in_body = np.einsum("...ij,...j->...i", tensor, self.omega)
-    torque: Floats = (tensor @ rate)[..., 0] + np.cross(self.omega, in_body)
-    return torque
 
 
 def force(self: Trajectory) -> Floats:

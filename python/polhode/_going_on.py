@@ -54,8 +54,7 @@ def sensitivity(self: Trajectory) -> MotionSensitivity:
     >>> slopes.state.shape, slopes.load[0]["gravity"].shape
     ((2, 6, 6), (2, 6, 3))
     """
-    if self.t.ndim != 1:
-        raise ValueError("sensitivity: these are states of a FreeMotion, whose sensitivity(t) is exact")
+    self._check_series("sensitivity")
     start = self.state(0)
     return _core.motion_sensitivity(
         self.body, self.t, start.omega, start.attitude, self._acting("sensitivity"), self._about_word()
@@ -86,9 +85,9 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     array([0.      , 0.      , 0.841471, 0.540302])
     """
     start = _core.real_numbers(t, "t").reshape(-1)[:1]
-    if not np.array_equal(start, self.t[-1:]):
-        raise ValueError(f"t: the motion goes on from t = {float(self.t[-1])!r}, got {start.tolist()}")
-    state = self.state()
+    state, last = self.state(), self.t.reshape(-1)[-1:]
+    if not np.array_equal(start, last):
+        raise ValueError(f"t: the motion goes on from t = {float(last[0])!r}, got {start.tolist()}")
     if np.isnan(state.omega).any():
         raise ValueError("resume: the last state is not known, since the run did not come to the last time")
     given = state._asdict()
@@ -97,7 +96,7 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     else:
         load = self._acting("resume")
         if load is not None:
-            options["load"] = load.anchored(float(self.t[0]))
+            options["load"] = load.anchored(float(self.t.flat[0]))
     options.setdefault("about", self._about_word())
     if self.pivoted:
         del given["velocity"]

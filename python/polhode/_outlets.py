@@ -45,6 +45,7 @@ def to_xarray(self: Trajectory) -> Dataset:
     from polhode._extras import require
 
     xarray = require("xarray", extra=None, purpose="Trajectory.to_xarray")
+    self._check_series("to_xarray")
     shape = self.omega.shape[:-2]
     stack = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
     vector, frames = (

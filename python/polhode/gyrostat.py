@@ -153,13 +153,13 @@ def wheel(
     >>> polhode.wheel(axis=(0, 0, 1), inertia=0.02, rate=100.0).momentum
     2.0
     """
-    if (rate is None) == (momentum is None):
-        raise ValueError("give exactly one of rate= and momentum=")
     if mode not in ("free", "held"):
         raise ValueError(f"mode: {mode!r} is not 'free' or 'held'")
     moment = _core.real_numbers(inertia, "inertia")
-    given = "rate" if momentum is None else "momentum"
-    spin = _core.real_numbers(rate if momentum is None else momentum, given)  # type: ignore[arg-type] # one is
+    given, numbers = ("rate", rate) if momentum is None else ("momentum", momentum)
+    if numbers is None or not (rate is None or momentum is None):
+        raise ValueError("give exactly one of rate= and momentum=")
+    spin = _core.real_numbers(numbers, given)
     try:
         np.broadcast_shapes(moment.shape, spin.shape)
     except ValueError:

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _acting, _core, _doubts, _going_on, _outlets
+from polhode import _acting, _angles, _carried, _core, _doubts, _going_on, _outlets
 from polhode._drift import drift
 from polhode._lengths import lengths
 from polhode.events import Events
-from polhode.gyrostat import wheel
 from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
 
 if TYPE_CHECKING:
@@ -92,6 +91,8 @@ class Trajectory:
     carried: tuple[Floats, Floats] | None = field(default_factory=lambda: None)
 
     # Methods that stand in files of their own.
+    euler_angles = _angles.euler_angles
+    euler_rates = _angles.euler_rates
     torque = _acting.torque
     force = _acting.force
     angular_acceleration = _acting.angular_acceleration
@@ -107,6 +108,9 @@ class Trajectory:
     plot = _outlets.plot
     view = _outlets.view
     animate = _outlets.animate
+    _carried_now = _carried.now
+    _acting = _carried.acting
+    _exact = _carried.exact
 
     @classmethod
     def _of_run(cls, known: dict[str, Any]) -> Trajectory:
@@ -201,51 +205,6 @@ class Trajectory:
             return in_body
         return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
 
-    def euler_angles(
-        self,
-        sequence: str = "ZXZ",
-        singular: Literal["raise", "nan"] = "raise",
-        *,
-        unwrap: bool = False,
-    ) -> Floats:
-        """Euler angles of the attitude at every time.
-
-        Parameters
-        ----------
-        sequence : str
-            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
-        singular : {"raise", "nan"}
-            What to do at an attitude at which two of the angles are not defined; ``np.isnan`` of the result
-            is the mask of those.
-        unwrap : bool
-            Let the first and the third angle run on over many turns, each by less than half a turn between
-            neighbouring times at which it is defined; else each is within its range.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-            In radians.
-        """
-        angles = _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
-        return _unwrapped(angles) if unwrap else angles
-
-    def euler_rates(self, sequence: str = "ZXZ", singular: Literal["raise", "nan"] = "raise") -> Floats:
-        """Rates of the Euler angles at every time.
-
-        Parameters
-        ----------
-        sequence : str
-            As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
-        singular : {"raise", "nan"}
-            What to do at an attitude at which the angles or their rates are not defined.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T, 3)
-        """
-        angles = self.euler_angles(sequence, singular)
-        return _core.euler_rates(angles, self.omega, sequence, "body", singular)
-
     def point(self, r: Literal["center_of_mass", "origin"] | ArrayLike) -> Floats:
         """Position in space of a point of the body at every time.
 
@@ -286,13 +245,22 @@ class Trajectory:
         spin = self.angular_momentum().spin
         energy = None if potential is None else kinetic + potential
         kept = self._kept_directions()
-        along = None if kept is None else spin if kept is True else np.einsum("...ti,...i->...t", spin, kept)
-        size = lengths(spin)
+        along = None
+        if kept is not None:
+            along = spin if kept is True else np.einsum("...i,...i->...", spin, self._per_time(kept))
+
+        def drifted(values: Floats, size: Floats) -> Any:
+            stack = size.shape[: size.ndim - self.t.ndim]
+            if not self.t.size:
+                return np.zeros(stack)[()]
+            flat = (*stack, self.t.size)  # whatever the shape of t
+            return drift(values.reshape(*flat, *values.shape[size.ndim :]), size.reshape(flat))
+
         return Invariants(
             energy,
             along,
-            None if potential is None else drift(kinetic + potential, kinetic + np.abs(potential)),
-            None if along is None else drift(along, size),
+            None if potential is None else drifted(kinetic + potential, kinetic + np.abs(potential)),
+            None if along is None else drifted(along, lengths(spin)),
         )
 
     def state(self, index: int = -1) -> State:
@@ -307,6 +275,9 @@ class Trajectory:
         -------
         State
         """
+        if self.t.ndim == 0:  # of an exact motion, at one time
+            return State(self.omega, self.quaternion, self.position, self.velocity)
+        self._check_series("state")
         at: list[Floats] = [
             x[..., index, :] for x in (self.omega, self.quaternion, self.position, self.velocity)
         ]
@@ -344,8 +315,16 @@ class Trajectory:
         return self.body[(..., *self._time_axes())]
 
     def _time_axes(self) -> tuple[None, ...]:
-        """One new axis for a series of times; for a free motion as many as its times have."""
+        """One new axis for a series of times; for an exact motion as many as its times have."""
         return (np.newaxis,) * self.t.ndim
+
+    def _check_series(self, what: str) -> None:
+        """Refuse times other than a series: an exact motion is known at times of any shape."""
+        if self.t.ndim != 1 or not self.t.size:
+            raise ValueError(
+                f"{what}: needs a series of times, and t of this motion has the shape {self.t.shape}; "
+                "ask for times of shape (T,)"
+            )
 
     def _per_time(self, vectors: Floats) -> Floats:
         """Give vectors the axes of time before their components."""
@@ -356,7 +335,7 @@ class Trajectory:
 
     def _over_time(self, load: _core.Load) -> _core.Load:
         """Give a stack of loads an axis for time, along which it broadcasts."""
-        return load[..., np.newaxis] if load.shape else load
+        return load[(..., *self._time_axes())] if load.shape else load
 
     def _states(self) -> tuple[Floats, ...]:
         return self.t, self.omega, self.quaternion, self.position, self.velocity
@@ -364,62 +343,19 @@ class Trajectory:
     def _own_states(self) -> dict[str, Floats] | None:
         return self.states or None
 
-    def _carried_now(self) -> tuple[Floats, Floats] | None:
-        """Give momentum and energy of what the body carries along under the load, or as a gyrostat."""
-        if "_rotor" in self.__dict__:
-            momentum, free = self.__dict__["_rotor"]
-            of_free = np.einsum(
-                "...ij,...j->...i", free[(..., *self._time_axes(), slice(None), slice(None))], self.omega
-            )
-            return self._per_time(momentum) - of_free, -0.5 * np.einsum("...i,...i->...", self.omega, of_free)
-        if self.load is None or not self.load.carries:
-            return None
-        return self._over_time(self.load).carried(self.t, self.omega, self._own_states())
-
-    def _acting(self, what: str) -> _core.Load | None:
-        """Give the load under which a simulation finds this motion; of a gyrostat a rotor."""
-        if self.load is None and self._is_loaded() and self.carried is None:
-            raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
-        if self.load is not None or self.carried is None:
-            return self.load
-        momentum, free = self.__dict__.get("_rotor", (None, None))
-        if momentum is None:
-            raise ValueError(
-                f"{what}: the body carries something along of which these states tell the momentum alone, "
-                "not the load; a file does not hold it"
-            )
-        if np.any(free):
-            raise ValueError(
-                f"{what}: a simulation follows free wheels under loads.wheel; of this motion "
-                "GyrostatMotion.at gives the state at any time"
-            )
-        return _core.rotor(momentum)
-
     def _is_loaded(self) -> bool:
         """Tell whether a load acted, which a motion from a file does not have."""
         return self.load is not None or "_was_loaded" in self.__dict__
-
-    def _exact(self) -> _core.FreeMotion | _core.GyrostatMotion | None:
-        """Give the motion in closed form from the first state on, of one body; None where none is known."""
-        if self._is_loaded() or self.pivoted:
-            return None
-        if "_rotor" not in self.__dict__:
-            return self.body.free_motion(self.omega[0], self.quaternion[0]) if self.carried is None else None
-        momentum, free = self.__dict__["_rotor"]
-        inertias, axes = np.linalg.eigh(free)  # of at most three wheels that are free together
-        wheels = [
-            wheel(axis=axis, inertia=inertia, momentum=0.0)
-            for inertia, axis in zip(inertias, axes.T, strict=True)
-            if inertia > 0.0
-        ]
-        gyrostat = self.body.gyrostat(momentum - free @ self.omega[0], wheels=wheels)
-        return gyrostat.free_motion(self.omega[0], self.quaternion[0])
 
     def _about_word(self) -> Literal["origin", "center_of_mass"]:
         return "origin" if self.pivoted else "center_of_mass"
 
     def _subject(self) -> dict[str, Any]:
-        return {"body": self._bodies(), "about": self._about_word(), "start": float(self.t[0])}
+        return {
+            "body": self._bodies(),
+            "about": self._about_word(),
+            "start": float(self.t.flat[0]) if self.t.size else 0.0,
+        }
 
     def _potential(self) -> Floats | None:
         if self.load is None:
@@ -433,13 +369,3 @@ class Trajectory:
         if self.load is None:
             return None if self._is_loaded() else True
         return self.load.keeps_momentum(self._about_word())
-
-
-def _unwrapped(angles: Floats) -> Floats:
-    """Unwrap angles (..., T, 3) along the times, over gaps that are not numbers."""
-    columns = np.moveaxis(angles, -2, -1)
-    series = columns.reshape(-1, columns.shape[-1]).copy()
-    for one in series:
-        known = ~np.isnan(one)
-        one[known] = np.unwrap(one[known])
-    return np.moveaxis(series.reshape(columns.shape), -1, -2)

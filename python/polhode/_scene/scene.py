@@ -86,6 +86,7 @@ class Scene:
         Where nothing acts on the body its motion is known between the samples too, and the frames are as many
         as it needs; else, or where `frames` says how many, they are samples.
         """
+        trajectory._check_series("animate")
         if trajectory.omega.ndim != 2:
             stack = trajectory.omega.shape[:-2]
             raise ValueError(
@@ -93,8 +94,6 @@ class Scene:
             )
         if not np.isfinite(trajectory.omega).all() or not np.isfinite(trajectory.quaternion).all():
             raise ValueError("animate: the motion holds states that are not numbers; it ended early")
-        if not len(trajectory):
-            raise ValueError("animate: the motion has no times; ask for some")
         _check_duration(duration)
         motion = trajectory._exact() if frames is None else None
         if motion is not None:

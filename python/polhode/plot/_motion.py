@@ -56,6 +56,7 @@ def angular_velocity(
     -------
     matplotlib.axes.Axes
     """
+    trajectory._check_series("angular_velocity")
     ax = axes_2d(ax)
     omega = trajectory.omega
     if frame == "principal":
@@ -105,6 +106,7 @@ def angular_momentum(
     -------
     matplotlib.axes.Axes
     """
+    trajectory._check_series("angular_momentum")
     ax = axes_2d(ax)
     spin = trajectory.angular_momentum(frame).spin
     half = _bands.of_spin(trajectory, frame, coverage)
@@ -144,6 +146,7 @@ def euler_angles(
     -------
     matplotlib.axes.Axes
     """
+    trajectory._check_series("euler_angles")
     ax = axes_2d(ax)
     angles = np.rad2deg(trajectory.euler_angles(sequence, "nan", unwrap=unwrap))
     if not unwrap:
@@ -185,6 +188,7 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
         raise ValueError(
             "trajectory: its load keeps neither the energy nor a component of the angular momentum"
         )
+    trajectory._check_series("invariants")
     ax = axes_2d(ax)
     size = lengths(trajectory.angular_momentum().spin)
     shown = [

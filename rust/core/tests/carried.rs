@@ -38,7 +38,7 @@ fn run(terms: &[Term], times: &[f64], method: Method, rtol: f64) -> Run<polhode:
 fn kept(terms: &[Term], phase: &Phase) -> (Vector3<f64>, f64) {
     let momentum = body().inertia() * phase.omega;
     let (mut sum, mut energy) = (momentum, 0.5 * momentum.dot(&phase.omega));
-    let mut own = &phase.inner[..];
+    let mut own = &phase.own[..];
     for carried in terms.iter().filter_map(Term::carried) {
         let (mine, others) = own.split_at(carried.count());
         own = others;
@@ -112,19 +112,12 @@ fn methods_agree_and_momentum_is_kept() {
         let (momentum, _) = kept(&terms, &series.samples[0]);
         for k in 0..TIMES.len() {
             let truth = &exact.samples[k];
-            assert_eq!(
-                truth.inner.len(),
-                terms.iter().map(Term::own).sum::<usize>()
-            );
+            assert_eq!(truth.own.len(), terms.iter().map(Term::own).sum::<usize>());
             for (run, allowed) in [(&series, 3e-14), (&stepped, 1e-10), (&implicit, 1e-7)] {
                 let phase = &run.samples[k];
                 let turned = (phase.attitude.coords - truth.attitude.coords).norm();
                 let spin = (phase.omega - truth.omega).norm();
-                let own = phase
-                    .inner
-                    .iter()
-                    .zip(&truth.inner)
-                    .map(|(a, b)| (a - b).abs());
+                let own = phase.own.iter().zip(&truth.own).map(|(a, b)| (a - b).abs());
                 let own = own.fold(0.0, f64::max);
                 let worst = turned.max(spin).max(own);
                 assert!(worst < allowed, "{terms:?} {k}: {worst:e}");

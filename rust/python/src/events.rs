@@ -8,7 +8,7 @@ use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::loads::{Fault, Slot, named};
+use crate::loads::{Fault, Named, Slot};
 
 /// The functions of an argument `events`.
 #[derive(Default)]
@@ -141,7 +141,7 @@ impl Events for Calling<'_, '_> {
                 function.call1(arguments)?
             } else {
                 let States { slots, terms } = &self.states;
-                let states = named(self.py, slots, terms, phase)?;
+                let states = Named::of(slots, terms, phase).dict(self.py)?;
                 let (t, omega, quaternion, position, velocity) = arguments;
                 function.call1((t, omega, quaternion, position, velocity, states))?
             };

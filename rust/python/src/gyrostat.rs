@@ -160,9 +160,13 @@ impl PyRigidBody {
         };
         let wheels = match wheels {
             Some(wheels) => {
-                let list: Vec<Bound<'_, PyAny>> =
-                    wheels.try_iter()?.collect::<PyResult<Vec<_>>>()?;
-                PyTuple::new(py, list)?
+                let list = wheels.try_iter().map_err(|_| {
+                    PyTypeError::new_err(format!(
+                        "wheels: expected a sequence of wheels, got {}; of one wheel [wheel]",
+                        wheels.get_type()
+                    ))
+                })?;
+                PyTuple::new(py, list.collect::<PyResult<Vec<_>>>()?)?
             }
             None => PyTuple::empty(py),
         };
@@ -237,8 +241,10 @@ impl PyGyrostat {
             return Ok(false);
         };
         let other = other.get();
-        let same = self.body.bind(py).eq(other.body.bind(py))?;
-        Ok(same && self.gyrostats == other.gyrostats)
+        let same = self.given == other.given && self.gyrostats == other.gyrostats;
+        Ok(same
+            && self.body.bind(py).eq(other.body.bind(py))?
+            && self.wheels.bind(py).eq(other.wheels.bind(py))?)
     }
 
     fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {

@@ -146,9 +146,13 @@ pub enum MotionFault {
         /// The principal moments.
         moments: [f64; 3],
     },
-    /// Output times do not run in one direction.
-    #[error("t must be strictly monotone: t[{index}] = {next:?} follows {previous:?}")]
+    /// Times do not run in one direction.
+    #[error("{what} must be strictly {order}: {what}[{index}] = {next:?} follows {previous:?}")]
     NotMonotone {
+        /// Which times.
+        what: &'static str,
+        /// Ascending, or either way.
+        order: &'static str,
         /// The index of the later time.
         index: usize,
         /// The earlier time.

@@ -41,7 +41,7 @@ pub struct Phase {
     /// Of the reference point, in N.
     pub velocity: Vector3<f64>,
     /// The states that the load has of its own, those of its parts one after the other; empty for most loads.
-    pub inner: Box<[f64]>,
+    pub own: Box<[f64]>,
 }
 
 impl Phase {
@@ -53,7 +53,7 @@ impl Phase {
             omega: state.omega,
             position: Vector3::zeros(),
             velocity: Vector3::zeros(),
-            inner: Box::default(),
+            own: Box::default(),
         }
     }
 
@@ -81,7 +81,7 @@ impl Phase {
     #[must_use]
     pub fn unknown(&self) -> Self {
         Self {
-            inner: vec![f64::NAN; self.inner.len()].into(),
+            own: vec![f64::NAN; self.own.len()].into(),
             ..Self::nan()
         }
     }
@@ -99,7 +99,7 @@ impl Phase {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         (self.numbers().iter())
-            .chain(&self.inner)
+            .chain(&self.own)
             .all(|x| x.is_finite())
     }
 }

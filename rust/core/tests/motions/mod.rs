@@ -108,7 +108,7 @@ pub(crate) fn gradient() -> Term {
 pub(crate) fn apart(a: &Phase, b: &Phase) -> f64 {
     let q = (a.attitude.coords - b.attitude.coords).norm();
     let q = q.min((a.attitude.coords + b.attitude.coords).norm());
-    let own = a.inner.iter().zip(&b.inner).map(|(a, b)| (a - b).abs());
+    let own = a.own.iter().zip(&b.own).map(|(a, b)| (a - b).abs());
     [
         2.0 * q,
         (a.omega - b.omega).norm(),

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use super::address::Compiled;
 use super::called::Callback;
 use super::load::PyLoad;
-use super::own::{Slot, named};
+use super::own::{Named, Slot};
 use super::stateful::WithStates;
 use crate::errors::to_py;
 
@@ -159,8 +159,7 @@ impl Load for Acting<'_, '_> {
         if let Some(py) = self.py
             && !self.with_states.is_empty()
         {
-            let states =
-                named(py, &self.slots, self.analytic.terms(), phase).map_err(Fault::Python)?;
+            let states = Named::of(&self.slots, self.analytic.terms(), phase);
             for one in &self.with_states {
                 let own = first..first + one.initial.len();
                 first = own.end;
@@ -179,7 +178,7 @@ impl Load for Acting<'_, '_> {
             } else {
                 &mut []
             };
-            sum += compiled.call(t, phase, &phase.inner[own], into);
+            sum += compiled.call(t, phase, &phase.own[own], into);
         }
         if let Some(py) = self.py {
             for callback in &self.callbacks {
@@ -206,9 +205,9 @@ impl Load for Acting<'_, '_> {
             return Ok(());
         };
         let now = (t, self.start);
-        let states = named(py, &self.slots, self.analytic.terms(), phase).map_err(Fault::Python)?;
+        let states = Named::of(&self.slots, self.analytic.terms(), phase);
         let mut first = self.first_of_functions();
-        let mut after = phase.inner.clone();
+        let mut after = phase.own.clone();
         for one in &self.with_states {
             let own = first..first + one.initial.len();
             first = own.end;
@@ -217,7 +216,7 @@ impl Load for Acting<'_, '_> {
                 after[own].copy_from_slice(&new);
             }
         }
-        phase.inner = after;
+        phase.own = after;
         Ok(())
     }
 }

@@ -10,11 +10,9 @@ use polhode::motion::loads::{Carried, Kept, Load, Subject, Term, Wrench};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 use super::acting::{Acting, Fault};
 use super::load::PyLoad;
-use super::own::carried_along;
 use crate::about::is_pivot;
 use crate::arrays::{Numbers, read, write_of};
 use crate::attitudes::read_quaternion;
@@ -24,9 +22,6 @@ use crate::errors::{at_row, to_py};
 use crate::interrupt::Beat;
 use crate::memory;
 use crate::stack::{BLOCK, Broadcast, Stack};
-
-/// An array of float64.
-type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 impl PyLoad {
     /// Force and torque at each row of times, states and bodies.
@@ -107,12 +102,14 @@ impl PyLoad {
                 let attitude = from_components("quaternion", &quaternion[q]);
                 (attitude.map_err(Fault::Core))
                     .and_then(|attitude| {
+                        self.check_given(&terms[l], t[k], &omega[w], &states[s])
+                            .map_err(Fault::Python)?;
                         let phase = Phase {
                             attitude,
                             omega: omega[w],
                             position: position[r],
                             velocity: velocity[v],
-                            inner: self.begun(&terms[l], t[k], &omega[w], &states[s]),
+                            own: self.begun(&terms[l], t[k], &omega[w], &states[s]),
                         };
                         acting.enter(t[k], t[k])?;
                         let wrench = acting.wrench(t[k], &phase)?;
@@ -192,62 +189,6 @@ impl PyLoad {
             py, t, omega, quaternion, position, velocity, body, about, start, states,
         )?;
         write_of(py, &wrenches, |wrench| wrench.torque)
-    }
-
-    /// What the body carries along under the load, beside ``I ω`` and ``½ ω·I ω``: wheels, rotors, slugs.
-    ///
-    /// Parameters
-    /// ----------
-    /// t : array_like, shape (...)
-    /// omega : array_like, shape (..., 3)
-    /// states : dict of str and array_like, shape (..., k), optional
-    ///
-    /// Returns
-    /// -------
-    /// momentum : numpy.ndarray, shape (..., 3)
-    ///     In the body frame.
-    /// energy : numpy.ndarray, shape (...)
-    #[pyo3(signature = (t, omega, states=None))]
-    fn carried<'py>(
-        &self,
-        py: Python<'py>,
-        t: &Bound<'py, PyAny>,
-        omega: &Bound<'py, PyAny>,
-        states: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Floats<'py>, Floats<'py>)> {
-        let (terms, t): (_, Stack<f64>) = (self.terms(py)?, read(t, "t")?);
-        let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
-        let states = self.read_states(states, true)?;
-        let shapes = [&terms.shape[..], &t.shape, &omega.shape, &states.shape];
-        let grid = Broadcast::of(["load", "t", "omega", "states"], shapes)?;
-        let found = grid.try_map(py, |[l, k, w, s]| {
-            Ok(carried_along(&terms[l], t[k], &omega[w], &states[s]))
-        })?;
-        Ok((
-            write_of(py, &found, |found| found.0)?,
-            write_of(py, &found, |found| found.1)?,
-        ))
-    }
-
-    /// Whether the body carries something along under the load: wheels, rotors, slugs.
-    #[getter]
-    fn carries(&self, py: Python<'_>) -> PyResult<bool> {
-        let terms = self.terms(py)?;
-        Ok(terms
-            .rows
-            .iter()
-            .flatten()
-            .any(|term| term.carried().is_some()))
-    }
-
-    /// The states that the load has of its own: how many, by name.
-    #[getter]
-    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let named = PyDict::new(py);
-        for slot in self.slots() {
-            named.set_item(slot.name, slot.count)?;
-        }
-        Ok(named)
     }
 
     /// Sum of the forces of the load, at a time and a state; arguments as of `torque`.

@@ -6,6 +6,7 @@
 //! | `address` | a function at an address |
 //! | `stateful` | Python functions with states of their own |
 //! | `own` | the states that a load has of its own, by name |
+//! | `inside` | what a body carries along under a load |
 //! | `wheels` | the functions that make rotors, wheels and slugs |
 //! | `recipe` | how a term was made, for pickle |
 //! | `part` | one term, scaled, scheduled, picked |
@@ -20,6 +21,7 @@ mod address;
 mod called;
 mod evaluate;
 mod functions;
+mod inside;
 mod load;
 mod operators;
 mod own;
@@ -32,7 +34,7 @@ mod wheels;
 pub(crate) use acting::{Acting, Fault};
 pub(crate) use functions::{callback, compiled, torque_callback, with_states};
 pub(crate) use load::PyLoad;
-pub(crate) use own::{Slot, named, reported};
+pub(crate) use own::{Named, Slot, reported};
 pub(crate) use terms::{
     constant_force, constant_torque, damping, feedback, gravity_gradient, sampled, schedule,
     uniform_gravity,

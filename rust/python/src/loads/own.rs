@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyUntypedArrayMethods};
-use polhode::motion::loads::{Carried, Term};
+use polhode::motion::loads::Term;
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -14,6 +14,10 @@ use super::stateful::MOST_STATES;
 use crate::arrays::floats;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
+
+/// Relative to it or to what counts as large, states that differ less are the same: those at the end of a run, of a wheel whose
+/// speed is known.
+const SAME: f64 = 1e-9;
 
 /// The states of one part of a load among those of all.
 #[derive(Clone, Debug)]
@@ -83,6 +87,35 @@ impl PyLoad {
         states.into()
     }
 
+    /// That states are given only where they can be: that of a wheel whose speed is known follows from it.
+    pub(crate) fn check_given(
+        &self,
+        terms: &[Term],
+        t: f64,
+        omega: &Vector3<f64>,
+        given: &[f64],
+    ) -> PyResult<()> {
+        let kept = self.begun(terms, t, omega, given);
+        let phase = Phase {
+            omega: *omega,
+            own: kept,
+            ..Phase::nan()
+        };
+        let kept = reported(terms, &phase);
+        let sizes = (terms.iter().filter_map(Term::carried))
+            .flat_map(|carried| vec![carried.size() * omega.norm(); carried.count()]);
+        for ((value, kept), size) in given.iter().zip(kept).zip(sizes) {
+            let large = value.abs().max(kept.abs()).max(size);
+            if (value - kept).abs() > SAME * large {
+                return Err(PyValueError::new_err(format!(
+                    "states: a wheel whose speed is known has the momentum {kept:?} at t = {t:?}, got {value:?}; leave it out, or give \
+                     the wheel another speed"
+                )));
+            }
+        }
+        Ok(())
+    }
+
     /// That a run from one time to another can be made.
     pub(crate) fn check_run(&self, from: f64, to: f64) -> PyResult<()> {
         let count: usize = self.slots().iter().map(|slot| slot.count).sum();
@@ -129,7 +162,9 @@ impl PyLoad {
             ))
         })?;
         for key in given.keys() {
-            let name: String = key.extract()?;
+            let name: String = key.extract().map_err(|_| {
+                PyTypeError::new_err(format!("states: names are strings, got {key}"))
+            })?;
             if !slots.iter().any(|slot| slot.name == name) {
                 let known = if slots.is_empty() {
                     "the load has none".to_owned()
@@ -164,18 +199,27 @@ impl PyLoad {
 }
 
 /// The names and numbers of the states of a phase, for functions of Python.
-pub(crate) fn named<'py>(
-    py: Python<'py>,
-    slots: &[Slot],
-    terms: &[Term],
-    phase: &Phase,
-) -> PyResult<Bound<'py, PyDict>> {
-    let states = reported(terms, phase);
-    let named = PyDict::new(py);
-    for slot in slots {
-        named.set_item(&slot.name, PyArray1::from_slice(py, slot.of(&states)))?;
+pub(crate) struct Named<'a> {
+    slots: &'a [Slot],
+    states: Vec<f64>,
+}
+
+impl<'a> Named<'a> {
+    pub(crate) fn of(slots: &'a [Slot], terms: &[Term], phase: &Phase) -> Self {
+        Self {
+            slots,
+            states: reported(terms, phase),
+        }
     }
-    Ok(named)
+
+    /// A dict for one call: a function may write into it what it likes.
+    pub(crate) fn dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for slot in self.slots {
+            dict.set_item(&slot.name, PyArray1::from_slice(py, slot.of(&self.states)))?;
+        }
+        Ok(dict)
+    }
 }
 
 /// A name that no slot has yet: the one that is asked for, or with the first number that makes it one.
@@ -217,7 +261,7 @@ fn one(values: &Bound<'_, PyAny>, slot: &Slot, with_holes: bool) -> PyResult<Sta
 
 /// The states of a phase as they are reported.
 pub(crate) fn reported(terms: &[Term], phase: &Phase) -> Vec<f64> {
-    let mut states = phase.inner.to_vec();
+    let mut states = phase.own.to_vec();
     let mut first = 0;
     for carried in terms.iter().filter_map(Term::carried) {
         let mine = first..first + carried.count();
@@ -228,32 +272,4 @@ pub(crate) fn reported(terms: &[Term], phase: &Phase) -> Vec<f64> {
         first = mine.end;
     }
     states
-}
-
-/// What the terms carry along at a time: momentum beside I ω and energy beside ½ ω·I ω, from the states as they are reported.
-pub(crate) fn carried_along(
-    terms: &[Term],
-    t: f64,
-    omega: &Vector3<f64>,
-    reported: &[f64],
-) -> (Vector3<f64>, f64) {
-    let (mut momentum, mut energy, mut first) = (Vector3::zeros(), 0.0, 0);
-    for carried in terms.iter().filter_map(Term::carried) {
-        let mine = reported
-            .get(first..first + carried.count())
-            .unwrap_or_default();
-        first += carried.count();
-        let own = own_of(carried, mine, t, omega);
-        momentum += carried.momentum(&own, omega);
-        energy += carried.energy(&own, omega);
-    }
-    (momentum, energy)
-}
-
-fn own_of(carried: &dyn Carried, reported: &[f64], t: f64, omega: &Vector3<f64>) -> Vec<f64> {
-    if carried.count() == 0 {
-        Vec::new()
-    } else {
-        carried.resumed(reported, t, omega)
-    }
 }

@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 use pyo3::{PyTraverseError, PyVisit};
 
 use super::called::vector;
+use super::own::Named;
 use crate::arrays::{floats, list_floats};
 use crate::errors::new;
 
@@ -146,12 +147,12 @@ impl WithStates {
         py: Python<'_>,
         (t, start): (f64, f64),
         phase: &Phase,
-        states: &Bound<'_, PyDict>,
+        states: &Named<'_>,
     ) -> PyResult<Option<Vec<f64>>> {
         let Some(update) = self.update.as_ref().filter(|_| self.is_due(t, start)) else {
             return Ok(None);
         };
-        let returned = update.bind(py).call1(arguments(py, t, phase, states))?;
+        let returned = update.bind(py).call1(arguments(py, t, phase, states)?)?;
         numbers(&returned, "states that update", self.initial.len(), t).map(Some)
     }
 
@@ -161,11 +162,11 @@ impl WithStates {
         py: Python<'_>,
         t: f64,
         phase: &Phase,
-        states: &Bound<'_, PyDict>,
+        states: &Named<'_>,
         rates: &mut [f64],
     ) -> PyResult<()> {
         if let Some(function) = &self.rates {
-            let returned = function.bind(py).call1(arguments(py, t, phase, states))?;
+            let returned = function.bind(py).call1(arguments(py, t, phase, states)?)?;
             rates.copy_from_slice(&numbers(&returned, "rates that rates", rates.len(), t)?);
         }
         Ok(())
@@ -177,12 +178,12 @@ impl WithStates {
         py: Python<'_>,
         t: f64,
         phase: &Phase,
-        states: &Bound<'_, PyDict>,
+        states: &Named<'_>,
     ) -> PyResult<Wrench> {
         let Some(function) = &self.wrench else {
             return Ok(Wrench::default());
         };
-        let returned = function.bind(py).call1(arguments(py, t, phase, states))?;
+        let returned = function.bind(py).call1(arguments(py, t, phase, states)?)?;
         let Ok((force, torque)) = returned.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>() else {
             return Err(PyTypeError::new_err(format!(
                 "wrench must return a pair (force in space, torque in the body), got {}",
@@ -203,31 +204,31 @@ impl WithStates {
 /// The most updates of a run: their times take 8 bytes each.
 const MOST_UPDATES: f64 = 1e8;
 
-type Arguments<'a, 'py> = (
+type Arguments<'py> = (
     f64,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
-    &'a Bound<'py, PyDict>,
+    Bound<'py, PyDict>,
 );
 
 /// What every function is called with.
-fn arguments<'a, 'py>(
+fn arguments<'py>(
     py: Python<'py>,
     t: f64,
     phase: &Phase,
-    states: &'a Bound<'py, PyDict>,
-) -> Arguments<'a, 'py> {
+    states: &Named<'_>,
+) -> PyResult<Arguments<'py>> {
     let array = |numbers: &[f64]| PyArray1::from_slice(py, numbers);
-    (
+    Ok((
         t,
         array(phase.omega.as_slice()),
         array(&components(&phase.attitude)),
         array(phase.position.as_slice()),
         array(phase.velocity.as_slice()),
-        states,
-    )
+        states.dict(py)?,
+    ))
 }
 
 /// So many finite numbers from what a function returned.

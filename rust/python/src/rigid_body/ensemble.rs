@@ -65,7 +65,7 @@ pub(super) type Runs = Vec<Option<Run<Fault>>>;
 pub(super) type Results<'py> = PyResult<(Bound<'py, PyAny>, bool)>;
 
 impl Ensemble<'_> {
-    /// Every state at the start must be finite.
+    /// Every state at the start must be finite, and those of the load's own such as it has.
     pub(super) fn check(&self, py: Python<'_>) -> PyResult<()> {
         for (name, stack) in [
             ("omega", &self.start.omega),
@@ -77,6 +77,17 @@ impl Ensemble<'_> {
                     let error = polhode::Error::NonFinite { what: name, value };
                     return Err(at_row(&stack.shape, row, &to_py(py, &error), py));
                 }
+            }
+        }
+        if self.start.states.rows.iter().any(|given| !given.is_empty()) {
+            for row in 0..self.grid.len() {
+                let [_, w, _, _, _, l, s] = self.grid.operands(row);
+                let (terms, states) = (&self.start.terms[l], &self.start.states[s]);
+                let omega = &self.start.omega[w];
+                (self
+                    .load
+                    .check_given(terms, self.plan.times()[0], omega, states))
+                .map_err(|error| at_row(&self.grid.shape, row, &error, py))?;
             }
         }
         Ok(())
@@ -130,8 +141,8 @@ impl Ensemble<'_> {
             let terms = Rows::terms(self, row);
             let found = run.crossings.iter_mut().map(|crossing| &mut crossing.phase);
             for phase in run.samples.iter_mut().chain(found).chain([&mut run.phase]) {
-                if !phase.inner.is_empty() {
-                    phase.inner = reported(terms, phase).into();
+                if !phase.own.is_empty() {
+                    phase.own = reported(terms, phase).into();
                 }
             }
         }
@@ -173,7 +184,7 @@ impl Rows for Ensemble<'_> {
     fn start(&self, row: usize) -> (usize, Phase) {
         let [b, w, q, r, v, l, s] = self.grid.operands(row);
         let omega = self.start.omega[w];
-        let inner = self.load.begun(
+        let own = self.load.begun(
             &self.start.terms[l],
             self.plan.times()[0],
             &omega,
@@ -184,7 +195,7 @@ impl Rows for Ensemble<'_> {
             omega,
             position: self.start.position[r],
             velocity: self.start.velocity[v],
-            inner,
+            own,
         };
         (b, initial)
     }

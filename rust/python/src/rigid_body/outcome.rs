@@ -52,7 +52,7 @@ impl Outcome {
         let named = PyDict::new(py);
         for slot in &self.slots {
             let found = self.crossings.iter();
-            let values = found.flat_map(|(_, crossing)| slot.of(&crossing.phase.inner));
+            let values = found.flat_map(|(_, crossing)| slot.of(&crossing.phase.own));
             let values = PyArray1::from_vec(py, values.copied().collect());
             named.set_item(
                 &slot.name,
@@ -291,7 +291,7 @@ fn states<'py>(
         for row in rows {
             match row {
                 Some(states) => numbers.put(*states, |phase, out| {
-                    out.extend_from_slice(slot.of(&phase.inner));
+                    out.extend_from_slice(slot.of(&phase.own));
                 })?,
                 None => numbers.put(0..times, |_, out| {
                     out.extend(std::iter::repeat_n(f64::NAN, slot.count));

@@ -1,18 +1,18 @@
 //! A free motion from its start, and the states at any time.
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::circling;
 use super::mode::Mode;
-use super::propagator::{At, Propagator, Sample};
+use super::propagator::Propagator;
 use super::secular::Secular;
 use super::separation::Separation;
 use super::tumbling::Tumbling;
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::{RefinedPrincipal, Vector};
+use crate::motion::evaluate;
 use crate::motion::state::{ClosedForm, State};
-use crate::numerics::dispatch::dispatch;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::power_below;
 
@@ -105,14 +105,7 @@ impl FreeMotion {
     /// The attitude is continuous in t as a quaternion, not only as a rotation.
     #[must_use]
     pub fn at(&self, t: f64) -> State {
-        let [x, y, z, w, p, q, r] = dispatch(At {
-            propagator: &self.propagator,
-            time: t,
-        });
-        State {
-            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
-            omega: Vector3::new(p, q, r),
-        }
+        evaluate::at(&self.propagator, t)
     }
 
     /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
@@ -120,27 +113,7 @@ impl FreeMotion {
     /// # Panics
     /// If the lengths differ.
     pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        assert_eq!(times.len(), attitudes.len(), "an attitude for each time");
-        assert_eq!(
-            times.len(),
-            omegas.len(),
-            "an angular velocity for each time"
-        );
-        if times.len() < FEW {
-            for ((&time, attitude), omega) in times.iter().zip(attitudes).zip(omegas) {
-                let propagator = &self.propagator;
-                let [x, y, z, w, p, q, r] = dispatch(At { propagator, time });
-                *attitude = [x, y, z, w];
-                *omega = [p, q, r];
-            }
-            return;
-        }
-        dispatch(Sample {
-            propagator: &self.propagator,
-            times,
-            attitudes,
-            omegas,
-        });
+        evaluate::sample(&self.propagator, times, attitudes, omegas);
     }
 }
 
@@ -153,6 +126,3 @@ impl ClosedForm for FreeMotion {
         Self::sample(self, times, attitudes, omegas);
     }
 }
-
-/// Fewer times than this are done one by one.
-const FEW: usize = 8;

@@ -1,19 +1,19 @@
 //! A gyrostat's motion from its start, and the states at any time.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::constants::{Given, Secular, moving, steady};
 use super::curve::Curve;
 use super::mode::Mode;
-use super::propagator::{At, Propagator, Sample};
+use super::propagator::Propagator;
 use super::quartic::Invariants;
 use super::spinor::Spinor;
 use super::start::Start;
 use crate::error::{Error, MotionFault, all_finite};
 use crate::mass::refined::{RefinedPrincipal, Vector};
+use crate::motion::evaluate;
 use crate::motion::free::{self, FreeMotion};
 use crate::motion::state::{ClosedForm, State};
-use crate::numerics::dispatch::dispatch;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::quad_double::QuadDouble;
@@ -186,14 +186,7 @@ impl GyrostatMotion {
             Way::Free(motion) => return motion.at(t),
             Way::Within(propagator) => propagator,
         };
-        let [x, y, z, w, p, q, r] = dispatch(At {
-            propagator,
-            time: t,
-        });
-        State {
-            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
-            omega: Vector3::new(p, q, r),
-        }
+        evaluate::at(propagator, t)
     }
 
     /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
@@ -205,26 +198,7 @@ impl GyrostatMotion {
             Way::Free(motion) => return motion.sample(times, attitudes, omegas),
             Way::Within(propagator) => propagator,
         };
-        assert_eq!(times.len(), attitudes.len(), "an attitude for each time");
-        assert_eq!(
-            times.len(),
-            omegas.len(),
-            "an angular velocity for each time"
-        );
-        if times.len() < FEW {
-            for ((&time, attitude), omega) in times.iter().zip(attitudes).zip(omegas) {
-                let [x, y, z, w, p, q, r] = dispatch(At { propagator, time });
-                *attitude = [x, y, z, w];
-                *omega = [p, q, r];
-            }
-            return;
-        }
-        dispatch(Sample {
-            propagator,
-            times,
-            attitudes,
-            omegas,
-        });
+        evaluate::sample(propagator, times, attitudes, omegas);
     }
 }
 
@@ -240,9 +214,6 @@ impl ClosedForm for GyrostatMotion {
         Self::sample(self, times, attitudes, omegas);
     }
 }
-
-/// Fewer times than this are done one by one.
-const FEW: usize = 8;
 
 /// `I ω + h` in space, and `½ ω·I ω`.
 fn kept(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3<f64>, f64) {

@@ -1,9 +1,8 @@
 //! The state at any time from a few constants: two theta functions for the attitude and ω alike.
 
-use crate::numerics::dispatch::Kernel;
+use crate::motion::evaluate::{Formula, Motion, Use, combine};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
-use crate::numerics::planes::{Planes, ROWS};
 use crate::numerics::theta::circular;
 use crate::numerics::turns::{exp_minus, reach, sin_cos_turns, turns, whole_off};
 
@@ -232,99 +231,27 @@ impl Propagator {
     }
 }
 
-/// Σ `numbers[k]` `columns[k]`.
-#[inline(always)]
-fn combine<L: Lane, const N: usize>(columns: &[[f64; N]; 4], numbers: [L; 4]) -> [L; N] {
-    let mut sums = [L::new(0.0); N];
-    let mut i = 0;
-    while i < N {
-        let mut sum = L::new(columns[0][i]) * numbers[0];
-        let mut k = 1;
-        while k < 4 {
-            sum = L::new(columns[k][i]).mul_add(numbers[k], sum);
-            k += 1;
-        }
-        sums[i] = sum;
-        i += 1;
-    }
-    sums
-}
-
-/// The state at one time.
-pub(super) struct At<'a> {
-    pub(super) propagator: &'a Propagator,
-    pub(super) time: f64,
-}
-
-impl Kernel for At<'_> {
-    type Output = [f64; 7];
-
+impl Motion for Propagator {
     #[inline(always)]
-    fn run<L: Lane>(self) -> [f64; 7] {
-        let (propagator, t) = (self.propagator, L::new(self.time));
-        let is_endless = matches!(propagator.clock, Clock::Endless { .. });
-        match &propagator.series {
-            AnySeries::Circular(series) => propagator.state::<L, false>(series, t),
-            AnySeries::Hyperbolic(series) if is_endless => propagator.state::<L, true>(series, t),
-            AnySeries::Hyperbolic(series) => propagator.state::<L, false>(series, t),
-            AnySeries::Rational(series) => propagator.state::<L, true>(series, t),
-        }
-        .map(L::get)
-    }
-}
-
-/// The states at many times.
-pub(super) struct Sample<'a> {
-    pub(super) propagator: &'a Propagator,
-    pub(super) times: &'a [f64],
-    pub(super) attitudes: &'a mut [[f64; 4]],
-    pub(super) omegas: &'a mut [[f64; 3]],
-}
-
-impl Kernel for Sample<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lane>(self) {
-        let propagator = *self.propagator;
-        let is_endless = matches!(propagator.clock, Clock::Endless { .. });
-        match propagator.series {
-            AnySeries::Circular(series) => self.all::<L, false>(&propagator, &series),
+    fn choose<U: Use>(&self, then: U) -> U::Output {
+        let is_endless = matches!(self.clock, Clock::Endless { .. });
+        match self.series {
+            AnySeries::Circular(series) => then.with(&Chosen::<_, false>(self, series)),
             AnySeries::Hyperbolic(series) if is_endless => {
-                self.all::<L, true>(&propagator, &series);
+                then.with(&Chosen::<_, true>(self, series))
             }
-            AnySeries::Hyperbolic(series) => self.all::<L, false>(&propagator, &series),
-            AnySeries::Rational(series) => self.all::<L, true>(&propagator, &series),
+            AnySeries::Hyperbolic(series) => then.with(&Chosen::<_, false>(self, series)),
+            AnySeries::Rational(series) => then.with(&Chosen::<_, true>(self, series)),
         }
     }
 }
 
-impl Sample<'_> {
+/// A propagator with its series, and whether its clock is endless.
+struct Chosen<'a, S, const ENDLESS: bool>(&'a Propagator, S);
+
+impl<S: Series, const ENDLESS: bool> Formula for Chosen<'_, S, ENDLESS> {
     #[inline(always)]
-    fn all<L: Lane, const ENDLESS: bool>(self, propagator: &Propagator, series: &impl Series) {
-        let mut states = Planes::<7>::ZERO;
-        let mut times = Planes::<1>::ZERO;
-        let rows = (self.times.chunks(ROWS))
-            .zip(self.attitudes.chunks_mut(ROWS))
-            .zip(self.omegas.chunks_mut(ROWS));
-        for ((batch, attitudes), omegas) in rows {
-            for (row, &t) in batch.iter().enumerate() {
-                times.set(row, [t]);
-            }
-            for row in 0..ROWS {
-                let [t] = times.lanes::<L>(row);
-                states.set_lanes(row, propagator.state::<L, ENDLESS>(series, t));
-            }
-            write(&states, attitudes, omegas);
-        }
-    }
-}
-
-/// From planes to rows; outside the kernel, where the compiler would scatter.
-#[inline(never)]
-fn write(states: &Planes<7>, attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-    for (row, (attitude, omega)) in attitudes.iter_mut().zip(omegas).enumerate().take(ROWS) {
-        *attitude = states.get(row, 0);
-        *omega = states.get(row, 4);
+    fn state<L: Lane>(&self, t: L) -> [L; 7] {
+        self.0.state::<L, ENDLESS>(&self.1, t)
     }
 }

@@ -109,7 +109,7 @@ impl Load for Analytic<'_> {
 
     #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Error> {
-        let (mut own, mut rates) = (&phase.inner[..], rates);
+        let (mut own, mut rates) = (&phase.own[..], rates);
         let mut switches = self.switches.iter();
         let mut sum = Wrench::default();
         for term in &self.active {

@@ -55,6 +55,8 @@ impl Sampled {
         for (k, pair) in times.windows(2).enumerate() {
             if pair[1] <= pair[0] {
                 return Err(Error::Motion(MotionFault::NotMonotone {
+                    what: "t",
+                    order: "ascending",
                     index: k + 1,
                     previous: pair[0],
                     next: pair[1],

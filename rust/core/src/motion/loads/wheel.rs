@@ -137,6 +137,7 @@ impl Law for Wheel {
         }
     }
 
+    /// Names alone: derivatives of a motion with states of its own are refused, and [`Self::add_to`] does not ask for varied numbers.
     fn parameters(&self) -> Vec<Parameter> {
         vec![
             Parameter::new("axis", &[3]),

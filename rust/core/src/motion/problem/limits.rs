@@ -51,6 +51,8 @@ pub fn check_times(times: &[f64]) -> Result<(), Error> {
         };
         if !forward {
             return Err(Error::Motion(MotionFault::NotMonotone {
+                what: "t",
+                order: "monotone",
                 index: k + 1,
                 previous: pair[0],
                 next: pair[1],

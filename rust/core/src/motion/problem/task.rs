@@ -121,12 +121,12 @@ impl<'a> Task<'a> {
         carried: impl Iterator<Item = &'c dyn Carried>,
     ) -> Result<Self, Error> {
         let carried: Vec<_> = carried.collect();
-        if self.initial.inner.is_empty() {
+        if self.initial.own.is_empty() {
             let omega = self.initial.omega;
             let begun = carried
                 .iter()
                 .flat_map(|it| it.begin(self.times[0], &omega));
-            self.initial.inner = begun.collect();
+            self.initial.own = begun.collect();
         }
         let turning: Vec<_> = carried.iter().filter_map(|it| it.turning()).collect();
         if turning.is_empty() {

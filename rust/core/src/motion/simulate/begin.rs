@@ -23,7 +23,7 @@ where
     L::Error: 'a,
 {
     let moves = !task.subject.pivoted && load.exerts_force();
-    let own = span.phase.inner.len();
+    let own = span.phase.own.len();
     if own > 0 {
         return match method {
             Method::Radau | Method::Dop853 | Method::Auto | Method::Taylor

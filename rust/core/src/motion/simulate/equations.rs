@@ -64,7 +64,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
         tolerance: Tolerance,
         scales: Scales,
     ) -> Self {
-        let own = phase.inner.len();
+        let own = phase.own.len();
         let scales = Scales {
             own: if scales.own.is_empty() {
                 vec![0.0; own]
@@ -99,7 +99,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             q.i, q.j, q.k, q.w, w.x, w.y, w.z, r.x, r.y, r.z, v.x, v.y, v.z,
         ];
         let mut y = SVector::<f64, N>::zeros();
-        for (number, given) in y.iter_mut().zip(numbers.iter().chain(&phase.inner)) {
+        for (number, given) in y.iter_mut().zip(numbers.iter().chain(&phase.own)) {
             *number = *given;
         }
         y
@@ -124,7 +124,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             omega,
             position,
             velocity,
-            inner: y.as_slice()[N.min(MOVING)..][..self.own()].into(),
+            own: y.as_slice()[N.min(MOVING)..][..self.own()].into(),
         }
     }
 

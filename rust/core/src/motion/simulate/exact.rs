@@ -133,7 +133,7 @@ impl Closed {
             omega: state.omega,
             position: self.place(elapsed),
             velocity: self.velocity,
-            inner: Box::default(),
+            own: Box::default(),
         }
     }
 

@@ -32,7 +32,7 @@ pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
     let course = (task.clone())
         .carrying(terms.iter().filter_map(Term::carried))
         .and_then(|task| {
-            (run.samples[0].inner).clone_from(&task.initial.inner);
+            (run.samples[0].own).clone_from(&task.initial.own);
             Course::new(&task, terms, Fixed)
         });
     match course {

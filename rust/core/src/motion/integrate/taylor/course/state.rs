@@ -60,7 +60,7 @@ impl<X: Precision> Course<'_, X> {
             omega: (self.axes * Vector3::new(x, y, z)).map(X::rounded) * self.unit,
             position,
             velocity,
-            inner: self
+            own: self
                 .own_in_body(&besides.own)
                 .into_iter()
                 .map(X::rounded)
@@ -70,13 +70,7 @@ impl<X: Precision> Course<'_, X> {
 
     /// The load's own states at the start, vectors among them in principal axes.
     pub(in crate::motion::integrate::taylor) fn own_at_start(&self) -> Vec<X> {
-        let given: Vec<X> = self
-            .task
-            .initial
-            .inner
-            .iter()
-            .map(|&x| X::from(x))
-            .collect();
+        let given: Vec<X> = self.task.initial.own.iter().map(|&x| X::from(x)).collect();
         self.own_turned(&given, |vector| self.axes.tr_mul(&vector))
     }
 

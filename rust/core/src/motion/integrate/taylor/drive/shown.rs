@@ -55,7 +55,7 @@ impl Step {
             omega: Vector3::new(x, y, z),
             position,
             velocity,
-            inner: self.own_at(within),
+            own: self.own_at(within),
         }
     }
 

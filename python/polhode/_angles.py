@@ -1,0 +1,77 @@
+"""Euler angles along a motion, and their rates."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from polhode import _core
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode.trajectory import Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["euler_angles", "euler_rates"]
+
+
+def euler_angles(
+    self: Trajectory,
+    sequence: str = "ZXZ",
+    singular: Literal["raise", "nan"] = "raise",
+    *,
+    unwrap: bool = False,
+) -> Floats:
+    """Euler angles of the attitude at every time.
+
+    Parameters
+    ----------
+    sequence : str
+        As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
+    singular : {"raise", "nan"}
+        What to do at an attitude at which two of the angles are not defined; ``np.isnan`` of the result
+        is the mask of those.
+    unwrap : bool
+        Let the first and the third angle run on over many turns, each by less than half a turn between
+        neighbouring times at which it is defined; else each is within its range.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., T, 3)
+        In radians.
+    """
+    angles = _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
+    return _unwrapped(angles) if unwrap else angles
+
+
+def euler_rates(
+    self: Trajectory, sequence: str = "ZXZ", singular: Literal["raise", "nan"] = "raise"
+) -> Floats:
+    """Rates of the Euler angles at every time.
+
+    Parameters
+    ----------
+    sequence : str
+        As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
+    singular : {"raise", "nan"}
+        What to do at an attitude at which the angles or their rates are not defined.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., T, 3)
+    """
+    angles = self.euler_angles(sequence, singular)
+    return _core.euler_rates(angles, self.omega, sequence, "body", singular)
+
+
+def _unwrapped(angles: Floats) -> Floats:
+    """Unwrap angles (..., T, 3) along the times, over gaps that are not numbers."""
+    columns = np.moveaxis(angles, -2, -1)
+    series = columns.reshape(-1, columns.shape[-1]).copy()
+    for one in series:
+        known = ~np.isnan(one)
+        one[known] = np.unwrap(one[known])
+    return np.moveaxis(series.reshape(columns.shape), -1, -2)

@@ -1,0 +1,81 @@
+"""What a body carries along on its motion: the momentum of wheels, rotors and slugs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polhode import _core
+from polhode.gyrostat import wheel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode.trajectory import Trajectory
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["acting", "exact", "now", "of_rotor"]
+
+
+def now(self: Trajectory) -> tuple[Floats, Floats] | None:
+    """Give momentum and energy of what the body carries along under the load, or as a gyrostat."""
+    if "_rotor" in self.__dict__:
+        momentum, free = self.__dict__["_rotor"]
+        of_free = np.einsum(
+            "...ij,...j->...i", free[(..., *self._time_axes(), slice(None), slice(None))], self.omega
+        )
+        return self._per_time(momentum) - of_free, -0.5 * np.einsum("...i,...i->...", self.omega, of_free)
+    if self.load is None or not self.load.carries:
+        return None
+    return self._over_time(self.load).carried(self.t, self.omega, self._own_states())
+
+
+def acting(self: Trajectory, what: str) -> _core.Load | None:
+    """Give the load under which a simulation finds this motion; of a gyrostat a rotor."""
+    if self.load is None and self._is_loaded() and self.carried is None:
+        raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
+    if self.load is not None or self.carried is None:
+        return self.load
+    momentum, free = self.__dict__.get("_rotor", (None, None))
+    if momentum is None:
+        raise ValueError(
+            f"{what}: the body carries something along of which these states tell the momentum alone, "
+            "not the load; a file does not hold it"
+        )
+    if np.any(free):
+        raise ValueError(
+            f"{what}: a simulation follows free wheels under loads.wheel; of this motion "
+            "GyrostatMotion.at gives the state at any time"
+        )
+    return _core.rotor(momentum)
+
+
+def exact(self: Trajectory) -> _core.FreeMotion | _core.GyrostatMotion | None:
+    """Give the motion in closed form from the first state on, of one body; None where none is known."""
+    if self._is_loaded() or self.pivoted:
+        return None
+    if "_rotor" not in self.__dict__:
+        return self.body.free_motion(self.omega[0], self.quaternion[0]) if self.carried is None else None
+    momentum, free = self.__dict__["_rotor"]
+    inertias, axes = np.linalg.eigh(free)  # of at most three wheels that are free together
+    wheels = [
+        wheel(axis=axis, inertia=inertia, momentum=0.0)
+        for inertia, axis in zip(inertias, axes.T, strict=True)
+        if inertia > 0.0
+    ]
+    gyrostat = self.body.gyrostat(momentum - free @ self.omega[0], wheels=wheels)
+    return gyrostat.free_motion(self.omega[0], self.quaternion[0])
+
+
+def of_rotor(self: Trajectory) -> Floats:
+    """Torque of the momentum inside a gyrostat: its own ``(I − F) ω̇ + ω × ((I − F) ω + h) = 0``."""
+    momentum, free = self.__dict__["_rotor"]
+    tensor = self._bodies().inertia_about(self._reference())
+    inertias = free[(..., *self._time_axes(), slice(None), slice(None))]
+    total = np.einsum("...ij,...j->...i", tensor - inertias, self.omega) + self._per_time(momentum)
+    rate = np.linalg.solve(tensor - inertias, -np.cross(self.omega, total)[..., np.newaxis])
+    in_body = np.einsum("...ij,...j->...i", tensor, self.omega)
+    torque: Floats = (tensor @ rate)[..., 0] + np.cross(self.omega, in_body)
+    return torque

@@ -1,0 +1,101 @@
+"""What is known in closed form of symmetric tops: their precession, and what dissipation does to it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from polhode._repr import short
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["FreePrecession", "NutationDamping"]
+
+
+class NutationDamping(NamedTuple):
+    """What a small slug does to the nutation of a free symmetric top: ``tan θ = tan θ0 exp(rate t)``.
+
+    Attributes
+    ----------
+    rate : float or numpy.ndarray, shape (...)
+        Positive: the angle θ between the symmetry axis and L grows to a right angle; negative: it decays.
+    """
+
+    rate: Any
+
+    @property
+    def time_constant(self) -> Any:
+        """``1/|rate|``; infinite for three equal moments."""
+        with np.errstate(divide="ignore"):
+            return np.true_divide(1.0, np.abs(self.rate))[()]
+
+    @property
+    def verdict(self) -> Any:
+        """In a word: ``"damps"``, ``"flat spin"``, or ``"neutral"`` for three equal moments."""
+        words = np.array(["damps", "neutral", "flat spin"])[np.sign(self.rate).astype(int) + 1]
+        return words if words.ndim else str(words)
+
+    def angle(self, start: ArrayLike, t: ArrayLike) -> Any:
+        """θ at a time after it was `start`, both in radians from 0 to a right angle.
+
+        Parameters
+        ----------
+        start, t : array_like, shape (...)
+
+        Returns
+        -------
+        float or numpy.ndarray, shape (...)
+        """
+        grown = np.multiply(self.rate, t)
+        across = np.sin(start) * np.exp(np.minimum(grown, 0.0))
+        return np.arctan2(across, np.cos(start) * np.exp(-np.maximum(grown, 0.0)))[()]
+
+    def time(self, start: ArrayLike, end: ArrayLike) -> Any:
+        """Time in which θ comes from `start` to `end`; negative where it runs the other way.
+
+        Parameters
+        ----------
+        start, end : array_like, shape (...)
+            In radians, between 0 and a right angle.
+
+        Returns
+        -------
+        float or numpy.ndarray, shape (...)
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.true_divide(np.log(np.tan(end)) - np.log(np.tan(start)), self.rate)[()]
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class FreePrecession(NamedTuple):
+    """How a torque-free symmetric top precesses: n its symmetry axis, ω and L in one plane about L.
+
+    Attributes
+    ----------
+    axis : numpy.ndarray, shape (..., 3)
+        n in the body frame, toward the side of ω.
+    body_rate : float or numpy.ndarray, shape (...)
+        ``(I_s − I_t) ω_s/I_t``: ω and L circle about n, seen from the body. Negative for a prolate top.
+    space_rate : float or numpy.ndarray, shape (...)
+        ``L/I_t``: n and ω circle about L, seen from space.
+    body_cone, space_cone : float or numpy.ndarray, shape (...)
+        Half the opening of the body cone (between n and ω) and of the space cone (between L and ω).
+    nutation : float or numpy.ndarray, shape (...)
+        Between n and L.
+    """
+
+    axis: Floats
+    body_rate: Any
+    space_rate: Any
+    body_cone: Any
+    space_cone: Any
+    nutation: Any
+
+    def __repr__(self) -> str:
+        return short(self)
