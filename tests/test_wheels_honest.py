@@ -197,13 +197,13 @@ class TestWrongInSilence:
         found = BODY.gyrostat((0.1, 0.2, 0.3)).free_motion(omega).at(0.0).omega
         assert np.abs(found - omega).max() <= 1e-10 * np.abs(omega).max()
 
-    @known("squares underflow: rows of NaN among the equilibria")
     def test_equilibria_of_a_tiny_momentum(self) -> None:
-        assert np.isfinite(BODY.gyrostat((0, 0, 1.0)).equilibria(1e-160).direction).all()
+        for size in (1e-160, 1e-300):
+            assert np.isfinite(BODY.gyrostat((0, 0, 1.0)).equilibria(size).direction).all()
 
-    @known("squares overflow: no equilibria at all")
     def test_equilibria_of_a_huge_momentum(self) -> None:
-        assert len(BODY.gyrostat((0, 1e307, 0)).equilibria(2e307).kind) >= 2
+        plain, huge = BODY.gyrostat((0, 1.0, 0)).equilibria(2.0), BODY.gyrostat((0, 2.0**1020, 0))
+        assert np.array_equal(huge.equilibria(2.0**1021).direction, plain.direction)
 
     def test_wheels_never_change(self) -> None:
         axis = np.array([0.0, 0.0, 1.0])

@@ -4,6 +4,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_traits::{One, Zero};
 
+use super::power_of_two::times_power_of_two;
+
 /// `a + b = s + e` exactly, s the rounded sum (Knuth); for doubles and for [lanes](super::lane::Lane).
 #[inline(always)]
 #[must_use]
@@ -119,6 +121,15 @@ impl DoubleDouble {
         Self {
             high: self.high * power_of_two,
             low: self.low * power_of_two,
+        }
+    }
+
+    /// Times `2^e`, which need not be a number.
+    #[must_use]
+    pub fn times_power_of_two(self, e: i32) -> Self {
+        Self {
+            high: times_power_of_two(self.high, e),
+            low: times_power_of_two(self.low, e),
         }
     }
 

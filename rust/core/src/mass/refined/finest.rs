@@ -102,3 +102,32 @@ impl Finest {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_that_are_known_are_corrected_and_others_stay() {
+        let diagonal = [1.0, 2.0, 3.0].map(QuadDouble::from);
+        let zero = QuadDouble::from(0.0);
+        let rows = std::array::from_fn(|i| {
+            std::array::from_fn(|j| if i == j { diagonal[i] } else { zero })
+        });
+        let (one, off) = (QuadDouble::from(1.0), |angle| QuadDouble::from(angle));
+        for (angle, is_known) in [(0.9 * ARBITRARY, true), (1.1 * ARBITRARY, false)] {
+            let mut finest = Finest {
+                moments: diagonal,
+                axes: orthonormal(&[
+                    [one, off(angle), zero],
+                    [off(-angle), one, zero],
+                    [zero, zero, one],
+                ]),
+            };
+            finest.refine(&rows);
+            let left = finest.axes[0][1].rounded().abs();
+            assert_eq!(left < 1e-30, is_known, "{left}");
+            assert_eq!(left > 0.9 * angle, !is_known, "{left}");
+        }
+    }
+}

@@ -365,6 +365,33 @@ mod tests {
     }
 
     #[test]
+    fn what_differs_by_rounding_alone_is_alike() {
+        let with = |a: f64, b: f64, more: f64| {
+            let mut refined = RefinedPrincipal::given(&[1.0, a, b], &Matrix3::identity());
+            refined.moments[if a == 1.0 { 1 } else { 2 }] += more.into();
+            refined.snap();
+            refined
+        };
+        let are_equal = |refined: &RefinedPrincipal| {
+            let [a, b, c] = refined.moments;
+            (a == b, b == c)
+        };
+        let (less, more) = (0.9 * ALIKE, 1.1 * ALIKE);
+        assert_eq!(are_equal(&with(1.0, 2.0, 2.0 * less)), (true, false));
+        assert_eq!(are_equal(&with(1.0, 2.0, 2.0 * more)), (false, false));
+        assert_eq!(are_equal(&with(1.5, 1.5, 1.5 * less)), (false, true));
+        assert_eq!(are_equal(&with(1.5, 1.5, 1.5 * more)), (false, false));
+        assert_eq!(are_equal(&with(1.0, 1.0, -0.5 * less)), (true, true));
+        // Across the axis of symmetry.
+        let top = with(1.0, 2.0, 0.0);
+        let across = |x: f64| top.along(&[x, 0.0, 1.0].map(DoubleDouble::from))[0].rounded();
+        assert_eq!((across(less), across(more)), (0.0, more));
+        let scalene = with(1.5, 2.0, 0.0);
+        let kept = scalene.along(&[less, 0.0, 1.0].map(DoubleDouble::from));
+        assert_eq!(kept[0].rounded(), less);
+    }
+
+    #[test]
     fn moments_given_are_exact_and_axes_become_a_rotation() {
         let axes = *nalgebra::Rotation3::from_euler_angles(0.3, -1.0, 2.0).matrix();
         let refined = RefinedPrincipal::given(&[1.0, 2.0, 2.5], &axes);

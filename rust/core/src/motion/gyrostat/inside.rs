@@ -15,6 +15,7 @@ use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::exponent;
 
 /// The momenta inside a body, components in B.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -127,7 +128,11 @@ impl Gyrostat {
             return Err(MotionFault::MasslessGyrostat { moment }.into());
         }
         let rotor = self.inside.rotor(omega);
-        let along = self.principal.along(&rotor);
+        // In units of the largest component, whose products neither overflow nor underflow.
+        let largest = (rotor.iter()).fold(0.0, |most: f64, x| most.max(x.high.abs()));
+        let unit = exponent(largest);
+        let scaled = rotor.map(|x| x.times_power_of_two(-unit));
+        let along = (self.principal.along(&scaled)).map(|x| x.times_power_of_two(unit));
         let found = equilibria(&self.principal.moments, &along, momentum.into());
         Ok(found.turned(&self.principal.rounded_axes()))
     }

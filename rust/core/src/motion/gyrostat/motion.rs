@@ -98,13 +98,9 @@ impl GyrostatMotion {
         } else {
             exponent(omega.amax()).max(of_rotor)
         };
-        let by = |x: DoubleDouble, e: i32| DoubleDouble {
-            high: times_power_of_two(x.high, e),
-            low: times_power_of_two(x.low, e),
-        };
-        let moments = principal.moments.map(|moment| by(moment, -inertia));
+        let moments = (principal.moments).map(|moment| moment.times_power_of_two(-inertia));
         let scaled_omega = omega.map(|x| times_power_of_two(x, -rate));
-        let scaled_rotor = rotor.map(|x| by(x, -inertia - rate));
+        let scaled_rotor = rotor.map(|x| x.times_power_of_two(-inertia - rate));
         let rotor_along = principal.along(&scaled_rotor);
         let rate_unit = times_power_of_two(1.0, rate);
         let found = Solved::of(
@@ -143,8 +139,8 @@ impl GyrostatMotion {
             rotor: *rotor,
             angular_momentum,
             kinetic_energy,
-            period: by(period, -rate),
-            mean_precession: by(precession, rate),
+            period: period.times_power_of_two(-rate),
+            mean_precession: precession.times_power_of_two(rate),
             way: Way::Within(propagator.in_units_of(rate_unit)),
         })
     }

@@ -1,7 +1,7 @@
 //! Principal axes that suit the momentum inside: equal moments have one axis along their part of it.
 
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::power_of_two::{exponent, times_power_of_two};
+use crate::numerics::power_of_two::exponent;
 
 /// Three components to twice the precision.
 pub(super) type Vector = [DoubleDouble; 3];
@@ -102,11 +102,6 @@ impl Frame {
     }
 }
 
-/// The squared length.
-pub(super) fn square(v: &Vector) -> DoubleDouble {
-    v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
-}
-
 /// The length, which does not overflow.
 pub(super) fn norm(v: &Vector) -> DoubleDouble {
     let largest = v.iter().fold(0.0, |most: f64, x| most.max(x.high.abs()));
@@ -114,13 +109,6 @@ pub(super) fn norm(v: &Vector) -> DoubleDouble {
         return DoubleDouble::default();
     }
     let unit = exponent(largest);
-    let scaled = v.map(|x| DoubleDouble {
-        high: times_power_of_two(x.high, -unit),
-        low: times_power_of_two(x.low, -unit),
-    });
-    let root = square(&scaled).sqrt();
-    DoubleDouble {
-        high: times_power_of_two(root.high, unit),
-        low: times_power_of_two(root.low, unit),
-    }
+    let [x, y, z] = v.map(|x| x.times_power_of_two(-unit));
+    (x * x + y * y + z * z).sqrt().times_power_of_two(unit)
 }

@@ -251,10 +251,7 @@ impl<'a> Secular<'a> {
             ratio: number(moments[j] / moments[k]),
             part: number(if j == k {
                 let h = rotor[j];
-                DoubleDouble {
-                    high: times_power_of_two(h.high, -unit),
-                    low: times_power_of_two(h.low, -unit),
-                }
+                h.times_power_of_two(-unit)
             } else {
                 rotor[j]
             }),
@@ -277,10 +274,7 @@ impl Place {
     /// `1 − μ I_j`, and the sum of the sizes of its terms.
     fn distance(&self, frame: &Frame, j: usize) -> (DoubleDouble, f64) {
         let I = &frame.moments;
-        let own = DoubleDouble {
-            high: times_power_of_two(self.s.high, self.unit),
-            low: times_power_of_two(self.s.low, self.unit),
-        };
+        let own = self.s.times_power_of_two(self.unit);
         if I[j] == I[self.axis] {
             return (own, own.high.abs());
         }
@@ -297,10 +291,7 @@ impl Place {
                 return DoubleDouble::default();
             }
             if j == self.axis {
-                let scaled = DoubleDouble {
-                    high: times_power_of_two(h.high, -self.unit),
-                    low: times_power_of_two(h.low, -self.unit),
-                };
+                let scaled = h.times_power_of_two(-self.unit);
                 return scaled / self.s;
             }
             h / self.distance(frame, j).0

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::axes::{Frame, Group, Vector, norm, square};
+use super::axes::{Frame, Group, Vector, norm};
 use super::secular::{NOTHING, Place, Secular};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
@@ -128,14 +128,10 @@ pub fn equilibria(moments: &Vector, rotor: &Vector, momentum: DoubleDouble) -> E
         inertia: exponent(moments[2].high),
         momentum: exponent(momentum.high),
     };
-    let unit = |x: DoubleDouble, e: i32| DoubleDouble {
-        high: times_power_of_two(x.high, -e),
-        low: times_power_of_two(x.low, -e),
-    };
-    let scaled = moments.map(|x| unit(x, scales.inertia));
-    let length = unit(momentum, scales.momentum);
+    let scaled = moments.map(|x| x.times_power_of_two(-scales.inertia));
+    let length = momentum.times_power_of_two(-scales.momentum);
     let share = rotor.map(|x| {
-        let share = unit(x, scales.momentum) / length;
+        let share = x.times_power_of_two(-scales.momentum) / length;
         if share.high.abs() < 1e-290 {
             DoubleDouble::default()
         } else {
@@ -196,11 +192,14 @@ impl Maker<'_> {
     fn pole(&mut self, group: &Group) {
         let place = Place::at_pole(group.first);
         let mut n = place.shares(self.frame);
-        let others = square(&n);
-        let left = DoubleDouble::from(1.0) - others;
+        let others = norm(&n);
         if others.high > 0.0 && group.count < 3 {
-            self.meet(Meeting::Pitchfork, &n, others.sqrt());
+            self.meet(Meeting::Pitchfork, &n, others);
         }
+        if others.high > 2.0 {
+            return; // its square may overflow
+        }
+        let left = DoubleDouble::from(1.0) - others * others;
         if left.high <= NOTHING {
             return;
         }
@@ -237,6 +236,10 @@ impl Maker<'_> {
         let n = n.map(|x| x / length);
         // I⁻¹ − μ along the axes, and what its differences were made of.
         let (along, terms) = place.across(self.frame);
+        // In units of the largest, whose products do not overflow.
+        let unit = exponent(terms.iter().copied().fold(0.0, f64::max));
+        let along = along.map(|x| x.times_power_of_two(-unit));
+        let terms = terms.map(|x| times_power_of_two(x, -unit));
         let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);
         let mut determinant = DoubleDouble::default();
         let mut scale = 0.0;
@@ -260,7 +263,8 @@ impl Maker<'_> {
             _ => (determinant * self.length * self.length).high,
         };
         let multiplier = place.multiplier(self.frame);
-        let rate = multiplier * self.length;
+        let unit_of_rate = exponent(multiplier.high);
+        let rate = multiplier.times_power_of_two(-unit_of_rate) * self.length;
         let mean = I
             .iter()
             .zip(&n)
@@ -270,9 +274,12 @@ impl Maker<'_> {
         let per_time = self.scales.momentum - self.scales.inertia;
         let equilibrium = Equilibrium {
             direction: direction.map(DoubleDouble::rounded),
-            omega: direction.map(|x| times_power_of_two((rate * x).high, per_time)),
-            kinetic_energy: times_power_of_two(energy.high, per_time + self.scales.momentum),
-            squared_rate: times_power_of_two(squared, 2 * per_time),
+            omega: direction.map(|x| times_power_of_two((rate * x).high, per_time + unit_of_rate)),
+            kinetic_energy: times_power_of_two(
+                energy.high,
+                per_time + self.scales.momentum + 2 * unit_of_rate,
+            ),
+            squared_rate: times_power_of_two(squared, 2 * (per_time + unit)),
             kind,
             extent,
         };

@@ -231,6 +231,31 @@ fn scales_and_what_is_none() {
     assert!(of([1.0, 2.0, 2.5], [f64::NAN; 3], 1.0).found.is_empty());
 }
 
+#[test]
+fn far_longer_and_far_shorter_than_what_is_inside() {
+    for (h, count) in [(1e-289, 6), (1e-160, 6), (1.0, 4), (1e160, 2), (1e289, 2)] {
+        let all = of([1.0, 2.0, 2.5], [0.0, 0.0, h], 1.0);
+        assert_eq!(all.found.len(), count, "{h}");
+        for one in &all.found {
+            assert!(one.direction.iter().all(|x| x.is_finite()) && one.kind != Kind::Degenerate);
+        }
+        // L = h/(1 − I₃/I₁), h/(1 − I₃/I₂).
+        let at = all.bifurcations.iter().map(|one| one.momentum / h);
+        assert!(
+            at.zip([1.0 / 1.5, 4.0])
+                .all(|(got, want)| near(got, want, 1e-15)),
+            "{h}"
+        );
+    }
+    // ω = (L − h)/I₃, about which L circles with that rate.
+    let h = 1e160;
+    for one in of([h, 2.0 * h, 2.5 * h], [0.0, 0.0, h], 1.0).found {
+        assert!(near(one.omega[2], -0.4, 1e-15));
+        assert!(near(one.squared_rate, 0.16, 1e-15));
+        assert!(near(one.kinetic_energy, 0.2 * h, 1e-15));
+    }
+}
+
 proptest! {
     /// Steady, as many as the folds say, and as many minima and maxima as saddles and two.
     #[test]
