@@ -82,6 +82,9 @@ impl Inside {
     }
 }
 
+/// The least |L| over |h| for equilibria: what is over it must be a number.
+const LEAST: f64 = 1e-290;
+
 /// A body with momenta inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyrostat {
@@ -130,6 +133,13 @@ impl Gyrostat {
         let rotor = self.inside.rotor(omega);
         // In units of the largest component, whose products neither overflow nor underflow.
         let largest = (rotor.iter()).fold(0.0, |most: f64, x| most.max(x.high.abs()));
+        if momentum < LEAST * largest {
+            return Err(Error::OutOfDomain {
+                what: "momentum",
+                law: "at least 1e-290 times the momentum inside",
+                value: momentum,
+            });
+        }
         let unit = exponent(largest);
         let scaled = rotor.map(|x| x.times_power_of_two(-unit));
         let along = (self.principal.along(&scaled)).map(|x| x.times_power_of_two(unit));

@@ -1,9 +1,9 @@
 //! The steps of the method: stages by Newton's iteration, the error, the length of the next step.
 
-use nalgebra::{Complex, DMatrix, SVector};
+use nalgebra::{Complex, SVector};
 
 use super::dense::Dense;
-use super::factors::Factors;
+use super::factors::{Factors, Jacobian};
 use super::stages::{Stages, combine, combined};
 use super::tableau::{COMPLEX, ERROR, NODES, REAL, T, T_INVERSE};
 use crate::motion::integrate::runge_kutta::{Progress, RungeKutta};
@@ -24,10 +24,10 @@ pub struct Radau<const N: usize> {
     progress: Progress<N>,
     /// The slope at the state.
     slope: SVector<f64, N>,
-    jacobian: DMatrix<f64>,
+    jacobian: Jacobian<N>,
     /// Whether the Jacobian is that of the present state.
     is_current: bool,
-    factors: Option<Factors>,
+    factors: Option<Factors<N>>,
     /// The last accepted step, and the error it was accepted with.
     last: Option<(Dense<N>, f64)>,
 }
@@ -44,7 +44,7 @@ impl<const N: usize> RungeKutta<N> for Radau<N> {
         let mut stepper = Self {
             progress,
             slope,
-            jacobian: DMatrix::zeros(N, N),
+            jacobian: Jacobian::zero(),
             is_current: false,
             factors: None,
             last: None,
@@ -165,9 +165,7 @@ impl<const N: usize> Radau<N> {
                 .slope(system, self.progress.elapsed.0, &moved)?
                 - slope;
             let by = moved[j] - y[j];
-            for i in 0..N {
-                self.jacobian[(i, j)] = change[i] / by;
-            }
+            self.jacobian.set(j, scale, &change, by);
         }
         self.is_current = true;
         self.factors = None;
@@ -179,7 +177,7 @@ impl<const N: usize> Radau<N> {
     fn collocate<S: System<N>>(
         &mut self,
         system: &mut S,
-        factors: &Factors,
+        factors: &Factors<N>,
         h: f64,
     ) -> Result<Option<(Stages<N>, i32, f64)>, S::Error> {
         let y = self.progress.state.value;
@@ -247,7 +245,7 @@ impl<const N: usize> Radau<N> {
     fn error<S: System<N>>(
         &mut self,
         system: &mut S,
-        factors: &Factors,
+        factors: &Factors<N>,
         stages: &Stages<N>,
         h: f64,
         rejected: bool,
