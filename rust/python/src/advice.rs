@@ -71,6 +71,9 @@ fn of_motion(fault: &MotionFault) -> &'static str {
             ": method=\"taylor\"; heavy_top(rtol=) takes a body for symmetric"
         }
         MotionFault::PivotedInOrbit => "; simulate it with about=\"center_of_mass\"",
+        MotionFault::LostInClosedForm { .. } => {
+            ": body.simulate(times, omega, load=polhode.loads.rotor(momentum))"
+        }
         MotionFault::TooManySteps { .. } => " with resume",
         _ => "",
     }

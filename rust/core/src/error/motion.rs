@@ -211,6 +211,15 @@ pub enum MotionFault {
         /// What is allowed.
         allowed: f64,
     },
+    /// A gyrostat of which the closed form loses too many digits.
+    #[error(
+        "the closed form would give ω at the start with an error of {off:.1e} of it: the moments are too many orders apart, or the \
+         momentum inside is too large beside I ω; a simulation under a rotor can follow this motion"
+    )]
+    LostInClosedForm {
+        /// The error of ω at the start, relative to it.
+        off: f64,
+    },
     /// A gravity gradient on a body whose origin is fixed.
     #[error(
         "the gravity gradient acts on a body in orbit, whose centre of mass is free: here its \
@@ -296,6 +305,7 @@ impl MotionFault {
             | Self::OutsideSamples { .. }
             | Self::MethodCannotServe { .. }
             | Self::NoClosedForm { .. }
+            | Self::LostInClosedForm { .. }
             | Self::PivotedInOrbit
             | Self::OutsideTimes { .. }
             | Self::StatesStay { .. }

@@ -100,7 +100,14 @@ impl PyGyrostat {
     /// Raises
     /// ------
     /// PolhodeError
-    ///     When `omega` is not finite, `attitude` is not a rotation, or the body has a moment that is zero.
+    ///     When `omega` is not finite, `attitude` is not a rotation, the body has a moment that is zero, or more digits
+    ///     than seven of sixteen are lost.
+    ///
+    /// Notes
+    /// -----
+    /// Of a thin body the largest moment over the least times rounding is lost of ω, of a body that hardly turns
+    /// 1e-31 of the rate that the momentum inside has over a moment. :meth:`RigidBody.simulate` under
+    /// :func:`polhode.loads.rotor` follows these motions.
     ///
     /// Examples
     /// --------

@@ -57,6 +57,8 @@ enum Way {
 
 /// A discriminant this small beside its terms is computed again with four times the precision.
 const LOST: f64 = 1e-24;
+/// Of a motion whose ω at the start is off by more than this part of it too many digits are lost.
+const TOO_FAR_OFF: f64 = 1e-9;
 /// With four times the precision it is zero if it is below this part of its terms.
 const NOTHING: f64 = 1e-58;
 
@@ -65,7 +67,7 @@ impl GyrostatMotion {
     ///
     /// # Errors
     /// [`Error::NonFinite`] when `rotor` or `omega` is not finite; [`MotionFault::MasslessGyrostat`] for a tensor with a
-    /// moment that is zero.
+    /// moment that is zero; [`MotionFault::LostInClosedForm`] where I ω is far below h, or the moments are orders apart.
     pub fn of(
         principal: &RefinedPrincipal,
         rotor: &Vector,
@@ -133,7 +135,7 @@ impl GyrostatMotion {
             }
         };
         let Secular { period, precession } = secular;
-        Ok(Self {
+        let motion = Self {
             mode,
             initial,
             rotor: *rotor,
@@ -142,7 +144,12 @@ impl GyrostatMotion {
             period: period.times_power_of_two(-rate),
             mean_precession: precession.times_power_of_two(rate),
             way: Way::Within(propagator.in_units_of(rate_unit)),
-        })
+        };
+        let off = (motion.at(0.0).omega - omega).amax() / omega.amax();
+        if *omega != Vector3::zeros() && (off > TOO_FAR_OFF || off.is_nan()) {
+            return Err(MotionFault::LostInClosedForm { off }.into());
+        }
+        Ok(motion)
     }
 
     fn free(motion: &FreeMotion, angular_momentum: Vector3<f64>, kinetic_energy: f64) -> Self {
