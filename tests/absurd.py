@@ -128,6 +128,11 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "constant_force": (_core.constant_force, {"vector": V, "point": V}),
     "uniform_gravity": (_core.uniform_gravity, {"gravity": V}),
     "gravity_gradient": (_core.gravity_gradient, {"mu": 1.0, "position": V, "velocity": V}),
+    "kepler_states": (
+        _core.kepler_states,
+        {"mu": 1.0, "position": V, "velocity": (1.0, 0.2, 0.1), "elapsed": 1.0},
+    ),
+    "magnetic": (_core.magnetic, {"dipole": V, "field": V, "gain": 1.0}),
     "damping": (_core.damping, {"matrix": T, "quadratic": T}),
     "feedback": (_core.feedback, {"K": T, "D": T, "target": Q}),
     "nutation_damping": (

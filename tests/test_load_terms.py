@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from oracles.bodies import matrix
-from polhode import RigidBody, loads, solids
+from polhode import RigidBody, loads, orbits, solids
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
@@ -270,6 +270,13 @@ LOADS = {
     "damping": loads.damping(np.diag([1.0, 2.0, 3.0]), 0.2),
     "sampled": loads.sampled([0.0, 1.0, 3.0, 4.0], np.arange(12.0).reshape(4, 3) ** 1.5),
     "feedback": loads.feedback(2.0, 0.3, (0.0, 0.6, 0.0, 0.8)),
+    "magnetic": loads.magnetic((1.0, 2.0, 3.0), (0.1, 0.2, -0.3)),
+    "magnetic on an orbit": loads.magnetic(
+        (1.0, 2.0, 3.0), orbits.kepler(1.0, (1, 0, 0.2), (0, 1, 0.1)).dipole_field((0, 0.1, 1.0)), gain=0.2
+    ),
+    "magnetic at times": loads.magnetic(
+        (1.0, 2.0, 3.0), np.arange(12.0).reshape(4, 3) ** 1.5, times=[0.0, 1.0, 3.0, 4.0]
+    ),
     "scheduled": loads.schedule(
         loads.damping(1.0) + loads.constant_torque((1, 0, 0)), [(0.0, 1.0), (2.0, 3.0)]
     ),
@@ -351,7 +358,7 @@ class TestAlgebra:
             (lambda: loads.damping((1.0, 2.0, 3.0)), "matrix: expected shape"),
             (lambda: loads.feedback(1.0, 1.0, (0, 0, 0, 2)), "target must be a unit quaternion"),
             (lambda: loads.sampled([0.0], np.zeros((1, 3))), "at least 2"),
-            (lambda: loads.sampled([0.0, 0.0], np.zeros((2, 3))), "strictly monotone"),
+            (lambda: loads.sampled([0.0, 0.0], np.zeros((2, 3))), "t must be strictly ascending"),
             (lambda: loads.sampled([0.0, 1.0, 2.0], np.zeros((2, 3))), "one for each of the 3 times, got 2"),
             (lambda: loads.schedule(LOADS["damping"], [(1.0, 0.0)]), "window 0 is from 1.0 to 0.0"),
             (lambda: loads.schedule(LOADS["damping"], [(0.0, 2.0), (1.0, 3.0)]), "ends at 2.0"),

@@ -21,6 +21,8 @@ KINDS = (
     "feedback",
     "gravity gradient",
     "sampled",
+    "magnetic",
+    "B-dot",
     "sum",
 )
 
@@ -70,6 +72,10 @@ def some_load(rng: np.random.Generator, kind: str, size: float, rate: float, spa
             distance = scale(rng)
             position, velocity = distance * rng.normal(size=(2, 3))
             return loads.gravity_gradient(rate**2 * distance**3, position, rate * velocity)
+        case "magnetic":
+            return loads.magnetic(vector, rng.normal(size=3))
+        case "B-dot":
+            return loads.magnetic(vector, rng.normal(size=3), gain=size / rate)
         case "sampled":
             return loads.sampled(np.linspace(0.0, span, 6), size * rng.normal(size=(6, 3)), "body")
     parts = rng.choice(KINDS[1:-1], 2)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from os import PathLike
-from typing import Any, Literal, Self, TypeAlias, final
+from typing import Any, Literal, Self, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from polhode._typing import SupportsQuaternion, SupportsSigma
 from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
 from polhode.gyrostat import Equilibria, Wheel
+from polhode.orbits import DipoleField, Orbit
 from polhode.results import (
     AngularMomentum,
     ErrorBound,
@@ -68,7 +69,9 @@ __all__ = [
     "hollow_sphere",
     "inertia_from_center_of_mass",
     "inertia_to_center_of_mass",
+    "kepler_states",
     "least_spin",
+    "magnetic",
     "motion_sensitivity",
     "nearest_valid",
     "nutation_damping",
@@ -639,13 +642,26 @@ def principal_derivative(
     moments: ArrayLike, axes: ArrayLike, tangent: ArrayLike, rtol: float
 ) -> tuple[_Floats, _Floats, NDArray[np.bool_]]: ...
 def ray_kappa(moments: ArrayLike) -> Any: ...
+def kepler_states(
+    mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, elapsed: ArrayLike
+) -> tuple[_Floats, _Floats]: ...
 def constant_torque(vector: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
 def constant_force(
     vector: ArrayLike, frame: Literal["body", "space"] = "body", point: ArrayLike | None = None
 ) -> Load: ...
 def uniform_gravity(gravity: ArrayLike) -> Load: ...
+@overload
+def gravity_gradient(mu: Orbit) -> Load: ...
+@overload
 def gravity_gradient(
     mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, epoch: float | None = None
+) -> Load: ...
+def magnetic(
+    dipole: ArrayLike,
+    field: ArrayLike | DipoleField,
+    *,
+    gain: ArrayLike | None = None,
+    times: ArrayLike | None = None,
 ) -> Load: ...
 def damping(matrix: ArrayLike, quadratic: ArrayLike | None = None) -> Load: ...
 def sampled(t: ArrayLike, torque: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...

@@ -46,6 +46,7 @@ mod laminae;
 mod loads;
 mod memory;
 mod meshes;
+mod orbits;
 mod parallel_axis;
 mod particles;
 mod principal;
@@ -103,9 +104,11 @@ mod _core {
     #[pymodule_export]
     use crate::loads::{
         PyLoad, callback, compiled, constant_force, constant_torque, damping, feedback,
-        gravity_gradient, rotor, sampled, schedule, slug, torque_callback, uniform_gravity, wheel,
-        with_states,
+        gravity_gradient, magnetic, rotor, sampled, schedule, slug, torque_callback,
+        uniform_gravity, wheel, with_states,
     };
+    #[pymodule_export]
+    use crate::orbits::kepler_states;
     #[pymodule_export]
     use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};
     #[pymodule_export]

@@ -177,7 +177,7 @@ pub enum MotionFault {
     },
     /// A sampled torque is asked for at a time at which it is not known.
     #[error(
-        "the sampled torque is known from t = {first:?} to t = {last:?}, and needed at t = {t:?}: give it samples there, \
+        "the samples of the load are known from t = {first:?} to t = {last:?}, and needed at t = {t:?}: give it samples there, \
          or switch it on within its samples"
     )]
     OutsideSamples {
@@ -211,6 +211,12 @@ pub enum MotionFault {
         /// What is allowed.
         allowed: f64,
     },
+    /// Derivatives of a motion under a law whose series is not known.
+    #[error(
+        "sensitivity: a part of the load has no series, from which derivatives come: a magnetic field along an orbit, or B-dot; \
+         take differences of motions simulated at rtol=1e-13 from states and loads a little apart"
+    )]
+    NoSeries,
     /// A gyrostat of which the closed form loses too many digits.
     #[error(
         "the closed form would give ω at the start with an error of {off:.1e} of it: the moments are too many orders apart, or the \
@@ -306,6 +312,7 @@ impl MotionFault {
             | Self::MethodCannotServe { .. }
             | Self::NoClosedForm { .. }
             | Self::LostInClosedForm { .. }
+            | Self::NoSeries
             | Self::PivotedInOrbit
             | Self::OutsideTimes { .. }
             | Self::StatesStay { .. }

@@ -4,7 +4,8 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::loads::schedule::Windows;
 use polhode::motion::loads::{
-    Damping, Drive, Feedback, Frame, GravityGradient, Held, Rotor, Sampled, Slug, Term, Wheel,
+    Damping, Drive, Feedback, Frame, GravityGradient, Held, Magnetic, MagneticField, Rotor,
+    Sampled, Slug, Term, Wheel,
 };
 use polhode::motion::simulate::{Phase, State};
 
@@ -55,6 +56,8 @@ pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
         .map(|t| Vector3::new(t.sin(), t.cos(), 0.3 * (2.0 * t).sin()) * 0.5)
         .collect();
     let sampled = |frame| Term::Sampled(Sampled::new(&times, &values, frame).expect("ascending"));
+    let field = MagneticField::uniform(&at).expect("finite");
+    let magnet = Term::Magnetic(Magnetic::new(&v, None, field).expect("finite"));
     let windows = Windows::new(&[(1.0, 2.0), (3.0, 4.5), (7.0, f64::INFINITY)]).expect("ordered");
     let scheduled = |term: Term| term.scheduled(&windows).expect("nothing is carried along");
     let rotor = Term::Rotor(Rotor::new(&v).expect("finite"));
@@ -78,6 +81,7 @@ pub(crate) fn loads() -> Vec<(&'static str, Vec<Term>)> {
         ("feedback", vec![feedback.clone()]),
         ("samples in the body", vec![sampled(Frame::Body)]),
         ("samples in space", vec![sampled(Frame::Space)]),
+        ("magnet", vec![magnet]),
         ("schedule", vec![scheduled(torque(Frame::Space))]),
         (
             "all",

@@ -137,7 +137,7 @@ pub(crate) fn compiled(
     Ok(PyLoad::one(Acts::Compiled(compiled), recipe).named(name))
 }
 
-/// A load with states of its own that go on with the motion: filters, actuators, integrators, controllers that look now and then.
+/// A load with states of its own that go on with the motion: filters, actuators, integrators, sampled controllers.
 ///
 /// Every function is called as ``function(t, omega, quaternion, position, velocity, states)``: time, angular velocity in the
 /// body frame, attitude R_NB as (x, y, z, w), position and velocity of the reference point in space, and a dict of the
@@ -161,7 +161,8 @@ pub(crate) fn compiled(
 ///     The time between two updates.
 /// scale : float or array_like, shape (k,), optional
 ///     What counts as large of each state: errors are relative to it, or to the largest that the state has come to. Give it for
-///     a state that stays near zero.
+///     a state that stays near zero, or begins there with a rate of zero: without it, the last of a chain of lags makes many
+///     small steps with method "dop853", and ends a run with method "radau".
 ///
 /// Returns
 /// -------

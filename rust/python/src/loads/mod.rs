@@ -12,7 +12,7 @@
 //! | `part` | one term, scaled, scheduled, picked |
 //! | `load` | the sum of them |
 //! | `operators` | what Python's operators and pickle do with it |
-//! | `terms`, `functions` | the functions that make loads |
+//! | `terms`, `field`, `functions` | the functions that make loads |
 //! | `acting` | a load at work on a body |
 //! | `evaluate` | what a load exerts at a time and a state |
 
@@ -20,6 +20,7 @@ mod acting;
 mod address;
 mod called;
 mod evaluate;
+mod field;
 mod functions;
 mod inside;
 mod load;
@@ -32,11 +33,11 @@ mod terms;
 mod wheels;
 
 pub(crate) use acting::{Acting, Fault};
+pub(crate) use field::{gravity_gradient, magnetic};
 pub(crate) use functions::{callback, compiled, torque_callback, with_states};
 pub(crate) use load::PyLoad;
 pub(crate) use own::{Named, Slot, reported};
 pub(crate) use terms::{
-    constant_force, constant_torque, damping, feedback, gravity_gradient, sampled, schedule,
-    uniform_gravity,
+    constant_force, constant_torque, damping, feedback, sampled, schedule, uniform_gravity,
 };
 pub(crate) use wheels::{rotor, slug, wheel};

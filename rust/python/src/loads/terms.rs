@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::Error;
-use polhode::motion::loads::{Damping, Feedback, GravityGradient, Sampled, Term};
+use polhode::motion::loads::{Damping, Feedback, Sampled, Term};
 use pyo3::prelude::*;
 
 use super::load::{PyLoad, schedule_load};
@@ -119,61 +119,6 @@ pub(crate) fn uniform_gravity(py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyR
     let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
     let terms = try_rows(py, &gravity, Term::uniform_gravity)?;
     let recipe = recipe(py, "uniform_gravity", (write(py, &gravity)?,))?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
-}
-
-/// The torque of an attractor's field on a body in a Kepler orbit.
-///
-/// ``N = 3 mu/r**5 r_B × (I_C r_B)`` with r from the attractor to the centre of mass. The orbit is an ellipse, a parabola or
-/// a hyperbola, solved exactly; it is not changed by the body's attitude, nor are `position` and `velocity` of the trajectory
-/// by it.
-///
-/// Parameters
-/// ----------
-/// mu : array_like, shape (...)
-///     Gravitational parameter of the attractor.
-/// position, velocity : array_like, shape (..., 3)
-///     Of the centre of mass relative to the attractor, in space, at the epoch.
-/// epoch : float, optional
-///     When the orbit has that state; the first time of a simulation by default.
-///
-/// Returns
-/// -------
-/// Load
-///
-/// Examples
-/// --------
-/// A stick across the vertical is turned toward it:
-///
-/// >>> from polhode import loads, rods
-/// >>> pull = loads.gravity_gradient(1.0, (2.0, 0.0, 0.0), (0.0, 0.5, 0.0))
-/// >>> stick = rods.rod(length=0.12, mass=1000.0).rotated((0.0, 0.9238795325112867, 0.0, 0.3826834323650898))
-/// >>> pull.torque(0.0, (0, 0, 0), (0, 0, 0, 1), body=stick).round(6)
-/// array([ 0.   , -0.225,  0.   ])
-#[pyfunction]
-#[pyo3(signature = (mu, position, velocity, epoch=None))]
-pub(crate) fn gravity_gradient(
-    py: Python<'_>,
-    mu: &Bound<'_, PyAny>,
-    position: &Bound<'_, PyAny>,
-    velocity: &Bound<'_, PyAny>,
-    epoch: Option<f64>,
-) -> PyResult<PyLoad> {
-    let mu: Stack<f64> = read(mu, "mu")?;
-    let position: Stack<Vector3<f64>> = read(position, "position")?;
-    let velocity: Stack<Vector3<f64>> = read(velocity, "velocity")?;
-    let shapes = [&mu.shape[..], &position.shape, &velocity.shape];
-    let grid = Broadcast::of(["mu", "position", "velocity"], shapes)?;
-    let terms = grid.try_map(py, |[m, r, v]| {
-        GravityGradient::new(mu[m], &position[r], &velocity[v], epoch).map(Term::GravityGradient)
-    })?;
-    let arguments = (
-        write(py, &mu)?,
-        write(py, &position)?,
-        write(py, &velocity)?,
-        epoch,
-    );
-    let recipe = recipe(py, "gravity_gradient", arguments)?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
 

@@ -66,6 +66,7 @@ impl Law for ConstantForce {
                 Frame::Space => Kept::along(&self.vector),
                 Frame::Body => Kept::Nothing,
             },
+            has_series: true,
             parts: Parts {
                 directions: match self.frame {
                     Frame::Space if self.turns(pivoted) => directions_of(&self.vector),

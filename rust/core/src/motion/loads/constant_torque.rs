@@ -43,6 +43,7 @@ impl Law for ConstantTorque {
             needs_body: false,
             needs_epoch: false,
             keeps: Kept::Nothing,
+            has_series: true,
             parts: Parts {
                 directions: match self.frame {
                     Frame::Body => 0,

@@ -52,6 +52,7 @@ impl Law for Damping {
             needs_body: false,
             needs_epoch: false,
             keeps: Kept::Nothing,
+            has_series: true,
             parts: Parts {
                 on_omega: true,
                 quadratic: self.quadratic != Matrix3::zeros(),

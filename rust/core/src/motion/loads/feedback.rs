@@ -100,6 +100,7 @@ impl Law for Feedback {
             needs_body: false,
             needs_epoch: false,
             keeps: Kept::Nothing,
+            has_series: true,
             parts: Parts {
                 on_omega: true,
                 on_attitude: true,

@@ -94,6 +94,7 @@ impl Law for GravityGradient {
             needs_body: true,
             needs_epoch: self.epoch.is_none(),
             keeps: Kept::Nothing,
+            has_series: true,
             parts: Parts {
                 is_timed: true,
                 gradients: 1,

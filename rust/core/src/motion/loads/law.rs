@@ -56,6 +56,8 @@ pub struct Character {
     pub needs_epoch: bool,
     /// What of the angular momentum about the reference point it leaves as it is.
     pub keeps: Kept,
+    /// Whether [`Law::add_to`] states it: a method that needs series cannot serve a load without them.
+    pub has_series: bool,
     /// What the equations of its series are made of.
     pub parts: Parts,
 }

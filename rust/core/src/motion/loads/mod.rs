@@ -9,6 +9,7 @@
 //! | damping | `N = −D ω − E \|ω\| ω` | [`damping`] |
 //! | attitude feedback | `N = −K sign(w) vec(q_target⁻¹∘q) − D ω` | [`feedback`] |
 //! | a torque sampled in time | cubic spline | [`sampled`] |
+//! | a magnetic field | `N = (d − k Ḃ) × B` | [`magnetic`] |
 //! | a rotor | `N = −ω × h` | [`rotor`] |
 //! | a wheel with motor and friction | `ḣ = τ − c Ω` | [`wheel`], [`held`] |
 //! | a spherical damper | `N = k (σ − ω)` | [`slug`] |
@@ -30,11 +31,13 @@ pub mod kepler;
 mod law;
 mod linear;
 mod load;
+pub mod magnetic;
 mod parameter;
 pub mod rotor;
 pub mod sampled;
 pub mod schedule;
 pub mod slug;
+mod spline;
 mod stumpff;
 mod subject;
 mod switch;
@@ -57,6 +60,7 @@ pub use self::held::Held;
 pub use self::law::{Character, Kept, Law, Parts};
 pub use self::linear::{Linear, Own};
 pub use self::load::Load;
+pub use self::magnetic::{Magnetic, MagneticField};
 pub use self::parameter::Parameter;
 pub use self::rotor::Rotor;
 pub use self::sampled::Sampled;

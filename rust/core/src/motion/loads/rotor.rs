@@ -43,6 +43,7 @@ impl Law for Rotor {
             needs_body: false,
             needs_epoch: false,
             keeps: Kept::All,
+            has_series: true,
             parts: Parts {
                 on_omega: true,
                 ..Parts::default()

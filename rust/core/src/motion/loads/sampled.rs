@@ -8,13 +8,13 @@ use super::forcing::{Forcing, Timed, When};
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::Linear;
 use super::parameter::Parameter;
+use super::spline::{Spline, pieces};
 use super::subject::Subject;
 use super::variables::Variables;
 use super::wrench::{Wrench, in_body};
-use crate::error::{Error, MotionFault, all_finite, finite};
+use crate::error::Error;
 use crate::motion::kinematics::Frame;
 use crate::motion::state::Phase;
-use crate::numerics::number::Real;
 
 /// A torque about the reference point, given at times and interpolated by a cubic spline, smooth to the second derivative.
 ///
@@ -26,12 +26,6 @@ pub struct Sampled {
     frame: Frame,
 }
 
-#[derive(Debug, PartialEq)]
-struct Spline {
-    knots: Vec<f64>,
-    pieces: Vec<[Vector3<f64>; 4]>,
-}
-
 impl Sampled {
     /// The spline through `values` at the ascending `times`; its components refer to `frame`.
     ///
@@ -41,36 +35,9 @@ impl Sampled {
     /// # Panics
     /// When `times` and `values` differ in length.
     pub fn new(times: &[f64], values: &[Vector3<f64>], frame: Frame) -> Result<Self, Error> {
-        assert_eq!(times.len(), values.len(), "one torque for each time");
-        if times.len() < 2 {
-            return Err(Error::OutOfDomain {
-                what: "the number of samples",
-                law: "at least 2",
-                value: times.len() as f64,
-            });
-        }
-        all_finite("t", times)?;
-        all_finite("torque", values.iter().flatten())?;
-        finite("the span of t", times[times.len() - 1] - times[0])?;
-        for (k, pair) in times.windows(2).enumerate() {
-            if pair[1] <= pair[0] {
-                return Err(Error::Motion(MotionFault::NotMonotone {
-                    what: "t",
-                    order: "ascending",
-                    index: k + 1,
-                    previous: pair[0],
-                    next: pair[1],
-                }));
-            }
-        }
-        let pieces = pieces(times, values);
-        all_finite(
-            "the spline through torque",
-            pieces.iter().flatten().flatten(),
-        )?;
-        let knots = times.to_vec();
+        let spline = Spline::through(["t", "torque"], times, values)?;
         Ok(Self {
-            spline: Arc::new(Spline { knots, pieces }),
+            spline: Arc::new(spline),
             frame,
         })
     }
@@ -84,28 +51,19 @@ impl Sampled {
     /// The times it was given at.
     #[must_use]
     pub fn knots(&self) -> &[f64] {
-        &self.spline.knots
+        self.spline.knots()
     }
 
     /// The cubic around time `t`, `Σ c_k (t − t₀)^k`: its t₀ and coefficients.
     #[must_use]
     pub fn piece(&self, t: f64) -> (f64, &[Vector3<f64>; 4]) {
-        let index = self.index(t);
-        (self.knots()[index], &self.spline.pieces[index])
-    }
-
-    /// The number of the piece around time `t`.
-    fn index(&self, t: f64) -> usize {
-        let knots = self.knots();
-        knots[1..knots.len() - 1].partition_point(|&knot| knot <= t)
+        self.spline.piece(t)
     }
 
     /// The torque at time `t`, components in its frame.
     #[must_use]
     pub fn at(&self, t: f64) -> Vector3<f64> {
-        let (from, [c0, c1, c2, c3]) = self.piece(t);
-        let x = t - from;
-        c0 + (c1 + (c2 + c3 * x) * x) * x
+        self.spline.at(t)[0]
     }
 
     /// Checks that `t` is within its times.
@@ -113,16 +71,7 @@ impl Sampled {
     /// # Errors
     /// [`MotionFault::OutsideSamples`].
     pub fn check_at(&self, t: f64) -> Result<(), Error> {
-        let (first, last) = (self.knots()[0], self.knots()[self.knots().len() - 1]);
-        if (first..=last).contains(&t) {
-            Ok(())
-        } else {
-            Err(Error::Motion(MotionFault::OutsideSamples {
-                t,
-                first,
-                last,
-            }))
-        }
+        self.spline.check_at(t)
     }
 }
 
@@ -132,7 +81,7 @@ impl Sampled {
     fn varied_piece<X: Exact>(&self, axes: &Axes<'_, X>, t: f64) -> (f64, [Vector3<X>; 4]) {
         let (from, piece) = self.piece(t);
         let (knots, mut piece) = (self.knots(), piece.each_ref().map(exact::<X>));
-        let index = self.index(t);
+        let index = self.spline.index(t);
         let near = index.saturating_sub(NEAR)..(index + 2 + NEAR).min(knots.len());
         if (axes.variables).varies(axes.first + 3 * near.start..axes.first + 3 * near.end) {
             let zero = Vector3::zeros();
@@ -154,6 +103,7 @@ impl Law for Sampled {
             needs_body: false,
             needs_epoch: false,
             keeps: Kept::Nothing,
+            has_series: true,
             parts: Parts {
                 directions: match self.frame {
                     Frame::Body => 0,
@@ -170,15 +120,8 @@ impl Law for Sampled {
     }
 
     fn scaled(&self, factor: f64) -> Result<Self, Error> {
-        let Spline { knots, pieces } = &*self.spline;
-        let pieces: Vec<_> = (pieces.iter().map(|piece| piece.map(|c| c * factor))).collect();
-        all_finite(
-            "the load times its factor",
-            pieces.iter().flatten().flatten(),
-        )?;
-        let knots = knots.clone();
         Ok(Self {
-            spline: Arc::new(Spline { knots, pieces }),
+            spline: Arc::new(self.spline.scaled(factor)?),
             frame: self.frame,
         })
     }
@@ -249,77 +192,6 @@ impl<X: Exact> Timed<X> for Sampled {
 /// whatever the knots, so that what is left out is below 1e-24 of it.
 const NEAR: usize = 80;
 
-/// The cubics between the samples, from the slopes at them.
-fn pieces<X: Real>(t: &[f64], y: &[Vector3<X>]) -> Vec<[Vector3<X>; 4]> {
-    let steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let chords: Vec<_> = (y.windows(2).zip(&steps))
-        .map(|(pair, step)| (pair[1] - pair[0]) / X::from(*step))
-        .collect();
-    let slopes = match chords[..] {
-        [chord] => vec![chord; 2],
-        [first, second] => {
-            let bend = (second - first) / X::from(steps[0] + steps[1]);
-            let middle = first + bend * X::from(steps[0]);
-            let last = second + bend * X::from(steps[1]);
-            vec![first - bend * X::from(steps[0]), middle, last]
-        }
-        _ => slopes(&steps, &chords),
-    };
-    let cubic = |k: usize| {
-        let (h, chord, s0, s1) = (X::from(steps[k]), chords[k], slopes[k], slopes[k + 1]);
-        let bend = (s0 + s1 - chord * X::from(2.0)) / h;
-        [y[k], s0, (chord - s0) / h - bend, bend / h]
-    };
-    (0..steps.len()).map(cubic).collect()
-}
-
-/// The slopes that make the second derivative continuous, and the third at the second and the last but one sample:
-/// a tridiagonal system, whose pivots are positive.
-fn slopes<X: Real>(h: &[f64], chords: &[Vector3<X>]) -> Vec<Vector3<X>> {
-    let n = h.len();
-    let (first, last) = (h[0] + h[1], h[n - 2] + h[n - 1]);
-    let sum = |a: usize, by_a: f64, b: usize, by_b: f64| {
-        chords[a] * X::from(by_a) + chords[b] * X::from(by_b)
-    };
-    // Rows as (below, diagonal, above, right-hand side).
-    let mut rows = vec![(
-        0.0,
-        h[1],
-        first,
-        sum(0, (h[0] + 2.0 * first) * h[1], 1, h[0] * h[0]) / X::from(first),
-    )];
-    rows.extend((1..n).map(|k| {
-        let side = sum(k - 1, h[k], k, h[k - 1]);
-        (h[k], 2.0 * (h[k - 1] + h[k]), h[k - 1], side * X::from(3.0))
-    }));
-    rows.push((
-        last,
-        h[n - 2],
-        0.0,
-        sum(
-            n - 2,
-            h[n - 1] * h[n - 1],
-            n - 1,
-            (2.0 * last + h[n - 1]) * h[n - 2],
-        ) / X::from(last),
-    ));
-    for k in 1..=n {
-        let (_, pivot, above, side) = rows[k - 1];
-        let ratio = rows[k].0 / pivot;
-        rows[k].1 -= ratio * above;
-        rows[k].3 -= side * X::from(ratio);
-    }
-    let mut next = Vector3::zeros();
-    let mut slopes: Vec<_> = (rows.iter().rev())
-        .map(|&(_, pivot, above, side)| {
-            next = (side - next * X::from(above)) / X::from(pivot);
-            next
-        })
-        .collect();
-    slopes.reverse();
-    slopes
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::Matrix3;
@@ -388,7 +260,7 @@ mod tests {
             let alone = alone(sample);
             let largest =
                 |piece: &[Vector3<f64>; 4]| piece.iter().map(|c| c.x.abs()).fold(0.0, f64::max);
-            let most = alone.spline.pieces.iter().map(largest).fold(0.0, f64::max);
+            let most = (knots.iter().map(|&t| largest(alone.piece(t).1))).fold(0.0, f64::max);
             for k in 0..knots.len() - 1 {
                 let middle = 0.5 * (knots[k] + knots[k + 1]);
                 let (_, found) = alone.varied_piece(&axes, middle);

@@ -56,6 +56,7 @@ impl Law for Slug {
             needs_body: false,
             needs_epoch: false,
             keeps: Kept::All,
+            has_series: true,
             parts: Parts {
                 on_omega: true,
                 own: 3,

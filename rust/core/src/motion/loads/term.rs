@@ -11,6 +11,7 @@ use super::feedback::Feedback;
 use super::gravity_gradient::GravityGradient;
 use super::law::{Character, Kept, Law};
 use super::linear::Linear;
+use super::magnetic::Magnetic;
 use super::parameter::Parameter;
 use super::rotor::Rotor;
 use super::sampled::Sampled;
@@ -233,6 +234,8 @@ laws!(
         Sampled(Sampled),
         /// A torque that turns the body toward an attitude.
         Feedback(Feedback),
+        /// The torque of a magnetic field.
+        Magnetic(Magnetic),
         /// A rotor that keeps its momentum in the body.
         Rotor(Rotor),
         /// A wheel with motor and friction.

@@ -42,6 +42,7 @@ impl Law for UniformGravity {
             } else {
                 Kept::All
             },
+            has_series: true,
             parts: Parts {
                 directions: if pivoted {
                     directions_of(&self.gravity)

@@ -128,6 +128,7 @@ impl Law for Wheel {
             needs_body: !self.has_speed(),
             needs_epoch: false,
             keeps: Kept::All,
+            has_series: true,
             parts: Parts {
                 on_omega: true,
                 on_attitude: feedback,

@@ -36,7 +36,8 @@ impl Method {
         let has_series = terms.is_some_and(|terms| {
             let turns = |term: &Term| term.carried().is_some_and(|it| it.turning().is_some());
             let pulls = |term: &Term| term.character(pivoted).parts.gradients > 0;
-            !(terms.iter().any(turns) && terms.iter().any(pulls))
+            terms.iter().all(|term| term.character(pivoted).has_series)
+                && !(terms.iter().any(turns) && terms.iter().any(pulls))
         });
         let of_steps = if has_series {
             Self::Taylor
@@ -61,7 +62,9 @@ impl Method {
             Self::Taylor if terms.is_none() => {
                 "analytic loads, no callbacks and no compiled functions"
             }
-            Self::Taylor if !has_series => "no gravity gradient beside wheels that turn freely",
+            Self::Taylor if !has_series => {
+                "loads whose series is known: no magnetic field along an orbit, no B-dot, no gravity gradient beside wheels that turn freely"
+            }
             method if is_beyond_doubles && method != Self::Taylor => {
                 "an rtol of 2.3e-15 or more (ten units of rounding)"
             }

@@ -36,7 +36,7 @@ pub struct Variation {
 /// `watch` gets the fraction done and may stop it.
 ///
 /// # Errors
-/// When a term cannot act, the motion cannot go on, [`MotionFault::NotFiniteDerivative`], or [`Error::Stopped`].
+/// When a term cannot act, [`MotionFault::NoSeries`], the motion cannot go on, [`MotionFault::NotFiniteDerivative`], or [`Error::Stopped`].
 ///
 /// # Panics
 /// When there are no times; see [`check_times`](crate::motion::problem::check_times).
@@ -45,6 +45,10 @@ pub fn variations(
     terms: &[Term],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Vec<Variation>, Error> {
+    let has_series = |term: &Term| term.character(task.subject.pivoted).has_series;
+    if !terms.iter().all(has_series) {
+        return Err(MotionFault::NoSeries.into());
+    }
     let numbers: usize = terms.iter().map(Term::count).sum();
     let start = Variation {
         state: Matrix6::identity(),

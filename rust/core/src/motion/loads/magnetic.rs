@@ -1,0 +1,268 @@
+//! The torque of a magnetic field.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::axes::{Axes, Exact};
+use super::kepler::Orbit;
+use super::law::{Character, Kept, Law, Parts, directions_of};
+use super::linear::Linear;
+use super::parameter::Parameter;
+use super::spline::Spline;
+use super::subject::Subject;
+use super::wrench::{Wrench, times};
+use crate::error::{Error, MotionFault, all_finite, finite};
+use crate::motion::state::Phase;
+use crate::numerics::quaternion::cross_matrix;
+
+/// A magnetic field, components in N.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MagneticField(Source);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Source {
+    /// The same everywhere and always.
+    Uniform(Vector3<f64>),
+    /// Known at some times, a cubic spline in between.
+    Sampled(Arc<Spline>),
+    /// That of a dipole at the attractor of an orbit.
+    Dipole {
+        orbit: Orbit,
+        /// When the orbit has the state it was given with; the start of the motion where there is none.
+        epoch: Option<f64>,
+        /// μ₀/4π times the dipole's moment.
+        strength: Vector3<f64>,
+    },
+}
+
+impl MagneticField {
+    /// The same everywhere and always.
+    ///
+    /// # Errors
+    /// When a component is not finite.
+    pub fn uniform(field: &Vector3<f64>) -> Result<Self, Error> {
+        all_finite("field", field)?;
+        Ok(Self(Source::Uniform(*field)))
+    }
+
+    /// The spline through `fields` at the ascending `times`.
+    ///
+    /// # Errors
+    /// Fewer than two times, times that do not ascend, numbers that are not finite.
+    ///
+    /// # Panics
+    /// When `times` and `fields` differ in length.
+    pub fn sampled(times: &[f64], fields: &[Vector3<f64>]) -> Result<Self, Error> {
+        let spline = Spline::through(["times", "field"], times, fields)?;
+        Ok(Self(Source::Sampled(Arc::new(spline))))
+    }
+
+    /// `B = 3 (M·r) r/r⁵ − M/r³` on an orbit, with M the `strength`: μ₀/4π times the moment of a dipole at the attractor.
+    ///
+    /// # Errors
+    /// When a number is not finite.
+    pub fn of_dipole(
+        strength: &Vector3<f64>,
+        orbit: &Orbit,
+        epoch: Option<f64>,
+    ) -> Result<Self, Error> {
+        all_finite("strength", strength)?;
+        epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
+        Ok(Self(Source::Dipole {
+            orbit: *orbit,
+            epoch,
+            strength: *strength,
+        }))
+    }
+
+    /// The field at time `t` of a motion that began at `start`, and its rate, both in N.
+    #[must_use]
+    pub fn at(&self, start: f64, t: f64) -> [Vector3<f64>; 2] {
+        match &self.0 {
+            Source::Uniform(field) => [*field, Vector3::zeros()],
+            Source::Sampled(spline) => spline.at(t),
+            Source::Dipole {
+                orbit,
+                epoch,
+                strength,
+            } => {
+                let (r, v) = orbit.at(t - epoch.unwrap_or(start));
+                let distance = r.norm();
+                let (n, rate) = (r / distance, v / distance);
+                let m = strength / distance / distance / distance;
+                let (along, outward) = (m.dot(&n), n.dot(&rate));
+                [
+                    n * (3.0 * along) - m,
+                    rate * (3.0 * along)
+                        + n * (3.0 * m.dot(&rate) - 15.0 * along * outward)
+                        + m * (3.0 * outward),
+                ]
+            }
+        }
+    }
+}
+
+/// `N = m × B` with the moment `m = d − k Ḃ`, all in B: d fixed in the body, and Ḃ the rate of the field as the body sees it.
+///
+/// The second part is the law that slows a satellite down ("B-dot"): `Ḃ = R_NBᵀ Ḃ_N − ω × B`.
+/// Source: Wertz, Spacecraft Attitude Determination and Control, §18.3; Stickler, Alfriend, J. Spacecraft 13 (1976) 282.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Magnetic {
+    dipole: Vector3<f64>,
+    gain: Option<f64>,
+    field: MagneticField,
+}
+
+impl Magnetic {
+    /// With the moment `dipole` fixed in the body, and the gain k if the moment has a second part: with one it has no series,
+    /// whatever its size.
+    ///
+    /// # Errors
+    /// When a number is not finite.
+    pub fn new(
+        dipole: &Vector3<f64>,
+        gain: Option<f64>,
+        field: MagneticField,
+    ) -> Result<Self, Error> {
+        all_finite("dipole", dipole)?;
+        gain.map_or(Ok(0.0), |gain| finite("gain", gain))?;
+        Ok(Self {
+            dipole: *dipole,
+            gain,
+            field,
+        })
+    }
+
+    /// The field, where it is uniform and the moment is fixed in the body.
+    fn constant(&self) -> Option<&Vector3<f64>> {
+        match &self.field.0 {
+            Source::Uniform(field) if self.gain.is_none() => Some(field),
+            _ => None,
+        }
+    }
+}
+
+impl Law for Magnetic {
+    fn character(&self, _: bool) -> Character {
+        Character {
+            exerts_force: false,
+            depends_on_rates: self.gain.is_some(),
+            needs_body: false,
+            needs_epoch: matches!(self.field.0, Source::Dipole { epoch: None, .. }),
+            keeps: match &self.field.0 {
+                Source::Uniform(field) => Kept::along(field),
+                Source::Sampled(_) | Source::Dipole { .. } => Kept::Nothing,
+            },
+            has_series: self.constant().is_some(),
+            parts: Parts {
+                directions: self.constant().map_or(0, directions_of),
+                ..Parts::default()
+            },
+        }
+    }
+
+    /// Of a law with a series.
+    fn parameters(&self) -> Vec<Parameter> {
+        vec![
+            Parameter::new("dipole", &[3]),
+            Parameter::new("field", &[3]),
+        ]
+    }
+
+    fn scaled(&self, factor: f64) -> Result<Self, Error> {
+        Self::new(
+            &times(&self.dipole, factor)?,
+            self.gain.map(|gain| gain * factor),
+            self.field.clone(),
+        )
+    }
+
+    fn anchored(self, t: f64) -> Self {
+        let field = match self.field.0 {
+            Source::Dipole {
+                orbit,
+                epoch: None,
+                strength,
+            } => Source::Dipole {
+                orbit,
+                epoch: Some(t),
+                strength,
+            },
+            other => other,
+        };
+        Self {
+            field: MagneticField(field),
+            ..self
+        }
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        match &self.field.0 {
+            Source::Sampled(spline) => spline.knots().to_vec(),
+            Source::Uniform(_) | Source::Dipole { .. } => Vec::new(),
+        }
+    }
+
+    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
+        match &self.field.0 {
+            Source::Sampled(spline) => spline.check_at(from).and_then(|()| spline.check_at(to)),
+            Source::Dipole { .. } if subject.pivoted => {
+                Err(Error::Motion(MotionFault::PivotedInOrbit))
+            }
+            Source::Uniform(_) | Source::Dipole { .. } => Ok(()),
+        }
+    }
+
+    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
+        let [field, rate] = (self.field.at(subject.start, t))
+            .map(|vector| phase.attitude.inverse_transform_vector(&vector));
+        let seen = rate - phase.omega.cross(&field);
+        let moment = self
+            .gain
+            .map_or(self.dipole, |gain| self.dipole - seen * gain);
+        Wrench::couple(moment.cross(&field))
+    }
+
+    /// `−d·B` in a uniform field.
+    fn potential(&self, _: &Subject, phase: &Phase) -> Option<f64> {
+        let in_body = |field| phase.attitude.inverse_transform_vector(field);
+        (self.constant()).map(|field| -self.dipole.dot(&in_body(field)))
+    }
+
+    fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, _: f64) {
+        if let Some(field) = self.constant() {
+            let lever = cross_matrix(&axes.principal(&axes.vector(&self.dipole, 0)));
+            linear.on_space.push((axes.vector(field, 3), lever));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rate_of_the_field_is_its_derivative() {
+        let position = Vector3::new(1.0, 0.2, -0.1);
+        let orbit = Orbit::new(1.0, &position, &Vector3::new(0.1, 0.9, 0.3)).expect("an ellipse");
+        let times: Vec<f64> = (0..9).map(f64::from).collect();
+        let samples: Vec<_> = times.iter().map(|&t| orbit.at(t).0).collect();
+        let strength = Vector3::new(0.2, -0.3, 0.9);
+        for field in [
+            MagneticField::of_dipole(&strength, &orbit, Some(0.5)).expect("finite"),
+            MagneticField::sampled(&times, &samples).expect("ascending"),
+        ] {
+            for t in [0.3, 2.2, 6.9] {
+                let h = 1e-4;
+                let [_, rate] = field.at(0.0, t);
+                let slope = (field.at(0.0, t + h)[0] - field.at(0.0, t - h)[0]) / (2.0 * h);
+                assert!((rate - slope).norm() < 1e-6 * (1.0 + rate.norm()), "{t}");
+            }
+        }
+        // On the axis of the dipole 2M/r³, across it −M/r³.
+        let field = MagneticField::of_dipole(&position, &orbit, None).expect("finite");
+        let [along, _] = field.at(3.0, 3.0);
+        assert!((along - position * (2.0 / position.norm().powi(3))).norm() < 1e-15);
+    }
+}
