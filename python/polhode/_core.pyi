@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from os import PathLike
-from typing import Any, Literal, Self, TypeAlias, final, overload
+from typing import Any, Literal, Self, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -650,11 +650,11 @@ def constant_force(
     vector: ArrayLike, frame: Literal["body", "space"] = "body", point: ArrayLike | None = None
 ) -> Load: ...
 def uniform_gravity(gravity: ArrayLike) -> Load: ...
-@overload
-def gravity_gradient(mu: Orbit) -> Load: ...
-@overload
 def gravity_gradient(
-    mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, epoch: float | None = None
+    mu: ArrayLike | Orbit,
+    position: ArrayLike | None = None,
+    velocity: ArrayLike | None = None,
+    epoch: float | None = None,
 ) -> Load: ...
 def magnetic(
     dipole: ArrayLike,

@@ -11,7 +11,6 @@
 //! | the force in a pivot (mln24) | [`mod@pivot_reaction`] |
 //! | steady spins and whether they are stable | [`stability`] |
 //! | free motion of any body, exact at any time, and what it tells | [`free`] |
-//! | states of motions in closed form, at one time and at many | `evaluate` |
 //! | a body with constant momentum inside, exact at any time; its steady rotations | [`gyrostat`] |
 //! | torque-free symmetric top: body cone and space cone | [`mod@free_precession`] |
 //! | what internal dissipation does to its nutation | [`mod@nutation_damping`] |
@@ -26,7 +25,6 @@ pub mod angular_momentum;
 pub mod attitude;
 pub mod euler_angles;
 pub mod euler_equations;
-mod evaluate;
 pub mod free;
 pub mod free_precession;
 pub mod gyrostat;

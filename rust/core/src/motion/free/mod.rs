@@ -15,6 +15,7 @@
 //! | `tumbling.rs` | long- and short-axis mode and the separatrix: from a start to the constants of the theta functions |
 //! | `circling.rs` | steady spin and the symmetric body: the limits in which they are sines |
 //! | `propagator.rs` | from the constants to the states, in lanes |
+//! | `evaluate.rs` | states of any motion in closed form, at one time and at many |
 //! | `invariants.rs` | what a motion keeps: energy, momentum, modulus, amplitudes |
 //! | `periods.rs`, `from_periods.rs` | periods and mean precession; the motion that has two given periods |
 //! | `polhode.rs`, `nutation.rs`, `poinsot.rs` | the curve of ω in the body, cones, the rolling ellipsoid |
@@ -23,6 +24,7 @@
 mod circling;
 mod clock;
 mod conditioning;
+pub(super) mod evaluate;
 mod from_periods;
 mod invariants;
 pub mod mode;

@@ -11,7 +11,7 @@ use super::tumbling::Tumbling;
 use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::{RefinedPrincipal, Vector};
-use crate::motion::evaluate;
+use crate::motion::free::evaluate;
 use crate::motion::state::{ClosedForm, State};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::power_below;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 
-use crate::motion::evaluate::{Formula, Motion, Use, at, combine};
+use crate::motion::free::evaluate::{Formula, Motion, Use, at, combine};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
 use crate::numerics::theta::{circular, hyperbolic};

@@ -11,7 +11,7 @@ use super::spinor::Spinor;
 use super::start::Start;
 use crate::error::{Error, MotionFault, all_finite};
 use crate::mass::refined::{RefinedPrincipal, Vector};
-use crate::motion::evaluate;
+use crate::motion::free::evaluate;
 use crate::motion::free::{self, FreeMotion};
 use crate::motion::state::{ClosedForm, State};
 use crate::numerics::double_double::DoubleDouble;

@@ -1,6 +1,6 @@
 //! The state at any time from a few constants: two theta functions for the attitude and ω alike.
 
-use crate::motion::evaluate::{Formula, Motion, Use, combine};
+use crate::motion::free::evaluate::{Formula, Motion, Use, combine};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lane::Lane;
 use crate::numerics::theta::circular;

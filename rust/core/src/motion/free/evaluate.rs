@@ -2,32 +2,32 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::state::State;
+use crate::motion::state::State;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
 use crate::numerics::planes::{Planes, ROWS};
 
 /// A motion whose formula is chosen once for all times, so that loops over times have no branches.
-pub(super) trait Motion: Copy {
+pub(in crate::motion) trait Motion: Copy {
     /// Chooses the formula, and hands it on.
     fn choose<U: Use>(&self, then: U) -> U::Output;
 }
 
 /// A formula for the state.
-pub(super) trait Formula {
+pub(in crate::motion) trait Formula {
     /// (x, y, z, w) of the attitude and ω in B at the time t.
     fn state<L: Lane>(&self, t: L) -> [L; 7];
 }
 
 /// What is done with a formula.
-pub(super) trait Use {
+pub(in crate::motion) trait Use {
     type Output;
 
     fn with(self, formula: &impl Formula) -> Self::Output;
 }
 
 /// The state at one time.
-pub(super) fn at(motion: &impl Motion, time: f64) -> State {
+pub(in crate::motion) fn at(motion: &impl Motion, time: f64) -> State {
     let [x, y, z, w, p, q, r] = dispatch(At { motion, time });
     State {
         attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
@@ -39,7 +39,7 @@ pub(super) fn at(motion: &impl Motion, time: f64) -> State {
 ///
 /// # Panics
 /// If the lengths differ.
-pub(super) fn sample(
+pub(in crate::motion) fn sample(
     motion: &impl Motion,
     times: &[f64],
     attitudes: &mut [[f64; 4]],
@@ -159,7 +159,7 @@ fn write(states: &Planes<7>, attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]
 
 /// Σ `numbers[k]` `columns[k]`.
 #[inline(always)]
-pub(super) fn combine<L: Lane, const N: usize, const M: usize>(
+pub(in crate::motion) fn combine<L: Lane, const N: usize, const M: usize>(
     columns: &[[f64; N]; M],
     numbers: [L; M],
 ) -> [L; N] {
