@@ -187,7 +187,8 @@ class TestGravityGradient:
             run = body.simulate(t, omega, q, load=loads.gravity_gradient(orbit), rtol=1e-14)
             pairs = zip(frame.quaternion * (-1, -1, -1, 1), run.quaternion, strict=True)
             errors = np.array([_product(f, q) for f, q in pairs])
-            return 2 * errors[:, :3] * np.sign(errors[:, 3:])
+            angles: np.ndarray = 2 * errors[:, :3] * np.sign(errors[:, 3:])
+            return angles
 
         swing = libration(1)[:, 1]
         rate = np.sqrt(3 * (roll - yaw) / pitch)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import pickle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -176,6 +177,32 @@ class TestAgainstBothBodies:
         assert kept.angular_momentum_drift < 10 * allowed
 
 
+class TestLimits:
+    CONTROL = loads.feedback(K=2.0, D=1.5, target=(0, 0, 0, 1))
+
+    @pytest.mark.parametrize(("method", "rtol", "allowed"), [("auto", 1e-11, 1e-8), *METHODS[1:]])
+    def test_a_motor_with_a_limit(self, method: Any, rtol: float, allowed: float) -> None:
+        def torque(_: float, q: np.ndarray, w: np.ndarray) -> Any:
+            return np.clip(UNIT @ (np.sign(q[3]) * 2.0 * q[:3] + 1.5 * w), -0.4, 0.4)
+
+        exact = by_scipy(of_wheels(UNIT, J, FRICTION, torque), list(RATES), [0.0, 15.0])
+        load: Any = sum(
+            loads.wheel(axis, inertia, rate, torque=self.CONTROL, friction=friction, limit=0.4)
+            for axis, inertia, rate, friction in zip(AXES, J, RATES, FRICTION, strict=True)
+        )
+        run = BODY.simulate(T, OMEGA, ATTITUDE, load=load, method=method, rtol=rtol)
+        assert apart(run, exact) < allowed
+        without = BODY.simulate(T, OMEGA, ATTITUDE, load=loads.wheel(AXES[0], 0.2, torque=self.CONTROL))
+        assert np.abs(run.omega - without.omega).max() > 0.1
+
+    def test_a_limit_that_is_not_reached(self) -> None:
+        wide, free = (loads.wheel(AXES[0], 0.2, torque=self.CONTROL, limit=limit) for limit in (1e9, None))
+        runs = [BODY.simulate(T, OMEGA, ATTITUDE, load=load, rtol=1e-12).omega for load in (wide, free)]
+        assert np.abs(runs[0] - runs[1]).max() < 1e-9
+        again = pickle.loads(pickle.dumps(wide))
+        assert np.array_equal(BODY.simulate(T, OMEGA, ATTITUDE, load=again, rtol=1e-12).omega, runs[0])
+
+
 class TestOneAxis:
     """About one principal axis all is known by hand."""
 
@@ -270,6 +297,18 @@ REFUSED: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: loads.wheel((0, 0, 1), 1, torque=[1, 2], times=[1]), ValueError, "one for each of the 1 times"),
     (lambda: loads.wheel((0, 0, 1), 1, torque=loads.rotor((0, 0, 1))), TypeError, "one loads.feedback"),
     (lambda: loads.wheel((0, 0, 1), 1, name=""), ValueError, "name: must not be empty"),
+    (lambda: loads.wheel((0, 0, 1), 1, torque=0.1, limit=1), TypeError, "a motor that follows a feedback"),
+    (lambda: loads.wheel((0, 0, 1), 1, limit=1), TypeError, "limit: it is that of a motor"),
+    (
+        lambda: loads.wheel((0, 0, 1), 1, torque=loads.feedback(1, 1), limit=0),
+        PolhodeError,
+        "limit must be positive, got 0.0",
+    ),
+    (
+        lambda: run(loads.wheel((0, 0, 1), 1, torque=loads.feedback(1, 1), limit=1), method="taylor"),
+        PolhodeError,
+        "no motor with a limit",
+    ),
     (lambda: loads.slug(-1, 1), PolhodeError, "inertia must be positive, got -1.0"),
     (lambda: loads.slug(1, -1), PolhodeError, "damping must be positive or zero, got -1.0"),
     (lambda: loads.rotor((0, np.inf, 0)), PolhodeError, "momentum must be finite"),

@@ -693,6 +693,7 @@ def wheel(
     speed: ArrayLike | None = None,
     times: ArrayLike | None = None,
     friction: ArrayLike | None = None,
+    limit: float | None = None,
     name: str = "wheel",
 ) -> Load: ...
 def slug(inertia: ArrayLike, damping: ArrayLike, name: str = "slug") -> Load: ...

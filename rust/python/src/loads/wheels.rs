@@ -70,6 +70,8 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 ///     Ascending. A torque is not known before the first of them, a speed neither before the first nor after the last.
 /// friction : array_like, shape (...), optional
 ///     c: torque over rate, not with `speed`.
+/// limit : float, optional
+///     The most that ``|τ|`` can be, beside a feedback; "auto" is then "dop853".
 /// name : str, optional
 ///     The name of its state in `states` of the trajectory; of several with the same name the second is ``wheel_2``.
 ///
@@ -93,7 +95,8 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 /// >>> motion.omega[-1].round(9), momentum[-1].round(9)
 /// (array([ 0. ,  0. , -0.5]), array([1.]))
 #[pyfunction]
-#[pyo3(signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None, name="wheel"))]
+#[pyo3(signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None, limit=None,
+                   name="wheel"))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn wheel(
     py: Python<'_>,
@@ -104,9 +107,15 @@ pub(crate) fn wheel(
     speed: Option<&Bound<'_, PyAny>>,
     times: Option<&Bound<'_, PyAny>>,
     friction: Option<&Bound<'_, PyAny>>,
+    limit: Option<f64>,
     name: &str,
 ) -> PyResult<PyLoad> {
     check_name(name)?;
+    if limit.is_some() && !torque.is_some_and(PyAnyMethods::is_instance_of::<PyLoad>) {
+        return Err(PyTypeError::new_err(
+            "limit: it is that of a motor that follows a feedback: torque=loads.feedback(...)",
+        ));
+    }
     if speed.is_some() {
         for (what, given) in [("rate", rate), ("torque", torque), ("friction", friction)] {
             if given.is_some() {
@@ -120,7 +129,7 @@ pub(crate) fn wheel(
         (_, Some(speed)) => Stack::one(Drive::Speed(held("speed", speed, times)?)),
         (None, None) => Stack::one(Drive::Torque(nothing(py, times)?)),
         (Some(torque), None) => match torque.cast::<PyLoad>() {
-            Ok(load) => asked(py, load.get(), times)?,
+            Ok(load) => asked(py, load.get(), times, limit)?,
             Err(_) => Stack::one(Drive::Torque(held("torque", torque, times)?)),
         },
     };
@@ -168,6 +177,7 @@ pub(crate) fn wheel(
         "friction",
         friction.map(|_| number(&frictions)).transpose()?,
     )?;
+    options.set_item("limit", limit)?;
     options.set_item("name", name)?;
     let rate = rate.map(|_| number(&rates)).transpose()?;
     let arguments = (write(py, &axis)?, number(&inertia)?, rate, options);
@@ -220,6 +230,7 @@ fn asked(
     py: Python<'_>,
     load: &PyLoad,
     times: Option<&Bound<'_, PyAny>>,
+    limit: Option<f64>,
 ) -> PyResult<Stack<Drive>> {
     let refused = || {
         PyTypeError::new_err(
@@ -235,7 +246,10 @@ fn asked(
     }
     let shape = terms.shape;
     let drives = terms.rows.into_iter().map(|mut row| match row.pop() {
-        Some(Term::Feedback(law)) => Ok(Drive::Feedback(law)),
+        Some(Term::Feedback(law)) => Ok(match limit {
+            Some(limit) => Drive::Limited(law, limit),
+            None => Drive::Feedback(law),
+        }),
         _ => Err(refused()),
     });
     Ok(Stack {

@@ -23,6 +23,8 @@ pub enum Drive {
     Torque(Held),
     /// A motor that exerts on the body, about the wheel's axis, what a feedback asks for: `τ = −a·N`.
     Feedback(Feedback),
+    /// The same, as far as the motor can: `|τ|` is at most the limit.
+    Limited(Feedback, f64),
     /// A motor that gives the wheel a speed Ω relative to the body that is known: straight lines between times.
     Speed(Held),
 }
@@ -76,6 +78,9 @@ impl Wheel {
         positive("inertia", inertia)?;
         finite("rate", rate)?;
         not_negative("friction", friction)?;
+        if let Drive::Limited(_, limit) = &drive {
+            positive("limit", *limit)?;
+        }
         Ok(Self {
             axis: *axis,
             unit,
@@ -84,6 +89,14 @@ impl Wheel {
             friction,
             drive,
         })
+    }
+
+    /// The feedback that its motor follows.
+    fn feedback(&self) -> Option<&Feedback> {
+        match &self.drive {
+            Drive::Feedback(law) | Drive::Limited(law, _) => Some(law),
+            Drive::Torque(_) | Drive::Speed(_) => None,
+        }
     }
 
     /// Whether its speed is given.
@@ -105,11 +118,15 @@ impl Wheel {
         let motor = match &self.drive {
             Drive::Speed(speed) => return self.inertia * speed.line(middle)[1],
             Drive::Torque(torque) => torque.value(middle),
-            Drive::Feedback(law) => {
-                -(self.unit).dot(&law.torque_on(side, &phase.attitude, &phase.omega))
-            }
+            Drive::Feedback(law) => self.asked(law, side, phase),
+            Drive::Limited(law, limit) => self.asked(law, side, phase).clamp(-limit, *limit),
         };
         motor - self.friction * self.speed(own, &phase.omega)
+    }
+
+    /// What a feedback asks of the motor.
+    fn asked(&self, law: &Feedback, side: f64, phase: &Phase) -> f64 {
+        -(self.unit).dot(&law.torque_on(side, &phase.attitude, &phase.omega))
     }
 
     /// a of unit length, in principal axes.
@@ -121,17 +138,16 @@ impl Wheel {
 
 impl Law for Wheel {
     fn character(&self, _: bool) -> Character {
-        let feedback = matches!(self.drive, Drive::Feedback(_));
         Character {
             exerts_force: false,
             depends_on_rates: true,
             needs_body: !self.has_speed(),
             needs_epoch: false,
             keeps: Kept::All,
-            has_series: true,
+            has_series: !matches!(self.drive, Drive::Limited(..)),
             parts: Parts {
                 on_omega: true,
-                on_attitude: feedback,
+                on_attitude: self.feedback().is_some(),
                 own: 1,
                 ..Parts::default()
             },
@@ -159,7 +175,7 @@ impl Law for Wheel {
     fn breaks(&self) -> Vec<f64> {
         match &self.drive {
             Drive::Torque(held) | Drive::Speed(held) => held.times().to_vec(),
-            Drive::Feedback(_) => Vec::new(),
+            Drive::Feedback(_) | Drive::Limited(..) => Vec::new(),
         }
     }
 
@@ -167,7 +183,7 @@ impl Law for Wheel {
         match &self.drive {
             Drive::Torque(held) => held.covers("torque", from, to, false),
             Drive::Speed(held) => held.covers("speed", from, to, true),
-            Drive::Feedback(_) => Ok(()),
+            Drive::Feedback(_) | Drive::Limited(..) => Ok(()),
         }
     }
 
@@ -182,7 +198,7 @@ impl Law for Wheel {
     fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {
         let is_free = match &self.drive {
             Drive::Torque(torque) => torque.times().is_empty() && torque.value(0.0) == 0.0,
-            Drive::Feedback(_) | Drive::Speed(_) => false,
+            Drive::Feedback(_) | Drive::Limited(..) | Drive::Speed(_) => false,
         };
         (is_free && self.friction == 0.0).then_some(0.0)
     }
@@ -200,7 +216,8 @@ impl Law for Wheel {
                 own.constant = inertia * X::from(speed.line(axes.middle)[1]);
             }
             Drive::Torque(torque) => own.constant = X::from(torque.value(axes.middle)),
-            Drive::Feedback(law) => {
+            // With a limit it has no series: the law within it.
+            Drive::Feedback(law) | Drive::Limited(law, _) => {
                 let mut asked = Linear::default();
                 law.add_to(&mut asked, axes, side);
                 own.on_omega = -asked.on_omega.tr_mul(&a);
@@ -220,21 +237,15 @@ impl Law for Wheel {
     }
 
     fn may_switch(&self) -> bool {
-        matches!(self.drive, Drive::Feedback(_))
+        self.feedback().is_some()
     }
 
     fn switch(&self, phase: &Phase) -> Option<Switch> {
-        match &self.drive {
-            Drive::Feedback(law) => law.switch(phase),
-            Drive::Torque(_) | Drive::Speed(_) => None,
-        }
+        self.feedback()?.switch(phase)
     }
 
     fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
-        match &self.drive {
-            Drive::Feedback(law) => law.switching(axes),
-            Drive::Torque(_) | Drive::Speed(_) => None,
-        }
+        self.feedback()?.switching(axes)
     }
 
     fn carried(&self) -> Option<&dyn Carried> {
@@ -254,7 +265,7 @@ impl Carried for Wheel {
     fn begin(&self, t: f64, omega: &Vector3<f64>) -> Vec<f64> {
         vec![match &self.drive {
             Drive::Speed(speed) => self.inertia * speed.line(t)[0],
-            Drive::Torque(_) | Drive::Feedback(_) => {
+            Drive::Torque(_) | Drive::Feedback(_) | Drive::Limited(..) => {
                 self.inertia * (self.rate + self.unit.dot(omega))
             }
         }]
