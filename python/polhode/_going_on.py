@@ -54,7 +54,7 @@ def sensitivity(self: Trajectory) -> MotionSensitivity:
     >>> slopes.state.shape, slopes.load[0]["gravity"].shape
     ((2, 6, 6), (2, 6, 3))
     """
-    self._check_series("sensitivity")
+    self._check_series("sensitivity", "; FreeMotion.sensitivity(t) has those of a free body at any times")
     start = self.state(0)
     return _core.motion_sensitivity(
         self.body, self.t, start.omega, start.attitude, self._acting("sensitivity"), self._about_word()

@@ -318,12 +318,12 @@ class Trajectory:
         """One new axis for a series of times; for an exact motion as many as its times have."""
         return (np.newaxis,) * self.t.ndim
 
-    def _check_series(self, what: str) -> None:
+    def _check_series(self, what: str, hint: str = "") -> None:
         """Refuse times other than a series: an exact motion is known at times of any shape."""
         if self.t.ndim != 1 or not self.t.size:
             raise ValueError(
                 f"{what}: needs a series of times, and t of this motion has the shape {self.t.shape}; "
-                "ask for times of shape (T,)"
+                f"ask for times of shape (T,){hint}"
             )
 
     def _per_time(self, vectors: Floats) -> Floats:

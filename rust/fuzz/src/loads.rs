@@ -1,9 +1,13 @@
 //! Loads drawn from bytes.
 
 use arbitrary::Result;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use polhode::Error;
-use polhode::motion::loads::{Damping, Feedback, Frame, GravityGradient, Sampled, Term, Windows};
+use polhode::motion::loads::kepler::Orbit;
+use polhode::motion::loads::{
+    Damping, Drive, Feedback, Frame, GravityGradient, Held, Magnetic, MagneticField, Rotor,
+    Sampled, Slug, Term, Wheel, Windows,
+};
 
 use crate::draw::Draw;
 
@@ -27,7 +31,7 @@ type Made = core::result::Result<Term, Error>;
 /// # Errors
 /// When the bytes are used up.
 pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
-    Ok(match draw.up_to(8)? {
+    Ok(match draw.up_to(12)? {
         0 => Term::constant_torque(&draw.vector()?, frame(draw)?),
         1 => {
             let point = draw.vector()?;
@@ -47,21 +51,11 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
         4 => Damping::new(&matrix(draw)?, &Matrix3::zeros()).map(Term::Damping),
         5 => Damping::new(&Matrix3::zeros(), &matrix(draw)?).map(Term::Damping),
         6 => {
-            let mut times = draw.list(6, Draw::number)?;
-            times.sort_by(f64::total_cmp);
-            if draw.coin()? && times.len() >= 2 {
-                times.push(100.0);
-                times.insert(0, -100.0);
-                times.sort_by(f64::total_cmp);
-            }
-            let values = times
-                .iter()
-                .map(|_| draw.vector())
-                .collect::<Result<Vec<_>>>()?;
+            let (times, values) = samples(draw)?;
             Sampled::new(&times, &values, frame(draw)?).map(Term::Sampled)
         }
-        7 => Feedback::new(&matrix(draw)?, &matrix(draw)?, &draw.attitude()?).map(Term::Feedback),
-        _ => {
+        7 => feedback(draw)?.map(Term::Feedback),
+        8 => {
             let windows = draw.list(4, |draw| Ok((draw.number()?, draw.number()?)))?;
             let term = Term::uniform_gravity(&draw.vector()?);
             let inner = if draw.coin()? {
@@ -70,6 +64,84 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
                 Term::constant_torque(&draw.vector()?, frame(draw)?)
             };
             Windows::new(&windows).and_then(|windows| inner?.scheduled(&windows))
+        }
+        9 => Rotor::new(&draw.vector()?).map(Term::Rotor),
+        10 => Slug::new(draw.positive()?, draw.positive()?).map(Term::Slug),
+        11 => {
+            let (axis, inertia) = (draw.vector()?, draw.positive()?);
+            let (rate, friction, drive) = (draw.number()?, draw.positive()?, drive(draw)?);
+            drive.and_then(|drive| {
+                Wheel::new(&axis, inertia, rate, friction, drive).map(Term::Wheel)
+            })
+        }
+        _ => {
+            let (dipole, field) = (draw.vector()?, field(draw)?);
+            let gain = if draw.coin()? {
+                Some(draw.number()?)
+            } else {
+                None
+            };
+            field.and_then(|field| Magnetic::new(&dipole, gain, field).map(Term::Magnetic))
+        }
+    })
+}
+
+fn feedback(draw: &mut Draw<'_>) -> Result<core::result::Result<Feedback, Error>> {
+    Ok(Feedback::new(
+        &matrix(draw)?,
+        &matrix(draw)?,
+        &draw.attitude()?,
+    ))
+}
+
+/// Times, ascending unless some are the same, and a vector for each.
+fn samples(draw: &mut Draw<'_>) -> Result<(Vec<f64>, Vec<Vector3<f64>>)> {
+    let mut times = draw.list(6, Draw::number)?;
+    times.sort_by(f64::total_cmp);
+    if draw.coin()? && times.len() >= 2 {
+        times.push(100.0);
+        times.insert(0, -100.0);
+        times.sort_by(f64::total_cmp);
+    }
+    let values = times
+        .iter()
+        .map(|_| draw.vector())
+        .collect::<Result<Vec<_>>>()?;
+    Ok((times, values))
+}
+
+fn drive(draw: &mut Draw<'_>) -> Result<core::result::Result<Drive, Error>> {
+    Ok(match draw.up_to(3)? {
+        0 => Held::constant("torque", draw.number()?).map(Drive::Torque),
+        1 => feedback(draw)?.map(Drive::Feedback),
+        2 => {
+            let limit = draw.number()?;
+            feedback(draw)?.map(|law| Drive::Limited(law, limit))
+        }
+        _ => {
+            let (times, values) = samples(draw)?;
+            let values: Vec<f64> = values.iter().map(|v| v.x).collect();
+            let held = Held::table("speed", &times, &values);
+            if draw.coin()? {
+                held.map(Drive::Speed)
+            } else {
+                held.map(Drive::Torque)
+            }
+        }
+    })
+}
+
+fn field(draw: &mut Draw<'_>) -> Result<core::result::Result<MagneticField, Error>> {
+    Ok(match draw.up_to(2)? {
+        0 => MagneticField::uniform(&draw.vector()?),
+        1 => {
+            let (times, values) = samples(draw)?;
+            MagneticField::sampled(&times, &values)
+        }
+        _ => {
+            let strength = draw.vector()?;
+            Orbit::new(draw.positive()?, &draw.vector()?, &draw.vector()?)
+                .and_then(|orbit| MagneticField::of_dipole(&strength, &orbit, None))
         }
     })
 }

@@ -75,6 +75,7 @@ fn of_motion(fault: &MotionFault) -> &'static str {
             ": body.simulate(times, omega, load=polhode.loads.rotor(momentum))"
         }
         MotionFault::TooManySteps { .. } => " with resume",
+        MotionFault::NoSeries => ": rtol=1e-13",
         _ => "",
     }
 }

@@ -44,12 +44,6 @@ pub(crate) fn motion_sensitivity<'py>(
             .to_owned();
         return Err(new(py, "PolhodeError", message));
     }
-    if !load.slots().is_empty() {
-        let message = "sensitivity: the load has states of its own, of which no derivatives are known; take differences of \
-             motions simulated at rtol=1e-13 from states and loads a little apart"
-            .to_owned();
-        return Err(new(py, "PolhodeError", message));
-    }
     let times = read_times(py, t)?;
     let motions = Motions {
         bodies: &body.get().bodies,

@@ -2,8 +2,6 @@
 
 use nalgebra::Vector3;
 
-use super::lane::{Double, Lane};
-
 /// The exponent e of `|x| = 2^e·(1…2)`; zero for zero.
 #[must_use]
 pub fn exponent(x: f64) -> i32 {
@@ -32,11 +30,12 @@ pub fn times_power_of_two(x: f64, e: i32) -> f64 {
     x
 }
 
-/// The power of two at or below a positive number, as a unit; one of what is no positive number.
+/// The power of two at or below a positive number, as a unit, kept where its reciprocal is a normal number; one of what is no
+/// positive number.
 #[must_use]
 pub fn power_below(x: f64) -> f64 {
     if x > 0.0 && x.is_finite() {
-        Double::<false>::new(x).power_of_two_scale().1.get()
+        times_power_of_two(1.0, exponent(x).clamp(-1022, 1022))
     } else {
         1.0
     }
@@ -155,6 +154,23 @@ mod tests {
         assert_eq!(times_cross(3.0, &nothing, &b), nothing);
         assert!(times_dot(1.0, &a, &Vector3::repeat(f64::NAN)).is_nan());
         assert!(times_dot(1.0, &a, &Vector3::new(f64::INFINITY, 0.0, 0.0)).is_infinite());
+    }
+
+    #[test]
+    fn units_have_reciprocals() {
+        for x in [5e-324, 3e-308, 1.0, 6.6e-34, 1.7e308] {
+            let unit = power_below(x);
+            assert!(unit.is_normal() && unit.recip().is_normal());
+            assert!(unit <= x.max(f64::MIN_POSITIVE) && (x / unit < 4.0), "{x}");
+        }
+        assert_eq!(
+            (power_below(5e-324), power_below(1e308)),
+            (f64::MIN_POSITIVE, 2.0_f64.powi(1022))
+        );
+        assert_eq!(
+            [0.0, -1.0, f64::NAN, f64::INFINITY].map(power_below),
+            [1.0; 4]
+        );
     }
 
     #[test]

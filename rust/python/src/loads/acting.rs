@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use super::address::Compiled;
 use super::called::Callback;
 use super::load::PyLoad;
-use super::own::{Named, Slot};
+use super::named::{Named, Slot};
 use super::stateful::WithStates;
 use crate::errors::to_py;
 

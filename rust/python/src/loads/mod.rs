@@ -5,6 +5,7 @@
 //! | `called` | a Python function |
 //! | `address` | a function at an address |
 //! | `stateful` | Python functions with states of their own |
+//! | `named` | states by name, as functions get them |
 //! | `own` | the states that a load has of its own, by name |
 //! | `inside` | what a body carries along under a load |
 //! | `wheels` | the functions that make rotors, wheels and slugs |
@@ -24,6 +25,7 @@ mod field;
 mod functions;
 mod inside;
 mod load;
+mod named;
 mod operators;
 mod own;
 mod part;
@@ -36,7 +38,7 @@ pub(crate) use acting::{Acting, Fault};
 pub(crate) use field::{gravity_gradient, magnetic};
 pub(crate) use functions::{callback, compiled, torque_callback, with_states};
 pub(crate) use load::PyLoad;
-pub(crate) use own::{Named, Slot, reported};
+pub(crate) use named::{Named, Slot, reported};
 pub(crate) use terms::{
     constant_force, constant_torque, damping, feedback, sampled, schedule, uniform_gravity,
 };

@@ -1,7 +1,7 @@
 //! The states that a load has of its own, by name.
 
 use nalgebra::Vector3;
-use numpy::{PyArray1, PyUntypedArrayMethods};
+use numpy::PyUntypedArrayMethods;
 use polhode::motion::loads::Term;
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::load::PyLoad;
+use super::named::{Slot, reported};
 use super::part::Acts;
 use super::stateful::MOST_STATES;
 use crate::arrays::floats;
@@ -18,20 +19,6 @@ use crate::stack::{Broadcast, Stack};
 /// Relative to it or to what counts as large, states that differ less are the same: those at the end of a run, of a wheel whose
 /// speed is known.
 const SAME: f64 = 1e-9;
-
-/// The states of one part of a load among those of all.
-#[derive(Clone, Debug)]
-pub(crate) struct Slot {
-    pub(crate) name: String,
-    pub(crate) first: usize,
-    pub(crate) count: usize,
-}
-
-impl Slot {
-    pub(crate) fn of<'a>(&self, all: &'a [f64]) -> &'a [f64] {
-        &all[self.first..self.first + self.count]
-    }
-}
 
 impl PyLoad {
     /// The states of its parts, in the order in which a run has them: first those of its analytic terms, then those of parts that call
@@ -198,30 +185,6 @@ impl PyLoad {
     }
 }
 
-/// The names and numbers of the states of a phase, for functions of Python.
-pub(crate) struct Named<'a> {
-    slots: &'a [Slot],
-    states: Vec<f64>,
-}
-
-impl<'a> Named<'a> {
-    pub(crate) fn of(slots: &'a [Slot], terms: &[Term], phase: &Phase) -> Self {
-        Self {
-            slots,
-            states: reported(terms, phase),
-        }
-    }
-
-    /// A dict for one call: a function may write into it what it likes.
-    pub(crate) fn dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let dict = PyDict::new(py);
-        for slot in self.slots {
-            dict.set_item(&slot.name, PyArray1::from_slice(py, slot.of(&self.states)))?;
-        }
-        Ok(dict)
-    }
-}
-
 /// A name that no slot has yet: the one that is asked for, or with the first number that makes it one.
 fn unused(name: &str, slots: &[Slot]) -> String {
     let is_taken = |name: &str| slots.iter().any(|slot| slot.name == name);
@@ -257,19 +220,4 @@ fn one(values: &Bound<'_, PyAny>, slot: &Slot, with_holes: bool) -> PyResult<Sta
         shape: shape[..shape.len() - 1].to_vec(),
         rows: numbers.chunks(slot.count).map(<[f64]>::to_vec).collect(),
     })
-}
-
-/// The states of a phase as they are reported.
-pub(crate) fn reported(terms: &[Term], phase: &Phase) -> Vec<f64> {
-    let mut states = phase.own.to_vec();
-    let mut first = 0;
-    for carried in terms.iter().filter_map(Term::carried) {
-        let mine = first..first + carried.count();
-        if let Some(own) = states.get_mut(mine.clone()) {
-            let told = carried.reported(own, &phase.omega);
-            own.copy_from_slice(&told);
-        }
-        first = mine.end;
-    }
-    states
 }

@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use pyo3::{PyTraverseError, PyVisit};
 
 use super::called::vector;
-use super::own::Named;
+use super::named::Named;
 use crate::arrays::{floats, list_floats};
 use crate::errors::new;
 

@@ -45,8 +45,8 @@ pub fn variations(
     terms: &[Term],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Vec<Variation>, Error> {
-    let has_series = |term: &Term| term.character(task.subject.pivoted).has_series;
-    if !terms.iter().all(has_series) {
+    let is_known = |term: &Term| term.character(task.subject.pivoted).has_series && term.own() == 0;
+    if !terms.iter().all(is_known) {
         return Err(MotionFault::NoSeries.into());
     }
     let numbers: usize = terms.iter().map(Term::count).sum();
