@@ -69,7 +69,7 @@ impl Sampled {
     /// Checks that `t` is within its times.
     ///
     /// # Errors
-    /// [`MotionFault::OutsideSamples`].
+    /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples).
     pub fn check_at(&self, t: f64) -> Result<(), Error> {
         self.spline.check_at(t)
     }
