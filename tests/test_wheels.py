@@ -203,6 +203,22 @@ class TestLimits:
         assert np.array_equal(BODY.simulate(T, OMEGA, ATTITUDE, load=again, rtol=1e-12).omega, runs[0])
 
 
+def test_a_gravity_gradient_beside_wheels() -> None:
+    """Tilted wheels, alone and in a stack, by series of two precisions and by steps."""
+    rng = np.random.default_rng(8)
+    axes, momenta = rng.normal(size=(7, 3)), rng.uniform(0.05, 0.3, 7)
+    pull = loads.gravity_gradient(3.0, position=(2.0, 0.3, 0.1), velocity=(0.1, 1.2, 0.3))
+    load = pull + loads.wheel(axes, momenta, 2.0, friction=0.1) + loads.wheel((0, 1, 1), 0.2, 1.0, name="w")
+    runs = BODY.simulate(T, OMEGA, ATTITUDE, load=load, method="taylor")
+    exact = BODY.simulate(T, OMEGA, ATTITUDE, load=load, method="taylor", rtol=1e-22)
+    steps = BODY.simulate(T, OMEGA, ATTITUDE, load=load, method="dop853", rtol=1e-13)
+    assert np.abs(runs.omega - exact.omega).max() < 1e-9
+    assert np.abs(steps.omega - exact.omega).max() < 1e-9
+    for k in range(7):
+        alone = BODY.simulate(T, OMEGA, ATTITUDE, load=load[k], method="taylor")
+        assert np.abs(alone.omega - runs.omega[k]).max() < 1e-13
+
+
 class TestOneAxis:
     """About one principal axis all is known by hand."""
 

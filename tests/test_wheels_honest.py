@@ -72,9 +72,9 @@ class TestWrongInSilence:
         ]
         assert found[0] == found[1]
 
-    @pytest.mark.parametrize("method", ["auto", "dop853"])
+    @pytest.mark.parametrize("method", ["auto", "taylor", "dop853"])
     def test_a_gravity_gradient_pulls_the_wheels_too(self, method: Any) -> None:
-        tensor, inertia, axis = np.diag([1.0, 2.0, 2.5]), 0.5, np.array([0.0, 0.0, 1.0])
+        tensor, inertia, axis = np.diag([1.0, 2.0, 2.5]), 0.5, np.array([0.48, 0.6, 0.64])
         position, velocity = np.array([2.0, 0, 0]), np.array([0, np.sqrt(1.5), 0])
         mass = np.eye(4) * inertia
         mass[:3, :3], mass[:3, 3], mass[3, :3] = tensor, inertia * axis, inertia * axis

@@ -4,7 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::propagator::{AnySeries, Circular, Clock, Hyperbolic, Propagator, Rational};
+use super::propagator::{
+    Alternating, Circling, Circular, Clocked, Endless, Hyperbolic, Propagator, Rational,
+};
 use super::spinor::{Course, Spinor};
 use super::start::Start;
 use crate::mass::refined::{RefinedPrincipal, Vector};
@@ -54,14 +56,16 @@ pub(super) fn steady(
     let propagator = Propagator {
         rate: turns_of(rate).scaled(0.5),
         slope: 0.0,
-        clock: Clock::Circling {
-            rate: DoubleDouble::default(),
-            start: DoubleDouble::default(),
-        },
-        series: AnySeries::Circular(Circular {
-            even: [[0.0; 4]; 3],
-            odd: [[0.0; 4]; 4],
-        }),
+        clocked: Clocked::Circular(
+            Circular {
+                even: [[0.0; 4]; 3],
+                odd: [[0.0; 4]; 4],
+            },
+            Circling {
+                rate: DoubleDouble::default(),
+                start: DoubleDouble::default(),
+            },
+        ),
         attitude: [components(&q), components(&turned), [0.0; 4], [0.0; 4]],
         omega: [[omega.x, omega.y, omega.z], [0.0; 3], [0.0; 3], [0.0; 3]],
         reach: f64::INFINITY,
@@ -79,8 +83,7 @@ fn components(q: &Quaternion<f64>) -> [f64; 4] {
 
 /// How x goes with time, what the series of it are, and what turns the spinor beside them.
 struct Pace {
-    clock: Clock,
-    series: AnySeries,
+    clocked: Clocked,
     /// ν in the mean, but for what all bodies have, in the units of the start.
     phase: DoubleDouble,
     /// Turns of the spinor for x = 1.
@@ -107,13 +110,15 @@ pub(super) fn moving(
             passing(spinor)
         }
         Course::Rational => Pace {
-            clock: Clock::Endless {
-                rate: 1.0,
-                start: 0.0,
-            },
-            series: AnySeries::Rational(Rational {
-                curvature: [spinor.argument.re.high, spinor.argument.im.high],
-            }),
+            clocked: Clocked::Rational(
+                Rational {
+                    curvature: [spinor.argument.re.high, spinor.argument.im.high],
+                },
+                Endless {
+                    rate: 1.0,
+                    start: 0.0,
+                },
+            ),
             phase: spinor.phase,
             slope: 0.0,
             turned: 0.0,
@@ -123,8 +128,7 @@ pub(super) fn moving(
     let propagator = Propagator {
         rate: turns_of(pace.phase),
         slope: pace.slope,
-        clock: pace.clock,
-        series: pace.series,
+        clocked: pace.clocked,
         attitude: attitude(given, start, &columns, pace.turned),
         omega: omega(given, start, &columns),
         reach: f64::INFINITY,
@@ -145,11 +149,13 @@ pub(super) fn moving(
 fn circling(spinor: &Spinor) -> Pace {
     let rate = turns_of(spinor.rate);
     Pace {
-        clock: Clock::Circling {
-            rate: rate.scaled(spinor.sense),
-            start: DoubleDouble::default(),
-        },
-        series: circular(spinor),
+        clocked: Clocked::Circular(
+            circular(spinor),
+            Circling {
+                rate: rate.scaled(spinor.sense),
+                start: DoubleDouble::default(),
+            },
+        ),
         phase: spinor.phase,
         slope: 0.0,
         turned: 0.0,
@@ -162,11 +168,13 @@ fn passing(spinor: &Spinor) -> Pace {
     let before = spinor.argument.size().ln();
     let Some((turn, in_time)) = spinor.in_time else {
         return Pace {
-            clock: Clock::Endless {
-                rate: spinor.sense * spinor.rate.high,
-                start: before,
-            },
-            series: hyperbolic(spinor, angle, 1.0, f64::INFINITY),
+            clocked: Clocked::Endless(
+                hyperbolic(spinor, angle, 1.0, f64::INFINITY),
+                Endless {
+                    rate: spinor.sense * spinor.rate.high,
+                    start: before,
+                },
+            ),
             phase: spinor.phase,
             slope: 0.0,
             turned: 0.0,
@@ -195,13 +203,13 @@ fn passing(spinor: &Spinor) -> Pace {
         DoubleDouble::from(spinor.sense) / step,
         DoubleDouble::from(from),
     );
+    let series = hyperbolic(spinor, angle, 2.0 * end, end);
     Pace {
-        clock: if is_alternating {
-            Clock::Alternating { rate, start }
+        clocked: if is_alternating {
+            Clocked::Alternating(series, Alternating { rate, start })
         } else {
-            Clock::Circling { rate, start }
+            Clocked::Circling(series, Circling { rate, start })
         },
-        series: hyperbolic(spinor, angle, 2.0 * end, end),
         phase,
         slope,
         turned: -slope * from,
@@ -209,7 +217,7 @@ fn passing(spinor: &Spinor) -> Pace {
     }
 }
 
-fn hyperbolic(spinor: &Spinor, angle: f64, unit: f64, end: f64) -> AnySeries {
+fn hyperbolic(spinor: &Spinor, angle: f64, unit: f64, end: f64) -> Hyperbolic {
     let nome = spinor.nome.high;
     let size = nome.abs();
     let sign = if spinor.is_alternating { -1.0_f64 } else { 1.0 };
@@ -217,7 +225,7 @@ fn hyperbolic(spinor: &Spinor, angle: f64, unit: f64, end: f64) -> AnySeries {
         let phase = f64::from(n) * angle;
         [phase.cos(), phase.sin()]
     };
-    AnySeries::Hyperbolic(Hyperbolic {
+    Hyperbolic {
         even: [1, 2, 3].map(|j| {
             let weight = sign.powi(j) * size.powi(j * j - j);
             wave(2 * j).map(|x| weight * x)
@@ -228,10 +236,10 @@ fn hyperbolic(spinor: &Spinor, angle: f64, unit: f64, end: f64) -> AnySeries {
         }),
         unit,
         end,
-    })
+    }
 }
 
-fn circular(spinor: &Spinor) -> AnySeries {
+fn circular(spinor: &Spinor) -> Circular {
     let nome = spinor.nome;
     let y = spinor.start;
     let y_next = if nome.high == 0.0 {
@@ -246,7 +254,7 @@ fn circular(spinor: &Spinor) -> AnySeries {
         let (sum, difference) = (a + b, (a - b).times_i());
         [sum.re, sum.im, difference.re, difference.im]
     };
-    AnySeries::Circular(Circular {
+    Circular {
         even: [1, 2, 3].map(|j| {
             pair(
                 power(up, j).times(q.powi(j * j - j)),
@@ -259,7 +267,7 @@ fn circular(spinor: &Spinor) -> AnySeries {
                 power(down, j + 1).times(q.powi(j * (j + 1))),
             )
         }),
-    })
+    }
 }
 
 /// From the two theta functions to the attitude: `q_NM ∘ (Im χ₂, −Re χ₂, Im χ₁, Re χ₁) ∘ q_FB`, the spinor turned by so many

@@ -112,29 +112,107 @@ impl Series for Rational {
     }
 }
 
-/// One of the series.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum AnySeries {
-    Circular(Circular),
-    Hyperbolic(Hyperbolic),
-    Rational(Rational),
+/// How x grows with time: x, and the sign of Θₒ.
+pub(super) trait Clock: Copy {
+    /// Whether x never comes back.
+    const ENDLESS: bool;
+
+    fn at<L: Lane>(self, t: L) -> (L, L);
 }
 
-/// How x grows with time.
+/// Whole turns of x mean nothing; x in turns for a unit of time, and at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Clock {
-    /// Whole turns of x mean nothing; x in turns for a unit of time, and at t = 0.
-    Circling {
-        rate: DoubleDouble,
-        start: DoubleDouble,
-    },
-    /// The same, but with each turn Θₒ changes its sign.
-    Alternating {
-        rate: DoubleDouble,
-        start: DoubleDouble,
-    },
-    /// x never comes back.
-    Endless { rate: f64, start: f64 },
+pub(super) struct Circling {
+    pub(super) rate: DoubleDouble,
+    pub(super) start: DoubleDouble,
+}
+
+impl Clock for Circling {
+    const ENDLESS: bool = false;
+
+    #[inline(always)]
+    fn at<L: Lane>(self, t: L) -> (L, L) {
+        (turns(t, self.rate, self.start), L::new(1.0))
+    }
+}
+
+/// The same, but with each turn Θₒ changes its sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Alternating {
+    pub(super) rate: DoubleDouble,
+    pub(super) start: DoubleDouble,
+}
+
+impl Clock for Alternating {
+    const ENDLESS: bool = false;
+
+    #[inline(always)]
+    fn at<L: Lane>(self, t: L) -> (L, L) {
+        let (one, two) = (L::new(1.0), L::new(2.0));
+        let halves = two * turns(t, self.rate.scaled(0.5), self.start.scaled(0.5));
+        let whole = halves.round();
+        (halves - whole, one - two * whole.abs())
+    }
+}
+
+/// x never comes back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Endless {
+    pub(super) rate: f64,
+    pub(super) start: f64,
+}
+
+impl Clock for Endless {
+    const ENDLESS: bool = true;
+
+    #[inline(always)]
+    fn at<L: Lane>(self, t: L) -> (L, L) {
+        let x = t.mul_add(L::new(self.rate), L::new(self.start));
+        (x, L::new(1.0))
+    }
+}
+
+/// One of the series with its clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Clocked {
+    Circular(Circular, Circling),
+    Circling(Hyperbolic, Circling),
+    Alternating(Hyperbolic, Alternating),
+    Endless(Hyperbolic, Endless),
+    Rational(Rational, Endless),
+}
+
+impl Clocked {
+    /// The same where a unit of the rates is `unit`.
+    fn in_units_of(self, unit: f64) -> Self {
+        let circling = |clock: Circling| Circling {
+            rate: clock.rate.scaled(unit),
+            ..clock
+        };
+        let endless = |clock: Endless| Endless {
+            rate: clock.rate * unit,
+            ..clock
+        };
+        match self {
+            Self::Circular(series, clock) => Self::Circular(series, circling(clock)),
+            Self::Circling(series, clock) => Self::Circling(series, circling(clock)),
+            Self::Alternating(series, clock) => {
+                let rate = clock.rate.scaled(unit);
+                Self::Alternating(series, Alternating { rate, ..clock })
+            }
+            Self::Endless(series, clock) => Self::Endless(series, endless(clock)),
+            Self::Rational(series, clock) => Self::Rational(series, endless(clock)),
+        }
+    }
+
+    /// Turns of x for a unit of time, where they are counted.
+    fn rate(&self) -> Option<DoubleDouble> {
+        match self {
+            Self::Circular(_, clock) | Self::Circling(_, clock) => Some(clock.rate),
+            Self::Alternating(_, clock) => Some(clock.rate),
+            Self::Endless(..) | Self::Rational(..) => None,
+        }
+    }
 }
 
 /// All that a state takes.
@@ -144,8 +222,7 @@ pub(super) struct Propagator {
     pub(super) rate: DoubleDouble,
     /// Turns of the spinor for x = 1.
     pub(super) slope: f64,
-    pub(super) clock: Clock,
-    pub(super) series: AnySeries,
+    pub(super) clocked: Clocked,
     /// From (Re Θₑ, Im Θₑ, Re Θₒ, Im Θₒ), turned, to the components (x, y, z, w) of the attitude times √D.
     pub(super) attitude: [[f64; 4]; 4],
     /// From `|Θₑ|²`, `|Θₒ|²`, real and imaginary part of `Θ̄ₑΘₒ` to D ω in B.
@@ -158,50 +235,26 @@ impl Propagator {
     /// The same motion where a unit of the rates is `unit`, a power of two.
     pub(super) fn in_units_of(mut self, unit: f64) -> Self {
         self.rate = self.rate.scaled(unit);
-        self.clock = match self.clock {
-            Clock::Circling { rate, start } => Clock::Circling {
-                rate: rate.scaled(unit),
-                start,
-            },
-            Clock::Alternating { rate, start } => Clock::Alternating {
-                rate: rate.scaled(unit),
-                start,
-            },
-            Clock::Endless { rate, start } => Clock::Endless {
-                rate: rate * unit,
-                start,
-            },
-        };
+        self.clocked = self.clocked.in_units_of(unit);
         self.omega = self.omega.map(|column| column.map(|x| x * unit));
-        self.reach = match self.clock {
-            Clock::Circling { rate, .. } | Clock::Alternating { rate, .. } => {
-                reach(&[self.rate, rate])
-            }
-            Clock::Endless { .. } => reach(&[self.rate]),
+        self.reach = match self.clocked.rate() {
+            Some(rate) => reach(&[self.rate, rate]),
+            None => reach(&[self.rate]),
         };
         self
     }
 
     /// (x, y, z, w) of the attitude and ω in B.
     #[inline(always)]
-    fn state<L: Lane, const ENDLESS: bool>(&self, series: &impl Series, t: L) -> [L; 7] {
-        let (one, two) = (L::new(1.0), L::new(2.0));
+    fn state<L: Lane, C: Clock>(&self, clock: C, series: &impl Series, t: L) -> [L; 7] {
+        let one = L::new(1.0);
         let is_known = t.abs() <= L::new(self.reach);
         let t = if is_known { t } else { L::new(f64::NAN) };
-        let (x, sign) = match self.clock {
-            Clock::Alternating { rate, start } if !ENDLESS => {
-                let halves = two * turns(t, rate.scaled(0.5), start.scaled(0.5));
-                let whole = halves.round();
-                (halves - whole, one - two * whole.abs())
-            }
-            Clock::Circling { rate, start } if !ENDLESS => (turns(t, rate, start), one),
-            Clock::Endless { rate, start } => (t.mul_add(L::new(rate), L::new(start)), one),
-            _ => (t, one),
-        };
+        let (x, sign) = clock.at(t);
         let [even, (odd_re, odd_im)] = series.values(x);
         let odd = (sign * odd_re, sign * odd_im);
         let phase = turns(t, self.rate, DoubleDouble::default());
-        let phase = if ENDLESS {
+        let phase = if C::ENDLESS {
             phase
         } else {
             whole_off(L::new(self.slope).mul_add(x, phase))
@@ -234,24 +287,22 @@ impl Propagator {
 impl Motion for Propagator {
     #[inline(always)]
     fn choose<U: Use>(&self, then: U) -> U::Output {
-        let is_endless = matches!(self.clock, Clock::Endless { .. });
-        match self.series {
-            AnySeries::Circular(series) => then.with(&Chosen::<_, false>(self, series)),
-            AnySeries::Hyperbolic(series) if is_endless => {
-                then.with(&Chosen::<_, true>(self, series))
-            }
-            AnySeries::Hyperbolic(series) => then.with(&Chosen::<_, false>(self, series)),
-            AnySeries::Rational(series) => then.with(&Chosen::<_, true>(self, series)),
+        match self.clocked {
+            Clocked::Circular(series, clock) => then.with(&Chosen(self, series, clock)),
+            Clocked::Circling(series, clock) => then.with(&Chosen(self, series, clock)),
+            Clocked::Alternating(series, clock) => then.with(&Chosen(self, series, clock)),
+            Clocked::Endless(series, clock) => then.with(&Chosen(self, series, clock)),
+            Clocked::Rational(series, clock) => then.with(&Chosen(self, series, clock)),
         }
     }
 }
 
-/// A propagator with its series, and whether its clock is endless.
-struct Chosen<'a, S, const ENDLESS: bool>(&'a Propagator, S);
+/// A propagator with its series and its clock: loops over times have no branch on either.
+struct Chosen<'a, S, C>(&'a Propagator, S, C);
 
-impl<S: Series, const ENDLESS: bool> Formula for Chosen<'_, S, ENDLESS> {
+impl<S: Series, C: Clock> Formula for Chosen<'_, S, C> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
-        self.0.state::<L, ENDLESS>(&self.1, t)
+        self.0.state(self.2, &self.1, t)
     }
 }

@@ -26,6 +26,8 @@ pub struct Linear<'a, X: Exact> {
     pub timed: Vec<(usize, &'a dyn Timed<X>)>,
     /// The states that the load has of its own.
     pub own: Vec<Own<X>>,
+    /// Σ J a aᵀ of the wheels that turn freely, which is not part of the tensor of the equations, but is pulled by gravity.
+    pub turning: Matrix3<X>,
 }
 
 impl<X: Exact> Default for Linear<'_, X> {
@@ -40,6 +42,7 @@ impl<X: Exact> Default for Linear<'_, X> {
             thrust: Vector3::zeros(),
             timed: Vec::new(),
             own: Vec::new(),
+            turning: Matrix3::zeros(),
         }
     }
 }

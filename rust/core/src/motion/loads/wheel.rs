@@ -225,6 +225,7 @@ impl Law for Wheel {
             }
         }
         if !self.has_speed() {
+            linear.turning += a * a.transpose() * inertia;
             own.on_itself = -(friction / inertia);
             own.on_omega += a * friction;
         }

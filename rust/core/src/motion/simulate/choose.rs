@@ -32,13 +32,8 @@ impl Method {
                 terms.is_empty()
             }
         });
-        // A gradient's series has the tensor of the equations, not that of a body whose wheels turn freely.
-        let has_series = terms.is_some_and(|terms| {
-            let turns = |term: &Term| term.carried().is_some_and(|it| it.turning().is_some());
-            let pulls = |term: &Term| term.character(pivoted).parts.gradients > 0;
-            terms.iter().all(|term| term.character(pivoted).has_series)
-                && !(terms.iter().any(turns) && terms.iter().any(pulls))
-        });
+        let has_series = terms
+            .is_some_and(|terms| (terms.iter()).all(|term| term.character(pivoted).has_series));
         let of_steps = if has_series {
             Self::Taylor
         } else {
@@ -63,7 +58,7 @@ impl Method {
                 "analytic loads, no callbacks and no compiled functions"
             }
             Self::Taylor if !has_series => {
-                "loads whose series is known: no magnetic field along an orbit, no B-dot, no motor with a limit, no gravity gradient beside wheels that turn freely"
+                "loads whose series is known: no magnetic field along an orbit, no B-dot, no motor with a limit"
             }
             method if is_beyond_doubles && method != Self::Taylor => {
                 "an rtol of 2.3e-15 or more (ten units of rounding)"

@@ -17,6 +17,8 @@ pub(super) struct Field<T, const B: usize> {
     /// One over the moments, and the elements 23, 31, 12 of the tensor, which are zero where nothing is varied.
     pub(super) inverse_moments: [T; 3],
     pub(super) products: [T; 3],
+    /// κ and the elements 23, 31, 12 of the tensor that a gravity gradient pulls: of the body with its wheels locked.
+    pub(super) pull: ([T; 3], [T; 3]),
     pub(super) constant: [T; 3],
     pub(super) on_omega: Square<T>,
     pub(super) on_attitude: [[T; 4]; 3],
@@ -36,6 +38,7 @@ impl<T: Copy, const B: usize> Field<T, B> {
             kappa: [zero; 3],
             inverse_moments: [zero; 3],
             products: [zero; 3],
+            pull: ([zero; 3], [zero; 3]),
             constant: [zero; 3],
             on_omega: [[zero; 3]; 3],
             on_attitude: [[zero; 4]; 3],
@@ -54,8 +57,10 @@ impl<X: Copy + Default + PartialEq, const B: usize> Field<X, B> {
         let zero = X::default();
         [0, 1, 2].map(|n| {
             let on_space = self.on_space.iter().flat_map(|matrix| &matrix[n]);
+            let pulled = self.pull.1.iter().chain([&self.pull.0[n]]);
             [self.kappa[n], self.constant[n]]
                 .iter()
+                .chain(pulled)
                 .chain(&self.on_omega[n])
                 .chain(&self.on_attitude[n])
                 .chain(&self.quadratic[n])
@@ -71,8 +76,10 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     pub(super) fn set(&mut self, row: usize, field: &Field<L::Real, B>) {
         for n in 0..3 {
             self.kappa[n].put(row, field.kappa[n]);
+            (self.inverse_moments[n]).put(row, field.inverse_moments[n]);
+            self.pull.0[n].put(row, field.pull.0[n]);
+            self.pull.1[n].put(row, field.pull.1[n]);
             if L::VARIES {
-                (self.inverse_moments[n]).put(row, field.inverse_moments[n]);
                 self.products[n].put(row, field.products[n]);
             }
             self.constant[n].put(row, field.constant[n]);
@@ -133,11 +140,15 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
 impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     /// Whether elements off the diagonal of the tensor are varied.
     pub(super) fn is_tilted(&self) -> bool {
-        let is_zero = |x: &Pack<L, R>| (0..R).all(|row| x.real(row) == L::Real::default());
-        !self.products.iter().all(is_zero)
+        !are_zero(&self.products)
     }
 
-    /// What the elements off the diagonal of the tensor add to `−x×I x`, over the moments, with the coefficients of (x₂x₃, x₃x₁, x₁x₂)
+    /// Whether the tensor that a gravity gradient pulls has elements off the diagonal.
+    pub(super) fn is_pulled_aside(&self) -> bool {
+        !are_zero(&self.pull.1)
+    }
+
+    /// What the elements 23, 31, 12 of a tensor add to `−x×I x`, over the moments, with the coefficients of (x₂x₃, x₃x₁, x₁x₂)
     /// and of (x₁², x₂², x₃²); cyclic in i, j, k:
     ///
     /// ```text
@@ -145,10 +156,10 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
     /// ```
     pub(super) fn tilt(
         &self,
+        p: &[Pack<L, R>; 3],
         mixed: &[Pack<L, R>; 3],
         squares: &[Pack<L, R>; 3],
     ) -> [Pack<L, R>; 3] {
-        let p = &self.products;
         [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| {
             let torque = p[k] * mixed[j] - p[j] * mixed[k] + p[i] * (squares[k] - squares[j]);
             torque * self.inverse_moments[i]
@@ -161,6 +172,11 @@ impl<L: Number, const R: usize, const B: usize> Field<Pack<L, R>, B> {
         [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
             .map(|(i, j, k)| a[i] - (p[k] * a[j] + p[j] * a[k]) * self.inverse_moments[i])
     }
+}
+
+fn are_zero<L: Number, const R: usize>(numbers: &[Pack<L, R>; 3]) -> bool {
+    let is_zero = |x: &Pack<L, R>| (0..R).all(|row| x.real(row) == L::Real::default());
+    numbers.iter().all(is_zero)
 }
 
 /// `sum + a·b`.

@@ -20,7 +20,7 @@ type Vectors<T> = [[T; 3]; COUNT];
 /// ṙ = r×ω + v,   v̇ = v×ω − μ r/r³
 /// ```
 ///
-/// and with κ of the body, `I⁻¹ (3μ/r⁵) r×I r = −(3μ/r⁵) κ (r₂r₃, r₃r₁, r₁r₂)`. Powers `p = u^a` of u = r·r follow from
+/// and with κ of the body, its wheels locked, `I⁻¹ (3μ/r⁵) r×I r = −(3μ/r⁵) κ (r₂r₃, r₃r₁, r₁r₂)`. Powers `p = u^a` of u = r·r follow from
 /// `u ṗ = a u̇ p`:
 ///
 /// ```text
@@ -121,7 +121,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         {
             squares = [0, 1, 2].map(|i| a[i].mul_add(b[i], squares[i]));
         }
-        self.tilts[k] = field.tilt(&self.products[k], &squares);
+        self.tilts[k] = field.tilt(&field.pull.1, &self.products[k], &squares);
         let mut sum = [Pack::new(0.0); 3];
         for (fifth, tilt) in self.fifths[..=k].iter().rev().zip(&self.tilts) {
             sum = [0, 1, 2].map(|i| fifth.mul_add(tilt[i], sum[i]));
@@ -235,9 +235,9 @@ impl<S: Series<Pack<L, R>, B>, L: Number, const R: usize, const B: usize> Next<'
         for i in 0..3 {
             it.position[k + 1][i] = (turned[i] + it.velocity[k][i]) * reciprocal;
             it.velocity[k + 1][i] = (-it.pull).mul_add(pulled[i], moved[i]) * reciprocal;
-            torque[i] = -(field.kappa[i] * it.strength * torque[i]);
+            torque[i] = -(field.pull.0[i] * it.strength * torque[i]);
         }
-        if L::VARIES && field.is_tilted() {
+        if field.is_pulled_aside() {
             torque = plus(torque, it.tilt(k, field));
         }
         torque

@@ -64,11 +64,18 @@ impl<X: Precision> Course<'_, X> {
         let on_omega = inverse * linear.on_omega * rate;
         let quadratic = -(inverse * linear.quadratic);
         let on_attitude = inverse * linear.on_attitude * rate * rate;
+        // What the wheels that turn freely add to the tensor, along the axes and across them.
+        let (along, across) = (linear.turning.diagonal(), linear.turning);
+        let pulled = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
+            .map(|(i, j, k)| self.kappa[i] + (along[j] - along[k]) * self.inverse_moments[i]);
+        let aside =
+            [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| self.products[i] + across[(j, k)]);
         let mass = (self.variables).number(self.task.subject.mass, MASS);
         let mut field = Field {
             kappa: self.kappa.into(),
             inverse_moments: self.inverse_moments.into(),
             products: self.products.into(),
+            pull: (pulled, aside),
             constant: (inverse * linear.constant * rate * rate).into(),
             on_omega: rows(&on_omega),
             on_attitude: [0, 1, 2].map(|n| [0, 1, 2, 3].map(|i| on_attitude[(n, i)])),

@@ -168,7 +168,10 @@ where
             let (a, b) = (self.series.get(j).w, self.series.get(k - j).w);
             squares = [0, 1, 2].map(|i| a[i].mul_add(b[i], squares[i]));
         }
-        field.tilted(&plus(acceleration, field.tilt(spins, &squares)))
+        field.tilted(&plus(
+            acceleration,
+            field.tilt(&field.products, spins, &squares),
+        ))
     }
 
     /// Serves what a motion comes to within the step `h`: the step that is left, and what it lands on.
