@@ -87,6 +87,19 @@ def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
     assert apart(late.quaternion[:, :3], run.quaternion) <= 3e-15
 
 
+@pytest.mark.long
+def test_random_gyrostats_over_a_thousand_rotations() -> None:
+    rng = np.random.default_rng(17)
+    bodies = RigidBody.from_principal(1.0, np.sort(rng.uniform(1.0, 2.0, (1000, 3)), axis=1))
+    h, omega = rng.normal(size=(1000, 3)) * 10 ** rng.uniform(-3, 1, (1000, 1)), rng.normal(size=(1000, 3))
+    times = [0.0, 100.0, 1000.0, 10000.0]
+    exact = bodies.gyrostat(h).free_motion(omega).at(times)
+    run = bodies.simulate(times, omega, load=loads.rotor(h), method="taylor", rtol=1e-24)
+    largest = np.linalg.norm(run.omega, axis=-1).max(1)
+    assert (np.abs(exact.omega - run.omega).max((1, 2)) / largest).max() <= 3e-15
+    assert apart(exact.quaternion, run.quaternion) <= 3e-15
+
+
 def test_after_its_period_omega_is_back() -> None:
     for h, omega in [((0.1, 0.2, 0.3), (1, 0.2, 0.3)), ((0.01, 0.02, 0.03), (0.02, 1, 0.03))]:
         motion = BODY.gyrostat(h).free_motion(omega)

@@ -149,6 +149,12 @@ class TestOrbit:
             ({"eccentricity": 2.0, "periapsis": 1, "anomaly": 2.5}, "beyond the asymptote"),
             ({"periapsis": 1, "anomaly": 0.1, "since_periapsis": 1}, "not beside"),
             ({"periapsis": 1, "node": np.nan}, "node: must be finite"),
+            ({"periapsis": [1, 2], "node": [1, 2, 3]}, r"shapes \[.*\(3,\).*\] do not broadcast"),
+            (
+                {"semi_major_axis": [1, 2], "eccentricity": [0.1] * 3},
+                "semi_major_axis and eccentricity: shapes",
+            ),
+            ({"periapsis": [1, 2], "eccentricity": 2.0, "anomaly": [0.1, 2.5]}, "beyond the asymptote"),
         ],
     )
     def test_elements_that_are_refused(self, elements: Any, message: str) -> None:

@@ -342,7 +342,12 @@ def from_elements(
     if periapsis is not None:
         least = number(periapsis, "periapsis")
     else:
-        least = number(semi_major_axis, "semi_major_axis") * (1.0 - e)
+        axis = number(semi_major_axis, "semi_major_axis")
+        if not _do_broadcast(axis, e):
+            raise ValueError(
+                f"semi_major_axis and eccentricity: shapes {axis.shape} and {e.shape} do not broadcast"
+            )
+        least = axis * (1.0 - e)
     if np.min(least, initial=1.0) <= 0.0:
         raise ValueError(
             f"periapsis: must be positive, got {least.tolist()}; a hyperbola has a negative semi_major_axis, "
@@ -350,12 +355,17 @@ def from_elements(
         )
     angles = (number(inclination, "inclination"), number(node, "node"), number(argument, "argument"))
     nu = np.zeros(()) if anomaly is None else number(anomaly, "anomaly")
+    given = (mass, e, least, nu, *angles)
+    if not _do_broadcast(*given):
+        raise ValueError(
+            "mu, eccentricity, periapsis, anomaly, inclination, node and argument: shapes "
+            f"{[one.shape for one in given]} do not broadcast"
+        )
+    mass, e, least, nu, i, node_, argument_ = np.broadcast_arrays(*given)
     if np.any(1.0 + e * np.cos(nu) <= 0.0):
         raise ValueError(
             f"anomaly: {nu.tolist()} is beyond the asymptote of an orbit with eccentricity {e.tolist()}"
         )
-    mass, e, least, nu, *turns = np.broadcast_arrays(mass, e, least, nu, *angles)
-    i, node_, argument_ = turns
     zero = np.zeros_like(node_)
     across = np.stack([np.cos(node_), np.sin(node_), zero], axis=-1)
     up = np.stack([-np.sin(node_) * np.cos(i), np.cos(node_) * np.cos(i), np.sin(i)], axis=-1)
@@ -368,6 +378,14 @@ def from_elements(
     if since_periapsis is not None:
         place, speed = _core.kepler_states(mass, place, speed, number(since_periapsis, "since_periapsis"))
     return kepler(mass, place, speed, epoch)
+
+
+def _do_broadcast(*arrays: Floats) -> bool:
+    try:
+        np.broadcast_shapes(*(one.shape for one in arrays))
+    except ValueError:
+        return False
+    return True
 
 
 def _vector(given: ArrayLike, name: str) -> Floats:
