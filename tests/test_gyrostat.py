@@ -88,11 +88,11 @@ def test_random_gyrostats_keep_their_laws_and_agree_with_integration() -> None:
 
 
 @pytest.mark.long
-def test_random_gyrostats_over_a_thousand_rotations() -> None:
+def test_random_gyrostats_over_hundreds_of_rotations() -> None:
     rng = np.random.default_rng(17)
     bodies = RigidBody.from_principal(1.0, np.sort(rng.uniform(1.0, 2.0, (1000, 3)), axis=1))
     h, omega = rng.normal(size=(1000, 3)) * 10 ** rng.uniform(-3, 1, (1000, 1)), rng.normal(size=(1000, 3))
-    times = [0.0, 100.0, 1000.0, 10000.0]
+    times = [0.0, 100.0, 1000.0, 3000.0]
     exact = bodies.gyrostat(h).free_motion(omega).at(times)
     run = bodies.simulate(times, omega, load=loads.rotor(h), method="taylor", rtol=1e-24)
     largest = np.linalg.norm(run.omega, axis=-1).max(1)
