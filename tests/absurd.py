@@ -132,6 +132,8 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
         _core.kepler_states,
         {"mu": 1.0, "position": V, "velocity": (1.0, 0.2, 0.1), "elapsed": 1.0},
     ),
+    "kepler_period": (_core.kepler_period, {"mu": 1.0, "position": V, "velocity": (1.0, 0.2, 0.1)}),
+    "dipole_field": (_core.dipole_field, {"strength": V, "position": V}),
     "magnetic": (_core.magnetic, {"dipole": V, "field": V, "gain": 1.0}),
     "damping": (_core.damping, {"matrix": T, "quadratic": T}),
     "feedback": (_core.feedback, {"K": T, "D": T, "target": Q}),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from oracles.wheels import turned, turning
 from polhode import RigidBody, _core, loads, orbits
 from polhode.errors import PolhodeError
 from scipy.integrate import solve_ivp
@@ -17,18 +18,6 @@ BODY = RigidBody.from_principal(2.0, (1.0, 2.0, 2.5))
 OMEGA = np.array([0.3, -0.2, 0.5])
 ORBIT = orbits.kepler(1.0, (1.0, 0.2, -0.1), (0.1, 0.9, 0.3), epoch=0.4)
 HYPERBOLA = orbits.from_elements(2.0, eccentricity=1.7, periapsis=0.8, inclination=0.3, anomaly=-1.0)
-
-
-def turned(q: np.ndarray) -> np.ndarray:
-    """Give the matrix of a quaternion."""
-    x, y, z, w = q / np.linalg.norm(q)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 class TestOrbit:
@@ -63,6 +52,12 @@ class TestOrbit:
         for name, value in given.items():
             assert getattr(found, name) == pytest.approx(value, rel=1e-10, abs=1e-10)
 
+    def test_periods_of_any_size(self) -> None:
+        for length, mu in [(1e-10, 1e-40), (7e6, 4e14), (1e20, 1e31), (1e-90, 1e-120), (1e90, 1e130)]:
+            speed = np.sqrt(mu / length)
+            period = orbits.kepler(mu, (length, 0, 0), (0, speed, 0)).period
+            assert period == pytest.approx(2 * np.pi * length / speed, rel=1e-14)
+
     def test_degenerate_elements(self) -> None:
         circle = orbits.kepler(1.0, (0, 1, 0), (-1, 0, 0)).elements
         assert circle == pytest.approx((1.0, 0.0, 0.0, 0.0, 0.0, np.pi / 2), abs=1e-15)
@@ -76,7 +71,8 @@ class TestOrbit:
         )
         long = orbits.from_elements(1.0, eccentricity=0.5, semi_major_axis=2.0)
         assert long.period == pytest.approx(2 * np.pi * 2.0**1.5, rel=1e-14)
-        assert comet.period == np.inf
+        assert orbits.from_elements(1.0, eccentricity=1.0, periapsis=0.5).period == np.inf
+        assert comet.period > 1e20  # its rounded state is not quite on a parabola
         assert HYPERBOLA.period == np.inf
         same = orbits.from_elements(
             2.0, eccentricity=1.7, semi_major_axis=0.8 / (1 - 1.7), inclination=0.3, anomaly=-1.0
@@ -247,15 +243,8 @@ class TestMagnetic:
             b, seen = turned(q).T @ here, turned(q).T @ change
             moment = DIPOLE - (gain or 0.0) * (seen - np.cross(w, b))
             spin = BODY.inertia @ w
-            x, yy, z, s = q
-            p = [
-                s * w[0] + yy * w[2] - z * w[1],
-                s * w[1] + z * w[0] - x * w[2],
-                s * w[2] + x * w[1] - yy * w[0],
-                -(x * w[0] + yy * w[1] + z * w[2]),
-            ]
             push = np.linalg.solve(BODY.inertia, np.cross(moment, b) - np.cross(w, spin))
-            return np.concatenate([0.5 * np.array(p), push, v, pull])
+            return np.concatenate([turning(q, w), push, v, pull])
 
         start = np.concatenate([[0, 0, 0, 1], OMEGA, orbit.position, orbit.velocity])
         exact = solve_ivp(rates, (0, 6), start, "DOP853", rtol=1e-12, atol=1e-13).y[:7, -1]

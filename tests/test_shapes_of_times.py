@@ -83,7 +83,12 @@ def test_the_state_at_one_time(name: str) -> None:
 def test_what_needs_a_series_says_so(name: str, shape: tuple[int, ...]) -> None:
     pytest.importorskip("matplotlib")
     run = MOTIONS[name].at(np.ones(shape))
-    asked: list[Callable[[], Any]] = [run.plot, run.sensitivity, lambda: run.animate("x.html")]
+    asked: list[Callable[[], Any]] = [
+        run.plot,
+        run.sensitivity,
+        lambda: run.animate("x.html"),
+        lambda: run.euler_angles(unwrap=True),
+    ]
     if shape:
         asked += [run.state, lambda: run.resume([1.0, 2.0])]
     for ask in asked:

@@ -8,18 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from oracles.wheels import ATTITUDE, BODY, OMEGA, T
 from polhode import Event, RigidBody, Trajectory, loads
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-BODY = RigidBody.from_principal(
-    3.0, (1.0, 2.0, 2.5), axes=np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
-)
-OMEGA = np.array([0.7, -0.9, 1.1])
-ATTITUDE = np.array([0.1, -0.5, 0.3, 0.8]) / np.linalg.norm([0.1, -0.5, 0.3, 0.8])
-T = np.array([0.0, 1.7, 6.0, 15.0])
 
 
 class TestStates:

@@ -43,6 +43,8 @@ def euler_angles(
     numpy.ndarray, shape (..., T, 3)
         In radians.
     """
+    if unwrap:
+        self._check_series("euler_angles, unwrap")
     angles = _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
     return _unwrapped(angles) if unwrap else angles
 

@@ -52,6 +52,7 @@ __all__ = [
     "cube",
     "cylinder",
     "damping",
+    "dipole_field",
     "disk",
     "ellipse",
     "ellipsoid",
@@ -69,6 +70,7 @@ __all__ = [
     "hollow_sphere",
     "inertia_from_center_of_mass",
     "inertia_to_center_of_mass",
+    "kepler_period",
     "kepler_states",
     "least_spin",
     "magnetic",
@@ -642,6 +644,8 @@ def principal_derivative(
     moments: ArrayLike, axes: ArrayLike, tangent: ArrayLike, rtol: float
 ) -> tuple[_Floats, _Floats, NDArray[np.bool_]]: ...
 def ray_kappa(moments: ArrayLike) -> Any: ...
+def dipole_field(strength: ArrayLike, position: ArrayLike) -> _Floats: ...
+def kepler_period(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> _Floats: ...
 def kepler_states(
     mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, elapsed: ArrayLike
 ) -> tuple[_Floats, _Floats]: ...

@@ -110,11 +110,8 @@ class Orbit:
 
     @property
     def period(self) -> Any:
-        """Time of a revolution; infinite but for ellipses."""
-        distance, square = np.linalg.norm(self.position, axis=-1), np.sum(self.velocity**2, axis=-1)
-        beta = 2.0 * self.mu / distance - square
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(beta > 0.0, 2.0 * np.pi * self.mu / np.abs(beta) ** 1.5, np.inf)[()]
+        """Time of a revolution; infinite but for ellipses. Of a parabola whose numbers are rounded it is very long."""
+        return _core.kepler_period(self.mu, self.position, self.velocity)[()]
 
     @property
     def elements(self) -> Elements:
@@ -233,12 +230,8 @@ class DipoleField:
         -------
         numpy.ndarray, shape (..., T..., 3)
         """
-        r = self.orbit.at(t).position
-        distance = np.linalg.norm(r, axis=-1)[..., None]
-        n = r / distance
         moment = self.strength[(..., *(np.newaxis,) * np.ndim(t), slice(None))]
-        field: Floats = (3.0 * np.sum(moment * n, axis=-1)[..., None] * n - moment) / distance**3
-        return field
+        return _core.dipole_field(moment, self.orbit.at(t).position)
 
 
 def kepler(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, epoch: float | None = None) -> Orbit:

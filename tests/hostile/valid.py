@@ -94,7 +94,7 @@ VALUES: dict[str, Any] = {
     "labels_of_atoms": ["C", "O"], "states": None, "momentum": [0.0, 0.5, 2.0], "speed": None,
     "times": None, "friction": 0.25, "initial": [0.5, 0.0], "wrench": None, "update": None, "period": None,
     "scale": None, "wheels": None, "dipole": [0.5, 0.25, 0.0], "field": [0.0, 0.5, 0.25], "gain": 0.125,
-    "elapsed": 0.5, "limit": None,
+    "elapsed": 0.5, "limit": None, "strength": [0.0, 0.5, 0.25],
     "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
 }  # fmt: skip
 """What a parameter of this name takes; numbers that float32 has too."""
@@ -163,6 +163,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Trajectory.euler_rates": {"sequence": "ZYX"},
     "Trajectory.pivot_reaction": {"self": [TOP.simulate([0.0, 0.5], OMEGA, about="origin")]},
     "gravity_gradient": {"velocity": [0.0, 1.0, 0.25]},
+    "kepler_period": {"velocity": [0.0, 1.0, 0.25]},
     "kepler_states": {"velocity": [0.0, 1.0, 0.25]},
     "RigidBody.from_tetrahedra": {"density": 1.5, "at": None},
     "PrincipalAxes.classify": {"rtol": 1e-6},

@@ -72,7 +72,7 @@ fn of_motion(fault: &MotionFault) -> &'static str {
         }
         MotionFault::PivotedInOrbit => "; simulate it with about=\"center_of_mass\"",
         MotionFault::LostInClosedForm { .. } => {
-            ": body.simulate(times, omega, load=polhode.loads.rotor(momentum))"
+            ": body.simulate(times, omega, load=polhode.loads.rotor(momentum)), or polhode.loads.wheel for wheels that are free"
         }
         MotionFault::TooManySteps { .. } => " with resume",
         MotionFault::NoSeries => ": rtol=1e-13",

@@ -1,11 +1,12 @@
-//! Kepler orbits: states at any time, and what loads read of an orbit of Python.
+//! Kepler orbits: states at any time, fields along them, and what loads read of an orbit of Python.
 
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
 use polhode::motion::loads::kepler::Orbit;
+use polhode::motion::loads::magnetic::field_and_rate;
 use pyo3::prelude::*;
 
-use crate::arrays::{read, write_of};
+use crate::arrays::{read, write, write_of};
 use crate::stack::{Broadcast, Stack};
 
 /// An array of float64.
@@ -76,4 +77,49 @@ pub(crate) fn kepler_states<'py>(
         write_of(py, &found, |state| state.0)?,
         write_of(py, &found, |state| state.1)?,
     ))
+}
+
+/// The time of a revolution of Kepler orbits; infinite but for ellipses.
+///
+/// Parameters
+/// ----------
+/// mu : array_like, shape (...)
+/// position, velocity : array_like, shape (..., 3)
+///
+/// Returns
+/// -------
+/// numpy.ndarray, shape (...)
+#[pyfunction]
+pub(crate) fn kepler_period<'py>(
+    py: Python<'py>,
+    mu: &Bound<'py, PyAny>,
+    position: &Bound<'py, PyAny>,
+    velocity: &Bound<'py, PyAny>,
+) -> PyResult<Floats<'py>> {
+    write_of(py, &through(py, mu, position, velocity)?, Orbit::period)
+}
+
+/// The magnetic field at a position from a dipole: ``3 (M·r) r/r**5 - M/r**3``.
+///
+/// Parameters
+/// ----------
+/// strength, position : array_like, shape (..., 3)
+///     M: the moment of the dipole times μ₀/4π.
+///
+/// Returns
+/// -------
+/// numpy.ndarray, shape (..., 3)
+#[pyfunction]
+pub(crate) fn dipole_field<'py>(
+    py: Python<'py>,
+    strength: &Bound<'py, PyAny>,
+    position: &Bound<'py, PyAny>,
+) -> PyResult<Floats<'py>> {
+    let strength: Stack<Vector3<f64>> = read(strength, "strength")?;
+    let position: Stack<Vector3<f64>> = read(position, "position")?;
+    let found = Broadcast::of(["strength", "position"], [&strength.shape, &position.shape])?
+        .try_map(py, |[m, r]| {
+            Ok(field_and_rate(&strength[m], &position[r], &Vector3::zeros())[0])
+        })?;
+    write(py, &found)
 }

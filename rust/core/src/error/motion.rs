@@ -175,7 +175,7 @@ pub enum MotionFault {
         /// The end of the window before it.
         previous: f64,
     },
-    /// A sampled torque is asked for at a time at which it is not known.
+    /// What is known at some times is needed at a time beyond them.
     #[error(
         "the samples of the load are known from t = {first:?} to t = {last:?}, and needed at t = {t:?}: give it samples there, \
          or switch it on within its samples"
@@ -220,7 +220,7 @@ pub enum MotionFault {
     /// A gyrostat of which the closed form loses too many digits.
     #[error(
         "the closed form would give ω at the start with an error of {off:.1e} of it: the moments are too many orders apart, or the \
-         momentum inside is too large beside I ω; a simulation under a rotor can follow this motion"
+         momentum inside is too large beside I ω; a simulation can follow this motion"
     )]
     LostInClosedForm {
         /// The error of ω at the start, relative to it.

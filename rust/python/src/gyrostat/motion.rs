@@ -105,9 +105,9 @@ impl PyGyrostat {
     ///
     /// Notes
     /// -----
-    /// Of a thin body the largest moment over the least times rounding is lost of ω, of a body that hardly turns
-    /// 1e-31 of the rate that the momentum inside has over a moment. :meth:`RigidBody.simulate` under
-    /// :func:`polhode.loads.rotor` follows these motions.
+    /// ω has two errors. One is rounding times the ratio of the largest moment to the least: it counts for thin bodies.
+    /// The other is 1e-31 times the momentum inside over a moment: it counts for bodies that hardly turn.
+    /// :meth:`RigidBody.simulate` under :func:`polhode.loads.rotor` has neither.
     ///
     /// Examples
     /// --------

@@ -2,14 +2,15 @@
 
 use nalgebra::Vector3;
 use polhode::motion::loads::{GravityGradient, Magnetic, MagneticField, Term};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::load::PyLoad;
 use super::part::Acts;
 use super::recipe::recipe;
-use crate::arrays::{list_floats, read, read_list, try_rows, write};
+use super::terms::{samples, series};
+use crate::arrays::{read, try_rows, write};
 use crate::orbits::Orbits;
 use crate::stack::{Broadcast, Stack};
 
@@ -180,21 +181,8 @@ fn fields(
         let fields: Stack<Vector3<f64>> = read(field, "field")?;
         return try_rows(py, &fields, MagneticField::uniform);
     };
-    let times: Vec<f64> = list_floats(times, "times", "n", &[])?.as_slice()?.to_vec();
-    let values: Stack<Vector3<f64>> = read_list(field, "field", "..., n")?;
-    let (count, leading) = match values.shape.split_last() {
-        Some((&count, leading)) => (count, leading.to_vec()),
-        None => (0, Vec::new()),
-    };
-    if count != times.len() {
-        return Err(PyValueError::new_err(format!(
-            "field: expected one for each of the {} times, got {count}",
-            times.len()
-        )));
-    }
-    let series = Stack {
-        shape: leading,
-        rows: values.rows.chunks(count.max(1)).collect(),
-    };
-    try_rows(py, &series, |series| MagneticField::sampled(&times, series))
+    let (times, values) = samples([times, field], ["times", "field"])?;
+    try_rows(py, &series(&values), |series| {
+        MagneticField::sampled(&times, series)
+    })
 }

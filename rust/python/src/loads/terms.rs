@@ -3,12 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::Error;
 use polhode::motion::loads::{Damping, Feedback, Sampled, Term};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::load::{PyLoad, schedule_load};
 use super::part::Acts;
 use super::recipe::recipe;
-use crate::arrays::{as_array, list_floats, read, try_rows, write};
+use crate::arrays::{as_array, list_floats, read, read_list, try_rows, write};
 use crate::attitudes::read_attitude;
 use crate::errors::to_py;
 use crate::kinematics::parse_frame;
@@ -205,22 +206,8 @@ pub(crate) fn sampled(
     frame: &str,
 ) -> PyResult<PyLoad> {
     let axes = parse_frame(frame)?;
-    let times: Vec<f64> = list_floats(t, "t", "n", &[])?.as_slice()?.to_vec();
-    let values: Stack<Vector3<f64>> = crate::arrays::read_list(torque, "torque", "..., n")?;
-    let (count, leading) = match values.shape.split_last() {
-        Some((&count, leading)) => (count, leading.to_vec()),
-        None => (0, Vec::new()),
-    };
-    if count != times.len() {
-        return Err(pyo3::exceptions::PyValueError::new_err(format!(
-            "torque: expected one for each of the {} times, got {count}",
-            times.len()
-        )));
-    }
-    let series = Stack {
-        shape: leading,
-        rows: values.rows.chunks(count.max(1)).collect(),
-    };
+    let (times, values) = samples([t, torque], ["t", "torque"])?;
+    let series = series(&values);
     let terms = try_rows(py, &series, |series| {
         Sampled::new(&times, series, axes).map(Term::Sampled)
     })?;
@@ -231,6 +218,35 @@ pub(crate) fn sampled(
     );
     let recipe = recipe(py, "sampled", arguments)?;
     Ok(PyLoad::one(Acts::Term(terms), recipe))
+}
+
+/// Times, and the vectors of shape (..., n, 3) that belong to them; their names are those of the arguments.
+pub(super) fn samples(
+    [times, values]: [&Bound<'_, PyAny>; 2],
+    [when, what]: [&'static str; 2],
+) -> PyResult<(Vec<f64>, Stack<Vector3<f64>>)> {
+    let times: Vec<f64> = list_floats(times, when, "n", &[])?.as_slice()?.to_vec();
+    let values: Stack<Vector3<f64>> = read_list(values, what, "..., n")?;
+    let count = values.shape.last().copied().unwrap_or(0);
+    if count != times.len() {
+        return Err(PyValueError::new_err(format!(
+            "{what}: expected one for each of the {} times, got {count}",
+            times.len()
+        )));
+    }
+    Ok((times, values))
+}
+
+/// Vectors of shape (..., n, 3) as a stack of series.
+pub(super) fn series(values: &Stack<Vector3<f64>>) -> Stack<&[Vector3<f64>]> {
+    let (count, leading) = match values.shape.split_last() {
+        Some((&count, leading)) => (count, leading.to_vec()),
+        None => (0, Vec::new()),
+    };
+    Stack {
+        shape: leading,
+        rows: values.rows.chunks(count.max(1)).collect(),
+    }
 }
 
 /// A load that is switched on and off.

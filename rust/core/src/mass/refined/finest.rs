@@ -114,15 +114,13 @@ mod tests {
         let rows = std::array::from_fn(|i| {
             std::array::from_fn(|j| if i == j { diagonal[i] } else { zero })
         });
-        let (one, off) = (QuadDouble::from(1.0), |angle| QuadDouble::from(angle));
+        let one = QuadDouble::from(1.0);
         for (angle, is_known) in [(0.9 * ARBITRARY, true), (1.1 * ARBITRARY, false)] {
+            let off = QuadDouble::from(angle);
+            let turned = [[one, off, zero], [-off, one, zero], [zero, zero, one]];
             let mut finest = Finest {
                 moments: diagonal,
-                axes: orthonormal(&[
-                    [one, off(angle), zero],
-                    [off(-angle), one, zero],
-                    [zero, zero, one],
-                ]),
+                axes: orthonormal(&turned),
             };
             finest.refine(&rows);
             let left = finest.axes[0][1].rounded().abs();

@@ -4,9 +4,11 @@
 //! |---|---|
 //! | to twice the precision | `principal` |
 //! | to four times | `finest` |
+//! | Jacobi's rotations | `jacobi` |
 //! | vectors and matrices of such numbers | `vectors` |
 
 mod finest;
+mod jacobi;
 mod principal;
 mod vectors;
 

@@ -6,6 +6,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::finest::{Finest, Source};
+use super::jacobi::diagonalize;
 use super::vectors::{Vector, dot, orthonormal, within};
 use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
@@ -218,9 +219,7 @@ impl RefinedPrincipal {
         self.axes.map(|axis| dot(&axis, &vector))
     }
 
-    /// Eigenvalues and eigenvectors of the tensor (its rows) from approximate ones, by Jacobi's rotations.
-    ///
-    /// The elements off the diagonal start at rounding; each sweep squares them, so two reach twice the precision.
+    /// Eigenvalues and eigenvectors of the tensor (its rows) from approximate ones.
     fn refine(&mut self, rows: &[Vector; 3]) {
         // Products of tensors near the ends of float64 stay within it.
         let largest = rows.as_flattened().iter();
@@ -228,19 +227,7 @@ impl RefinedPrincipal {
         let rows = rows.map(|row| row.map(|x| x.scaled(1.0 / unit)));
         self.source = Source::Tensor(rows, unit);
         let mut b = within(&rows, &self.axes);
-        let size = b[2][2].rounded().abs();
-        for _ in 0..SWEEPS {
-            let off = [(0, 1), (0, 2), (1, 2)]
-                .map(|(i, j)| b[i][j].rounded().abs())
-                .into_iter()
-                .fold(0.0, f64::max);
-            if off <= NEGLIGIBLE * size {
-                break;
-            }
-            for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-                rotate(&mut b, &mut self.axes, i, j);
-            }
-        }
+        diagonalize(&mut b, &mut self.axes);
         self.moments = [b[0][0], b[1][1], b[2][2]].map(|moment| moment.scaled(unit));
         for (i, j) in [(0, 1), (1, 2), (0, 1)] {
             if (self.moments[j] - self.moments[i]).rounded() < 0.0 {
@@ -254,58 +241,6 @@ impl RefinedPrincipal {
 
 /// What differs by less than this part is alike to twice the precision.
 const ALIKE: f64 = 1e-29;
-/// Below this tangent `tan 2φ = 2 tan φ` and `1 − cos φ = ½ tan² φ`, to what a sweep needs.
-const SMALL: f64 = 1e-9;
-/// The most sweeps; two or three are enough.
-const SWEEPS: usize = 8;
-/// Elements off the diagonal below this part of the largest moment are zero to twice the precision.
-const NEGLIGIBLE: f64 = 1e-31;
-
-/// Jacobi's rotation of the axes i and j that makes their product of inertia vanish.
-fn rotate(b: &mut [Vector; 3], axes: &mut [Vector; 3], i: usize, j: usize) {
-    let product = b[i][j];
-    if product.rounded() == 0.0 {
-        return;
-    }
-    let gap = b[j][j] - b[i][i];
-    let tangent = if product.high.abs() < SMALL * gap.high.abs() {
-        (product.high / gap.high).into()
-    } else {
-        // cot 2φ, and the smaller root t = tan φ of t² + 2 t cot 2φ − 1 = 0.
-        let cotangent = gap / (product + product);
-        let one = DoubleDouble::from(1.0);
-        let root = one / (cotangent.abs() + (one + cotangent * cotangent).sqrt());
-        if cotangent.rounded() < 0.0 {
-            -root
-        } else {
-            root
-        }
-    };
-    // 1 − cos φ; to rounding of its first term where φ is small.
-    let square = tangent * tangent;
-    let versine = if square.high < SMALL * SMALL {
-        square.scaled(0.5)
-    } else {
-        let root = (DoubleDouble::from(1.0) + square).sqrt();
-        square / (root * (root + 1.0.into()))
-    };
-    let sine = tangent - tangent * versine;
-    let turned = |u: DoubleDouble, v: DoubleDouble| {
-        (u - (sine * v + versine * u), v + (sine * u - versine * v))
-    };
-    let (u, v) = (axes[i], axes[j]);
-    let pairs: [(DoubleDouble, DoubleDouble); 3] = std::array::from_fn(|c| turned(u[c], v[c]));
-    axes[i] = pairs.map(|pair| pair.0);
-    axes[j] = pairs.map(|pair| pair.1);
-    let k = 3 - i - j;
-    let shift = tangent * product;
-    b[i][i] -= shift;
-    b[j][j] += shift;
-    (b[i][k], b[j][k]) = turned(b[i][k], b[j][k]);
-    (b[k][i], b[k][j]) = (b[i][k], b[j][k]);
-    (b[i][j], b[j][i]) = (DoubleDouble::default(), DoubleDouble::default());
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,9 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::propagator::{
-    Alternating, Circling, Circular, Clocked, Endless, Hyperbolic, Propagator, Rational,
-};
+use super::propagator::{Circular, Clocked, Endless, Hyperbolic, Propagator, Rational, Round};
 use super::spinor::{Course, Spinor};
 use super::start::Start;
 use crate::mass::refined::{RefinedPrincipal, Vector};
@@ -61,7 +59,7 @@ pub(super) fn steady(
                 even: [[0.0; 4]; 3],
                 odd: [[0.0; 4]; 4],
             },
-            Circling {
+            Round {
                 rate: DoubleDouble::default(),
                 start: DoubleDouble::default(),
             },
@@ -151,7 +149,7 @@ fn circling(spinor: &Spinor) -> Pace {
     Pace {
         clocked: Clocked::Circular(
             circular(spinor),
-            Circling {
+            Round {
                 rate: rate.scaled(spinor.sense),
                 start: DoubleDouble::default(),
             },
@@ -206,9 +204,9 @@ fn passing(spinor: &Spinor) -> Pace {
     let series = hyperbolic(spinor, angle, 2.0 * end, end);
     Pace {
         clocked: if is_alternating {
-            Clocked::Alternating(series, Alternating { rate, start })
+            Clocked::Alternating(series, Round { rate, start })
         } else {
-            Clocked::Circling(series, Circling { rate, start })
+            Clocked::Hyperbolic(series, Round { rate, start })
         },
         phase,
         slope,

@@ -112,46 +112,43 @@ impl Series for Rational {
     }
 }
 
-/// How x grows with time: x, and the sign of Θₒ.
+/// How x grows with time.
 pub(super) trait Clock: Copy {
     /// Whether x never comes back.
     const ENDLESS: bool;
 
+    /// x, and the sign of Θₒ.
     fn at<L: Lane>(self, t: L) -> (L, L);
+
+    /// The same where a unit of the rates is `unit`.
+    fn in_units_of(self, unit: f64) -> Self;
 }
 
-/// Whole turns of x mean nothing; x in turns for a unit of time, and at t = 0.
+/// x goes round: whole turns of it mean nothing, but that Θₒ changes its sign with each where it `ALTERNATES`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Circling {
+pub(super) struct Round<const ALTERNATES: bool> {
+    /// x in turns for a unit of time, and at t = 0.
     pub(super) rate: DoubleDouble,
     pub(super) start: DoubleDouble,
 }
 
-impl Clock for Circling {
-    const ENDLESS: bool = false;
-
-    #[inline(always)]
-    fn at<L: Lane>(self, t: L) -> (L, L) {
-        (turns(t, self.rate, self.start), L::new(1.0))
-    }
-}
-
-/// The same, but with each turn Θₒ changes its sign.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Alternating {
-    pub(super) rate: DoubleDouble,
-    pub(super) start: DoubleDouble,
-}
-
-impl Clock for Alternating {
+impl<const ALTERNATES: bool> Clock for Round<ALTERNATES> {
     const ENDLESS: bool = false;
 
     #[inline(always)]
     fn at<L: Lane>(self, t: L) -> (L, L) {
         let (one, two) = (L::new(1.0), L::new(2.0));
+        if !ALTERNATES {
+            return (turns(t, self.rate, self.start), one);
+        }
         let halves = two * turns(t, self.rate.scaled(0.5), self.start.scaled(0.5));
         let whole = halves.round();
         (halves - whole, one - two * whole.abs())
+    }
+
+    fn in_units_of(self, unit: f64) -> Self {
+        let rate = self.rate.scaled(unit);
+        Self { rate, ..self }
     }
 }
 
@@ -170,14 +167,19 @@ impl Clock for Endless {
         let x = t.mul_add(L::new(self.rate), L::new(self.start));
         (x, L::new(1.0))
     }
+
+    fn in_units_of(self, unit: f64) -> Self {
+        let rate = self.rate * unit;
+        Self { rate, ..self }
+    }
 }
 
-/// One of the series with its clock.
+/// One of the series with its clock: a loop over times has no branch on either.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Clocked {
-    Circular(Circular, Circling),
-    Circling(Hyperbolic, Circling),
-    Alternating(Hyperbolic, Alternating),
+    Circular(Circular, Round<false>),
+    Hyperbolic(Hyperbolic, Round<false>),
+    Alternating(Hyperbolic, Round<true>),
     Endless(Hyperbolic, Endless),
     Rational(Rational, Endless),
 }
@@ -185,30 +187,19 @@ pub(super) enum Clocked {
 impl Clocked {
     /// The same where a unit of the rates is `unit`.
     fn in_units_of(self, unit: f64) -> Self {
-        let circling = |clock: Circling| Circling {
-            rate: clock.rate.scaled(unit),
-            ..clock
-        };
-        let endless = |clock: Endless| Endless {
-            rate: clock.rate * unit,
-            ..clock
-        };
         match self {
-            Self::Circular(series, clock) => Self::Circular(series, circling(clock)),
-            Self::Circling(series, clock) => Self::Circling(series, circling(clock)),
-            Self::Alternating(series, clock) => {
-                let rate = clock.rate.scaled(unit);
-                Self::Alternating(series, Alternating { rate, ..clock })
-            }
-            Self::Endless(series, clock) => Self::Endless(series, endless(clock)),
-            Self::Rational(series, clock) => Self::Rational(series, endless(clock)),
+            Self::Circular(series, clock) => Self::Circular(series, clock.in_units_of(unit)),
+            Self::Hyperbolic(series, clock) => Self::Hyperbolic(series, clock.in_units_of(unit)),
+            Self::Alternating(series, clock) => Self::Alternating(series, clock.in_units_of(unit)),
+            Self::Endless(series, clock) => Self::Endless(series, clock.in_units_of(unit)),
+            Self::Rational(series, clock) => Self::Rational(series, clock.in_units_of(unit)),
         }
     }
 
     /// Turns of x for a unit of time, where they are counted.
     fn rate(&self) -> Option<DoubleDouble> {
         match self {
-            Self::Circular(_, clock) | Self::Circling(_, clock) => Some(clock.rate),
+            Self::Circular(_, clock) | Self::Hyperbolic(_, clock) => Some(clock.rate),
             Self::Alternating(_, clock) => Some(clock.rate),
             Self::Endless(..) | Self::Rational(..) => None,
         }
@@ -289,7 +280,7 @@ impl Motion for Propagator {
     fn choose<U: Use>(&self, then: U) -> U::Output {
         match self.clocked {
             Clocked::Circular(series, clock) => then.with(&Chosen(self, series, clock)),
-            Clocked::Circling(series, clock) => then.with(&Chosen(self, series, clock)),
+            Clocked::Hyperbolic(series, clock) => then.with(&Chosen(self, series, clock)),
             Clocked::Alternating(series, clock) => then.with(&Chosen(self, series, clock)),
             Clocked::Endless(series, clock) => then.with(&Chosen(self, series, clock)),
             Clocked::Rational(series, clock) => then.with(&Chosen(self, series, clock)),
@@ -297,7 +288,7 @@ impl Motion for Propagator {
     }
 }
 
-/// A propagator with its series and its clock: loops over times have no branch on either.
+/// A propagator with its series and its clock.
 struct Chosen<'a, S, C>(&'a Propagator, S, C);
 
 impl<S: Series, C: Clock> Formula for Chosen<'_, S, C> {

@@ -37,19 +37,8 @@ impl Held {
         if times.is_empty() {
             return Err(Error::Empty { what: "times" });
         }
-        all_finite("times", times)?;
+        ascending("times", times)?;
         all_finite(what, values)?;
-        for (k, pair) in times.windows(2).enumerate() {
-            if pair[1] <= pair[0] {
-                return Err(Error::Motion(MotionFault::NotMonotone {
-                    what: "times",
-                    order: "ascending",
-                    index: k + 1,
-                    previous: pair[0],
-                    next: pair[1],
-                }));
-            }
-        }
         Ok(Self {
             times: times.into(),
             values: values.into(),
@@ -106,6 +95,23 @@ impl Held {
         let slope = (self.values[k] - self.values[k - 1]) / (to - from);
         [self.values[k - 1] + slope * (t - from), slope]
     }
+}
+
+/// That times are finite and ascend.
+pub(super) fn ascending(what: &'static str, times: &[f64]) -> Result<(), Error> {
+    all_finite(what, times)?;
+    for (k, pair) in times.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            return Err(Error::Motion(MotionFault::NotMonotone {
+                what,
+                order: "ascending",
+                index: k + 1,
+                previous: pair[0],
+                next: pair[1],
+            }));
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -99,6 +99,15 @@ impl Orbit {
         self.mu
     }
 
+    /// Time of a revolution; infinite but for an ellipse.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        if self.frequency.high == 0.0 {
+            return f64::INFINITY;
+        }
+        (DoubleDouble::from(1.0) / self.frequency).high * self.time
+    }
+
     /// Position and velocity at a time after the state the orbit was given with.
     ///
     /// With s from `dt = r ds` and `G_k = s^k c_k(β s²)`, `c_k(x) = Σ (−x)^j/(2j+k)!`: Kepler's equation is

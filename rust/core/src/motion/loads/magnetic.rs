@@ -54,7 +54,13 @@ impl MagneticField {
     /// # Panics
     /// When `times` and `fields` differ in length.
     pub fn sampled(times: &[f64], fields: &[Vector3<f64>]) -> Result<Self, Error> {
-        let spline = Spline::through(["times", "field"], times, fields)?;
+        let names = [
+            "times",
+            "the span of times",
+            "field",
+            "the spline through field",
+        ];
+        let spline = Spline::through(names, times, fields)?;
         Ok(Self(Source::Sampled(Arc::new(spline))))
     }
 
@@ -88,19 +94,29 @@ impl MagneticField {
                 strength,
             } => {
                 let (r, v) = orbit.at(t - epoch.unwrap_or(start));
-                let distance = r.norm();
-                let (n, rate) = (r / distance, v / distance);
-                let m = strength / distance / distance / distance;
-                let (along, outward) = (m.dot(&n), n.dot(&rate));
-                [
-                    n * (3.0 * along) - m,
-                    rate * (3.0 * along)
-                        + n * (3.0 * m.dot(&rate) - 15.0 * along * outward)
-                        + m * (3.0 * outward),
-                ]
+                field_and_rate(strength, &r, &v)
             }
         }
     }
+}
+
+/// The field `B = 3 (M·r) r/r⁵ − M/r³` of a dipole at the position r from it, and its rate for one that moves with v.
+#[must_use]
+pub fn field_and_rate(
+    strength: &Vector3<f64>,
+    position: &Vector3<f64>,
+    velocity: &Vector3<f64>,
+) -> [Vector3<f64>; 2] {
+    let distance = position.norm();
+    let (n, rate) = (position / distance, velocity / distance);
+    let m = strength / distance / distance / distance;
+    let (along, outward) = (m.dot(&n), n.dot(&rate));
+    [
+        n * (3.0 * along) - m,
+        rate * (3.0 * along)
+            + n * (3.0 * m.dot(&rate) - 15.0 * along * outward)
+            + m * (3.0 * outward),
+    ]
 }
 
 /// `N = m × B` with the moment `m = d − k Ḃ`, all in B: d fixed in the body, and Ḃ the rate of the field as the body sees it.

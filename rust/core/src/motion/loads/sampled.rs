@@ -35,7 +35,11 @@ impl Sampled {
     /// # Panics
     /// When `times` and `values` differ in length.
     pub fn new(times: &[f64], values: &[Vector3<f64>], frame: Frame) -> Result<Self, Error> {
-        let spline = Spline::through(["t", "torque"], times, values)?;
+        let spline = Spline::through(
+            ["t", "the span of t", "torque", "the spline through torque"],
+            times,
+            values,
+        )?;
         Ok(Self {
             spline: Arc::new(spline),
             frame,

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::held::ascending;
 use crate::error::{Error, MotionFault, all_finite, finite};
 use crate::numerics::number::Real;
 
@@ -16,7 +17,7 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// Through `values` (called `what`) at the ascending `times` (called `when`).
+    /// Through `values` at the ascending `times`; `names`: of the times, their span, the values and the spline.
     ///
     /// # Errors
     /// Fewer than two times, times that do not ascend, numbers that are not finite.
@@ -24,7 +25,7 @@ impl Spline {
     /// # Panics
     /// When `times` and `values` differ in length.
     pub(super) fn through(
-        [when, what]: [&'static str; 2],
+        names: [&'static str; 4],
         times: &[f64],
         values: &[Vector3<f64>],
     ) -> Result<Self, Error> {
@@ -36,22 +37,12 @@ impl Spline {
                 value: times.len() as f64,
             });
         }
-        all_finite(when, times)?;
+        let [when, span, what, through] = names;
+        ascending(when, times)?;
         all_finite(what, values.iter().flatten())?;
-        finite("the span of the samples", times[times.len() - 1] - times[0])?;
-        for (k, pair) in times.windows(2).enumerate() {
-            if pair[1] <= pair[0] {
-                return Err(Error::Motion(MotionFault::NotMonotone {
-                    what: when,
-                    order: "ascending",
-                    index: k + 1,
-                    previous: pair[0],
-                    next: pair[1],
-                }));
-            }
-        }
+        finite(span, times[times.len() - 1] - times[0])?;
         let pieces = pieces(times, values);
-        all_finite("the spline", pieces.iter().flatten().flatten())?;
+        all_finite(through, pieces.iter().flatten().flatten())?;
         Ok(Self {
             knots: times.to_vec(),
             pieces,

@@ -154,7 +154,8 @@ impl Law for Wheel {
         }
     }
 
-    /// Names alone: derivatives of a motion with states of its own are refused, and [`Self::add_to`] does not ask for varied numbers.
+    /// Names alone: derivatives of a motion under a load with states are refused, and [`Self::add_to`] asks for no varied
+    /// numbers.
     fn parameters(&self) -> Vec<Parameter> {
         vec![
             Parameter::new("axis", &[3]),

@@ -20,8 +20,8 @@ type Vectors<T> = [[T; 3]; COUNT];
 /// ṙ = r×ω + v,   v̇ = v×ω − μ r/r³
 /// ```
 ///
-/// and with κ of the body, its wheels locked, `I⁻¹ (3μ/r⁵) r×I r = −(3μ/r⁵) κ (r₂r₃, r₃r₁, r₁r₂)`. Powers `p = u^a` of u = r·r follow from
-/// `u ṗ = a u̇ p`:
+/// and with κ of the body, its wheels locked, `I⁻¹ (3μ/r⁵) r×I r = −(3μ/r⁵) κ (r₂r₃, r₃r₁, r₁r₂)`; what is off the diagonal of
+/// that tensor is added by [`Field::tilt`]. Powers `p = u^a` of u = r·r follow from `u ṗ = a u̇ p`:
 ///
 /// ```text
 /// p_k = Σ_{0<j≤k} (a j − k + j) u_j p_{k−j}/(k u₀)

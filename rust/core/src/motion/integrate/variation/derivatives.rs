@@ -36,7 +36,8 @@ pub struct Variation {
 /// `watch` gets the fraction done and may stop it.
 ///
 /// # Errors
-/// When a term cannot act, [`MotionFault::NoSeries`], the motion cannot go on, [`MotionFault::NotFiniteDerivative`], or [`Error::Stopped`].
+/// When a term cannot act, the motion cannot go on, [`MotionFault::NoSeries`], [`MotionFault::NotFiniteDerivative`], or
+/// [`Error::Stopped`].
 ///
 /// # Panics
 /// When there are no times; see [`check_times`](crate::motion::problem::check_times).
