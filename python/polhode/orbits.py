@@ -110,7 +110,7 @@ class Orbit:
 
     @property
     def period(self) -> Any:
-        """Time of a revolution; infinite but for ellipses. Of a parabola whose numbers are rounded it is very long."""
+        """Time of a revolution; infinite but for ellipses. A rounded parabola may be a very long ellipse."""
         return _core.kepler_period(self.mu, self.position, self.velocity)[()]
 
     @property
