@@ -142,7 +142,7 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
         {"momentum": 1.0, "inertia": 1.0, "damping": 1.0},
     ),
     "rotor": (_core.rotor, {"momentum": V}),
-    "wheel": (_core.wheel, {"axis": V, "inertia": 1.0, "rate": 1.0, "friction": 1.0}),
+    "wheel": (_core.wheel, {"axis": V, "inertia": 1.0, "rate": 1.0, "friction": 1.0, "dry_friction": 1.0}),
     "slug": (_core.slug, {"inertia": 1.0, "damping": 1.0}),
     "Load.carried": (_core.rotor(V).carried, {"t": 1.0, "omega": V}),
     "principal_axes": (_core.principal_axes, {"inertia": T}),

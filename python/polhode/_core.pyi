@@ -697,6 +697,7 @@ def wheel(
     speed: ArrayLike | None = None,
     times: ArrayLike | None = None,
     friction: ArrayLike | None = None,
+    dry_friction: ArrayLike | None = None,
     limit: float | None = None,
     name: str = "wheel",
 ) -> Load: ...

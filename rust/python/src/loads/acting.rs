@@ -2,7 +2,9 @@
 
 use polhode::Error;
 use polhode::error::Kind;
-use polhode::motion::loads::{Analytic, Carried, Load, Subject, Switch, Term, Windows, Wrench};
+use polhode::motion::loads::{
+    Analytic, Bearing, Carried, Change, Load, Subject, Term, Windows, Wrench,
+};
 use polhode::motion::state::Phase;
 use pyo3::prelude::*;
 
@@ -137,12 +139,16 @@ impl Load for Acting<'_, '_> {
         self.analytic.settle(phase);
     }
 
-    fn switches(&self) -> Vec<Switch> {
-        self.analytic.switches()
+    fn changes(&self) -> Vec<Change> {
+        self.analytic.changes()
     }
 
-    fn flip(&mut self, index: usize) {
-        self.analytic.flip(index);
+    fn change(&mut self, change: &Change) {
+        self.analytic.change(change);
+    }
+
+    fn bearings(&self) -> &[Bearing] {
+        self.analytic.bearings()
     }
 
     #[inline]

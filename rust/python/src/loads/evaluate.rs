@@ -6,7 +6,7 @@ use polhode::RigidBody;
 use polhode::mass::refined::RefinedPrincipal;
 use polhode::motion::attitude::from_components;
 use polhode::motion::euler_equations::EulerEquations;
-use polhode::motion::loads::{Carried, Kept, Load, Subject, Term, Wrench};
+use polhode::motion::loads::{Kept, Load, Subject, Term, Wrench, wrench_at};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -112,14 +112,7 @@ impl PyLoad {
                             own: self.begun(&terms[l], t[k], &omega[w], &states[s]),
                         };
                         acting.enter(t[k], t[k])?;
-                        let wrench = acting.wrench(t[k], &phase)?;
-                        Ok(on_locked(
-                            &bodies[b],
-                            &subject,
-                            &acting.carried(),
-                            &omega[w],
-                            wrench,
-                        )?)
+                        on_locked(&bodies[b], &subject, &mut acting, t[k], &phase)
                     })
                     .map_err(|fault| match fault {
                         Fault::Core(error) => at_row(&grid.shape, row, &to_py(py, &error), py),
@@ -335,22 +328,26 @@ impl PyLoad {
     }
 }
 
-/// The torque N of `I ω̇ + ω × I ω = N`, where I has the wheels locked: from that beside the tensor without those that turn freely.
+/// Force and torque N of `I ω̇ + ω × I ω = N`, where I has the wheels locked.
 fn on_locked(
     body: &RigidBody,
     subject: &Subject,
-    carried: &[&dyn Carried],
-    omega: &Vector3<f64>,
-    wrench: Wrench,
-) -> Result<Wrench, polhode::Error> {
-    let turning: Vec<_> = carried.iter().filter_map(|it| it.turning()).collect();
+    acting: &mut Acting<'_, '_>,
+    t: f64,
+    phase: &Phase,
+) -> Result<Wrench, Fault> {
+    let turning: Vec<_> = (acting.carried().iter())
+        .filter_map(|carried| carried.turning())
+        .collect();
     if turning.is_empty() {
-        return Ok(wrench);
+        return acting.wrench(t, phase);
     }
     let casing = RefinedPrincipal::about(body, &subject.point).without(&turning)?;
-    let rate = EulerEquations::of_refined(&casing).angular_acceleration(omega, &wrench.torque)?;
+    let casing = EulerEquations::of_refined(&casing);
+    let wrench = wrench_at(acting, &casing, t, phase)?;
+    let rate = casing.angular_acceleration(&phase.omega, &wrench.torque)?;
     Ok(Wrench {
-        torque: EulerEquations::about(body, &subject.point).torque(omega, &rate),
+        torque: EulerEquations::about(body, &subject.point).torque(&phase.omega, &rate),
         ..wrench
     })
 }

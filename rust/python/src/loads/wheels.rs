@@ -50,7 +50,7 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 /// A wheel in the body, with a motor and friction in its bearing.
 ///
 /// Its state is ``h = J (Ω + a·ω)``, its momentum about its axis a, with the rate Ω relative to the body; the inertia of the body
-/// includes the wheel as if it were locked. ``ḣ = τ - c Ω`` with the motor's torque τ on the wheel, and ``-a ḣ`` acts on
+/// includes the wheel as if it were locked. ``ḣ = τ - c Ω - c₀ sign(Ω)`` with the motor's torque τ on the wheel, and ``-a ḣ`` acts on
 /// the rest of the body. Where ``speed`` is given instead, the motor does whatever the speed needs.
 ///
 /// Parameters
@@ -70,6 +70,9 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 ///     Ascending. A torque is not known before the first of them, a speed neither before the first nor after the last.
 /// friction : array_like, shape (...), optional
 ///     c: torque over rate, not with `speed`.
+/// dry_friction : array_like, shape (...), optional
+///     c₀, not with `speed`: a torque against the rate whatever its size (Coulomb's law). At rest it is whatever keeps the wheel
+///     there, and the wheel slips where that takes more than c₀. "auto" is then "dop853", which finds the times of both.
 /// limit : float, optional
 ///     The most that ``|τ|`` can be, beside a feedback; "auto" is then "dop853".
 /// name : str, optional
@@ -95,8 +98,8 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 /// >>> motion.omega[-1].round(9), momentum[-1].round(9)
 /// (array([ 0. ,  0. , -0.5]), array([1.]))
 #[pyfunction]
-#[pyo3(signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None, limit=None,
-                   name="wheel"))]
+#[pyo3(signature = (axis, inertia, rate=None, *, torque=None, speed=None, times=None, friction=None,
+                   dry_friction=None, limit=None, name="wheel"))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn wheel(
     py: Python<'_>,
@@ -107,6 +110,7 @@ pub(crate) fn wheel(
     speed: Option<&Bound<'_, PyAny>>,
     times: Option<&Bound<'_, PyAny>>,
     friction: Option<&Bound<'_, PyAny>>,
+    dry_friction: Option<&Bound<'_, PyAny>>,
     limit: Option<f64>,
     name: &str,
 ) -> PyResult<PyLoad> {
@@ -117,7 +121,12 @@ pub(crate) fn wheel(
         ));
     }
     if speed.is_some() {
-        for (what, given) in [("rate", rate), ("torque", torque), ("friction", friction)] {
+        for (what, given) in [
+            ("rate", rate),
+            ("torque", torque),
+            ("friction", friction),
+            ("dry_friction", dry_friction),
+        ] {
             if given.is_some() {
                 return Err(PyTypeError::new_err(format!(
                     "{what}: not beside speed=, which says what the wheel does"
@@ -139,15 +148,24 @@ pub(crate) fn wheel(
         given.map_or_else(|| Ok(Stack::one(0.0)), |given| read::<f64>(given, name))
     };
     let (rates, frictions) = (or_zero(rate, "rate")?, or_zero(friction, "friction")?);
-    let names = ["axis", "inertia", "rate", "friction", "torque"];
+    let dry_frictions = or_zero(dry_friction, "dry_friction")?;
+    let names = [
+        "axis",
+        "inertia",
+        "rate",
+        "friction",
+        "dry_friction",
+        "torque",
+    ];
     let shapes = [
         &axis.shape[..],
         &inertia.shape,
         &rates.shape,
         &frictions.shape,
+        &dry_frictions.shape,
         &drive.shape,
     ];
-    let terms = Broadcast::of(names, shapes)?.try_map(py, |[a, j, w, c, d]| {
+    let terms = Broadcast::of(names, shapes)?.try_map(py, |[a, j, w, c, c0, d]| {
         Wheel::new(
             &axis[a],
             inertia[j],
@@ -155,6 +173,7 @@ pub(crate) fn wheel(
             frictions[c],
             drive[d].clone(),
         )
+        .and_then(|wheel| wheel.with_dry_friction(dry_frictions[c0]))
         .map(Term::Wheel)
     })?;
     let number = |stack: &Stack<f64>| write_of(py, stack, |x| *x);
@@ -177,6 +196,8 @@ pub(crate) fn wheel(
         "friction",
         friction.map(|_| number(&frictions)).transpose()?,
     )?;
+    let dry_friction = dry_friction.map(|_| number(&dry_frictions));
+    options.set_item("dry_friction", dry_friction.transpose()?)?;
     options.set_item("limit", limit)?;
     options.set_item("name", name)?;
     let rate = rate.map(|_| number(&rates)).transpose()?;

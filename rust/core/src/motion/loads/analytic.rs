@@ -1,9 +1,10 @@
 //! Sums of analytic terms.
 
+use super::bearing::Bearing;
 use super::carried::Carried;
 use super::load::Load;
 use super::subject::Subject;
-use super::switch::Switch;
+use super::switch::{Change, Switch};
 use super::term::Term;
 use super::wrench::Wrench;
 use crate::error::Error;
@@ -17,6 +18,8 @@ pub struct Analytic<'a> {
     active: Vec<&'a Term>,
     /// One for each term among those that act whose law has a sign, once they are settled.
     switches: Vec<Switch>,
+    /// The bearings with dry friction, once they are settled.
+    bearings: Option<Vec<Bearing>>,
     /// A time within the span last entered.
     middle: f64,
 }
@@ -30,6 +33,7 @@ impl<'a> Analytic<'a> {
             terms,
             active: terms.iter().collect(),
             switches: Vec::new(),
+            bearings: None,
             middle: f64::NAN,
         }
     }
@@ -50,6 +54,27 @@ impl<'a> Analytic<'a> {
     #[must_use]
     pub fn active(&self) -> &[&'a Term] {
         &self.active
+    }
+
+    /// The wheel of a bearing turns as that says, from now on.
+    fn turn(&mut self, bearing: Bearing) {
+        let mine = self.bearings.iter_mut().flatten();
+        for mine in mine.filter(|mine| mine.index == bearing.index) {
+            *mine = bearing;
+        }
+    }
+
+    /// The bearings with dry friction as they are at `phase`.
+    fn bearings_at(&self, phase: &Phase) -> Vec<Bearing> {
+        let mut found = Vec::new();
+        let mut index = 0;
+        for carried in self.carried() {
+            if let Some((axis, inertia, most)) = carried.bearing() {
+                found.push(Bearing::at(index, axis, inertia, most, phase));
+            }
+            index += carried.count();
+        }
+        found
     }
 }
 
@@ -77,6 +102,7 @@ impl Load for Analytic<'_> {
         self.middle = middle;
         self.active.clear();
         self.switches.clear();
+        self.bearings = None;
         for term in self.terms.iter().filter_map(|term| term.active(middle)) {
             term.check(&self.subject, from, to)?;
             self.active.push(term);
@@ -88,14 +114,37 @@ impl Load for Analytic<'_> {
         self.switches.clear();
         let switches = self.active.iter().filter_map(|term| term.switch(phase));
         self.switches.extend(switches);
+        self.bearings = Some(self.bearings_at(phase));
     }
 
-    fn switches(&self) -> Vec<Switch> {
-        self.switches.clone()
+    fn changes(&self) -> Vec<Change> {
+        let of_bearing = |bearing: &Bearing| {
+            if bearing.turns == 0.0 {
+                Change::Slip(*bearing)
+            } else {
+                Change::Stop(*bearing)
+            }
+        };
+        let signs = self.switches.iter().map(|switch| Change::Sign(*switch));
+        signs
+            .chain(self.bearings().iter().map(of_bearing))
+            .collect()
     }
 
-    fn flip(&mut self, index: usize) {
-        self.switches[index].side *= -1.0;
+    fn change(&mut self, change: &Change) {
+        match change {
+            Change::Sign(switch) => {
+                for mine in self.switches.iter_mut().filter(|mine| *mine == switch) {
+                    mine.side *= -1.0;
+                }
+            }
+            Change::Stop(bearing) => self.turn(bearing.stopped()),
+            Change::Slip(bearing) => self.turn(*bearing),
+        }
+    }
+
+    fn bearings(&self) -> &[Bearing] {
+        self.bearings.as_deref().unwrap_or_default()
     }
 
     #[inline]
@@ -109,7 +158,7 @@ impl Load for Analytic<'_> {
 
     #[inline]
     fn act(&mut self, t: f64, phase: &Phase, rates: &mut [f64]) -> Result<Wrench, Error> {
-        let (mut own, mut rates) = (&phase.own[..], rates);
+        let (mut own, mut all_rates) = (&phase.own[..], &mut *rates);
         let mut switches = self.switches.iter();
         let mut sum = Wrench::default();
         for term in &self.active {
@@ -121,7 +170,7 @@ impl Load for Analytic<'_> {
             sum += if let Some(carried) = term.carried() {
                 let mine = own.split_off(..carried.count()).unwrap_or_default();
                 let side = switch.map_or_else(|| side(term, phase), |switch| switch.side);
-                if let Some(rates) = rates.split_off_mut(..carried.count()) {
+                if let Some(rates) = all_rates.split_off_mut(..carried.count()) {
                     carried.rates(side, self.middle, phase, mine, rates);
                 }
                 Wrench::couple(carried.torque(side, self.middle, phase, mine))
@@ -130,6 +179,20 @@ impl Load for Analytic<'_> {
             } else {
                 term.wrench(&self.subject, t, phase)
             };
+        }
+        let unsettled;
+        let bearings = if let Some(settled) = &self.bearings {
+            settled
+        } else {
+            unsettled = self.bearings_at(phase);
+            &unsettled
+        };
+        for bearing in bearings {
+            let friction = bearing.friction();
+            sum.torque -= bearing.axis * friction;
+            if let Some(rate) = rates.get_mut(bearing.index) {
+                *rate += friction;
+            }
         }
         Ok(sum)
     }

@@ -27,6 +27,12 @@ pub trait Carried {
     /// `I − J a aᵀ`.
     fn turning(&self) -> Option<(Vector3<f64>, f64)>;
 
+    /// The unit axis, the moment J and the torque of dry friction of a wheel with such friction in its bearing. Its first state is the
+    /// wheel's momentum; [`Self::torque`] and [`Self::rates`] leave the friction out.
+    fn bearing(&self) -> Option<(Vector3<f64>, f64, f64)> {
+        None
+    }
+
     /// The torque about the reference point that stands beside that tensor; `side` is the sign that the law is taken for, `middle` a
     /// time within the span under way, which has no breaks.
     fn torque(&self, side: f64, middle: f64, phase: &Phase, own: &[f64]) -> Vector3<f64>;

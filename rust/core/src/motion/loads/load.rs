@@ -1,7 +1,8 @@
 //! A load, whoever computes it.
 
+use super::bearing::Bearing;
 use super::carried::Carried;
-use super::switch::Switch;
+use super::switch::Change;
 use super::term::Term;
 use super::wrench::Wrench;
 use crate::error::Error;
@@ -40,14 +41,19 @@ pub trait Load {
         let _ = phase;
     }
 
-    /// The signs that it was settled for; none of a law without such signs.
-    fn switches(&self) -> Vec<Switch> {
+    /// What may change the law that it was settled for; nothing of a law without signs.
+    fn changes(&self) -> Vec<Change> {
         Vec::new()
     }
 
-    /// Changes its law to that beyond the zero of switch number `index`.
-    fn flip(&mut self, index: usize) {
-        let _ = index;
+    /// Takes the law beyond one of its [changes](Self::changes).
+    fn change(&mut self, change: &Change) {
+        let _ = change;
+    }
+
+    /// The bearings with dry friction that it was settled for.
+    fn bearings(&self) -> &[Bearing] {
+        &[]
     }
 
     /// Force in N and torque in B about the reference point.

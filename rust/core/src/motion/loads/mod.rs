@@ -11,7 +11,7 @@
 //! | a torque sampled in time | cubic spline | [`sampled`] |
 //! | a magnetic field | `N = (d − k Ḃ) × B` | [`magnetic`] |
 //! | a rotor | `N = −ω × h` | [`rotor`] |
-//! | a wheel with motor and friction | `ḣ = τ − c Ω` | [`wheel`], [`held`] |
+//! | a wheel with motor and friction | `ḣ = τ − c Ω − c₀ sign(Ω)` | [`wheel`], [`held`], `bearing`, `resting` |
 //! | a spherical damper | `N = k (σ − ω)` | [`slug`] |
 //! | any of them on and off | windows of time | [`schedule`] |
 //!
@@ -19,6 +19,7 @@
 
 mod analytic;
 mod axes;
+mod bearing;
 mod carried;
 pub mod constant_force;
 pub mod constant_torque;
@@ -33,6 +34,7 @@ mod linear;
 mod load;
 pub mod magnetic;
 mod parameter;
+mod resting;
 pub mod rotor;
 pub mod sampled;
 pub mod schedule;
@@ -49,6 +51,7 @@ mod wrench;
 
 pub use self::analytic::Analytic;
 pub use self::axes::{Axes, Exact};
+pub use self::bearing::Bearing;
 pub use self::carried::Carried;
 pub use self::constant_force::ConstantForce;
 pub use self::constant_torque::ConstantTorque;
@@ -62,12 +65,14 @@ pub use self::linear::{Linear, Own};
 pub use self::load::Load;
 pub use self::magnetic::{Magnetic, MagneticField};
 pub use self::parameter::Parameter;
+pub(in crate::motion) use self::resting::Resting;
+pub use self::resting::wrench_at;
 pub use self::rotor::Rotor;
 pub use self::sampled::Sampled;
 pub use self::schedule::Windows;
 pub use self::slug::Slug;
 pub use self::subject::Subject;
-pub use self::switch::Switch;
+pub use self::switch::{Change, Switch};
 pub use self::term::Term;
 pub use self::uniform_gravity::UniformGravity;
 pub use self::wheel::{Drive, Wheel};

@@ -2,7 +2,19 @@
 
 use nalgebra::UnitQuaternion;
 
+use super::bearing::Bearing;
 use crate::motion::state::Phase;
+
+/// What may change the law of a load within a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// The sign in the law of a feedback.
+    Sign(Switch),
+    /// A wheel that turns stops.
+    Stop(Bearing),
+    /// A wheel at rest begins to turn: the way that it turns then, once that is known.
+    Slip(Bearing),
+}
 
 /// What changes the law of a feedback: the sign of the scalar part w of its error. Both w and its rate `ẇ = −½ vec(e)·ω` are continuous
 /// where it does.

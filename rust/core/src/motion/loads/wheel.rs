@@ -33,10 +33,11 @@ pub enum Drive {
 /// tensor I of the body includes it as if it were locked.
 ///
 /// ```text
-/// ḣ = τ − c Ω,   h = J (Ω + a·ω),   (I − J a aᵀ) ω̇ + ω × ((I − J a aᵀ) ω + h a) = N − a ḣ
+/// ḣ = τ − c Ω − c₀ sign(Ω),   h = J (Ω + a·ω),   (I − J a aᵀ) ω̇ + ω × ((I − J a aᵀ) ω + h a) = N − a ḣ
 /// ```
 ///
-/// with the motor's torque τ and viscous friction c in its bearing. With its speed given instead of τ
+/// with the motor's torque τ, and in its bearing viscous friction c and dry friction c₀: at rest, whatever up to c₀ keeps it there. With
+/// its speed given instead of τ
 ///
 /// ```text
 /// I ω̇ + ω × (I ω + JΩ a) = N − JΩ̇ a
@@ -55,6 +56,8 @@ pub struct Wheel {
     rate: f64,
     /// c.
     friction: f64,
+    /// c₀.
+    dry_friction: f64,
     drive: Drive,
 }
 
@@ -87,7 +90,20 @@ impl Wheel {
             inertia,
             rate,
             friction,
+            dry_friction: 0.0,
             drive,
+        })
+    }
+
+    /// The wheel with dry friction: the torque c₀ against its rate, and at rest whatever up to it keeps the wheel there.
+    ///
+    /// # Errors
+    /// For a torque that is negative or not finite.
+    pub fn with_dry_friction(self, torque: f64) -> Result<Self, Error> {
+        not_negative("dry_friction", torque)?;
+        Ok(Self {
+            dry_friction: torque,
+            ..self
         })
     }
 
@@ -144,7 +160,7 @@ impl Law for Wheel {
             needs_body: !self.has_speed(),
             needs_epoch: false,
             keeps: Kept::All,
-            has_series: !matches!(self.drive, Drive::Limited(..)),
+            has_series: !matches!(self.drive, Drive::Limited(..)) && self.bearing().is_none(),
             parts: Parts {
                 on_omega: true,
                 on_attitude: self.feedback().is_some(),
@@ -181,6 +197,13 @@ impl Law for Wheel {
     }
 
     fn check(&self, _: &Subject, from: f64, to: f64) -> Result<(), Error> {
+        if to < from && self.bearing().is_some() {
+            return Err(Error::OutOfDomain {
+                what: "t",
+                law: "ascending where a wheel has dry friction: of one at rest nobody knows when it came to rest",
+                value: to,
+            });
+        }
         match &self.drive {
             Drive::Torque(held) => held.covers("torque", from, to, false),
             Drive::Speed(held) => held.covers("speed", from, to, true),
@@ -188,11 +211,15 @@ impl Law for Wheel {
         }
     }
 
-    /// At a start.
+    /// At a start; of a wheel at rest without what its bearing holds, which follows from all loads on the body.
     fn wrench(&self, _: &Subject, t: f64, phase: &Phase) -> Wrench {
         let side = self.switch(phase).map_or(1.0, |switch| switch.side);
         let own = self.begin(t, &phase.omega);
-        Wrench::couple(self.torque(side, t, phase, &own))
+        let mut torque = self.torque(side, t, phase, &own);
+        if self.bearing().is_some() && self.rate != 0.0 {
+            torque += self.unit * (self.dry_friction * self.rate.signum());
+        }
+        Wrench::couple(torque)
     }
 
     /// A wheel without motor and friction takes no energy.
@@ -201,7 +228,7 @@ impl Law for Wheel {
             Drive::Torque(torque) => torque.times().is_empty() && torque.value(0.0) == 0.0,
             Drive::Feedback(_) | Drive::Limited(..) | Drive::Speed(_) => false,
         };
-        (is_free && self.friction == 0.0).then_some(0.0)
+        (is_free && self.friction == 0.0 && self.dry_friction == 0.0).then_some(0.0)
     }
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
@@ -217,7 +244,7 @@ impl Law for Wheel {
                 own.constant = inertia * X::from(speed.line(axes.middle)[1]);
             }
             Drive::Torque(torque) => own.constant = X::from(torque.value(axes.middle)),
-            // With a limit it has no series: the law within it.
+            // With a limit it has no series, nor with dry friction: the law without them.
             Drive::Feedback(law) | Drive::Limited(law, _) => {
                 let mut asked = Linear::default();
                 law.add_to(&mut asked, axes, side);
@@ -291,6 +318,14 @@ impl Carried for Wheel {
 
     fn turning(&self) -> Option<(Vector3<f64>, f64)> {
         (!self.has_speed()).then_some((self.axis, self.inertia))
+    }
+
+    fn bearing(&self) -> Option<(Vector3<f64>, f64, f64)> {
+        (self.dry_friction > 0.0 && !self.has_speed()).then_some((
+            self.unit,
+            self.inertia,
+            self.dry_friction,
+        ))
     }
 
     fn torque(&self, side: f64, middle: f64, phase: &Phase, own: &[f64]) -> Vector3<f64> {

@@ -28,8 +28,9 @@ pub(super) struct Look {
     pub(super) value: f64,
 }
 
-/// A function of time and state, the time since the start of the span.
-pub(super) type Function<'a, E> = dyn FnMut(f64, &Phase) -> Result<f64, E> + 'a;
+/// A function of time and state, the time since the start of the span; it may ask the method.
+pub(super) type Function<'a, E> =
+    dyn FnMut(&mut dyn Dense<Error = E>, f64, &Phase) -> Result<f64, E> + 'a;
 
 /// A function along one step, or a part of it.
 pub(super) struct View<'b, E> {
@@ -47,7 +48,7 @@ impl<E> View<'_, E> {
         } else {
             self.stepper.within(at)?
         };
-        let value = (self.function)(at, &phase)?;
+        let value = (self.function)(&mut *self.stepper, at, &phase)?;
         Ok(Look { at, value })
     }
 
@@ -204,7 +205,7 @@ impl<E> View<'_, E> {
     /// The function along the dense output, at the end of the step too.
     fn inner(&mut self, at: f64) -> Result<f64, E> {
         let phase = self.stepper.within(at)?;
-        (self.function)(at, &phase)
+        (self.function)(&mut *self.stepper, at, &phase)
     }
 }
 

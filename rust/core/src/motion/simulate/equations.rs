@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 use crate::motion::attitude::{from_axes, rate};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::integrate::{Compensated, System};
-use crate::motion::loads::{Load, Subject, Switch};
+use crate::motion::loads::{Bearing, Change, Load, Resting, Subject};
 use crate::motion::problem::Tolerance;
 use crate::motion::state::Phase;
 
@@ -45,6 +45,8 @@ pub(super) struct Equations<'a, L, const N: usize> {
     is_held: bool,
     axes: Axes,
     load: &'a mut L,
+    /// The wheels at rest in bearings with dry friction, in this span.
+    resting: Option<Resting>,
     tolerance: Tolerance,
     pub(super) scales: Scales,
     /// When the reference point, if no force acts on it, was where; it keeps its velocity.
@@ -75,6 +77,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
         };
         Self {
             sizes: load.sizes(),
+            resting: Resting::of(euler, load.bearings()),
             euler: *euler,
             mass: subject.mass,
             is_held: subject.pivoted,
@@ -119,13 +122,17 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
             q *= self.axes.q_bp.conjugate().into_inner();
             omega = self.axes.columns * omega;
         }
-        Phase {
+        let mut phase = Phase {
             attitude: UnitQuaternion::new_unchecked(q * (1.0 / q.norm_squared().sqrt())),
             omega,
             position,
             velocity,
             own: y.as_slice()[N.min(MOVING)..][..self.own()].into(),
+        };
+        if let Some(resting) = &self.resting {
+            resting.keep(&mut phase);
         }
+        phase
     }
 
     /// How many states the load has of its own.
@@ -136,8 +143,24 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
 
 impl<L: Load, const N: usize> Equations<'_, L, N> {
     /// What may change the law of the load within a step.
-    pub(super) fn switches(&self) -> Vec<Switch> {
-        self.load.switches()
+    pub(super) fn changes(&self) -> Vec<Change> {
+        self.load.changes()
+    }
+
+    /// The torque that a bearing at rest takes.
+    pub(super) fn held(
+        &mut self,
+        bearing: &Bearing,
+        t: f64,
+        phase: &Phase,
+    ) -> Result<f64, L::Error> {
+        let mut rates = vec![0.0; self.own()];
+        let wrench = self.load.act(t, phase, &mut rates)?;
+        let motor = rates[bearing.index()];
+        if let Some(resting) = &self.resting {
+            resting.hold(&phase.omega, &wrench.torque, &mut rates);
+        }
+        Ok(rates[bearing.index()] - motor)
     }
 }
 
@@ -158,7 +181,10 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         let (phase, own) = (self.phase(t, y), self.own());
         let mut slope = SVector::<f64, N>::zeros();
         let rates = &mut slope.as_mut_slice()[N.min(MOVING)..][..own];
-        let wrench = self.load.act(t, &phase, rates)?;
+        let mut wrench = self.load.act(t, &phase, rates)?;
+        if let Some(resting) = &self.resting {
+            wrench.torque = resting.hold(&phase.omega, &wrench.torque, rates);
+        }
         let torque = if self.axes.are_of_body {
             wrench.torque
         } else {

@@ -9,7 +9,7 @@ use super::stepper::{Carry, Dense, Span, Stepper};
 use crate::error::{Error, MotionFault};
 use crate::motion::free::FreeMotion;
 use crate::motion::heavy_top::HeavyTop;
-use crate::motion::loads::{Switch, Term};
+use crate::motion::loads::{Change, Term};
 use crate::motion::problem::{Effort, End, Run, Task};
 use crate::motion::state::{ClosedForm, Phase, State};
 use crate::numerics::power_of_two::{exponent, length, times_power_of_two};
@@ -220,7 +220,7 @@ impl<E: From<Error>> Stepper for Exact<E> {
         Carry::default()
     }
 
-    fn switches(&self) -> Vec<Switch> {
+    fn changes(&self) -> Vec<Change> {
         Vec::new()
     }
 }

@@ -2,34 +2,68 @@
 
 use super::along::{Look, View, sign};
 use super::stepper::Dense;
-use crate::motion::loads::Switch;
+use crate::motion::loads::Change;
 use crate::motion::state::Phase;
 
 /// A body that turns further than that in a step, in radians, may pass a zero twice, however it moves at the ends.
 const LONG: f64 = 2.0;
 
-/// The first change within the step that began at `from` in the state `before`: which switch, and the time since the start of the span,
-/// which is `start`.
+/// The first change within the step that began at `from` in the state `before`, and the time since the start of the span, which is
+/// `start`.
 pub(super) fn first<E>(
-    switches: &[Switch],
+    changes: &[Change],
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
     from: f64,
     before: &Phase,
-) -> Result<Option<(usize, f64)>, E> {
-    let mut first: Option<(usize, f64)> = None;
-    for (index, switch) in switches.iter().enumerate() {
-        if let Some(place) = of(switch, stepper, start, from, before)?
+) -> Result<Option<(Change, f64)>, E> {
+    let mut first: Option<(Change, f64)> = None;
+    for change in changes {
+        if let Some(place) = of(change, stepper, start, from, before)?
             && first.is_none_or(|(_, earlier)| place.abs() < earlier.abs())
         {
-            first = Some((index, place));
+            first = Some((*change, place));
         }
+    }
+    if let Some((Change::Slip(bearing), place)) = first {
+        // The way that the wheel turns then is against what held it.
+        let phase = at(stepper, from, before, place)?;
+        let slipping = bearing.slipping(stepper.held(&bearing, place, &phase)?);
+        return Ok(Some((Change::Slip(slipping), place)));
     }
     Ok(first)
 }
 
+/// The state at a time within the step that began at `from`.
+fn at<E>(
+    stepper: &mut dyn Dense<Error = E>,
+    from: f64,
+    before: &Phase,
+    place: f64,
+) -> Result<Phase, E> {
+    if place == from {
+        Ok(before.clone())
+    } else {
+        stepper.within(place)
+    }
+}
+
+/// A function that is negative beyond the change.
+fn until<E>(
+    change: &Change,
+    stepper: &mut dyn Dense<Error = E>,
+    at: f64,
+    phase: &Phase,
+) -> Result<f64, E> {
+    Ok(match change {
+        Change::Sign(switch) => switch.value_and_rate(phase)[0],
+        Change::Stop(bearing) => bearing.until_stop(phase),
+        Change::Slip(bearing) => bearing.until_slip(stepper.held(bearing, at, phase)?),
+    })
+}
+
 fn of<E>(
-    switch: &Switch,
+    change: &Change,
     stepper: &mut dyn Dense<Error = E>,
     start: f64,
     from: f64,
@@ -37,26 +71,31 @@ fn of<E>(
 ) -> Result<Option<f64>, E> {
     let to = stepper.elapsed();
     let turn = stepper.turn(to - from);
-    let forward = (to - from).signum();
-    let [[w, rate], [w_end, rate_end]] = [before, &stepper.phase()].map(|phase| {
-        let [value, rate] = switch.value_and_rate(phase);
-        [value, rate * forward]
-    });
-    // Just past a change rounding may have left it on the side it comes from.
-    let ends_beyond = w_end < 0.0 && (w >= 0.0 || rate_end < 0.0);
-    let may_dip = rate <= 0.0 && rate_end >= 0.0;
-    if !(ends_beyond || may_dip || turn > LONG) {
-        return Ok(None);
+    let value = until(change, stepper, from, before)?;
+    if let Change::Sign(switch) = change {
+        let forward = (to - from).signum();
+        let [[w, rate], [w_end, rate_end]] = [before, &stepper.phase()].map(|phase| {
+            let [value, rate] = switch.value_and_rate(phase);
+            [value, rate * forward]
+        });
+        // Just past a change rounding may have left it on the side it comes from.
+        let ends_beyond = w_end < 0.0 && (w >= 0.0 || rate_end < 0.0);
+        let may_dip = rate <= 0.0 && rate_end >= 0.0;
+        if !(ends_beyond || may_dip || turn > LONG) {
+            return Ok(None);
+        }
+    } else if value < 0.0 {
+        return Ok(Some(from));
     }
     let mut view = View {
-        function: &mut |_, phase| Ok(switch.value_and_rate(phase)[0]),
+        function: &mut |stepper, at, phase| until(change, stepper, at, phase),
         stepper,
         start,
         end: to,
     };
     let mut last = Look {
         at: from,
-        value: w.max(0.0),
+        value: value.max(0.0),
     };
     for look in view.looks(last, turn)? {
         if look.value < 0.0 {

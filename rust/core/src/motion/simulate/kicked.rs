@@ -3,7 +3,7 @@
 use super::stepper::{Carry, Dense, Span, Stepper};
 use crate::error::{Error, MotionFault};
 use crate::motion::integrate::Splitting;
-use crate::motion::loads::{Load, Switch};
+use crate::motion::loads::{Change, Load};
 use crate::motion::problem::{Effort, Task};
 use crate::motion::state::Phase;
 
@@ -78,7 +78,7 @@ impl<L: Load> Stepper for Kicked<'_, L> {
         }
     }
 
-    fn switches(&self) -> Vec<Switch> {
-        self.load.switches()
+    fn changes(&self) -> Vec<Change> {
+        self.load.changes()
     }
 }

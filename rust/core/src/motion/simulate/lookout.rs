@@ -71,7 +71,7 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
         for event in 0..self.rules.len() {
             let events = &mut *self.events;
             let mut view = View {
-                function: &mut |at, phase| events.value(event, start + at, phase),
+                function: &mut |_, at, phase| events.value(event, start + at, phase),
                 stepper: &mut *stepper,
                 start,
                 end: to,

@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::stepper::{Carry, Dense, Span, Stepper};
 use crate::motion::integrate::RungeKutta;
-use crate::motion::loads::{Load, Switch};
+use crate::motion::loads::{Bearing, Change, Load};
 use crate::motion::problem::{Effort, Task};
 use crate::motion::state::Phase;
 
@@ -50,6 +50,10 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for Solved<'_, L, M, N> {
         let y = self.method.within(&mut self.equations, elapsed)?;
         Ok(self.equations.phase(self.start + elapsed, &y))
     }
+
+    fn held(&mut self, bearing: &Bearing, elapsed: f64, phase: &Phase) -> Result<f64, L::Error> {
+        self.equations.held(bearing, self.start + elapsed, phase)
+    }
 }
 
 impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> {
@@ -73,7 +77,7 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> 
         }
     }
 
-    fn switches(&self) -> Vec<Switch> {
-        self.equations.switches()
+    fn changes(&self) -> Vec<Change> {
+        self.equations.changes()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::equations::Scales;
 use crate::motion::integrate::splitting::Scheme;
-use crate::motion::loads::Switch;
+use crate::motion::loads::{Bearing, Change};
 use crate::motion::problem::Effort;
 use crate::motion::state::Phase;
 
@@ -19,6 +19,13 @@ pub(super) trait Dense {
 
     /// The state at a time since the start of the span that is within the step.
     fn within(&mut self, elapsed: f64) -> Result<Phase, Self::Error>;
+
+    /// The torque that a bearing at rest takes at a time since the start of the span and the state then; only what carries wheels
+    /// has bearings.
+    fn held(&mut self, bearing: &Bearing, elapsed: f64, phase: &Phase) -> Result<f64, Self::Error> {
+        let _ = (bearing, elapsed, phase);
+        Ok(0.0)
+    }
 
     /// How far the body turns in the step, which was as long as `length`: about, in radians.
     fn turn(&self, length: f64) -> f64 {
@@ -38,7 +45,7 @@ pub(super) trait Stepper: Dense {
     fn carry(&self) -> Carry;
 
     /// What may change the law of its load within a step.
-    fn switches(&self) -> Vec<Switch>;
+    fn changes(&self) -> Vec<Change>;
 }
 
 /// What one span leaves to the next.

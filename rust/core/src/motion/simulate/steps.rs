@@ -8,7 +8,7 @@ use super::flips;
 use super::lookout::Lookout;
 use super::stepper::{Carry, Span, Stepper};
 use crate::error::{Error, MotionFault};
-use crate::motion::loads::Load;
+use crate::motion::loads::{Change, Load, Resting};
 use crate::motion::problem::limits::{HELD, check_steps, spans};
 use crate::motion::problem::{Effort, End, Method, Run, Task};
 use crate::motion::state::Phase;
@@ -40,8 +40,8 @@ impl<E> Run<E> {
             load.enter(from, to)?;
             load.jump(from, &mut self.phase)?;
             load.settle(&self.phase);
-            // Where the law of the load changes with the state, which of its signs changes.
-            let mut flip: Option<(usize, f64)> = None;
+            // Where the law of the load changes with the state, by what.
+            let mut flip: Option<(Change, f64)> = None;
             let mut flips_at_once = 0;
             loop {
                 let span = Span {
@@ -74,21 +74,25 @@ impl<E> Run<E> {
                         // To the bit, where a start and a length of time would round.
                         self.time = span.to;
                         match flip.take() {
-                            Some((index, time)) => {
-                                load.flip(index);
+                            Some((change, time)) => {
+                                self.change(&change, task, load);
                                 from = time;
                             }
                             None => break,
                         }
                     }
-                    Ok(Reached::Flip { index, time }) => {
-                        (from, flip) = (self.time, Some((index, time)));
+                    Ok(Reached::Flip { change, time }) => {
+                        (from, flip) = (self.time, Some((change, time)));
                         if from == time {
                             // Here and now. A law that changes back each time holds the body where it changes.
-                            load.flip(index);
+                            self.change(&change, task, load);
                             flip = None;
                             flips_at_once += 1;
-                            if flips_at_once > HELD {
+                            // Several wheels may stop and slip at once.
+                            let most = HELD
+                                * (1 + u32::try_from(load.bearings().len())
+                                    .unwrap_or(u32::MAX / HELD - 1));
+                            if flips_at_once > most {
                                 let step = 0.0;
                                 return Err(Error::Motion(MotionFault::StepTooSmall {
                                     time,
@@ -113,6 +117,15 @@ impl<E> Run<E> {
         }
         self.crossings = lookout.crossings;
         Ok(End::Complete)
+    }
+
+    /// Takes the law of the load beyond a change. A wheel that stops turns by what its time is off: it comes to rest without a change of
+    /// the momentum.
+    fn change<L: Load<Error = E>>(&mut self, change: &Change, task: &Task<'_>, load: &mut L) {
+        load.change(change);
+        if let Some(resting) = Resting::of(&task.euler, load.bearings()) {
+            resting.stop(&mut self.phase);
+        }
     }
 
     /// Has come to this time and state, if that is one.
@@ -140,8 +153,8 @@ impl<E> Run<E> {
         E: From<Error>,
     {
         let (from, length) = (span.from, span.to - span.from);
-        let switches = if may_flip {
-            stepper.switches()
+        let changes = if may_flip {
+            stepper.changes()
         } else {
             Vec::new()
         };
@@ -153,11 +166,11 @@ impl<E> Run<E> {
                 return Ok(Reached::End);
             }
             stepper.advance()?;
-            let flip = flips::first(&switches, stepper, from, before, &self.phase)?;
-            if let Some((index, place)) = flip {
+            let flip = flips::first(&changes, stepper, from, before, &self.phase)?;
+            if let Some((change, place)) = flip {
                 // The step is made again, to end there.
                 let time = from + place;
-                return Ok(Reached::Flip { index, time });
+                return Ok(Reached::Flip { change, time });
             }
             let reached = stepper.elapsed();
             let stages = lookout.stages(stepper.turn(reached - before));
@@ -212,8 +225,8 @@ impl<E> Run<E> {
 enum Reached<E> {
     /// Its end.
     End,
-    /// A step within which the law of the load changes: by which switch, and when.
-    Flip { index: usize, time: f64 },
+    /// A step within which the law of the load changes: by what, and when.
+    Flip { change: Change, time: f64 },
     /// The end of the run.
     Over(End<E>),
 }

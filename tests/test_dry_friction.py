@@ -1,0 +1,254 @@
+"""Wheels in bearings with dry friction: they stop, rest and slip at times that are found."""
+
+from __future__ import annotations
+
+import functools
+import operator
+import re
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import polhode
+import pytest
+from oracles.dry_friction import Model
+from oracles.wheels import ATTITUDE, BODY, OMEGA, turned
+from polhode import RigidBody, loads
+from polhode.errors import InvalidInertiaError, PolhodeError
+from polhode.events import Event
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from polhode.loads import Load
+
+Method = Literal["auto", "dop853", "radau"]
+I3, J = 3.0, 0.5
+PLAIN = RigidBody.from_principal(1.0, (1.0, 2.0, I3))
+ALONG = (0.0, 0.0, 1.0)
+BETWEEN = 1 / J + 1 / (I3 - J)  # of what the wheel gains and the casing loses
+
+
+def speed(run: polhode.Trajectory, name: str = "wheel") -> np.ndarray:
+    """Give Ω about the third axis."""
+    return run.states[name][:, 0] / J - run.omega[:, 2]
+
+
+def together(wheels: Iterable[Load]) -> Load:
+    """Add loads."""
+    return functools.reduce(operator.add, wheels)
+
+
+METHODS = pytest.mark.parametrize("method", ["auto", "dop853", "radau"])
+
+
+@METHODS
+def test_a_wheel_runs_down_and_rests(method: Method) -> None:
+    wheel = loads.wheel(ALONG, J, rate=10.0, dry_friction=0.25)
+    stop = 10.0 / (0.25 * BETWEEN)
+    t = np.array([0.0, 0.5 * stop, stop, stop + 1e-9, 3 * stop])
+    run = PLAIN.simulate(t, omega=(0, 0, 0), load=wheel, method=method, rtol=1e-12)
+    expected = [10.0, 5.0, 0.0, 0.0, 0.0]
+    np.testing.assert_allclose(speed(run), expected, atol=2e-13)
+    np.testing.assert_allclose(run.omega[:, 2] * I3 + J * speed(run), 10.0 * J, rtol=1e-14)
+    assert speed(run)[-1] == pytest.approx(0.0, abs=1e-15)
+
+
+@METHODS
+def test_a_wheel_is_dragged_along_until_it_slips(method: Method) -> None:
+    # N = k t about the axis: held while J N/I ≤ c₀, and then dragged by c₀.
+    k, most = 0.3, 0.2
+    slip = most * I3 / (J * k)
+    t = np.array([0.0, 0.5 * slip, slip, slip + 1e-6, 1.5 * slip, 2.5 * slip])
+    push = loads.sampled([0.0, 1.0, 10.0, 20.0], [[0, 0, k * x] for x in (0.0, 1.0, 10.0, 20.0)])
+    wheel = loads.wheel(ALONG, J, dry_friction=most)
+    run = PLAIN.simulate(t, omega=(0, 0, 0.1), load=push + wheel, method=method, rtol=1e-12)
+    before, after = np.minimum(t, slip), np.maximum(t - slip, 0.0)
+    omega = 0.1 + k * before**2 / 2 / I3
+    h = J * omega + most * after
+    omega = omega + (k * slip * after + k * after**2 / 2 - most * after) / (I3 - J)
+    np.testing.assert_allclose(run.omega[:, 2], omega, rtol=2e-12)
+    np.testing.assert_allclose(run.states["wheel"][:, 0], h, rtol=2e-12)
+
+
+@pytest.mark.parametrize(
+    ("torque", "moves"), [(0.2, False), (0.25, False), (-0.25, False), (0.3, True), (-0.3, True)]
+)
+def test_a_motor_moves_the_wheel_only_beyond_the_friction(torque: float, moves: bool) -> None:
+    wheel = loads.wheel(ALONG, J, torque=torque, dry_friction=0.25)
+    run = PLAIN.simulate([0.0, 4.0], omega=(0, 0, 0.7), load=wheel)
+    gain = np.sign(torque) * 0.05 * BETWEEN * 4.0 if moves else 0.0
+    assert speed(run)[-1] == pytest.approx(gain, abs=1e-13)
+
+
+def test_a_wheel_turns_about_without_rest_where_the_motor_is_strong() -> None:
+    wheel = loads.wheel(ALONG, J, rate=2.0, torque=-0.5, dry_friction=0.25)
+    stop = 2.0 / (0.75 * BETWEEN)
+    run = PLAIN.simulate([0.0, stop, stop + 3.0], omega=(0, 0, 0), load=wheel, rtol=1e-13)
+    np.testing.assert_allclose(speed(run), [2.0, 0.0, -0.25 * BETWEEN * 3.0], atol=1e-13)
+
+
+@METHODS
+@pytest.mark.parametrize("above", [1e-3, 1e-9])
+def test_the_stop_is_an_event_where_it_is(method: Method, above: float) -> None:
+    wheel = loads.wheel(ALONG, J, rate=10.0, dry_friction=0.25)
+    slow = Event(lambda *state: state[-1]["wheel"][0] / J - state[1][2] - above)
+    run = PLAIN.simulate([0.0, 40.0], omega=(0, 0, 0), load=wheel, events=[slow], method=method, rtol=1e-12)
+    assert len(run.events.t) == 1
+    assert run.events.t[0] == pytest.approx((10.0 - above) / (0.25 * BETWEEN), rel=1e-12)
+
+
+def random_case(seed: int) -> tuple[polhode.Trajectory, np.ndarray, list[float]]:
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 4))
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0][:count]
+    inertia, most = rng.uniform(0.02, 0.2, count), rng.uniform(0.01, 0.2, count)
+    start = rng.normal(size=count) * rng.choice([0.0, 1.0, 3.0], count)
+    motors = rng.normal(size=count) * rng.choice([0.0, 0.1], count)
+    outer = rng.normal(size=3) * rng.choice([0.0, 0.3])
+    drag = rng.choice([0.0, 0.1])
+    load = loads.constant_torque(outer, frame="space") + loads.damping(drag)
+    for k in range(count):
+        load = load + loads.wheel(axes[k], inertia[k], start[k], torque=motors[k], dry_friction=most[k])
+    model = Model(
+        BODY.inertia, axes, inertia, most, lambda _, y: (turned(y[:4]).T @ outer - drag * y[4:7], motors)
+    )
+    t = np.linspace(0.0, 12.0, 9)
+    states, changes = model.run(np.concatenate([ATTITUDE, OMEGA, start]), t)
+    run = BODY.simulate(t, OMEGA, ATTITUDE, load=load, rtol=1e-12)
+    own = np.stack([run.states[name][:, 0] for name in run.states], axis=-1)
+    found = np.concatenate([run.quaternion, run.omega, own / inertia - run.omega @ axes.T], axis=-1)
+    sign = np.sign(np.sum(found[:, :4] * states[:, :4], axis=-1, keepdims=True))
+    found[:, :4] *= sign
+    return run, found - states, changes
+
+
+def test_random_bodies_against_an_own_model() -> None:
+    changes = []
+    for seed in range(40):
+        _, off, found = random_case(seed)
+        assert np.abs(off).max() < 2e-8, seed  # the model slips 1e-9 late
+        changes += found
+    assert len(changes) > 60  # they do stop and slip
+
+
+def test_four_wheels_stop_at_once() -> None:
+    # Alike about the axes of a body with three equal moments: by symmetry they stop together.
+    axes = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(3)
+    ball = RigidBody.from_principal(1.0, (2.0, 2.0, 2.0))
+    load = together(loads.wheel(axis, 0.1, 5.0, dry_friction=0.02) for axis in axes)
+    stop = 5.0 / (0.02 * (1 / 0.1))
+    run = ball.simulate([0.0, 0.5 * stop, 2 * stop], omega=(0, 0, 0), load=load, rtol=1e-12)
+    for values in run.states.values():
+        np.testing.assert_allclose(values[:, 0], [0.5, 0.25, 0.0], atol=1e-13)
+
+
+def test_momentum_is_kept_and_energy_goes_into_friction() -> None:
+    rng = np.random.default_rng(5)
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    load = together(
+        loads.wheel(axis, 0.1, rate, dry_friction=0.03) for axis, rate in zip(axes, (5, -3, 2), strict=True)
+    )
+    t = np.linspace(0, 30, 3001)
+    run = BODY.simulate(t, OMEGA, load=load, rtol=1e-13)
+    spin = run.angular_momentum().spin
+    assert np.abs(spin - spin[0]).max() < 1e-12 * np.linalg.norm(spin[0])
+    energy = run.kinetic_energy().total
+    assert np.diff(energy).max() < 1e-13 * energy[0]
+    rates = [
+        run.states[name][:, 0] / 0.1 - run.omega @ axis for name, axis in zip(run.states, axes, strict=True)
+    ]
+    power = -0.03 * np.abs(rates).sum(axis=0)
+    work = np.sum(0.5 * (power[1:] + power[:-1]) * np.diff(t))
+    assert energy[-1] - energy[0] == pytest.approx(work, rel=1e-5)  # of the trapezoidal rule
+    assert min(abs(rates[k][-1]) for k in range(3)) < 1e-14
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_torque_outside_a_run_is_that_within(seed: int) -> None:
+    run, _, _ = random_case(seed)
+    at, step = 6, 1e-5
+    state = {name: values[at] for name, values in run.states.items()}
+    assert run.load is not None
+    torque = run.load.torque(run.t[at], run.omega[at], run.quaternion[at], body=BODY, states=state)
+    ahead = BODY.simulate(
+        run.t[at] + np.array([0, step]),
+        run.omega[at],
+        run.quaternion[at],
+        load=run.load,
+        states=state,
+        rtol=1e-13,
+    )
+    rate = (ahead.omega[1] - ahead.omega[0]) / step
+    middle = 0.5 * (ahead.omega[1] + ahead.omega[0])
+    # I ω̇ + ω × I ω = N with the wheels locked in I.
+    expected = BODY.inertia @ rate + np.cross(middle, BODY.inertia @ middle)
+    np.testing.assert_allclose(torque, expected, atol=2e-4)
+
+
+def test_a_controller_with_dry_friction_stops_short() -> None:
+    # The motor cannot move the wheel where it asks for less than the friction: the body stays off its target.
+    control = loads.feedback(K=1.0, D=2.0)
+    wheel = loads.wheel(ALONG, J, torque=control, dry_friction=0.05)
+    run = PLAIN.simulate([0.0, 400.0], (0, 0, 0), (0, 0, np.sin(0.15), np.cos(0.15)), load=wheel)
+    assert abs(speed(run)[-1]) < 1e-14
+    assert 0.0 < abs(run.quaternion[-1, 2]) <= 0.05
+    small = PLAIN.simulate([0.0, 400.0], (0, 0, 0), (0, 0, np.sin(0.04), np.cos(0.04)), load=wheel)
+    np.testing.assert_array_equal(small.quaternion[-1], small.quaternion[0])  # it never moves
+
+
+def test_a_stack_a_resumed_run_and_a_pickle_are_the_same() -> None:
+    stack = loads.wheel(ALONG, J, rate=[1.0, 10.0], dry_friction=[0.25, 0.1])
+    t = [0.0, 3.0, 8.0]
+    both = PLAIN.simulate(t, (0.1, 0, 0.2), load=stack)
+    for row, (rate, most) in enumerate([(1.0, 0.25), (10.0, 0.1)]):
+        wheel = loads.wheel(ALONG, J, rate=rate, dry_friction=most)
+        single = PLAIN.simulate(t, (0.1, 0, 0.2), load=wheel)
+        np.testing.assert_array_equal(both.omega[row], single.omega)
+        parts = PLAIN.simulate(t[:2], (0.1, 0, 0.2), load=wheel).resume(t[1:])
+        np.testing.assert_allclose(parts.omega[-1], single.omega[-1], atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "message"),
+    [
+        (
+            lambda: loads.wheel(ALONG, J, dry_friction=-1),
+            PolhodeError,
+            "dry_friction must be positive or zero, got -1",
+        ),
+        (lambda: loads.wheel(ALONG, J, dry_friction=np.inf), PolhodeError, "dry_friction must be finite"),
+        (
+            lambda: loads.wheel(ALONG, J, speed=1, dry_friction=1),
+            TypeError,
+            "dry_friction: not beside speed=",
+        ),
+        (
+            lambda: PLAIN.simulate(
+                [0, 1], OMEGA, load=loads.wheel(ALONG, J, dry_friction=1), method="taylor"
+            ),
+            PolhodeError,
+            "no dry friction",
+        ),
+        (
+            lambda: PLAIN.simulate([0, -1], OMEGA, load=loads.wheel(ALONG, J, dry_friction=1)),
+            PolhodeError,
+            "t must be ascending where a wheel has dry friction",
+        ),
+        (
+            lambda: PLAIN.simulate([0, 1], OMEGA, load=loads.wheel(ALONG, 3, dry_friction=1)),
+            InvalidInertiaError,
+            "moments",
+        ),
+    ],
+)
+def test_what_is_refused(make: Callable[[], object], error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=re.escape(message)):
+        make()
+
+
+def test_without_dry_friction_bits_are_those_of_a_wheel_without_it() -> None:
+    runs = [
+        BODY.simulate([0, 5], OMEGA, load=loads.wheel(ALONG, J, 2.0, friction=0.1, dry_friction=none))
+        for none in (None, 0.0)
+    ]
+    np.testing.assert_array_equal(runs[0].omega, runs[1].omega)
