@@ -132,6 +132,10 @@ ROWS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
         _core.kepler_states,
         {"mu": 1.0, "position": V, "velocity": (1.0, 0.2, 0.1), "elapsed": 1.0},
     ),
+    "oblate_states": (
+        lambda **rows: _core.oblate_states(elapsed=[1.0], **rows),
+        {"mu": 1.0, "position": V, "velocity": (1.0, 0.2, 0.1), "j2": 0.01, "radius": 0.1, "pole": V},
+    ),
     "kepler_period": (_core.kepler_period, {"mu": 1.0, "position": V, "velocity": (1.0, 0.2, 0.1)}),
     "dipole_field": (_core.dipole_field, {"strength": V, "position": V}),
     "magnetic": (_core.magnetic, {"dipole": V, "field": V, "gain": 1.0}),
@@ -223,6 +227,12 @@ OTHERS: dict[str, Callable[[], object]] = {
     ),
     "RigidBody.__getitem__ of rows": lambda: COLUMN[np.broadcast_to(0, ABSURD)],
     "with_states": lambda: _core.with_states(None, np.broadcast_to(1.0, ABSURD)),
+    "oblate_states, absurd times": lambda: _core.oblate_states(
+        1.0, V, (1.0, 0.2, 0.1), 0.01, 0.1, V, np.broadcast_to(1.0, ABSURD)
+    ),
+    "sampled_states": lambda: _core.sampled_states(
+        np.broadcast_to(1.0, ABSURD), np.broadcast_to(1.0, (ABSURD, 3)), [1.0]
+    ),
     "wheel, absurd times": lambda: _core.wheel(
         V, 1.0, torque=np.broadcast_to(1.0, ABSURD), times=np.broadcast_to(1.0, ABSURD)
     ),

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from polhode._typing import SupportsQuaternion, SupportsSigma
 from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
 from polhode.gyrostat import Equilibria, Wheel
-from polhode.orbits import DipoleField, Orbit
+from polhode.orbits import DipoleField, Orbit, SampledOrbit
 from polhode.results import (
     AngularMomentum,
     ErrorBound,
@@ -77,6 +77,7 @@ __all__ = [
     "motion_sensitivity",
     "nearest_valid",
     "nutation_damping",
+    "oblate_states",
     "polygon",
     "principal_axes",
     "principal_derivative",
@@ -101,6 +102,7 @@ __all__ = [
     "rotate",
     "rotor",
     "sampled",
+    "sampled_states",
     "schedule",
     "slug",
     "sphere",
@@ -649,13 +651,23 @@ def kepler_period(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> _F
 def kepler_states(
     mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, elapsed: ArrayLike
 ) -> tuple[_Floats, _Floats]: ...
+def oblate_states(
+    mu: ArrayLike,
+    position: ArrayLike,
+    velocity: ArrayLike,
+    j2: ArrayLike,
+    radius: ArrayLike,
+    pole: ArrayLike,
+    elapsed: ArrayLike,
+) -> tuple[_Floats, _Floats]: ...
+def sampled_states(times: ArrayLike, position: ArrayLike, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 def constant_torque(vector: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
 def constant_force(
     vector: ArrayLike, frame: Literal["body", "space"] = "body", point: ArrayLike | None = None
 ) -> Load: ...
 def uniform_gravity(gravity: ArrayLike) -> Load: ...
 def gravity_gradient(
-    mu: ArrayLike | Orbit,
+    mu: ArrayLike | Orbit | SampledOrbit,
     position: ArrayLike | None = None,
     velocity: ArrayLike | None = None,
     epoch: float | None = None,
@@ -673,7 +685,11 @@ def schedule(load: Load, windows: ArrayLike) -> Load: ...
 def feedback(
     K: ArrayLike,  # noqa: N803
     D: ArrayLike,  # noqa: N803
-    target: _Attitude | None = None,
+    target: _Attitude | Orbit | SampledOrbit | None = None,
+    *,
+    rate: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+    epoch: float | None = None,
 ) -> Load: ...
 def torque_callback(function: Callable[[float, _Floats, _Floats], ArrayLike]) -> Load: ...
 def callback(

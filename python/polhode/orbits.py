@@ -1,7 +1,8 @@
 """Orbits about an attractor: where a body is, how it moves there, and the local frame that points down.
 
-An :class:`Orbit` is made by :func:`kepler` from a state or by :func:`from_elements`. The loads
-:func:`polhode.loads.gravity_gradient` and :func:`polhode.loads.magnetic` act along it.
+An :class:`Orbit` is made by :func:`kepler` from a state or by :func:`from_elements`; a :class:`SampledOrbit`
+by :func:`sampled` from a table of positions. The loads :func:`polhode.loads.gravity_gradient` and
+:func:`polhode.loads.magnetic` act along them, and :func:`polhode.loads.feedback` points down on them.
 """
 
 from __future__ import annotations
@@ -12,6 +13,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from polhode import _core
+from polhode._paths import (
+    DipoleField,
+    LocalFrame,
+    OrbitState,
+    Path,
+    SampledOrbit,
+    do_broadcast,
+    kept,
+    reshaped,
+    vector,
+)
 from polhode._repr import short
 
 if TYPE_CHECKING:
@@ -19,40 +31,17 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["DipoleField", "Elements", "LocalFrame", "Orbit", "OrbitState", "from_elements", "kepler"]
-
-
-class OrbitState(NamedTuple):
-    """Where a body is on its orbit, from the attractor, in space.
-
-    Attributes
-    ----------
-    position, velocity : numpy.ndarray, shape (..., 3)
-    """
-
-    position: Floats
-    velocity: Floats
-
-    def __repr__(self) -> str:
-        return short(self)
-
-
-class LocalFrame(NamedTuple):
-    """The frame that points down: z to the attractor, y along minus the normal of the orbit, x forward.
-
-    Attributes
-    ----------
-    quaternion : numpy.ndarray, shape (..., 4)
-        Its attitude in space as (x, y, z, w), of either sign: that of a body whose axes these are.
-    omega : numpy.ndarray, shape (..., 3)
-        Its angular velocity relative to space, components in this frame: ``(0, -h/r**2, 0)``.
-    """
-
-    quaternion: Floats
-    omega: Floats
-
-    def __repr__(self) -> str:
-        return short(self)
+__all__ = [
+    "DipoleField",
+    "Elements",
+    "LocalFrame",
+    "Orbit",
+    "OrbitState",
+    "SampledOrbit",
+    "from_elements",
+    "kepler",
+    "sampled",
+]
 
 
 class Elements(NamedTuple):
@@ -85,8 +74,10 @@ class Elements(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Orbit:
-    """A Kepler orbit, or a stack of them: ellipses, parabolas, hyperbolas.
+class Orbit(Path):
+    """An orbit through a state, or a stack of them: ellipses, parabolas, hyperbolas.
+
+    The attractor is a sphere, or an oblate body.
 
     Attributes
     ----------
@@ -96,26 +87,42 @@ class Orbit:
         From the attractor, in space, at the epoch.
     epoch : float or None
         When the orbit has that state; None: when a motion starts.
+    j2, radius : float, numpy.ndarray of shape (...) or None
+        J₂ of the attractor and the radius that it refers to; None of a sphere.
+    pole : numpy.ndarray, shape (..., 3), or None
+        Its axis, in space.
     """
 
     mu: Any
     position: Floats
     velocity: Floats
     epoch: float | None = None
+    j2: Any = None
+    radius: Any = None
+    pole: Floats | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape of the stack."""
-        return np.broadcast_shapes(np.shape(self.mu), self.position.shape[:-1], self.velocity.shape[:-1])
+        shapes = [np.shape(self.mu), self.position.shape[:-1], self.velocity.shape[:-1]]
+        if self.pole is not None:
+            shapes += [np.shape(self.j2), np.shape(self.radius), self.pole.shape[:-1]]
+        return np.broadcast_shapes(*shapes)
 
     @property
     def period(self) -> Any:
-        """Time of a revolution; infinite but for ellipses. A rounded parabola may be a very long ellipse."""
+        """Time of a revolution; infinite but for ellipses. A rounded parabola may be a very long ellipse.
+
+        About an oblate attractor that of the Kepler orbit at the epoch.
+        """
         return _core.kepler_period(self.mu, self.position, self.velocity)[()]
 
     @property
     def elements(self) -> Elements:
-        """Its elements at the epoch."""
+        """Its elements at the epoch.
+
+        About an oblate attractor those of the Kepler orbit that touches it there.
+        """
         r, v = self.position, self.velocity
         distance = np.linalg.norm(r, axis=-1)
         swept = np.cross(r, v)
@@ -157,6 +164,17 @@ class Orbit:
             Of shape (..., T..., 3): those of the stack, then those of the times.
         """
         times = _core.real_numbers(t, "t")
+        if self.pole is not None:
+            found = _core.oblate_states(
+                self.mu,
+                self.position,
+                self.velocity,
+                self.j2,
+                self.radius,
+                self.pole,
+                times.ravel() - (self.epoch or 0.0),
+            )
+            return reshaped(found, times.shape)
         new = (np.newaxis,) * times.ndim
         return OrbitState(
             *_core.kepler_states(
@@ -167,75 +185,18 @@ class Orbit:
             )
         )
 
-    def frame(self, t: ArrayLike) -> LocalFrame:
-        """Give the frame that points down, and its angular velocity, at times of any shape.
 
-        Parameters
-        ----------
-        t : array_like, shape (T...)
-            As of :meth:`at`.
-
-        Returns
-        -------
-        LocalFrame
-        """
-        r, v = self.at(t)
-        swept = np.cross(r, v)
-        size, distance = np.linalg.norm(swept, axis=-1), np.linalg.norm(r, axis=-1)
-        z, y = -r / distance[..., None], -swept / size[..., None]
-        matrix = np.stack([np.cross(y, z), y, z], axis=-1)
-        omega = np.zeros_like(r)
-        omega[..., 1] = -size / distance / distance
-        return LocalFrame(_core.quaternion_from_matrix(matrix), omega)
-
-    def dipole_field(self, strength: ArrayLike) -> DipoleField:
-        """Give the magnetic field along the orbit of a dipole at the attractor.
-
-        Parameters
-        ----------
-        strength : array_like, shape (..., 3)
-            The dipole's moment times μ₀/4π, in space; for the Earth's about 7.8e15 T m³, southward.
-
-        Returns
-        -------
-        DipoleField
-            For :func:`polhode.loads.magnetic`; its ``at(t)`` gives B.
-        """
-        return DipoleField(self, _vector(strength, "strength"))
-
-
-@dataclass(frozen=True, eq=False)
-class DipoleField:
-    """The magnetic field of a dipole at the attractor, along an orbit.
-
-    Attributes
-    ----------
-    orbit : Orbit
-    strength : numpy.ndarray, shape (..., 3)
-        The dipole's moment times μ₀/4π, in space.
-    """
-
-    orbit: Orbit
-    strength: Floats
-
-    def at(self, t: ArrayLike) -> Floats:
-        """Give B in space, ``3 (M·r) r/r**5 - M/r**3``, at times of any shape.
-
-        Parameters
-        ----------
-        t : array_like, shape (T...)
-            As of :meth:`Orbit.at`.
-
-        Returns
-        -------
-        numpy.ndarray, shape (..., T..., 3)
-        """
-        moment = self.strength[(..., *(np.newaxis,) * np.ndim(t), slice(None))]
-        return _core.dipole_field(moment, self.orbit.at(t).position)
-
-
-def kepler(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, epoch: float | None = None) -> Orbit:
-    """Give the Kepler orbit through a state.
+def kepler(
+    mu: ArrayLike,
+    position: ArrayLike,
+    velocity: ArrayLike,
+    epoch: float | None = None,
+    *,
+    j2: ArrayLike | None = None,
+    radius: ArrayLike | None = None,
+    pole: ArrayLike = (0, 0, 1),
+) -> Orbit:
+    """Give the Kepler orbit through a state; with `j2` that about an oblate attractor.
 
     Parameters
     ----------
@@ -245,6 +206,12 @@ def kepler(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, epoch: float
         From the attractor, in space, at the epoch.
     epoch : float, optional
         When the orbit has that state; the start of a motion by default.
+    j2, radius : array_like, shape (...), optional
+        J₂ of the attractor, and the radius that it refers to: of the Earth 1.08263e-3 and 6378137 m. The
+        orbit is then integrated by Taylor series to rounding, and :func:`polhode.loads.gravity_gradient`
+        includes the torque of J₂.
+    pole : array_like, shape (..., 3), optional
+        The axis of an oblate attractor, in space, of any length.
 
     Returns
     -------
@@ -266,13 +233,57 @@ def kepler(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, epoch: float
     array([ 0., -1.,  0.])
     """
     mass = np.array(_core.real_numbers(mu, "mu"))
-    place, speed = _vector(position, "position"), _vector(velocity, "velocity")
+    place, speed = vector(position, "position"), vector(velocity, "velocity")
     when = None if epoch is None else float(_core.real_numbers(epoch, "epoch"))
     if when is not None and not np.isfinite(when):
         raise ValueError(f"epoch: must be finite, got {when}")
     _core.kepler_states(mass, place, speed, np.zeros(()))  # checks them
-    mass.flags.writeable = False
-    return Orbit(float(mass) if mass.ndim == 0 else mass, place, speed, when)
+    if j2 is None and radius is None:
+        return Orbit(kept(mass), place, speed, when)
+    if j2 is None or radius is None:
+        raise TypeError("j2 and radius: give both of an oblate attractor, or none")
+    bulge = np.array(_core.real_numbers(j2, "j2")), np.array(_core.real_numbers(radius, "radius"))
+    axis = vector(pole, "pole")
+    _core.oblate_states(mass, place, speed, *bulge, axis, np.zeros(1))  # checks them
+    return Orbit(kept(mass), place, speed, when, kept(bulge[0]), kept(bulge[1]), axis)
+
+
+def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
+    """Give the orbit through positions at some times, as of an ephemeris.
+
+    Parameters
+    ----------
+    mu : array_like, shape (...)
+        Gravitational parameter of the attractor.
+    t : array_like, shape (n,)
+        Ascending.
+    position : array_like, shape (..., n, 3)
+        From the attractor, in space.
+
+    Returns
+    -------
+    SampledOrbit
+        A cubic spline through them ("not a knot"): its error falls with the fourth power of the distance
+        between the times.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from polhode import orbits
+    >>> t = np.linspace(0, 2 * np.pi, 400)
+    >>> circle = orbits.sampled(1.0, t, np.stack([np.cos(t), np.sin(t), 0 * t], axis=-1))
+    >>> circle.at(1.0).velocity.round(6)
+    array([-0.841471,  0.540302,  0.      ])
+    """
+    mass = np.array(_core.real_numbers(mu, "mu"))
+    if not (np.isfinite(mass).all() and np.min(mass, initial=1.0) > 0.0):
+        raise ValueError(f"mu: must be positive, got {mass.tolist()}")
+    times, places = np.array(_core.real_numbers(t, "t")), vector(position, "position")
+    _core.sampled_states(times, places, times[:1])  # checks them
+    if not do_broadcast(mass, places[..., 0, 0]):
+        raise ValueError(f"mu and position: shapes {mass.shape} and {places.shape} do not broadcast")
+    times.flags.writeable = False
+    return SampledOrbit(kept(mass), times, places)
 
 
 def from_elements(
@@ -287,6 +298,9 @@ def from_elements(
     anomaly: ArrayLike | None = None,
     since_periapsis: ArrayLike | None = None,
     epoch: float | None = None,
+    j2: ArrayLike | None = None,
+    radius: ArrayLike | None = None,
+    pole: ArrayLike = (0, 0, 1),
 ) -> Orbit:
     """Give the Kepler orbit with these elements; angles in radians.
 
@@ -304,6 +318,8 @@ def from_elements(
         periapsis by default.
     epoch : float, optional
         When it is there; the start of a motion by default.
+    j2, radius, pole : array_like, optional
+        As of :func:`kepler`; the elements are then those of the Kepler orbit that touches it at the epoch.
 
     Returns
     -------
@@ -336,7 +352,7 @@ def from_elements(
         least = number(periapsis, "periapsis")
     else:
         axis = number(semi_major_axis, "semi_major_axis")
-        if not _do_broadcast(axis, e):
+        if not do_broadcast(axis, e):
             raise ValueError(
                 f"semi_major_axis and eccentricity: shapes {axis.shape} and {e.shape} do not broadcast"
             )
@@ -349,7 +365,7 @@ def from_elements(
     angles = (number(inclination, "inclination"), number(node, "node"), number(argument, "argument"))
     nu = np.zeros(()) if anomaly is None else number(anomaly, "anomaly")
     given = (mass, e, least, nu, *angles)
-    if not _do_broadcast(*given):
+    if not do_broadcast(*given):
         raise ValueError(
             "mu, eccentricity, periapsis, anomaly, inclination, node and argument: shapes "
             f"{[one.shape for one in given]} do not broadcast"
@@ -370,22 +386,4 @@ def from_elements(
     speed = np.sqrt(mass[..., None] / latus) * ((e + c) * q - s * p)
     if since_periapsis is not None:
         place, speed = _core.kepler_states(mass, place, speed, number(since_periapsis, "since_periapsis"))
-    return kepler(mass, place, speed, epoch)
-
-
-def _do_broadcast(*arrays: Floats) -> bool:
-    try:
-        np.broadcast_shapes(*(one.shape for one in arrays))
-    except ValueError:
-        return False
-    return True
-
-
-def _vector(given: ArrayLike, name: str) -> Floats:
-    found = np.array(_core.real_numbers(given, name))  # not the caller's
-    if found.shape[-1:] != (3,):
-        raise ValueError(f"{name}: expected shape (..., 3), got {found.shape}")
-    if not np.isfinite(found).all():
-        raise ValueError(f"{name}: must be finite, got {found.tolist()}")
-    found.flags.writeable = False
-    return found
+    return kepler(mass, place, speed, epoch, j2=j2, radius=radius, pole=pole)

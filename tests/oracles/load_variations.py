@@ -26,7 +26,7 @@ from oracles.returning import unit
 from oracles.rotation import Rotation, Term, Vector, conjugate, exponential, times
 from oracles.taylor import steps
 
-__all__ = ["NAMES", "TURNS", "Setting", "jacobian", "setting", "table"]
+__all__ = ["NAMES", "TURNS", "Setting", "end", "jacobian", "setting", "table"]
 
 # The cases and their rotations: the eccentric orbit is chaotic, and after ten no difference is small enough.
 TURNS = {
@@ -81,17 +81,24 @@ class _Numbers(NamedTuple):
     load: list[tuple[str, dict[str, Any]]]
 
 
-def jacobian(given: Setting, digits: int = DIGITS) -> np.ndarray:
-    """(6, variables): of (δ, ω) at the time by the variables."""
+def end(given: Setting, digits: int = DIGITS) -> tuple[list[float], list[float]]:
+    """ω and the attitude (x, y, z, w) at the time."""
+    with mp.workdps(digits + 20):
+        omega, attitude = _flow(_numbers(given), given, digits)
+        return [float(x) for x in omega], [float(x) for x in attitude]
+
+
+def jacobian(given: Setting, digits: int = DIGITS, change: mpf = CHANGE) -> np.ndarray:
+    """(6, variables): of (δ, ω) at the time by the variables, from a change of each of them."""
     with mp.workdps(digits + 20):
         start = _numbers(given)
         omega, attitude = _flow(start, given, digits)
         columns = []
-        for changed in _changed(start):
+        for changed in _changed(start, change):
             rates, other = _flow(changed, given, digits)
             *turn, scalar = times(conjugate(attitude), other)
-            tilt = [2 * mpmath.sign(scalar) * x / CHANGE for x in turn]
-            columns.append([*tilt, *((b - a) / CHANGE for a, b in zip(omega, rates, strict=True))])
+            tilt = [2 * mpmath.sign(scalar) * x / change for x in turn]
+            columns.append([*tilt, *((b - a) / change for a, b in zip(omega, rates, strict=True))])
         return np.array([[float(x) for x in column] for column in columns]).T
 
 
@@ -140,33 +147,32 @@ def _matrix(value: Any) -> list[Vector]:
     return [[mpf(value) if i == j else mpf(0) for j in range(3)] for i in range(3)]
 
 
-def _changed(start: _Numbers) -> Iterator[_Numbers]:
+def _changed(start: _Numbers, h: mpf) -> Iterator[_Numbers]:
     """The numbers with each variable changed in turn."""
-    h = CHANGE
     for i in range(3):
         push = [h if k == i else mpf(0) for k in range(3)]
         yield start._replace(attitude=times(start.attitude, exponential(push)))
     for i in range(3):
-        yield start._replace(omega=_nudged(start.omega, (i,)))
+        yield start._replace(omega=_nudged(start.omega, (i,), h))
     for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1)):
-        tensor = _nudged(start.tensor, (i, j))
-        yield start._replace(tensor=tensor if i == j else _nudged(tensor, (j, i)))
+        tensor = _nudged(start.tensor, (i, j), h)
+        yield start._replace(tensor=tensor if i == j else _nudged(tensor, (j, i), h))
     for i in range(3):
-        yield start._replace(center=_nudged(start.center, (i,)))
+        yield start._replace(center=_nudged(start.center, (i,), h))
     yield start._replace(mass=start.mass + h)
     for k, (kind, arguments) in enumerate(start.load):
         for name, value in arguments.items():
             if name in ("frame", "aim"):
                 continue
             for index in np.ndindex(np.shape(value)):
-                moved = arguments | {name: _nudged(value, index)}
+                moved = arguments | {name: _nudged(value, index, h)}
                 yield start._replace(load=[*start.load[:k], (kind, moved), *start.load[k + 1 :]])
 
 
-def _nudged(value: Any, index: tuple[int, ...]) -> Any:
+def _nudged(value: Any, index: tuple[int, ...], h: mpf) -> Any:
     if not index:
-        return value + CHANGE
-    return [_nudged(x, index[1:]) if i == index[0] else x for i, x in enumerate(value)]
+        return value + h
+    return [_nudged(x, index[1:], h) if i == index[0] else x for i, x in enumerate(value)]
 
 
 def _flow(numbers: _Numbers, given: Setting, digits: int) -> tuple[Vector, Vector]:

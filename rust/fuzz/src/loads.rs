@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::Error;
 use polhode::motion::loads::kepler::Orbit;
 use polhode::motion::loads::{
-    Damping, Drive, Feedback, Frame, GravityGradient, Held, Magnetic, MagneticField, Rotor,
-    Sampled, Slug, Term, Wheel, Windows,
+    Aim, Damping, Drive, Feedback, Frame, GravityGradient, Held, Magnetic, MagneticField, Oblate,
+    Path, Rotor, Sampled, Slug, Term, Wheel, Windows,
 };
 
 use crate::draw::Draw;
@@ -45,8 +45,12 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
             } else {
                 None
             };
-            GravityGradient::new(draw.positive()?, &draw.vector()?, &draw.vector()?, epoch)
-                .map(Term::GravityGradient)
+            if draw.coin()? {
+                GravityGradient::new(draw.positive()?, &draw.vector()?, &draw.vector()?, epoch)
+            } else {
+                path(draw)?.and_then(|(mu, path)| GravityGradient::along(mu, path))
+            }
+            .map(Term::GravityGradient)
         }
         4 => Damping::new(&matrix(draw)?, &Matrix3::zeros()).map(Term::Damping),
         5 => Damping::new(&Matrix3::zeros(), &matrix(draw)?).map(Term::Damping),
@@ -70,9 +74,11 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
         11 => {
             let (axis, inertia) = (draw.vector()?, draw.positive()?);
             let (rate, friction, drive) = (draw.number()?, draw.positive()?, drive(draw)?);
-            drive.and_then(|drive| {
-                Wheel::new(&axis, inertia, rate, friction, drive).map(Term::Wheel)
-            })
+            let dry = if draw.coin()? { draw.positive()? } else { 0.0 };
+            drive
+                .and_then(|drive| Wheel::new(&axis, inertia, rate, friction, drive))
+                .and_then(|wheel| wheel.with_dry_friction(dry))
+                .map(Term::Wheel)
         }
         _ => {
             let (dipole, field) = (draw.vector()?, field(draw)?);
@@ -87,11 +93,8 @@ pub fn term(draw: &mut Draw<'_>) -> Result<Made> {
 }
 
 fn feedback(draw: &mut Draw<'_>) -> Result<core::result::Result<Feedback, Error>> {
-    Ok(Feedback::new(
-        &matrix(draw)?,
-        &matrix(draw)?,
-        &draw.attitude()?,
-    ))
+    let (stiffness, damping) = (matrix(draw)?, matrix(draw)?);
+    Ok(aim(draw)?.and_then(|aim| Feedback::toward(&stiffness, &damping, aim)))
 }
 
 /// Times, ascending unless some are the same, and a vector for each.
@@ -140,8 +143,40 @@ fn field(draw: &mut Draw<'_>) -> Result<core::result::Result<MagneticField, Erro
         }
         _ => {
             let strength = draw.vector()?;
-            Orbit::new(draw.positive()?, &draw.vector()?, &draw.vector()?)
-                .and_then(|orbit| MagneticField::of_dipole(&strength, &orbit, None))
+            path(draw)?.and_then(|(_, path)| MagneticField::of_dipole(&strength, path))
+        }
+    })
+}
+
+/// An orbit and its μ.
+fn path(draw: &mut Draw<'_>) -> Result<core::result::Result<(f64, Path), Error>> {
+    let mu = draw.positive()?;
+    if draw.coin()? {
+        let (times, values) = samples(draw)?;
+        return Ok(Path::sampled(&times, &values).map(|path| (mu, path)));
+    }
+    let orbit = Orbit::new(mu, &draw.vector()?, &draw.vector()?);
+    let path = if draw.coin()? {
+        let (j2, radius, pole) = (draw.number()?, draw.positive()?, draw.vector()?);
+        orbit
+            .and_then(|orbit| Oblate::new(&orbit, j2, radius, &pole))
+            .and_then(|orbit| Path::oblate(orbit, None))
+    } else {
+        orbit.and_then(|orbit| Path::kepler(&orbit, None))
+    };
+    Ok(path.map(|path| (mu, path)))
+}
+
+/// What a feedback turns the body toward.
+fn aim(draw: &mut Draw<'_>) -> Result<core::result::Result<Aim, Error>> {
+    Ok(match draw.up_to(3)? {
+        0 => Ok(Aim::Fixed(draw.attitude()?)),
+        1 => Aim::turning(&draw.attitude()?, &draw.vector()?, None),
+        2 => path(draw)?.map(|(_, path)| Aim::Down(path)),
+        _ => {
+            let (times, _) = samples(draw)?;
+            let attitudes = (times.iter().map(|_| draw.attitude())).collect::<Result<Vec<_>>>()?;
+            Aim::sampled(&times, &attitudes)
         }
     })
 }

@@ -108,7 +108,9 @@ mod _core {
         uniform_gravity, wheel, with_states,
     };
     #[pymodule_export]
-    use crate::orbits::{dipole_field, kepler_period, kepler_states};
+    use crate::orbits::{
+        dipole_field, kepler_period, kepler_states, oblate_states, sampled_states,
+    };
     #[pymodule_export]
     use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};
     #[pymodule_export]

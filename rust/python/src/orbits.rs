@@ -4,32 +4,87 @@ use nalgebra::Vector3;
 use numpy::PyArrayDyn;
 use polhode::motion::loads::kepler::Orbit;
 use polhode::motion::loads::magnetic::field_and_rate;
+use polhode::motion::loads::{Oblate, Path};
 use pyo3::prelude::*;
 
-use crate::arrays::{read, write, write_of};
-use crate::stack::{Broadcast, Stack};
+use crate::arrays::{list_floats, read, samples, series, try_rows, write, write_of};
+use crate::errors::to_py;
+use crate::interrupt::Beat;
+use crate::memory;
+use crate::stack::{BLOCK, Broadcast, Stack};
 
 /// An array of float64.
 type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 
-/// What an orbit of `polhode.orbits` is made of.
+/// Where a body is, from an attractor, of an orbit of `polhode.orbits`, with its μ.
 pub(crate) struct Orbits {
-    pub(crate) stack: Stack<Orbit>,
-    pub(crate) epoch: Option<f64>,
+    pub(crate) mu: Stack<f64>,
+    pub(crate) paths: Stack<Path>,
 }
 
 impl Orbits {
+    /// Whether an object is an orbit, of any kind.
+    pub(crate) fn is(object: &Bound<'_, PyAny>) -> bool {
+        matches!(object.hasattr("dipole_field"), Ok(true))
+    }
+
     /// From an object with the attributes of one.
     pub(crate) fn read(orbit: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = orbit.py();
         let part = |name: &str| orbit.getattr(name);
+        let mu: Stack<f64> = read(&part("mu")?, "mu")?;
+        if orbit.hasattr("times")? {
+            let (times, values) =
+                samples([&part("times")?, &part("position")?], ["t", "position"])?;
+            let paths = try_rows(py, &series(&values), |row| Path::sampled(&times, row))?;
+            return Ok(Self { mu, paths });
+        }
+        let epoch: Option<f64> = part("epoch")?.extract()?;
+        let orbits = through(py, &part("mu")?, &part("position")?, &part("velocity")?)?;
+        let j2 = part("j2")?;
+        let paths = if j2.is_none() {
+            try_rows(py, &orbits, |orbit| Path::kepler(orbit, epoch))?
+        } else {
+            let bulges = Bulges::read([&j2, &part("radius")?, &part("pole")?])?;
+            bulges.around(py, &orbits, epoch)?
+        };
+        Ok(Self { mu, paths })
+    }
+}
+
+/// J₂, radius and pole of attractors.
+struct Bulges {
+    j2: Stack<f64>,
+    radius: Stack<f64>,
+    pole: Stack<Vector3<f64>>,
+}
+
+impl Bulges {
+    fn read([j2, radius, pole]: [&Bound<'_, PyAny>; 3]) -> PyResult<Self> {
         Ok(Self {
-            stack: through(
-                orbit.py(),
-                &part("mu")?,
-                &part("position")?,
-                &part("velocity")?,
-            )?,
-            epoch: part("epoch")?.extract()?,
+            j2: read(j2, "j2")?,
+            radius: read(radius, "radius")?,
+            pole: read(pole, "pole")?,
+        })
+    }
+
+    /// The orbits about them.
+    fn around(
+        &self,
+        py: Python<'_>,
+        orbits: &Stack<Orbit>,
+        epoch: Option<f64>,
+    ) -> PyResult<Stack<Path>> {
+        let names = ["orbit", "j2", "radius", "pole"];
+        let shapes = [
+            &orbits.shape[..],
+            &self.j2.shape,
+            &self.radius.shape,
+            &self.pole.shape,
+        ];
+        Broadcast::of(names, shapes)?.try_map(py, |[o, j, r, p]| {
+            let oblate = Oblate::new(&orbits[o], self.j2[j], self.radius[r], &self.pole[p])?;
+            Path::oblate(oblate, epoch)
         })
     }
 }
@@ -73,6 +128,87 @@ pub(crate) fn kepler_states<'py>(
     let shapes = [&orbits.shape[..], &elapsed.shape];
     let found = Broadcast::of(["orbit", "t"], shapes)?
         .try_map(py, |[o, t]| Ok(orbits[o].at(elapsed[t])))?;
+    Ok((
+        write_of(py, &found, |state| state.0)?,
+        write_of(py, &found, |state| state.1)?,
+    ))
+}
+
+/// Position and velocity on orbits about oblate attractors, a time after the state that they are given by.
+///
+/// Parameters
+/// ----------
+/// mu, j2, radius : array_like, shape (...)
+/// position, velocity, pole : array_like, shape (..., 3)
+/// elapsed : array_like, shape (n,)
+///
+/// Returns
+/// -------
+/// tuple of numpy.ndarray, shape (..., n, 3)
+///     Not numbers where an orbit has fallen into the attractor.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the numbers of an orbit")]
+pub(crate) fn oblate_states<'py>(
+    py: Python<'py>,
+    mu: &Bound<'py, PyAny>,
+    position: &Bound<'py, PyAny>,
+    velocity: &Bound<'py, PyAny>,
+    j2: &Bound<'py, PyAny>,
+    radius: &Bound<'py, PyAny>,
+    pole: &Bound<'py, PyAny>,
+    elapsed: &Bound<'py, PyAny>,
+) -> PyResult<(Floats<'py>, Floats<'py>)> {
+    let orbits = through(py, mu, position, velocity)?;
+    let paths = Bulges::read([j2, radius, pole])?.around(py, &orbits, None)?;
+    let elapsed = list_floats(elapsed, "t", "n", &[])?;
+    states(py, &paths, elapsed.as_slice()?)
+}
+
+/// Position and velocity along cubic splines through positions at some times.
+///
+/// Parameters
+/// ----------
+/// times : array_like, shape (n,)
+/// position : array_like, shape (..., n, 3)
+/// t : array_like, shape (m,)
+///
+/// Returns
+/// -------
+/// tuple of numpy.ndarray, shape (..., m, 3)
+#[pyfunction]
+pub(crate) fn sampled_states<'py>(
+    py: Python<'py>,
+    times: &Bound<'py, PyAny>,
+    position: &Bound<'py, PyAny>,
+    t: &Bound<'py, PyAny>,
+) -> PyResult<(Floats<'py>, Floats<'py>)> {
+    let (times, values) = samples([times, position], ["t", "position"])?;
+    let paths = try_rows(py, &series(&values), |row| Path::sampled(&times, row))?;
+    let asked = list_floats(t, "t", "n", &[])?;
+    let asked = asked.as_slice()?;
+    // All paths have the same times.
+    if let Some(path) = paths.rows.first() {
+        (asked.iter().try_for_each(|&t| path.check(t, t))).map_err(|error| to_py(py, &error))?;
+    }
+    states(py, &paths, asked)
+}
+
+/// Position and velocity on each path at each of some times; an epoch that there is none of is zero.
+fn states<'py>(
+    py: Python<'py>,
+    paths: &Stack<Path>,
+    times: &[f64],
+) -> PyResult<(Floats<'py>, Floats<'py>)> {
+    let shape = [&paths.shape[..], &[times.len()]].concat();
+    let mut rows = memory::vector("result", &shape, 1)?;
+    let mut beat = Beat::new(py);
+    for path in &paths.rows {
+        for row in times.chunks(BLOCK) {
+            beat.mark()?;
+            rows.extend(row.iter().map(|&t| path.at(0.0, t)));
+        }
+    }
+    let found = Stack { shape, rows };
     Ok((
         write_of(py, &found, |state| state.0)?,
         write_of(py, &found, |state| state.1)?,

@@ -1,6 +1,7 @@
 //! NumPy layout: anything array-like in, C-ordered float64 arrays out.
 
 mod reading;
+mod series;
 mod writing;
 
 pub(crate) use crate::foreign::{as_array, contiguous, numpy};
@@ -8,6 +9,7 @@ pub(crate) use crate::items::Item;
 pub(crate) use reading::{
     Argument, floats, list_floats, read, read_indices, read_list, read_or, real_numbers, try_rows,
 };
+pub(crate) use series::{samples, series};
 pub(crate) use writing::{
     Numbers, write, write_any_of, write_numbers, write_numbers_of, write_of, write_words_of, zeros,
 };

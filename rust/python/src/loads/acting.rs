@@ -135,8 +135,8 @@ impl Load for Acting<'_, '_> {
         Ok(self.analytic.enter(from, to)?)
     }
 
-    fn settle(&mut self, phase: &Phase) {
-        self.analytic.settle(phase);
+    fn settle(&mut self, t: f64, phase: &Phase) {
+        self.analytic.settle(t, phase);
     }
 
     fn changes(&self) -> Vec<Change> {

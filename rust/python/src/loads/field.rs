@@ -9,21 +9,21 @@ use pyo3::types::PyDict;
 use super::load::PyLoad;
 use super::part::Acts;
 use super::recipe::recipe;
-use super::terms::{samples, series};
-use crate::arrays::{read, try_rows, write};
+use crate::arrays::{read, samples, series, try_rows, write};
 use crate::orbits::Orbits;
 use crate::stack::{Broadcast, Stack};
 
-/// The torque of an attractor's field on a body in a Kepler orbit.
+/// The torque of an attractor's field on a body in orbit.
 ///
-/// ``N = 3 mu/r**5 r_B × (I_C r_B)`` with r from the attractor to the centre of mass. The orbit is an ellipse, a parabola or
+/// ``N = 3 mu/r**5 r_B × (I_C r_B)`` with r from the attractor to the centre of mass. A Kepler orbit is an ellipse, a parabola or
 /// a hyperbola, solved exactly; it is not changed by the body's attitude, nor are `position` and `velocity` of the trajectory
-/// by it.
+/// by it. An orbit with ``j2`` adds that to orbit and torque. Several attractors are a sum of such loads.
 ///
 /// Parameters
 /// ----------
-/// mu : array_like, shape (...), or Orbit
-///     Gravitational parameter of the attractor; or an orbit of :mod:`polhode.orbits`, alone.
+/// mu : array_like, shape (...), or Orbit, or SampledOrbit
+///     Gravitational parameter of the attractor; or an orbit of :mod:`polhode.orbits`, alone. On one with ``j2`` or along
+///     samples "auto" is "dop853", and there are no derivatives.
 /// position, velocity : array_like, shape (..., 3)
 ///     Of the centre of mass relative to the attractor, in space, at the epoch.
 /// epoch : float, optional
@@ -51,16 +51,25 @@ pub(crate) fn gravity_gradient(
     velocity: Option<&Bound<'_, PyAny>>,
     epoch: Option<f64>,
 ) -> PyResult<PyLoad> {
-    if mu.hasattr("velocity")? {
+    if Orbits::is(mu) {
         if position.is_some() || velocity.is_some() || epoch.is_some() {
             return Err(PyTypeError::new_err(
                 "mu: an orbit has its own position, velocity and epoch; give it alone",
             ));
         }
         let part = |name: &str| mu.getattr(name);
-        let (position, velocity) = (part("position")?, part("velocity")?);
-        let epoch = part("epoch")?.extract()?;
-        return gravity_gradient(py, &part("mu")?, Some(&position), Some(&velocity), epoch);
+        if !mu.hasattr("times")? && part("j2")?.is_none() {
+            let (position, velocity) = (part("position")?, part("velocity")?);
+            let epoch = part("epoch")?.extract()?;
+            return gravity_gradient(py, &part("mu")?, Some(&position), Some(&velocity), epoch);
+        }
+        let Orbits { mu: number, paths } = Orbits::read(mu)?;
+        let grid = Broadcast::of(["mu", "orbit"], [&number.shape, &paths.shape])?;
+        let terms = grid.try_map(py, |[m, p]| {
+            GravityGradient::along(number[m], paths[p].clone()).map(Term::GravityGradient)
+        })?;
+        let recipe = recipe(py, "gravity_gradient", (mu.clone(),))?;
+        return Ok(PyLoad::one(Acts::Term(terms), recipe));
     }
     let (Some(position), Some(velocity)) = (position, velocity) else {
         return Err(PyTypeError::new_err(
@@ -172,9 +181,9 @@ fn fields(
         }
         let orbits = Orbits::read(&orbit)?;
         let strength: Stack<Vector3<f64>> = read(&strength, "strength")?;
-        let shapes = [&orbits.stack.shape[..], &strength.shape];
+        let shapes = [&orbits.paths.shape[..], &strength.shape];
         return Broadcast::of(["orbit", "strength"], shapes)?.try_map(py, |[o, s]| {
-            MagneticField::of_dipole(&strength[s], &orbits.stack[o], orbits.epoch)
+            MagneticField::of_dipole(&strength[s], orbits.paths[o].clone())
         });
     }
     let Some(times) = times else {

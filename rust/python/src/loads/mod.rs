@@ -13,13 +13,14 @@
 //! | `part` | one term, scaled, scheduled, picked |
 //! | `load` | the sum of them |
 //! | `operators` | what Python's operators and pickle do with it |
-//! | `terms`, `field`, `functions` | the functions that make loads |
+//! | `terms`, `control`, `field`, `functions` | the functions that make loads |
 //! | `acting` | a load at work on a body |
 //! | `evaluate` | what a load exerts at a time and a state |
 
 mod acting;
 mod address;
 mod called;
+mod control;
 mod evaluate;
 mod field;
 mod functions;
@@ -35,11 +36,12 @@ mod terms;
 mod wheels;
 
 pub(crate) use acting::{Acting, Fault};
+pub(crate) use control::feedback;
 pub(crate) use field::{gravity_gradient, magnetic};
 pub(crate) use functions::{callback, compiled, torque_callback, with_states};
 pub(crate) use load::PyLoad;
 pub(crate) use named::{Named, Slot, reported};
 pub(crate) use terms::{
-    constant_force, constant_torque, damping, feedback, sampled, schedule, uniform_gravity,
+    constant_force, constant_torque, damping, sampled, schedule, uniform_gravity,
 };
 pub(crate) use wheels::{rotor, slug, wheel};

@@ -2,15 +2,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::Error;
-use polhode::motion::loads::{Damping, Feedback, Sampled, Term};
-use pyo3::exceptions::PyValueError;
+use polhode::motion::loads::{Damping, Sampled, Term};
 use pyo3::prelude::*;
 
 use super::load::{PyLoad, schedule_load};
 use super::part::Acts;
 use super::recipe::recipe;
-use crate::arrays::{as_array, list_floats, read, read_list, try_rows, write};
-use crate::attitudes::read_attitude;
+use crate::arrays::{as_array, read, samples, series, try_rows, write};
 use crate::errors::to_py;
 use crate::kinematics::parse_frame;
 use crate::stack::{Broadcast, Stack};
@@ -220,35 +218,6 @@ pub(crate) fn sampled(
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
 
-/// Times, and the vectors of shape (..., n, 3) that belong to them; their names are those of the arguments.
-pub(super) fn samples(
-    [times, values]: [&Bound<'_, PyAny>; 2],
-    [when, what]: [&'static str; 2],
-) -> PyResult<(Vec<f64>, Stack<Vector3<f64>>)> {
-    let times: Vec<f64> = list_floats(times, when, "n", &[])?.as_slice()?.to_vec();
-    let values: Stack<Vector3<f64>> = read_list(values, what, "..., n")?;
-    let count = values.shape.last().copied().unwrap_or(0);
-    if count != times.len() {
-        return Err(PyValueError::new_err(format!(
-            "{what}: expected one for each of the {} times, got {count}",
-            times.len()
-        )));
-    }
-    Ok((times, values))
-}
-
-/// Vectors of shape (..., n, 3) as a stack of series.
-pub(super) fn series(values: &Stack<Vector3<f64>>) -> Stack<&[Vector3<f64>]> {
-    let (count, leading) = match values.shape.split_last() {
-        Some((&count, leading)) => (count, leading.to_vec()),
-        None => (0, Vec::new()),
-    };
-    Stack {
-        shape: leading,
-        rows: values.rows.chunks(count.max(1)).collect(),
-    }
-}
-
 /// A load that is switched on and off.
 ///
 /// A simulation ends a step at each switch.
@@ -281,59 +250,11 @@ pub(crate) fn schedule(
     schedule_load(py, load.get(), windows)
 }
 
-/// A controller that turns the body toward an attitude and damps it: ``-K sign(w) vec(e) - D ω``.
-///
-/// ``e = target⁻¹ ∘ q`` is the quaternion of what is left to turn, w its scalar part; for a small angle vec(e) is half of it
-/// about its axis. The sign takes the shorter way round.
-///
-/// Parameters
-/// ----------
-/// K, D : array_like, shape (..., 3, 3), or a number
-///     Gains in the body frame; a number stands for that times the identity.
-/// target : array_like, shape (..., 4), or rotation, optional
-///     R_NB to reach as (x, y, z, w), or anything with ``as_quat()``; the identity by default.
-///
-/// Returns
-/// -------
-/// Load
-///
-/// Examples
-/// --------
-/// >>> import numpy as np
-/// >>> from polhode import RigidBody, loads
-/// >>> body = RigidBody.from_principal(1.0, (1, 2, 2.5))
-/// >>> control = loads.feedback(K=8.0, D=4.0, target=(0, 0, 1, 0))
-/// >>> motion = body.simulate([0, 40], omega=(0, 0, 0), attitude=(0.6, 0, 0, 0.8), load=control)
-/// >>> np.abs(motion.quaternion[-1]).round(6)
-/// array([0., 0., 1., 0.])
-#[pyfunction]
-#[pyo3(signature = (K, D, target=None))]
-#[expect(non_snake_case, reason = "the letters of the formula")]
-pub(crate) fn feedback(
-    py: Python<'_>,
-    K: &Bound<'_, PyAny>,
-    D: &Bound<'_, PyAny>,
-    target: Option<&Bound<'_, PyAny>>,
-) -> PyResult<PyLoad> {
-    let (stiffness, rates) = (matrices(K, "K")?, matrices(D, "D")?);
-    let attitude = read_attitude(target, "target")?;
-    let shapes = [&stiffness.shape[..], &rates.shape, &attitude.shape];
-    let grid = Broadcast::of(["K", "D", "target"], shapes)?;
-    let terms = grid.try_map(py, |[k, d, q]| {
-        Feedback::new(&stiffness[k], &rates[d], &attitude[q]).map(Term::Feedback)
-    })?;
-    let attitude = attitude.map(py, polhode::motion::attitude::components)?;
-    let arguments = (
-        write(py, &stiffness)?,
-        write(py, &rates)?,
-        write(py, &attitude)?,
-    );
-    let recipe = recipe(py, "feedback", arguments)?;
-    Ok(PyLoad::one(Acts::Term(terms), recipe))
-}
-
 /// Matrices (..., 3, 3), or a number times the identity.
-fn matrices(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Stack<Matrix3<f64>>> {
+pub(super) fn matrices(
+    object: &Bound<'_, PyAny>,
+    name: &'static str,
+) -> PyResult<Stack<Matrix3<f64>>> {
     let is_number = as_array(object, name)?
         .getattr("ndim")?
         .extract::<usize>()?

@@ -3,6 +3,7 @@
 use super::bearing::Bearing;
 use super::carried::Carried;
 use super::load::Load;
+use super::now::Now;
 use super::subject::Subject;
 use super::switch::{Change, Switch};
 use super::term::Term;
@@ -110,9 +111,10 @@ impl Load for Analytic<'_> {
         Ok(())
     }
 
-    fn settle(&mut self, phase: &Phase) {
+    fn settle(&mut self, t: f64, phase: &Phase) {
         self.switches.clear();
-        let switches = self.active.iter().filter_map(|term| term.switch(phase));
+        let subject = &self.subject;
+        let switches = (self.active.iter()).filter_map(|term| term.switch(subject, t, phase));
         self.switches.extend(switches);
         self.bearings = Some(self.bearings_at(phase));
     }
@@ -125,7 +127,7 @@ impl Load for Analytic<'_> {
                 Change::Stop(*bearing)
             }
         };
-        let signs = self.switches.iter().map(|switch| Change::Sign(*switch));
+        let signs = self.switches.iter().cloned().map(Change::Sign);
         signs
             .chain(self.bearings().iter().map(of_bearing))
             .collect()
@@ -169,11 +171,19 @@ impl Load for Analytic<'_> {
             };
             sum += if let Some(carried) = term.carried() {
                 let mine = own.split_off(..carried.count()).unwrap_or_default();
-                let side = switch.map_or_else(|| side(term, phase), |switch| switch.side);
+                let unsettled =
+                    || (term.switch(&self.subject, t, phase)).map_or(1.0, |switch| switch.side);
+                let now = Now {
+                    subject: &self.subject,
+                    t,
+                    middle: self.middle,
+                    phase,
+                    side: switch.map_or_else(unsettled, |switch| switch.side),
+                };
                 if let Some(rates) = all_rates.split_off_mut(..carried.count()) {
-                    carried.rates(side, self.middle, phase, mine, rates);
+                    carried.rates(&now, mine, rates);
                 }
-                Wrench::couple(carried.torque(side, self.middle, phase, mine))
+                Wrench::couple(carried.torque(&now, mine))
             } else if let Some(switch) = switch {
                 term.settled_wrench(switch.side, &self.subject, t, phase)
             } else {
@@ -196,9 +206,4 @@ impl Load for Analytic<'_> {
         }
         Ok(sum)
     }
-}
-
-/// The sign that a law has at `phase`.
-fn side(term: &Term, phase: &Phase) -> f64 {
-    term.switch(phase).map_or(1.0, |switch| switch.side)
 }

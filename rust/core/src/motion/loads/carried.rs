@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::motion::state::Phase;
+use super::now::Now;
 
 /// What a law carries along in the body: an angular momentum beside I ω, and states of its own that go on with the motion.
 ///
@@ -33,12 +33,11 @@ pub trait Carried {
         None
     }
 
-    /// The torque about the reference point that stands beside that tensor; `side` is the sign that the law is taken for, `middle` a
-    /// time within the span under way, which has no breaks.
-    fn torque(&self, side: f64, middle: f64, phase: &Phase, own: &[f64]) -> Vector3<f64>;
+    /// The torque about the reference point that stands beside that tensor.
+    fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64>;
 
     /// The rates of its states, into `rates`.
-    fn rates(&self, side: f64, middle: f64, phase: &Phase, own: &[f64], rates: &mut [f64]);
+    fn rates(&self, now: &Now<'_>, own: &[f64], rates: &mut [f64]);
 
     /// Its momentum beside I ω.
     fn momentum(&self, own: &[f64], omega: &Vector3<f64>) -> Vector3<f64>;

@@ -1,36 +1,40 @@
 //! Attitude feedback: a controller that turns the body toward a target and damps it.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3, Vector4};
 
+use super::aim::Aim;
 use super::axes::{Axes, Exact};
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::Linear;
+use super::now::Now;
 use super::parameter::Parameter;
 use super::subject::Subject;
-use super::switch::Switch;
+use super::switch::{Switch, off};
 use super::variables::Variables;
 use super::wrench::Wrench;
 use crate::error::{Error, all_finite};
 use crate::motion::state::Phase;
 use crate::numerics::quaternion::{conjugate, product};
 
-/// `N = −K sign(w) vec(e) − D ω` with the error `e = q_target⁻¹ ∘ q` and w its scalar part.
+/// `N = −K sign(w) vec(e) − D (ω − ω_target)` with the error `e = q_target⁻¹ ∘ q` and w its scalar part.
 ///
-/// K and D in B; ω of B relative to N, components in B. The sign takes the shorter way round; at w = 0, half a turn away,
+/// K and D in B; ω of B and of the target relative to N, components in B. The sign takes the shorter way round; at w = 0, half a turn away,
 /// both ways are as long, and the positive one is taken. For a small angle α about a unit vector n, `vec(e) = n α/2`.
 /// Source: Wie, Weiss, Arapostathis, J. Guid. Control Dyn. 12 (1989) 375.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Feedback {
     /// K: torque.
     pub stiffness: Matrix3<f64>,
     /// D: torque over angular velocity.
     pub damping: Matrix3<f64>,
-    /// `q_target`, of N from B.
-    pub target: UnitQuaternion<f64>,
+    /// `q_target`.
+    pub aim: Arc<Aim>,
 }
 
 impl Feedback {
-    /// Checked gains.
+    /// Checked gains, toward an attitude that stays.
     ///
     /// # Errors
     /// When an element is not finite.
@@ -39,34 +43,38 @@ impl Feedback {
         damping: &Matrix3<f64>,
         target: &UnitQuaternion<f64>,
     ) -> Result<Self, Error> {
+        Self::toward(stiffness, damping, Aim::Fixed(*target))
+    }
+
+    /// Checked gains, toward any target.
+    ///
+    /// # Errors
+    /// When an element is not finite.
+    pub fn toward(
+        stiffness: &Matrix3<f64>,
+        damping: &Matrix3<f64>,
+        aim: Aim,
+    ) -> Result<Self, Error> {
         all_finite("K", stiffness)?;
         all_finite("D", damping)?;
         Ok(Self {
             stiffness: *stiffness,
             damping: *damping,
-            target: *target,
+            aim: Arc::new(aim),
         })
     }
 
-    /// `−K sign(w) vec(e) − D ω`.
+    /// `−K sign(w) vec(e) − D ω` with `side`, 1 or −1, for the sign of w; ω relative to the target.
     #[inline]
-    #[must_use]
-    pub fn torque(&self, attitude: &UnitQuaternion<f64>, omega: &Vector3<f64>) -> Vector3<f64> {
-        let error = self.target.conjugate() * attitude;
-        self.torque_on(if error.w < 0.0 { -1.0 } else { 1.0 }, attitude, omega)
+    fn torque(&self, side: f64, error: &UnitQuaternion<f64>, omega: &Vector3<f64>) -> Vector3<f64> {
+        -(self.stiffness * (error.imag() * side) + self.damping * omega)
     }
 
-    /// As [`Self::torque`], with `side`, 1 or −1, for the sign of w.
+    /// The torque that it asks for, with the sign of w that it is taken for.
     #[inline]
-    #[must_use]
-    pub fn torque_on(
-        &self,
-        side: f64,
-        attitude: &UnitQuaternion<f64>,
-        omega: &Vector3<f64>,
-    ) -> Vector3<f64> {
-        let error = self.target.conjugate() * attitude;
-        -(self.stiffness * (error.imag() * side) + self.damping * omega)
+    pub(super) fn torque_on(&self, now: &Now<'_>) -> Vector3<f64> {
+        let (error, omega) = off(&self.aim, now.subject.start, now.t, now.phase);
+        self.torque(now.side, &error, &omega)
     }
 
     /// `2k (1 − |w|)` where `K = k 1` and D = 0: the work that turning away from the target takes.
@@ -78,14 +86,16 @@ impl Feedback {
         if self.stiffness != Matrix3::from_diagonal_element(k) || self.damping != Matrix3::zeros() {
             return None;
         }
-        let error = self.target.conjugate() * attitude;
+        let error = self.aim.fixed()?.conjugate() * attitude;
         // 1 − |w| = |vec|²/(1 + |w|), which loses nothing near the target.
         Some(2.0 * k * error.imag().norm_squared() / (1.0 + error.w.abs()))
     }
 
     /// `q_target⁻¹ ∘ q_NP ∘ q_PB` is linear in (x, y, z, w) of `q_NP`: its column for each of them.
     fn error_columns<X: Exact>(&self, axes: &Axes<'_, X>) -> [[X; 4]; 4] {
-        let left = (axes.variables).turned(X::quaternion(&self.target), axes.first + 18);
+        // One that moves has no series: the law toward the attitude that it has at the start.
+        let (target, _) = self.aim.at(axes.subject.start, axes.subject.start);
+        let left = (axes.variables).turned(X::quaternion(&target), axes.first + 18);
         let [o, l] = [X::zero(), X::one()];
         let units = [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, l]];
         units.map(|unit| product(product(conjugate(left), unit), conjugate(*axes.q_bp)))
@@ -98,9 +108,9 @@ impl Law for Feedback {
             exerts_force: false,
             depends_on_rates: self.damping.iter().any(|&x| x != 0.0),
             needs_body: false,
-            needs_epoch: false,
+            needs_epoch: self.aim.needs_epoch(),
             keeps: Kept::Nothing,
-            has_series: true,
+            has_series: self.aim.fixed().is_some(),
             parts: Parts {
                 on_omega: true,
                 on_attitude: true,
@@ -119,28 +129,36 @@ impl Law for Feedback {
     }
 
     fn scaled(&self, factor: f64) -> Result<Self, Error> {
-        Self::new(
+        Self::toward(
             &(self.stiffness * factor),
             &(self.damping * factor),
-            &self.target,
+            (*self.aim).clone(),
         )
     }
 
-    fn anchored(self, _: f64) -> Self {
-        self
+    fn anchored(self, t: f64) -> Self {
+        if !self.aim.needs_epoch() {
+            return self;
+        }
+        Self {
+            aim: Arc::new((*self.aim).clone().anchored(t)),
+            ..self
+        }
     }
 
     fn breaks(&self) -> Vec<f64> {
-        Vec::new()
+        self.aim.breaks().to_vec()
     }
 
-    fn check(&self, _: &Subject, _: f64, _: f64) -> Result<(), Error> {
-        Ok(())
+    fn check(&self, _: &Subject, from: f64, to: f64) -> Result<(), Error> {
+        self.aim.check(from, to)
     }
 
     #[inline]
-    fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
-        Wrench::couple(self.torque(&phase.attitude, &phase.omega))
+    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
+        let (error, omega) = off(&self.aim, subject.start, t, phase);
+        let side = if error.w < 0.0 { -1.0 } else { 1.0 };
+        Wrench::couple(self.torque(side, &error, &omega))
     }
 
     fn potential(&self, _: &Subject, phase: &Phase) -> Option<f64> {
@@ -159,13 +177,14 @@ impl Law for Feedback {
         true
     }
 
-    fn switch(&self, phase: &Phase) -> Option<Switch> {
-        Some(Switch::toward(&self.target, phase))
+    fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
+        Some(Switch::toward(&self.aim, subject.start, t, phase))
     }
 
     #[inline]
-    fn settled_wrench(&self, side: f64, _: &Subject, _: f64, phase: &Phase) -> Wrench {
-        Wrench::couple(self.torque_on(side, &phase.attitude, &phase.omega))
+    fn settled_wrench(&self, side: f64, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
+        let (error, omega) = off(&self.aim, subject.start, t, phase);
+        Wrench::couple(self.torque(side, &error, &omega))
     }
 
     fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
@@ -188,7 +207,8 @@ mod tests {
         .expect("finite");
         for angle in [0.5_f64, -0.5, 2.0 * std::f64::consts::PI - 0.5] {
             let attitude = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
-            let torque = feedback.torque(&attitude, &Vector3::zeros()).z;
+            let side = if attitude.w < 0.0 { -1.0 } else { 1.0 };
+            let torque = feedback.torque(side, &attitude, &Vector3::zeros()).z;
             let expected = if angle > 1.0 { 1.0 } else { -angle.signum() } * 0.25_f64.sin();
             assert!((torque - expected).abs() < 1e-15, "{angle} {torque}");
             let potential = feedback.energy(&attitude).expect("isotropic");

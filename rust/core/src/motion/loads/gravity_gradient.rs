@@ -8,22 +8,29 @@ use super::kepler::Orbit;
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::Linear;
 use super::parameter::Parameter;
+use super::path::Path;
+use super::slug::positive;
 use super::subject::Subject;
 use super::variables::Variables;
 use super::wrench::Wrench;
-use crate::error::{Error, MotionFault, finite};
+use crate::error::{Error, MotionFault};
 use crate::motion::state::Phase;
 
-/// `N_C = 3μ/r⁵ r×(I_C r)`, r from the attractor to C, on a Kepler orbit that the body's attitude does not change.
+/// `N_C = 3μ/r⁵ r×(I_C r)`, r from the attractor to C, on an orbit that the body's attitude does not change.
 ///
 /// All in B: `r_B = R_NBᵀ r_N`. The field is that of a point or sphere of gravitational parameter μ to first order in the
-/// size of the body over r.
-/// Source: Hughes, Spacecraft Attitude Dynamics, §8.1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// size of the body over r; of an oblate attractor with that of its J₂ too. With `n = r/r`, the pole p, `s = n·p` and `ε = J₂ R²/6r²`
+/// its torque is
+///
+/// ```text
+/// 3μ/r³ [(1 + ε (15 − 105 s²)) n×In + 30 ε s (n×Ip + p×In) − 6 ε p×Ip]
+/// ```
+///
+/// Source: Hughes, Spacecraft Attitude Dynamics, §8.1; the second derivatives of Vallado's potential, §8.6.
+#[derive(Clone, Debug, PartialEq)]
 pub struct GravityGradient {
-    orbit: Orbit,
-    /// When the orbit has the state it was given with; the start of the motion where there is none.
-    epoch: Option<f64>,
+    mu: f64,
+    path: Path,
     /// How many times the torque acts.
     strength: f64,
 }
@@ -39,10 +46,19 @@ impl GravityGradient {
         velocity: &Vector3<f64>,
         epoch: Option<f64>,
     ) -> Result<Self, Error> {
-        epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
+        let path = Path::kepler(&Orbit::new(mu, position, velocity)?, epoch)?;
+        Self::along(mu, path)
+    }
+
+    /// With C along a path.
+    ///
+    /// # Errors
+    /// For μ that is not positive.
+    pub fn along(mu: f64, path: Path) -> Result<Self, Error> {
+        positive("mu", mu)?;
         Ok(Self {
-            orbit: Orbit::new(mu, position, velocity)?,
-            epoch,
+            mu,
+            path,
             strength: 1.0,
         })
     }
@@ -50,25 +66,19 @@ impl GravityGradient {
     /// `3μ` times how often the torque acts: `N = coefficient/r⁵ r×(I_C r)`.
     #[must_use]
     pub fn coefficient(&self) -> f64 {
-        3.0 * self.orbit.mu() * self.strength
+        3.0 * self.mu * self.strength
     }
 
     /// μ.
     #[must_use]
     pub fn mu(&self) -> f64 {
-        self.orbit.mu()
-    }
-
-    /// When the orbit has the state it was given with, if that is not the start of the motion.
-    #[must_use]
-    pub fn epoch(&self) -> Option<f64> {
-        self.epoch
+        self.mu
     }
 
     /// Position and velocity of C from the attractor at time `t`, in N.
     #[must_use]
     pub fn orbit_at(&self, subject: &Subject, t: f64) -> (Vector3<f64>, Vector3<f64>) {
-        self.orbit.at(t - self.epoch.unwrap_or(subject.start))
+        self.path.at(subject.start, t)
     }
 
     /// The torque in B.
@@ -81,8 +91,19 @@ impl GravityGradient {
     ) -> Vector3<f64> {
         let (r, _) = self.orbit_at(subject, t);
         let distance = r.norm();
+        let strength = self.coefficient() / distance / distance / distance;
         let n = attitude.inverse_transform_vector(&(r / distance));
-        n.cross(&(subject.inertia * n)) * (self.coefficient() / distance / distance / distance)
+        let along = n.cross(&(subject.inertia * n));
+        let Some(oblate) = self.path.as_oblate() else {
+            return along * strength;
+        };
+        let p = attitude.inverse_transform_vector(oblate.pole());
+        let (s, part) = (n.dot(&p), oblate.bulge() / distance / distance / 6.0);
+        let mixed = n.cross(&(subject.inertia * p)) + p.cross(&(subject.inertia * n));
+        let polar = p.cross(&(subject.inertia * p));
+        (along * (1.0 + part * (15.0 - 105.0 * s * s)) + mixed * (30.0 * part * s)
+            - polar * (6.0 * part))
+            * strength
     }
 }
 
@@ -92,9 +113,9 @@ impl Law for GravityGradient {
             exerts_force: false,
             depends_on_rates: false,
             needs_body: true,
-            needs_epoch: self.epoch.is_none(),
+            needs_epoch: self.path.needs_epoch(),
             keeps: Kept::Nothing,
-            has_series: true,
+            has_series: self.path.as_kepler().is_some(),
             parts: Parts {
                 is_timed: true,
                 gradients: 1,
@@ -115,27 +136,27 @@ impl Law for GravityGradient {
     fn scaled(&self, factor: f64) -> Result<Self, Error> {
         Ok(Self {
             strength: self.strength * factor,
-            ..*self
+            ..self.clone()
         })
     }
 
     /// The epoch is `t` where it has none.
     fn anchored(self, t: f64) -> Self {
         Self {
-            epoch: self.epoch.or(Some(t)),
+            path: self.path.anchored(t),
             ..self
         }
     }
 
     fn breaks(&self) -> Vec<f64> {
-        Vec::new()
+        self.path.breaks().to_vec()
     }
 
-    fn check(&self, subject: &Subject, _: f64, _: f64) -> Result<(), Error> {
+    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
         if subject.pivoted {
             return Err(Error::Motion(MotionFault::PivotedInOrbit));
         }
-        Ok(())
+        self.path.check(from, to)
     }
 
     fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
@@ -153,8 +174,12 @@ impl Law for GravityGradient {
 
 impl<X: Exact> Timed<X> for GravityGradient {
     fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>) {
-        let elapsed = when.time - self.epoch.unwrap_or(axes.subject.start);
-        let (r, v) = (axes.variables).on_orbit(&self.orbit, elapsed, axes.first);
+        // Others have no series.
+        let Some((orbit, epoch)) = self.path.as_kepler() else {
+            return forcing.orbits.push(OnOrbit::none());
+        };
+        let elapsed = when.time - epoch.unwrap_or(axes.subject.start);
+        let (r, v) = (axes.variables).on_orbit(orbit, elapsed, axes.first);
         let (distance, unit) = (r.dot(&r).root(), X::from(when.unit));
         let cube = distance * distance * distance * unit * unit;
         let mu = axes.number(self.mu(), 0);

@@ -1,8 +1,11 @@
 //! The Kepler orbit through a state, at any time.
 
+mod apse;
+
 use nalgebra::Vector3;
 
-use super::stumpff::{functions, further};
+use self::apse::{Anomaly, Apse};
+use super::stumpff::functions;
 use crate::error::{Error, all_finite, finite};
 use crate::numerics::double_double::{DoubleDouble, two_product};
 use crate::numerics::jet::Jet;
@@ -25,8 +28,12 @@ pub struct Orbit {
     length: f64,
     time: f64,
     scaled_mu: f64,
+    /// The state that it was given with.
+    given: [Vector3<f64>; 2],
+    /// The state that motion is reckoned from, and when it is there: that one, or the periapsis of a hyperbola.
     position: Vector3<f64>,
     velocity: Vector3<f64>,
+    home: f64,
     distance: f64,
     /// `r·v`.
     sigma: f64,
@@ -79,24 +86,65 @@ impl Orbit {
         } else {
             DoubleDouble::default()
         };
-        Ok(Self {
+        let orbit = Self {
             mu,
             length,
             time,
             scaled_mu,
+            given: [r, v],
             position: r,
             velocity: v,
+            home: 0.0,
             distance: distance.high,
             sigma: r.dot(&v),
             beta: beta.high,
             frequency,
+        };
+        Ok(if orbit.beta < 0.0 {
+            orbit.at_periapsis()
+        } else {
+            orbit
         })
+    }
+
+    /// The same hyperbola, reckoned from its periapsis.
+    ///
+    /// From far away the terms of the motion past the attractor cancel: they are as large as the square of the distance over that of
+    /// the periapsis. From the periapsis all of them have one sign.
+    fn at_periapsis(self) -> Self {
+        let [r, v] = self.given.map(|it| it.map(DoubleDouble::from));
+        let mu = DoubleDouble::from(self.scaled_mu);
+        let beta = (mu + mu) / r.dot(&r).sqrt() - v.dot(&v);
+        let Apse {
+            position,
+            velocity,
+            distance,
+            since,
+        } = Apse::of(mu, beta, &r, &v);
+        Self {
+            position: position.map(DoubleDouble::rounded),
+            velocity: velocity.map(DoubleDouble::rounded),
+            distance: distance.rounded(),
+            sigma: 0.0,
+            home: -since.rounded(),
+            ..self
+        }
     }
 
     /// μ.
     #[must_use]
     pub fn mu(&self) -> f64 {
         self.mu
+    }
+
+    /// The units of length and time of its own numbers.
+    pub(super) fn units(&self) -> (f64, f64) {
+        (self.length, self.time)
+    }
+
+    /// μ in those units.
+    pub(super) fn scaled_mu(&self) -> f64 {
+        self.scaled_mu
     }
 
     /// Time of a revolution; infinite but for an ellipse.
@@ -115,7 +163,11 @@ impl Orbit {
     /// first. Source: Stumpff, Himmelsmechanik I, §41; Danby, Fundamentals of Celestial Mechanics, §6.9.
     #[must_use]
     pub fn at(&self, elapsed: f64) -> (Vector3<f64>, Vector3<f64>) {
-        let t = self.reduced(elapsed / self.time);
+        if elapsed == 0.0 {
+            let [position, velocity] = self.given;
+            return (position * self.length, velocity * (self.length / self.time));
+        }
+        let t = self.reduced(elapsed / self.time - self.home);
         let (r0, mu) = (self.distance, self.scaled_mu);
         let functions = functions(self.beta, self.solve(t));
         let ([_, g1, g2, _], r) = (functions, self.distance_at(&functions));
@@ -146,38 +198,32 @@ impl Orbit {
                 with(own[i], jet)
             })
         };
-        let (r0, v0) = (of(&self.position, length, 1), of(&self.velocity, speed, 4));
+        let [r0, v0] = [of(&self.given[0], length, 1), of(&self.given[1], speed, 4)];
         let mu = variable(self.mu, 0) * number(self.scaled_mu / self.mu);
         let mu = with(self.scaled_mu, mu);
+        let beta = (mu + mu) / r0.dot(&r0).root() - v0.dot(&v0);
+        let beta = with(self.beta, beta);
+        let whole = elapsed / self.time - self.home;
+        let t = self.reduced(whole);
+        let (mut r0, mut v0, mut time) = (r0, v0, number(t));
+        if self.beta < 0.0 {
+            let apse = Apse::of(mu, beta, &r0, &v0);
+            r0 = Vector3::from_fn(|i, _| with(self.position[i], apse.position[i]));
+            v0 = Vector3::from_fn(|i, _| with(self.velocity[i], apse.velocity[i]));
+            time = with(t, apse.since);
+        }
         let distance = with(self.distance, r0.dot(&r0).root());
         let sigma = with(self.sigma, r0.dot(&v0));
-        let beta = with(self.beta, (mu + mu) / distance - v0.dot(&v0));
-
-        let whole = elapsed / self.time;
-        let t = self.reduced(whole);
-        let mut time = number(t);
         if self.frequency.high > 0.0 {
             let revolutions = ((whole - t) * self.frequency.high).round();
             let period = mu * number(TURN.high) / (beta * beta.root());
             time = with(t, -(period * number(revolutions)));
         }
         let s = self.solve(t);
-        let g = functions(self.beta, s);
-        let [g4, g5] = further(self.beta, s);
-        let next = [g[2], g[3], g4, g5];
-        let by_beta = [0, 1, 2, 3].map(|k| {
-            let last = if k < 3 { g[k + 1] } else { g4 };
-            0.5 * (k as f64 * next[k] - s * last)
-        });
-        let at = |s: Jet<N>| {
-            [0, 1, 2, 3].map(|k| {
-                let by_s = if k == 0 { -self.beta * g[1] } else { g[k - 1] };
-                Jet::chain(g[k], [(by_s, &s), (by_beta[k], &beta)])
-            })
-        };
+        let there = number(self.distance_at(&functions(self.beta, s)));
+        let at = |s: Jet<N>| Jet::stumpff(beta, s);
         let [_, g1, g2, g3] = at(number(s));
         let excess = distance * g1 + sigma * g2 + mu * g3 - time;
-        let there = number(self.distance_at(&g));
         let [g0, g1, g2, _] = at(with(s, -(excess / there)));
         let r = distance * g0 + sigma * g1 + mu * g2;
         let one = number(1.0);

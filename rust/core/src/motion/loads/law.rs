@@ -180,9 +180,9 @@ pub trait Law: Sized {
         false
     }
 
-    /// What changes its law at `phase`, for a law that [may switch](Self::may_switch).
-    fn switch(&self, phase: &Phase) -> Option<Switch> {
-        let _ = phase;
+    /// What changes its law at a time and `phase`, for a law that [may switch](Self::may_switch).
+    fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
+        let _ = (subject, t, phase);
         None
     }
 

@@ -35,10 +35,10 @@ pub trait Load {
     /// When it cannot act there.
     fn enter(&mut self, from: f64, to: f64) -> Result<(), Self::Error>;
 
-    /// From now on its law is the one that it has at `phase`, on both sides of where a sign in it changes, until it is told again: so that
+    /// From now on its law is the one that it has at time `t` and `phase`, on both sides of where a sign in it changes, until it is told again: so that
     /// it is smooth over a step. Before it is told for the first time in a span, the law changes with the state.
-    fn settle(&mut self, phase: &Phase) {
-        let _ = phase;
+    fn settle(&mut self, t: f64, phase: &Phase) {
+        let _ = (t, phase);
     }
 
     /// What may change the law that it was settled for; nothing of a law without signs.

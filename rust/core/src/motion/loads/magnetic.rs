@@ -5,10 +5,10 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::axes::{Axes, Exact};
-use super::kepler::Orbit;
 use super::law::{Character, Kept, Law, Parts, directions_of};
 use super::linear::Linear;
 use super::parameter::Parameter;
+use super::path::Path;
 use super::spline::Spline;
 use super::subject::Subject;
 use super::wrench::{Wrench, times};
@@ -28,9 +28,7 @@ enum Source {
     Sampled(Arc<Spline>),
     /// That of a dipole at the attractor of an orbit.
     Dipole {
-        orbit: Orbit,
-        /// When the orbit has the state it was given with; the start of the motion where there is none.
-        epoch: Option<f64>,
+        path: Path,
         /// μ₀/4π times the dipole's moment.
         strength: Vector3<f64>,
     },
@@ -68,16 +66,10 @@ impl MagneticField {
     ///
     /// # Errors
     /// When a number is not finite.
-    pub fn of_dipole(
-        strength: &Vector3<f64>,
-        orbit: &Orbit,
-        epoch: Option<f64>,
-    ) -> Result<Self, Error> {
+    pub fn of_dipole(strength: &Vector3<f64>, path: Path) -> Result<Self, Error> {
         all_finite("strength", strength)?;
-        epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
         Ok(Self(Source::Dipole {
-            orbit: *orbit,
-            epoch,
+            path,
             strength: *strength,
         }))
     }
@@ -88,12 +80,8 @@ impl MagneticField {
         match &self.0 {
             Source::Uniform(field) => [*field, Vector3::zeros()],
             Source::Sampled(spline) => spline.at(t),
-            Source::Dipole {
-                orbit,
-                epoch,
-                strength,
-            } => {
-                let (r, v) = orbit.at(t - epoch.unwrap_or(start));
+            Source::Dipole { path, strength } => {
+                let (r, v) = path.at(start, t);
                 field_and_rate(strength, &r, &v)
             }
         }
@@ -165,7 +153,10 @@ impl Law for Magnetic {
             exerts_force: false,
             depends_on_rates: self.gain.is_some(),
             needs_body: false,
-            needs_epoch: matches!(self.field.0, Source::Dipole { epoch: None, .. }),
+            needs_epoch: match &self.field.0 {
+                Source::Dipole { path, .. } => path.needs_epoch(),
+                Source::Uniform(_) | Source::Sampled(_) => false,
+            },
             keeps: match &self.field.0 {
                 Source::Uniform(field) => Kept::along(field),
                 Source::Sampled(_) | Source::Dipole { .. } => Kept::Nothing,
@@ -196,13 +187,8 @@ impl Law for Magnetic {
 
     fn anchored(self, t: f64) -> Self {
         let field = match self.field.0 {
-            Source::Dipole {
-                orbit,
-                epoch: None,
-                strength,
-            } => Source::Dipole {
-                orbit,
-                epoch: Some(t),
+            Source::Dipole { path, strength } => Source::Dipole {
+                path: path.anchored(t),
                 strength,
             },
             other => other,
@@ -216,7 +202,8 @@ impl Law for Magnetic {
     fn breaks(&self) -> Vec<f64> {
         match &self.field.0 {
             Source::Sampled(spline) => spline.knots().to_vec(),
-            Source::Uniform(_) | Source::Dipole { .. } => Vec::new(),
+            Source::Dipole { path, .. } => path.breaks().to_vec(),
+            Source::Uniform(_) => Vec::new(),
         }
     }
 
@@ -226,7 +213,8 @@ impl Law for Magnetic {
             Source::Dipole { .. } if subject.pivoted => {
                 Err(Error::Motion(MotionFault::PivotedInOrbit))
             }
-            Source::Uniform(_) | Source::Dipole { .. } => Ok(()),
+            Source::Dipole { path, .. } => path.check(from, to),
+            Source::Uniform(_) => Ok(()),
         }
     }
 
@@ -257,6 +245,7 @@ impl Law for Magnetic {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::loads::kepler::Orbit;
 
     #[test]
     fn the_rate_of_the_field_is_its_derivative() {
@@ -265,8 +254,9 @@ mod tests {
         let times: Vec<f64> = (0..9).map(f64::from).collect();
         let samples: Vec<_> = times.iter().map(|&t| orbit.at(t).0).collect();
         let strength = Vector3::new(0.2, -0.3, 0.9);
+        let path = |epoch| Path::kepler(&orbit, epoch).expect("finite");
         for field in [
-            MagneticField::of_dipole(&strength, &orbit, Some(0.5)).expect("finite"),
+            MagneticField::of_dipole(&strength, path(Some(0.5))).expect("finite"),
             MagneticField::sampled(&times, &samples).expect("ascending"),
         ] {
             for t in [0.3, 2.2, 6.9] {
@@ -277,7 +267,7 @@ mod tests {
             }
         }
         // On the axis of the dipole 2M/r³, across it −M/r³.
-        let field = MagneticField::of_dipole(&position, &orbit, None).expect("finite");
+        let field = MagneticField::of_dipole(&position, path(None)).expect("finite");
         let [along, _] = field.at(3.0, 3.0);
         assert!((along - position * (2.0 / position.norm().powi(3))).norm() < 1e-15);
     }

@@ -5,9 +5,9 @@
 //! | constant torque | N | [`constant_torque`] |
 //! | constant force at a point | `N = (p − P)×F` | [`constant_force`] |
 //! | uniform gravity | m g at C | [`uniform_gravity`] |
-//! | gravity gradient | `N = 3μ/r⁵ r×(I_C r)` on a Kepler orbit | [`gravity_gradient`], [`kepler`] |
+//! | gravity gradient | `N = 3μ/r⁵ r×(I_C r)` on an orbit | [`gravity_gradient`], `path`, [`kepler`], `oblate` |
 //! | damping | `N = −D ω − E \|ω\| ω` | [`damping`] |
-//! | attitude feedback | `N = −K sign(w) vec(q_target⁻¹∘q) − D ω` | [`feedback`] |
+//! | attitude feedback | `N = −K sign(w) vec(q_target⁻¹∘q) − D (ω − ω_target)` | [`feedback`], `aim` |
 //! | a torque sampled in time | cubic spline | [`sampled`] |
 //! | a magnetic field | `N = (d − k Ḃ) × B` | [`magnetic`] |
 //! | a rotor | `N = −ω × h` | [`rotor`] |
@@ -17,6 +17,7 @@
 //!
 //! A law more is a file more here, which answers what a [`Law`] is asked, and its name in the list in `term.rs`.
 
+mod aim;
 mod analytic;
 mod axes;
 mod bearing;
@@ -33,7 +34,10 @@ mod law;
 mod linear;
 mod load;
 pub mod magnetic;
+mod now;
+mod oblate;
 mod parameter;
+mod path;
 mod resting;
 pub mod rotor;
 pub mod sampled;
@@ -49,6 +53,7 @@ pub(in crate::motion) mod variables;
 pub mod wheel;
 mod wrench;
 
+pub use self::aim::{Aim, Sampling};
 pub use self::analytic::Analytic;
 pub use self::axes::{Axes, Exact};
 pub use self::bearing::Bearing;
@@ -64,7 +69,10 @@ pub use self::law::{Character, Kept, Law, Parts};
 pub use self::linear::{Linear, Own};
 pub use self::load::Load;
 pub use self::magnetic::{Magnetic, MagneticField};
+pub use self::now::Now;
+pub use self::oblate::Oblate;
 pub use self::parameter::Parameter;
+pub use self::path::Path;
 pub(in crate::motion) use self::resting::Resting;
 pub use self::resting::wrench_at;
 pub use self::rotor::Rotor;

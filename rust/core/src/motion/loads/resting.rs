@@ -106,7 +106,7 @@ pub fn wrench_at<L: Load>(
     t: f64,
     phase: &Phase,
 ) -> Result<Wrench, L::Error> {
-    load.settle(phase);
+    load.settle(t, phase);
     let mut bearings = load.bearings().to_vec();
     let mut motors = vec![0.0; phase.own.len()];
     let mut wrench = load.act(t, phase, &mut motors)?;

@@ -6,6 +6,7 @@ use super::axes::{Axes, Exact};
 use super::carried::Carried;
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::Linear;
+use super::now::Now;
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::wrench::{Wrench, times};
@@ -118,11 +119,11 @@ impl Carried for Rotor {
         None
     }
 
-    fn torque(&self, _: f64, _: f64, phase: &Phase, _: &[f64]) -> Vector3<f64> {
-        self.momentum.cross(&phase.omega)
+    fn torque(&self, now: &Now<'_>, _: &[f64]) -> Vector3<f64> {
+        self.momentum.cross(&now.phase.omega)
     }
 
-    fn rates(&self, _: f64, _: f64, _: &Phase, _: &[f64], _: &mut [f64]) {}
+    fn rates(&self, _: &Now<'_>, _: &[f64], _: &mut [f64]) {}
 
     fn momentum(&self, _: &[f64], _: &Vector3<f64>) -> Vector3<f64> {
         self.momentum

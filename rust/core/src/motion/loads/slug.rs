@@ -6,6 +6,7 @@ use super::axes::{Axes, Exact};
 use super::carried::Carried;
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::{Linear, Own};
+use super::now::Now;
 use super::parameter::Parameter;
 use super::subject::Subject;
 use super::wrench::Wrench;
@@ -146,13 +147,13 @@ impl Carried for Slug {
         None
     }
 
-    fn torque(&self, _: f64, _: f64, phase: &Phase, own: &[f64]) -> Vector3<f64> {
-        self.drag(&phase.omega, own)
+    fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64> {
+        self.drag(&now.phase.omega, own)
     }
 
-    fn rates(&self, _: f64, _: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) {
-        let sigma = Vector3::from_column_slice(own);
-        let rate = -self.drag(&phase.omega, own) / self.inertia - phase.omega.cross(&sigma);
+    fn rates(&self, now: &Now<'_>, own: &[f64], rates: &mut [f64]) {
+        let (sigma, omega) = (Vector3::from_column_slice(own), &now.phase.omega);
+        let rate = -self.drag(omega, own) / self.inertia - omega.cross(&sigma);
         rates.copy_from_slice(rate.as_slice());
     }
 

@@ -1,12 +1,15 @@
 //! Signs that change the law of a load.
 
-use nalgebra::UnitQuaternion;
+use std::sync::Arc;
 
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::aim::Aim;
 use super::bearing::Bearing;
 use crate::motion::state::Phase;
 
 /// What may change the law of a load within a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Change {
     /// The sign in the law of a feedback.
     Sign(Switch),
@@ -16,31 +19,54 @@ pub enum Change {
     Slip(Bearing),
 }
 
-/// What changes the law of a feedback: the sign of the scalar part w of its error. Both w and its rate `ẇ = −½ vec(e)·ω` are continuous
-/// where it does.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What changes the law of a feedback: the sign of the scalar part w of its error. Both w and its rate `ẇ = −½ vec(e)·(ω − ω_target)` are
+/// continuous where it does.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Switch {
-    target: UnitQuaternion<f64>,
+    aim: Arc<Aim>,
+    /// When the motion began.
+    start: f64,
     /// The sign that the law has been taken for.
     pub side: f64,
 }
 
 impl Switch {
-    /// That of a feedback toward `target`, at the attitude of `phase`.
+    /// That of a feedback toward `aim` in a motion that began at `start`, at time `t` and `phase`.
     #[must_use]
-    pub fn toward(target: &UnitQuaternion<f64>, phase: &Phase) -> Self {
-        let error = target.conjugate() * phase.attitude;
-        Self {
-            target: *target,
-            side: if error.w < 0.0 { -1.0 } else { 1.0 },
+    pub fn toward(aim: &Arc<Aim>, start: f64, t: f64, phase: &Phase) -> Self {
+        let mut switch = Self {
+            aim: Arc::clone(aim),
+            start,
+            side: 1.0,
+        };
+        let [w, _] = switch.value_and_rate(t, phase);
+        if w < 0.0 {
+            switch.side = -1.0;
         }
+        switch
     }
 
     /// w and ẇ, each times the side: the law changes where the first becomes negative.
     #[must_use]
-    pub fn value_and_rate(&self, phase: &Phase) -> [f64; 2] {
-        let error = self.target.conjugate() * phase.attitude;
-        let rate = -0.5 * error.imag().dot(&phase.omega);
+    pub fn value_and_rate(&self, t: f64, phase: &Phase) -> [f64; 2] {
+        let (error, omega) = off(&self.aim, self.start, t, phase);
+        let rate = -0.5 * error.imag().dot(&omega);
         [error.w * self.side, rate * self.side]
     }
+}
+
+/// What is left to turn, `e = q_target⁻¹ ∘ q`, and the angular velocity relative to the target, in B.
+#[inline]
+pub(super) fn off(
+    aim: &Aim,
+    start: f64,
+    t: f64,
+    phase: &Phase,
+) -> (UnitQuaternion<f64>, Vector3<f64>) {
+    if let Aim::Fixed(target) = aim {
+        return (target.conjugate() * phase.attitude, phase.omega);
+    }
+    let (target, rate) = aim.at(start, t);
+    let error = target.conjugate() * phase.attitude;
+    (error, phase.omega - error.inverse_transform_vector(&rate))
 }

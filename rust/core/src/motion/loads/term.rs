@@ -160,11 +160,11 @@ macro_rules! laws {
                 }
             }
 
-            /// What changes its law at `phase`, if its law has a sign that changes with the state.
-            pub(super) fn switch(&self, phase: &Phase) -> Option<Switch> {
+            /// What changes its law at a time and `phase`, if its law has a sign that changes with the state.
+            pub(super) fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
                 match self {
-                    $(Self::$law(law) => law.switch(phase),)+
-                    Self::Scheduled { term, .. } => term.switch(phase),
+                    $(Self::$law(law) => law.switch(subject, t, phase),)+
+                    Self::Scheduled { term, .. } => term.switch(subject, t, phase),
                 }
             }
 

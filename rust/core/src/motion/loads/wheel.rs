@@ -8,6 +8,7 @@ use super::feedback::Feedback;
 use super::held::Held;
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::{Linear, Own};
+use super::now::Now;
 use super::parameter::Parameter;
 use super::slug::{not_negative, positive};
 use super::subject::Subject;
@@ -130,19 +131,19 @@ impl Wheel {
     }
 
     /// The rate of the state: ḣ, or JΩ̇ where the speed is given.
-    fn rate_of_state(&self, side: f64, middle: f64, phase: &Phase, own: &[f64]) -> f64 {
+    fn rate_of_state(&self, now: &Now<'_>, own: &[f64]) -> f64 {
         let motor = match &self.drive {
-            Drive::Speed(speed) => return self.inertia * speed.line(middle)[1],
-            Drive::Torque(torque) => torque.value(middle),
-            Drive::Feedback(law) => self.asked(law, side, phase),
-            Drive::Limited(law, limit) => self.asked(law, side, phase).clamp(-limit, *limit),
+            Drive::Speed(speed) => return self.inertia * speed.line(now.middle)[1],
+            Drive::Torque(torque) => torque.value(now.middle),
+            Drive::Feedback(law) => self.asked(law, now),
+            Drive::Limited(law, limit) => self.asked(law, now).clamp(-limit, *limit),
         };
-        motor - self.friction * self.speed(own, &phase.omega)
+        motor - self.friction * self.speed(own, &now.phase.omega)
     }
 
     /// What a feedback asks of the motor.
-    fn asked(&self, law: &Feedback, side: f64, phase: &Phase) -> f64 {
-        -(self.unit).dot(&law.torque_on(side, &phase.attitude, &phase.omega))
+    fn asked(&self, law: &Feedback, now: &Now<'_>) -> f64 {
+        -(self.unit).dot(&law.torque_on(now))
     }
 
     /// a of unit length, in principal axes.
@@ -158,9 +159,11 @@ impl Law for Wheel {
             exerts_force: false,
             depends_on_rates: true,
             needs_body: !self.has_speed(),
-            needs_epoch: false,
+            needs_epoch: self.feedback().is_some_and(|law| law.aim.needs_epoch()),
             keeps: Kept::All,
-            has_series: !matches!(self.drive, Drive::Limited(..)) && self.bearing().is_none(),
+            has_series: !matches!(self.drive, Drive::Limited(..))
+                && self.bearing().is_none()
+                && (self.feedback()).is_none_or(|law| law.aim.fixed().is_some()),
             parts: Parts {
                 on_omega: true,
                 on_attitude: self.feedback().is_some(),
@@ -185,18 +188,21 @@ impl Law for Wheel {
         Err(MotionFault::StatesStay { what: "scaled" }.into())
     }
 
-    fn anchored(self, _: f64) -> Self {
+    fn anchored(mut self, t: f64) -> Self {
+        if let Drive::Feedback(law) | Drive::Limited(law, _) = &mut self.drive {
+            *law = law.clone().anchored(t);
+        }
         self
     }
 
     fn breaks(&self) -> Vec<f64> {
         match &self.drive {
             Drive::Torque(held) | Drive::Speed(held) => held.times().to_vec(),
-            Drive::Feedback(_) | Drive::Limited(..) => Vec::new(),
+            Drive::Feedback(law) | Drive::Limited(law, _) => law.breaks(),
         }
     }
 
-    fn check(&self, _: &Subject, from: f64, to: f64) -> Result<(), Error> {
+    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
         if to < from && self.bearing().is_some() {
             return Err(Error::OutOfDomain {
                 what: "t",
@@ -207,15 +213,21 @@ impl Law for Wheel {
         match &self.drive {
             Drive::Torque(held) => held.covers("torque", from, to, false),
             Drive::Speed(held) => held.covers("speed", from, to, true),
-            Drive::Feedback(_) | Drive::Limited(..) => Ok(()),
+            Drive::Feedback(law) | Drive::Limited(law, _) => law.check(subject, from, to),
         }
     }
 
     /// At a start; of a wheel at rest without what its bearing holds, which follows from all loads on the body.
-    fn wrench(&self, _: &Subject, t: f64, phase: &Phase) -> Wrench {
-        let side = self.switch(phase).map_or(1.0, |switch| switch.side);
+    fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
         let own = self.begin(t, &phase.omega);
-        let mut torque = self.torque(side, t, phase, &own);
+        let now = Now {
+            subject,
+            t,
+            middle: t,
+            phase,
+            side: (self.switch(subject, t, phase)).map_or(1.0, |switch| switch.side),
+        };
+        let mut torque = self.torque(&now, &own);
         if self.bearing().is_some() && self.rate != 0.0 {
             torque += self.unit * (self.dry_friction * self.rate.signum());
         }
@@ -269,8 +281,8 @@ impl Law for Wheel {
         self.feedback().is_some()
     }
 
-    fn switch(&self, phase: &Phase) -> Option<Switch> {
-        self.feedback()?.switch(phase)
+    fn switch(&self, subject: &Subject, t: f64, phase: &Phase) -> Option<Switch> {
+        self.feedback()?.switch(subject, t, phase)
     }
 
     fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
@@ -328,13 +340,13 @@ impl Carried for Wheel {
         ))
     }
 
-    fn torque(&self, side: f64, middle: f64, phase: &Phase, own: &[f64]) -> Vector3<f64> {
-        let rate = self.rate_of_state(side, middle, phase, own);
-        self.unit.cross(&phase.omega) * own[0] - self.unit * rate
+    fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64> {
+        let rate = self.rate_of_state(now, own);
+        self.unit.cross(&now.phase.omega) * own[0] - self.unit * rate
     }
 
-    fn rates(&self, side: f64, middle: f64, phase: &Phase, own: &[f64], rates: &mut [f64]) {
-        rates[0] = self.rate_of_state(side, middle, phase, own);
+    fn rates(&self, now: &Now<'_>, own: &[f64], rates: &mut [f64]) {
+        rates[0] = self.rate_of_state(now, own);
     }
 
     /// JΩ a.

@@ -20,15 +20,18 @@ pub(super) fn first<E>(
     let mut first: Option<(Change, f64)> = None;
     for change in changes {
         if let Some(place) = of(change, stepper, start, from, before)?
-            && first.is_none_or(|(_, earlier)| place.abs() < earlier.abs())
+            && first
+                .as_ref()
+                .is_none_or(|(_, earlier)| place.abs() < earlier.abs())
         {
-            first = Some((*change, place));
+            first = Some((change.clone(), place));
         }
     }
-    if let Some((Change::Slip(bearing), place)) = first {
+    if let Some((Change::Slip(bearing), place)) = &first {
+        let place = *place;
         // The way that the wheel turns then is against what held it.
         let phase = at(stepper, from, before, place)?;
-        let slipping = bearing.slipping(stepper.held(&bearing, place, &phase)?);
+        let slipping = bearing.slipping(stepper.held(bearing, place, &phase)?);
         return Ok(Some((Change::Slip(slipping), place)));
     }
     Ok(first)
@@ -52,11 +55,12 @@ fn at<E>(
 fn until<E>(
     change: &Change,
     stepper: &mut dyn Dense<Error = E>,
+    start: f64,
     at: f64,
     phase: &Phase,
 ) -> Result<f64, E> {
     Ok(match change {
-        Change::Sign(switch) => switch.value_and_rate(phase)[0],
+        Change::Sign(switch) => switch.value_and_rate(start + at, phase)[0],
         Change::Stop(bearing) => bearing.until_stop(phase),
         Change::Slip(bearing) => bearing.until_slip(stepper.held(bearing, at, phase)?),
     })
@@ -71,13 +75,14 @@ fn of<E>(
 ) -> Result<Option<f64>, E> {
     let to = stepper.elapsed();
     let turn = stepper.turn(to - from);
-    let value = until(change, stepper, from, before)?;
+    let value = until(change, stepper, start, from, before)?;
     if let Change::Sign(switch) = change {
         let forward = (to - from).signum();
-        let [[w, rate], [w_end, rate_end]] = [before, &stepper.phase()].map(|phase| {
-            let [value, rate] = switch.value_and_rate(phase);
-            [value, rate * forward]
-        });
+        let [[w, rate], [w_end, rate_end]] =
+            [(from, before), (to, &stepper.phase())].map(|(at, phase)| {
+                let [value, rate] = switch.value_and_rate(start + at, phase);
+                [value, rate * forward]
+            });
         // Just past a change rounding may have left it on the side it comes from.
         let ends_beyond = w_end < 0.0 && (w >= 0.0 || rate_end < 0.0);
         let may_dip = rate <= 0.0 && rate_end >= 0.0;
@@ -88,7 +93,7 @@ fn of<E>(
         return Ok(Some(from));
     }
     let mut view = View {
-        function: &mut |stepper, at, phase| until(change, stepper, at, phase),
+        function: &mut |stepper, at, phase| until(change, stepper, start, at, phase),
         stepper,
         start,
         end: to,

@@ -39,14 +39,14 @@ impl<E> Run<E> {
             let [mut from, to] = [pair[0], pair[1]];
             load.enter(from, to)?;
             load.jump(from, &mut self.phase)?;
-            load.settle(&self.phase);
+            load.settle(from, &self.phase);
             // Where the law of the load changes with the state, by what.
             let mut flip: Option<(Change, f64)> = None;
             let mut flips_at_once = 0;
             loop {
                 let span = Span {
                     from,
-                    to: flip.map_or(to, |(_, time)| time),
+                    to: flip.as_ref().map_or(to, |(_, time)| *time),
                     phase: self.phase.clone(),
                     carry,
                 };
@@ -82,11 +82,10 @@ impl<E> Run<E> {
                         }
                     }
                     Ok(Reached::Flip { change, time }) => {
-                        (from, flip) = (self.time, Some((change, time)));
+                        from = self.time;
                         if from == time {
                             // Here and now. A law that changes back each time holds the body where it changes.
                             self.change(&change, task, load);
-                            flip = None;
                             flips_at_once += 1;
                             // Several wheels may stop and slip at once.
                             let most = HELD
@@ -101,6 +100,7 @@ impl<E> Run<E> {
                                 .into());
                             }
                         } else {
+                            flip = Some((change, time));
                             flips_at_once = 0;
                         }
                     }

@@ -1,0 +1,205 @@
+"""What all orbits tell: states, the frame that points down, the field of a dipole; orbits along samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from polhode import _core
+from polhode._repr import short
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = [
+    "DipoleField",
+    "LocalFrame",
+    "OrbitState",
+    "Path",
+    "SampledOrbit",
+    "do_broadcast",
+    "kept",
+    "reshaped",
+    "vector",
+]
+
+
+class OrbitState(NamedTuple):
+    """Where a body is on its orbit, from the attractor, in space.
+
+    Attributes
+    ----------
+    position, velocity : numpy.ndarray, shape (..., 3)
+    """
+
+    position: Floats
+    velocity: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class LocalFrame(NamedTuple):
+    """The frame that points down: z to the attractor, y along minus the normal of the orbit, x forward.
+
+    Attributes
+    ----------
+    quaternion : numpy.ndarray, shape (..., 4)
+        Its attitude in space as (x, y, z, w), of either sign: that of a body whose axes these are.
+    omega : numpy.ndarray, shape (..., 3)
+        Its angular velocity relative to space, components in this frame: ``(0, -h/r**2, 0)``.
+    """
+
+    quaternion: Floats
+    omega: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class Path:
+    """What all orbits tell from their states."""
+
+    def at(self, t: ArrayLike) -> OrbitState:
+        """Give position and velocity at times of any shape."""
+        raise NotImplementedError
+
+    def frame(self, t: ArrayLike) -> LocalFrame:
+        """Give the frame that points down, and its angular velocity, at times of any shape.
+
+        Parameters
+        ----------
+        t : array_like, shape (T...)
+            As of :meth:`at`.
+
+        Returns
+        -------
+        LocalFrame
+        """
+        r, v = self.at(t)
+        swept = np.cross(r, v)
+        size, distance = np.linalg.norm(swept, axis=-1), np.linalg.norm(r, axis=-1)
+        z, y = -r / distance[..., None], -swept / size[..., None]
+        matrix = np.stack([np.cross(y, z), y, z], axis=-1)
+        omega = np.zeros_like(r)
+        omega[..., 1] = -size / distance / distance
+        return LocalFrame(_core.quaternion_from_matrix(matrix), omega)
+
+    def dipole_field(self, strength: ArrayLike) -> DipoleField:
+        """Give the magnetic field along the orbit of a dipole at the attractor.
+
+        Parameters
+        ----------
+        strength : array_like, shape (..., 3)
+            The dipole's moment times μ₀/4π, in space; for the Earth's about 7.8e15 T m³, southward.
+
+        Returns
+        -------
+        DipoleField
+            For :func:`polhode.loads.magnetic`; its ``at(t)`` gives B.
+        """
+        return DipoleField(self, vector(strength, "strength"))
+
+
+@dataclass(frozen=True, eq=False)
+class SampledOrbit(Path):
+    """An orbit known at some times, or a stack of them: cubic splines through positions, as of an ephemeris.
+
+    Attributes
+    ----------
+    mu : float or numpy.ndarray, shape (...)
+        Gravitational parameter of the attractor.
+    times : numpy.ndarray, shape (n,)
+    position : numpy.ndarray, shape (..., n, 3)
+        From the attractor, in space, at the times.
+    """
+
+    mu: Any
+    times: Floats
+    position: Floats
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the stack."""
+        return np.broadcast_shapes(np.shape(self.mu), self.position.shape[:-2])
+
+    def at(self, t: ArrayLike) -> OrbitState:
+        """Give position and velocity at times of any shape.
+
+        Parameters
+        ----------
+        t : array_like, shape (T...)
+            From the first of its times to the last.
+
+        Returns
+        -------
+        OrbitState
+            Of shape (..., T..., 3): those of the stack, then those of the times.
+        """
+        times = _core.real_numbers(t, "t")
+        return reshaped(_core.sampled_states(self.times, self.position, times.ravel()), times.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class DipoleField:
+    """The magnetic field of a dipole at the attractor, along an orbit.
+
+    Attributes
+    ----------
+    orbit : Orbit or SampledOrbit
+    strength : numpy.ndarray, shape (..., 3)
+        The dipole's moment times μ₀/4π, in space.
+    """
+
+    orbit: Path
+    strength: Floats
+
+    def at(self, t: ArrayLike) -> Floats:
+        """Give B in space, ``3 (M·r) r/r**5 - M/r**3``, at times of any shape.
+
+        Parameters
+        ----------
+        t : array_like, shape (T...)
+            As of :meth:`Orbit.at`.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., T..., 3)
+        """
+        moment = self.strength[(..., *(np.newaxis,) * np.ndim(t), slice(None))]
+        return _core.dipole_field(moment, self.orbit.at(t).position)
+
+
+def kept(numbers: Floats) -> Any:
+    """Numbers that nobody changes; one as a float."""
+    numbers.flags.writeable = False
+    return float(numbers) if numbers.ndim == 0 else numbers
+
+
+def reshaped(states: tuple[Floats, Floats], times: tuple[int, ...]) -> OrbitState:
+    """Give states at a list of times those at times of a shape."""
+    return OrbitState(*(one.reshape(*one.shape[:-2], *times, 3) for one in states))
+
+
+def do_broadcast(*arrays: Floats) -> bool:
+    """Whether arrays broadcast."""
+    try:
+        np.broadcast_shapes(*(one.shape for one in arrays))
+    except ValueError:
+        return False
+    return True
+
+
+def vector(given: ArrayLike, name: str) -> Floats:
+    """Vectors of shape (..., 3), finite, that nobody changes."""
+    found = np.array(_core.real_numbers(given, name))  # not the caller's
+    if found.shape[-1:] != (3,):
+        raise ValueError(f"{name}: expected shape (..., 3), got {found.shape}")
+    if not np.isfinite(found).all():
+        raise ValueError(f"{name}: must be finite, got {found.tolist()}")
+    found.flags.writeable = False
+    return found

@@ -1,0 +1,202 @@
+//! What a feedback turns the body toward.
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+use super::path::Path;
+use super::spline::Spline;
+use crate::error::{Error, all_finite, finite};
+use crate::motion::attitude::{components, from_axes};
+
+/// From one sample of a target to the next it turns by less than a quarter of a turn: `cos(π/4)`.
+const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// The attitude `q_target` (of N from the target's frame) that a feedback turns the body toward.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Aim {
+    /// One that stays.
+    Fixed(UnitQuaternion<f64>),
+    /// One that turns.
+    Turning {
+        /// That at the epoch.
+        attitude: UnitQuaternion<f64>,
+        /// Its angular velocity relative to N, in N.
+        rate: Vector3<f64>,
+        /// The start of the motion where there is none.
+        epoch: Option<f64>,
+    },
+    /// The frame of an orbit that points down: z to the attractor, y along minus the orbit's normal.
+    Down(Path),
+    /// One known at some times.
+    Sampled(Sampling),
+}
+
+/// A smooth attitude through samples: a cubic spline through each component of the quaternions, at unit length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampling {
+    vector: Spline,
+    scalar: Spline,
+}
+
+impl Aim {
+    /// A target that turns with a constant rate.
+    ///
+    /// # Errors
+    /// For a rate or an epoch that is not finite.
+    pub fn turning(
+        attitude: &UnitQuaternion<f64>,
+        rate: &Vector3<f64>,
+        epoch: Option<f64>,
+    ) -> Result<Self, Error> {
+        all_finite("rate", rate)?;
+        epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
+        Ok(Self::Turning {
+            attitude: *attitude,
+            rate: *rate,
+            epoch,
+        })
+    }
+
+    /// A smooth target through the `attitudes` at the ascending `times`.
+    ///
+    /// # Errors
+    /// Fewer than two times, times that do not ascend, neighbours that are a quarter of a turn apart or more.
+    ///
+    /// # Panics
+    /// When `times` and `attitudes` differ in length.
+    pub fn sampled(times: &[f64], attitudes: &[UnitQuaternion<f64>]) -> Result<Self, Error> {
+        let mut signed: Vec<[f64; 4]> = Vec::with_capacity(attitudes.len());
+        for attitude in attitudes {
+            let mut next = components(attitude);
+            if let Some(last) = signed.last() {
+                let dot: f64 = last.iter().zip(&next).map(|(a, b)| a * b).sum();
+                if dot < 0.0 {
+                    next = next.map(|x| -x);
+                }
+                if dot.abs() <= QUARTER {
+                    return Err(Error::OutOfDomain {
+                        what: "the angle between two samples of target",
+                        law: "less than a quarter of a turn (give more of them)",
+                        value: 2.0 * dot.abs().acos(),
+                    });
+                }
+            }
+            signed.push(next);
+        }
+        let names = [
+            "times",
+            "the span of times",
+            "target",
+            "the spline of target",
+        ];
+        let vectors: Vec<_> = signed
+            .iter()
+            .map(|&[x, y, z, _]| Vector3::new(x, y, z))
+            .collect();
+        let scalars: Vec<_> = signed
+            .iter()
+            .map(|q| Vector3::new(q[3], 0.0, 0.0))
+            .collect();
+        Ok(Self::Sampled(Sampling {
+            vector: Spline::through(names, times, &vectors)?,
+            scalar: Spline::through(names, times, &scalars)?,
+        }))
+    }
+
+    /// The attitude that stays, of a target that does.
+    #[must_use]
+    pub fn fixed(&self) -> Option<&UnitQuaternion<f64>> {
+        match self {
+            Self::Fixed(attitude) => Some(attitude),
+            _ => None,
+        }
+    }
+
+    /// Whether it begins with the motion, wherever in time that is.
+    #[must_use]
+    pub fn needs_epoch(&self) -> bool {
+        match self {
+            Self::Turning { epoch, .. } => epoch.is_none(),
+            Self::Down(path) => path.needs_epoch(),
+            Self::Fixed(_) | Self::Sampled(_) => false,
+        }
+    }
+
+    /// That of a motion that began at `t`, for the rest of it.
+    #[must_use]
+    pub fn anchored(self, t: f64) -> Self {
+        match self {
+            Self::Turning {
+                attitude,
+                rate,
+                epoch,
+            } => Self::Turning {
+                attitude,
+                rate,
+                epoch: epoch.or(Some(t)),
+            },
+            Self::Down(path) => Self::Down(path.anchored(t)),
+            Self::Fixed(_) | Self::Sampled(_) => self,
+        }
+    }
+
+    /// The times at which it is not smooth.
+    #[must_use]
+    pub fn breaks(&self) -> &[f64] {
+        match self {
+            Self::Sampled(sampling) => sampling.vector.knots(),
+            Self::Down(path) => path.breaks(),
+            Self::Fixed(_) | Self::Turning { .. } => &[],
+        }
+    }
+
+    /// That it is known from one time to another.
+    ///
+    /// # Errors
+    /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples).
+    pub fn check(&self, from: f64, to: f64) -> Result<(), Error> {
+        match self {
+            Self::Sampled(sampling) => {
+                sampling.vector.check_at(from)?;
+                sampling.vector.check_at(to)
+            }
+            Self::Down(path) => path.check(from, to),
+            Self::Fixed(_) | Self::Turning { .. } => Ok(()),
+        }
+    }
+
+    /// The attitude at time `t` of a motion that began at `start`, and its angular velocity relative to N, components in its own frame.
+    #[must_use]
+    pub fn at(&self, start: f64, t: f64) -> (UnitQuaternion<f64>, Vector3<f64>) {
+        match self {
+            Self::Fixed(attitude) => (*attitude, Vector3::zeros()),
+            Self::Turning {
+                attitude,
+                rate,
+                epoch,
+            } => {
+                let turn = UnitQuaternion::from_scaled_axis(rate * (t - epoch.unwrap_or(start)));
+                // N from the target is turned by the rate, which is in N.
+                let now = turn * attitude;
+                (now, now.inverse_transform_vector(rate))
+            }
+            Self::Down(path) => {
+                let (r, v) = path.at(start, t);
+                let swept = r.cross(&v);
+                let (distance, size) = (r.norm(), swept.norm());
+                let (y, z) = (-swept / size, -r / distance);
+                let axes = Matrix3::from_columns(&[y.cross(&z), y, z]);
+                let rate = Vector3::new(0.0, -size / distance / distance, 0.0);
+                (from_axes(&axes), rate)
+            }
+            Self::Sampled(sampling) => {
+                let [vector, slope] = sampling.vector.at(t);
+                let [scalar, rise] = sampling.scalar.at(t);
+                let q = Quaternion::new(scalar.x, vector.x, vector.y, vector.z);
+                let rate = Quaternion::new(rise.x, slope.x, slope.y, slope.z);
+                // q̇ = ½ q∘ω but for the change of its length, which is the scalar part.
+                let spin = (q.conjugate() * rate).imag() * (2.0 / q.norm_squared());
+                (UnitQuaternion::new_normalize(q), spin)
+            }
+        }
+    }
+}

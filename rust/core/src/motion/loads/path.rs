@@ -1,0 +1,126 @@
+//! Where the body is, from an attractor: an orbit that its attitude does not change.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::kepler::Orbit;
+use super::oblate::Oblate;
+use super::spline::Spline;
+use crate::error::{Error, finite};
+
+/// Position and velocity of C from an attractor, in N, at any time of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path(Way);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Way {
+    /// With the time at which it has the state it was given with; the start of the motion where there is none.
+    Kepler(Orbit, Option<f64>),
+    /// As above.
+    Oblate(Arc<Oblate>, Option<f64>),
+    /// A cubic spline through positions at some times.
+    Sampled(Arc<Spline>),
+}
+
+impl Path {
+    /// A Kepler orbit that has its state at `epoch`, or at the start of the motion.
+    ///
+    /// # Errors
+    /// An `epoch` that is not finite.
+    pub fn kepler(orbit: &Orbit, epoch: Option<f64>) -> Result<Self, Error> {
+        epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
+        Ok(Self(Way::Kepler(*orbit, epoch)))
+    }
+
+    /// An orbit about an oblate attractor, likewise.
+    ///
+    /// # Errors
+    /// An `epoch` that is not finite.
+    pub fn oblate(orbit: Oblate, epoch: Option<f64>) -> Result<Self, Error> {
+        epoch.map_or(Ok(0.0), |epoch| finite("epoch", epoch))?;
+        Ok(Self(Way::Oblate(Arc::new(orbit), epoch)))
+    }
+
+    /// The spline through `positions` at the ascending `times`.
+    ///
+    /// # Errors
+    /// Fewer than two times, times that do not ascend, numbers that are not finite.
+    ///
+    /// # Panics
+    /// When `times` and `positions` differ in length.
+    pub fn sampled(times: &[f64], positions: &[Vector3<f64>]) -> Result<Self, Error> {
+        let names = [
+            "t",
+            "the span of t",
+            "position",
+            "the spline through position",
+        ];
+        let spline = Spline::through(names, times, positions)?;
+        Ok(Self(Way::Sampled(Arc::new(spline))))
+    }
+
+    /// The Kepler orbit and its epoch, where it is one.
+    #[must_use]
+    pub fn as_kepler(&self) -> Option<(&Orbit, Option<f64>)> {
+        match &self.0 {
+            Way::Kepler(orbit, epoch) => Some((orbit, *epoch)),
+            Way::Oblate(..) | Way::Sampled(_) => None,
+        }
+    }
+
+    /// The orbit about an oblate attractor, where it is one.
+    #[must_use]
+    pub fn as_oblate(&self) -> Option<&Oblate> {
+        match &self.0 {
+            Way::Oblate(orbit, _) => Some(orbit),
+            Way::Kepler(..) | Way::Sampled(_) => None,
+        }
+    }
+
+    /// Position and velocity at time `t` of a motion that began at `start`.
+    #[must_use]
+    pub fn at(&self, start: f64, t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        match &self.0 {
+            Way::Kepler(orbit, epoch) => orbit.at(t - epoch.unwrap_or(start)),
+            Way::Oblate(orbit, epoch) => orbit.at(t - epoch.unwrap_or(start)),
+            Way::Sampled(spline) => spline.at(t).into(),
+        }
+    }
+
+    /// Whether it begins with the motion, wherever in time that is.
+    #[must_use]
+    pub fn needs_epoch(&self) -> bool {
+        matches!(self.0, Way::Kepler(_, None) | Way::Oblate(_, None))
+    }
+
+    /// That of a motion that began at `t`, for the rest of it.
+    #[must_use]
+    pub fn anchored(mut self, t: f64) -> Self {
+        if let Way::Kepler(_, epoch) | Way::Oblate(_, epoch) = &mut self.0 {
+            *epoch = epoch.or(Some(t));
+        }
+        self
+    }
+
+    /// The times at which it is not smooth.
+    #[must_use]
+    pub fn breaks(&self) -> &[f64] {
+        match &self.0 {
+            Way::Sampled(spline) => spline.knots(),
+            Way::Kepler(..) | Way::Oblate(..) => &[],
+        }
+    }
+
+    /// That it is known from one time to another.
+    ///
+    /// # Errors
+    /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples).
+    pub fn check(&self, from: f64, to: f64) -> Result<(), Error> {
+        if let Way::Sampled(spline) = &self.0 {
+            spline.check_at(from)?;
+            spline.check_at(to)?;
+        }
+        Ok(())
+    }
+}
