@@ -48,7 +48,9 @@ def watched(what: str, progress: Progress = None) -> Iterator[Tell | None]:
         return
     else:
         kind = type(progress).__name__
-        raise TypeError(f"progress: expected True, False, None or a function of the fraction done, got {kind}")
+        raise TypeError(
+            f"progress: expected True, False, None or a function of the fraction done, got {kind}"
+        )
     if bar is None:
         yield None
         return

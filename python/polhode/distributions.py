@@ -207,9 +207,7 @@ def samples(
     return Samples(rows, order, name)
 
 
-def per_member(
-    function: Callable[[np.random.Generator], Any], *, name: str | None = None
-) -> PerMember:
+def per_member(function: Callable[[np.random.Generator], Any], *, name: str | None = None) -> PerMember:
     """Call a function for each member, with a generator of its own.
 
     For what has no array form; slow, since Python is called for every member. A function that stands for an
@@ -291,5 +289,3 @@ def _broadcast(array: Floats, shape: tuple[int, ...], name: str) -> Floats:
 def _check_name(name: object) -> None:
     if name is not None and not (isinstance(name, str) and name):
         raise TypeError(f"name: expected a word, got {name!r}")
-
-

@@ -75,11 +75,14 @@ class Inputs:
     drawn: dict[str, Any]
 
     def arrays(self) -> dict[str, Floats]:
-        """Give the numbers by their places, without those that are the states at the start."""
+        """Give the numbers by their places, without those that are kept as the states at the start."""
+        kept = self.plan.outputs
         return {
             place: array
             for place, array in self.drawn.items()
-            if isinstance(array, np.ndarray) and place not in ("omega", "attitude")
+            if isinstance(array, np.ndarray)
+            and place not in kept
+            and not (place == "attitude" and "quaternion" in kept)
         }
 
     def made(self, rows: Rows) -> dict[str, Any]:

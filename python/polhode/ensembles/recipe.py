@@ -68,9 +68,7 @@ def _resolved(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> No
         name = place if argument.name is None else given_name(argument.name)
         node = Draw(argument, place, source(seed, name))
     else:
-        parts = {
-            key: _resolved(part, f"{place}.{key}", seed, seen) for key, part in argument.parts().items()
-        }
+        parts = {key: _resolved(part, f"{place}.{key}", seed, seen) for key, part in argument.parts().items()}
         args = tuple(parts[str(index)] for index in range(len(argument.args)))
         node = Make(argument.function, args, tuple((name, parts[name]) for name in sorted(argument.kwargs)))
     seen[id(argument)] = node

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from polhode.ensembles.layout import short_name
 from polhode.ensembles.plan import is_each_alone
 from polhode.errors import PolhodeError
 
@@ -70,9 +71,7 @@ def output(trajectory: Trajectory, name: str) -> Floats:
     return found
 
 
-def run_members(
-    plan: Plan, first: int, count: int, progress: Callable[[float], object] | None = None
-) -> Run:
+def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], object] | None = None) -> Run:
     """Run members of an ensemble.
 
     Parameters
@@ -102,7 +101,8 @@ def run_members(
                 progress((start + fraction * size) / len(able))
 
         ran, trajectory, refused = _each(
-            able[start : start + size], lambda some, tell=tell: inputs.run(some, plan.t, tell if progress else None)
+            able[start : start + size],
+            lambda some, tell=tell: inputs.run(some, plan.t, tell if progress else None),
         )
         faults |= refused
         if trajectory is not None:
@@ -170,5 +170,6 @@ def arrays_of_chunk(
 ) -> dict[str, NDArray[np.generic]]:
     """Run a chunk and give its arrays: states, what was drawn, and the status at the end."""
     run = run_members(plan, *plan.bounds(index), progress)
-    states = {name: run.array(name) for name in plan.outputs}
-    return states | run.inputs.arrays() | {"status": run.status}
+    states = {short_name(name): run.array(name) for name in plan.outputs}
+    drawn = {short_name(place): array for place, array in run.inputs.arrays().items()}
+    return states | drawn | {"status": run.status}
