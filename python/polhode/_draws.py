@@ -103,10 +103,7 @@ class Distribution:
         >>> spin.draw(1, seed=1, first=1).round(3)
         array([[ 0.037, -0.099,  0.993]])
         """
-        if self.name is None:
-            name = argument
-        else:
-            name = given_name(self.name)
+        name = argument if self.name is None else given_name(self.name)
         return self.rows(source(seed, name), first, n)
 
     def rows(self, source: Source, first: int, count: int) -> Any:
@@ -132,31 +129,32 @@ class Normal(Distribution):
     mean : numpy.ndarray
     sigma : numpy.ndarray or None
         Standard deviations of independent numbers.
-    factor : numpy.ndarray or None
-        Of the covariance, by which it is ``factor @ factor.T``.
+    factor : numpy.ndarray
+        Of the covariance, which is ``factor @ factor.T``; empty where there is `sigma`.
     name : str or None
     """
 
     mean: Floats
     sigma: Floats | None
-    factor: Floats | None
+    factor: Floats
     name: str | None = None
 
     def rows(self, source: Source, first: int, count: int) -> Floats:
         """Draw numbers of members, shape (count, ...)."""
         width = self.mean.size
         plain = _core.random_numbers("normal", *source, first, count, width)
-        if self.factor is None:
-            scaled = plain * np.ravel(self.sigma)
+        if self.sigma is not None:
+            scaled = plain * self.sigma.ravel()
         else:
-            # One product and one sum after the other: a library's matrix product rounds differently on each machine.
+            # Product by product and sum by sum: a matrix product rounds differently on each machine.
             scaled = np.zeros((count, width))
             for step in range(width):
                 scaled += plain[:, step, np.newaxis] * self.factor[:, step]
-        return (self.mean.ravel() + scaled).reshape(count, *self.mean.shape)
+        found: Floats = (self.mean.ravel() + scaled).reshape(count, *self.mean.shape)
+        return found
 
     def __repr__(self) -> str:
-        spread = {"sigma": self.sigma} if self.factor is None else {"factor": self.factor}
+        spread = {"factor": self.factor} if self.sigma is None else {"sigma": self.sigma}
         return one_line(self, {"mean": self.mean, **spread} | _named(self))
 
 
@@ -227,7 +225,8 @@ class Samples(Distribution):
         size = len(self.values)
         if self.order == "with replacement":
             parts = _core.random_numbers("uniform", *source, first, count, 1)[:, 0]
-            return self.values[(parts * size).astype(np.int64)]
+            found: Floats = self.values[(parts * size).astype(np.int64)]
+            return found
         self.check(first + count, "n")
         if self.order == "shuffled":
             return self.values[_shuffled(source, size)[first : first + count]]
@@ -288,7 +287,7 @@ class Made:
     kwargs: dict[str, Any] = field(default_factory=dict)
 
     def parts(self) -> dict[str, Any]:
-        """Give the arguments by position or name, in an order that does not depend on how they were written."""
+        """Give the arguments by position or name, names in the order of the alphabet."""
         return {str(place): part for place, part in enumerate(self.args)} | dict(sorted(self.kwargs.items()))
 
     def __repr__(self) -> str:
@@ -305,7 +304,7 @@ def _shuffled(source: Source, size: int) -> NDArray[np.int64]:
 
 
 def _counter(member: int) -> NDArray[np.uint64]:
-    """Give where a member's own generator begins: apart from the counters of the core, whose last word is 0."""
+    """Give where a member's own generator begins; counters of the core end in 0."""
     return np.array([0, 0, member, 1], dtype=np.uint64)
 
 

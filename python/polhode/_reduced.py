@@ -23,12 +23,12 @@ class Means(NamedTuple):
     ----------
     mean : numpy.ndarray
         Not a number where no member is left.
-    count, left_out : int
+    members, left_out : int
         Members that are in it, and those that failed.
     """
 
     mean: Floats
-    count: int
+    members: int
     left_out: int
 
     def __repr__(self) -> str:
@@ -43,13 +43,13 @@ class MeansAndCovariance(NamedTuple):
     mean : numpy.ndarray, shape (k,)
     covariance : numpy.ndarray, shape (k, k)
         Divided by one less than the count.
-    count, left_out : int
+    members, left_out : int
         Members that are in it, and those that failed.
     """
 
     mean: Floats
     covariance: Floats
-    count: int
+    members: int
     left_out: int
 
     def __repr__(self) -> str:
@@ -65,7 +65,7 @@ class HistogramCounts(NamedTuple):
     edges : numpy.ndarray, shape (bins + 1,)
     below, above, not_a_number : numpy.ndarray of int, shape (...)
         Those in no bin.
-    count, left_out : int
+    members, left_out : int
         Members that are counted, and those that failed.
     """
 
@@ -74,7 +74,7 @@ class HistogramCounts(NamedTuple):
     below: Counts
     above: Counts
     not_a_number: Counts
-    count: int
+    members: int
     left_out: int
 
     def __repr__(self) -> str:
@@ -91,14 +91,14 @@ class QuantileLevels(NamedTuple):
         Not a number where a member's is not.
     rank_error : float
         By which part of all members the rank of a value may be wrong, at most; 0 where they are exact.
-    count, left_out : int
+    members, left_out : int
         Members that are in it, and those that failed.
     """
 
     q: Floats
     values: Floats
     rank_error: float
-    count: int
+    members: int
     left_out: int
 
     def __repr__(self) -> str:
@@ -113,13 +113,13 @@ class ModeTable(NamedTuple):
     modes : tuple of str
     table : numpy.ndarray of int, shape (modes, modes)
         Members by their mode at the start (row) and at the end (column).
-    count, left_out : int
+    members, left_out : int
         Members that are counted, and those that failed.
     """
 
     modes: tuple[str, ...]
     table: Counts
-    count: int
+    members: int
     left_out: int
 
     def __repr__(self) -> str:

@@ -6,7 +6,6 @@ the library nor on the machine.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -29,20 +28,20 @@ def halved(rows: Floats) -> Floats:
 
 
 class Moments(NamedTuple):
-    """Of some members: how many, their mean, and the sum of products of deviations from it, where asked for."""
+    """Of some members: how many, their mean, and, where asked for, the products of deviations summed."""
 
-    count: int
+    members: int
     mean: Floats
     products: Floats | None
 
     def merged(self, other: Moments) -> Moments:
         """Those of both, after Chan, Golub and LeVeque."""
-        count = self.count + other.count
+        count = self.members + other.members
         step = other.mean - self.mean
-        mean = self.mean + step * (other.count / count)
+        mean = self.mean + step * (other.members / count)
         if self.products is None or other.products is None:
             return Moments(count, mean, None)
-        between = step[:, np.newaxis] * step * (self.count * (other.count / count))
+        between = step[:, np.newaxis] * step * (self.members * (other.members / count))
         return Moments(count, mean, self.products + other.products + between)
 
 

@@ -1,8 +1,8 @@
 """What the members of an ensemble draw: numbers, rotations, samples, bodies and loads made of them.
 
-A member's numbers depend on the seed, on the name of the argument and on the number of the member alone: not on
-how many members there are, nor on how these are cut into chunks. The name is the place of the distribution in
-the call (``"omega"``, ``"body.1"``, ``"load.position"``), unless `name` gives another. Distributions at two
+A member's numbers depend on the seed, on the name of the argument and on the number of the member alone: not
+on how many members there are, nor on how these are cut into chunks. The name is the place of the distribution
+in the call (``"omega"``, ``"body.1"``, ``"load.position"``), unless `name` gives another. Distributions at two
 places draw independent numbers; one object at two places draws the same, and so do two with the same `name`.
 
 The numbers come from Philox4x64-10 with transformations of its own, so that no release of another library
@@ -94,7 +94,7 @@ def normal(
         widths = _fixed(sigma, "sigma")
         if (widths < 0.0).any():
             raise ValueError(f"sigma: expected numbers that are zero or more, got {widths.min():.6g}")
-        return Normal(middle, _broadcast(widths, middle.shape, "sigma"), None, name)
+        return Normal(middle, _broadcast(widths, middle.shape, "sigma"), _kept(np.zeros((0, 0))), name)
     matrix = _fixed(covariance, "covariance")
     if matrix.shape != (middle.size, middle.size):
         size = middle.size
@@ -109,7 +109,8 @@ def normal(
             raise
         raise PolhodeError(f"{error}; the least eigenvalue of the matrix is {least:.3g}") from None
     if not np.count_nonzero(matrix - np.diag(np.diagonal(matrix))):
-        return Normal(middle, _kept(np.sqrt(np.diagonal(matrix)).reshape(middle.shape)), None, name)
+        factor = np.zeros((0, 0))
+        return Normal(middle, _kept(np.sqrt(np.diagonal(matrix)).reshape(middle.shape)), _kept(factor), name)
     return Normal(middle, None, _kept(factor), name)
 
 

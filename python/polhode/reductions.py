@@ -1,11 +1,11 @@
-"""What is kept of an ensemble in place of its states: means, covariances, histograms, quantiles, changes of mode.
+"""What is kept of an ensemble in place of its states: means, covariances, histograms, quantiles, modes.
 
 A reduction is of a number or an array of each member: of the states by name (``"omega"``, ``"quaternion"``,
 ``"position"``, ``"velocity"``, at all times), or of what a function gives for a trajectory of many members,
 with an axis of these in front. Members that failed are left out and counted.
 
-Members are reduced in blocks of 4096 that are merged in a fixed tree: the result has the same bits however the
-work is cut.
+Members are reduced in blocks of 4096 that are merged in a fixed tree: the result has the same bits however
+the work is cut.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ class _Mean(Reduction):
         if state is None:
             return Means(np.array(np.nan), 0, left_out)
         found: Moments = state.of
-        return Means(found.mean.reshape(state.shape), found.count, left_out)
+        return Means(found.mean.reshape(state.shape), found.members, left_out)
 
 
 @final
@@ -139,8 +139,8 @@ class _Covariance(Reduction):
             return MeansAndCovariance(np.full(0, np.nan), np.full((0, 0), np.nan), 0, left_out)
         found: Moments = state.of
         products = np.asarray(found.products)
-        matrix = products / (found.count - 1) if found.count > 1 else np.full_like(products, np.nan)
-        return MeansAndCovariance(found.mean, matrix, found.count, left_out)
+        matrix = products / (found.members - 1) if found.members > 1 else np.full_like(products, np.nan)
+        return MeansAndCovariance(found.mean, matrix, found.members, left_out)
 
 
 @final

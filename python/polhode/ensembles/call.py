@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 import numpy as np
 
 from polhode import _core
-from polhode._draws import Distribution, Made, PerMember
+from polhode._draws import Distribution, Made
 from polhode.distributions import per_member
 from polhode.ensembles.cluster import check_client
 from polhode.ensembles.plan import VECTORS, Inputs, Plan, is_each_alone
@@ -57,8 +57,8 @@ def ensemble(
     """Make an ensemble: one motion, many times over, with numbers that are drawn.
 
     Every argument of :meth:`RigidBody.simulate` that describes the body, the load or the start may be a
-    distribution of :mod:`polhode.distributions`, or a function of a random generator. Member k's numbers depend
-    on `seed`, on the name of the argument and on k alone.
+    distribution of :mod:`polhode.distributions`, or a function of a random generator. Member k's numbers
+    depend on `seed`, on the name of the argument and on k alone.
 
     Parameters
     ----------
@@ -77,8 +77,8 @@ def ensemble(
     about, method, rtol, atol, states
         As of :meth:`RigidBody.simulate`.
     outputs : sequence of str, optional
-        Which states are kept: of ``"omega"``, ``"quaternion"``, ``"position"``, ``"velocity"`` and the names of
-        the load's own states. By default the first two, those of the load, and position and velocity where
+        Which states are kept: of ``"omega"``, ``"quaternion"``, ``"position"``, ``"velocity"`` and the names
+        of the load's own states. By default the first two, those of the load, and position and velocity where
         either is given.
     on_failure : {"keep", "raise"}, optional
         A member whose numbers make no body or whose integration fails has a `status` that says so and states
@@ -115,6 +115,8 @@ def ensemble(
     given |= {f"states.{name}": value for name, value in sorted((states or {}).items())}
     arguments = {place: _argument(place, value) for place, value in given.items()}
     times = _core.real_numbers(t, "t").copy()
+    # A body at rest is nowhere sooner than at times that make no run.
+    _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0.0, 0.0, 0.0))
     times.setflags(write=False)
     plan = Plan(
         recipe=resolved(arguments, seed),
@@ -130,8 +132,8 @@ def ensemble(
         draw.distribution.check(size, place)
     if about == "origin" and method == "auto" and any(draws(plan.recipe["body"])):
         raise ValueError(
-            'method: "auto" would choose by the bodies of a chunk, and bodies are drawn; with about="origin" name '
-            'one: "exact" where all are symmetric tops under gravity, else "taylor" or "dop853"'
+            'method: "auto" would choose by the bodies of a chunk, and bodies are drawn; with about="origin" '
+            'name one: "exact" where all are symmetric tops under gravity, else "taylor" or "dop853"'
         )
     _check_reduce(reduce, plan)
     if client is not None:
@@ -164,14 +166,14 @@ def _argument(place: str, value: Any) -> Any:
     if place in ("body", "load"):
         kind = "RigidBody" if place == "body" else "Load"
         raise TypeError(
-            f"{place}: expected a {kind}, a distribution, distributions.made(...) or a function of a generator, "
-            f"got {type(value).__name__}"
+            f"{place}: expected a {kind}, a distribution, distributions.made(...) or a function of a "
+            f"generator, got {type(value).__name__}"
         )
     array = _core.real_numbers(value, place).copy()
     if array.ndim != 1 or array.shape != (VECTORS.get(place, array.size),):
         raise ValueError(
-            f"{place}: expected {VECTORS.get(place, 'some')} numbers for all members, got shape {array.shape}; "
-            "a row for each goes in distributions.samples"
+            f"{place}: expected {VECTORS.get(place, 'some')} numbers for all members, got shape "
+            f"{array.shape}; a row for each goes in distributions.samples"
         )
     array.setflags(write=False)
     return array
@@ -200,13 +202,13 @@ def _check_reduce(reduce: Any, plan: Plan) -> None:
                 raise TypeError(f"reduce: {name!r} is no reduction but {type(one).__name__}")
     if plan.chunk % BLOCK and plan.chunks > 1:
         raise ValueError(
-            f"chunk: with reduce= it must be a multiple of {BLOCK}, the blocks that are merged in a fixed tree so "
-            f"that bits are the same for every chunk; got {plan.chunk}"
+            f"chunk: with reduce= it must be a multiple of {BLOCK}, the blocks that are merged in a fixed "
+            f"tree so that bits are the same for every chunk; got {plan.chunk}"
         )
     if is_each_alone(plan):
         raise ValueError(
-            "load: a function gives one load for each member, and members that are run one by one are not reduced; "
-            "make loads of what is drawn by distributions.made"
+            "load: a function gives one load for each member, and members that are run one by one are not "
+            "reduced; make loads of what is drawn by distributions.made"
         )
 
 
@@ -237,10 +239,11 @@ def _trial(plan: Plan) -> Any:
     if not len(able):
         fault = faults[0]
         raise type(fault)(f"none of the first {inputs.count} members can begin; member 0: {fault}")
-    last: PolhodeError | None = None
+    faults = {}
     for row in able:
         try:
             return inputs.run(np.array([row]), plan.t[:1])
         except PolhodeError as error:
-            last = error
-    raise type(last)(f"none of the first {inputs.count} members can begin: {last}")
+            faults[int(row)] = error
+    row, fault = next(iter(faults.items()))
+    raise type(fault)(f"none of the first {inputs.count} members can begin; member {row}: {fault}")

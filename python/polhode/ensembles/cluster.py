@@ -54,8 +54,8 @@ def chunks_of_client(
     distributed = require("distributed", extra="cluster", purpose="client=")
     _check_workers(client)
     plan = task.plan
-    # As a task of its own, whose argument the scheduler keeps: a worker that comes later, or in place of one that
-    # died, gets it as the others did.
+    # As a task of its own, whose argument the scheduler keeps: a worker that comes later, or in place of one
+    # that died, gets it as the others did.
     held = client.submit(_received, _sent(task), build(), pure=False)
     waiting = iter(pending)
     done = plan.n - sum(plan.bounds(index)[1] for index in pending)
@@ -76,7 +76,7 @@ def chunks_of_client(
         for future in under_way:
             index = places.pop(future)
             result: R = future.result()
-            # Whatever the result is used for, its place on the worker is free now, and the next one may begin.
+            # The worker may forget it, and the next one may begin.
             future.release()
             following = begun()
             if following is not None:
@@ -122,7 +122,7 @@ def _received(data: bytes, wanted: tuple[str, str]) -> Any:
             f"this worker has {_told(build())} and the client {_told(wanted)}; "
             "the same package must be installed on all of them"
         )
-    return pickle.loads(data)  # noqa: S301
+    return pickle.loads(data)
 
 
 def _done(task: Any, index: int) -> Any:

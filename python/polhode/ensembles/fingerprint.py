@@ -93,7 +93,8 @@ def _inner(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
             yield value.co_code
             yield from _words((value.co_names, value.co_varnames, value.co_consts), above)
         case type() | BuiltinFunctionType() | ModuleType():
-            yield f"{getattr(value, '__module__', '')}.{getattr(value, '__qualname__', value.__name__)}".encode()
+            name = getattr(value, "__qualname__", value.__name__)
+            yield f"{getattr(value, '__module__', '')}.{name}".encode()
         case _:
             reduced = value.__reduce_ex__(2)
             yield from _words(reduced if isinstance(reduced, str) else tuple(reduced[:3]), above)

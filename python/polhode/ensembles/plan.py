@@ -1,4 +1,4 @@
-"""What an ensemble is, as plain values that go to other processes: who runs a chunk of it needs nothing else."""
+"""What an ensemble is, as plain values that go to other processes: all that a chunk of it needs."""
 
 from __future__ import annotations
 

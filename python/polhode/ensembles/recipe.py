@@ -1,4 +1,4 @@
-"""The arguments of an ensemble with the source of every number that is drawn, and what members make of them."""
+"""Arguments with the source of every number that is drawn, and what members make of them."""
 
 from __future__ import annotations
 

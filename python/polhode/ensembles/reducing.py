@@ -19,7 +19,7 @@ __all__ = ["Nodes", "State", "nodes_of_chunk", "tree_of"]
 
 
 class State(NamedTuple):
-    """What is known of some members: a state of each reduction, None without a member, and how many failed."""
+    """Of some members: a state of each reduction, None without a member, and how many failed."""
 
     parts: tuple[Any, ...]
     left_out: int

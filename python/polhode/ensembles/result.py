@@ -163,8 +163,8 @@ class Ensemble:
         -------
         xarray.Dataset or object
             Without `reduce` the states: ``omega`` (member, time, axis), ``quaternion`` (member, time,
-            quaternion_component), ``status`` (member), those of the load, and what was drawn, under the name of the
-            argument. With it the result of the reduction, or a dict of results.
+            quaternion_component), ``status`` (member), those of the load, and what was drawn, under the
+            name of the argument. With it the result of the reduction, or a dict of results.
 
         Raises
         ------
@@ -248,8 +248,8 @@ class Ensemble:
             store.write(index, arrays)
 
     def _reduced(self) -> Any:
-        named = self.reduce if isinstance(self.reduce, dict) else {"": self.reduce}
-        reductions: tuple[Reduction, ...] = tuple(named.values())
+        named: dict[str, Any] = self.reduce if isinstance(self.reduce, dict) else {"": self.reduce}
+        reductions = tuple(named.values())
         tree = tree_of(self.plan, reductions)
         work = partial(nodes_of_chunk, self.plan, reductions)
         for _, nodes in self._run(work, range(self.plan.chunks)):

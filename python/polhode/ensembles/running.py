@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
 
@@ -29,6 +30,8 @@ T = TypeVar("T")
 REFUSED: Final = "refused"
 """The status of a member that has no motion: its numbers make no body, load or state."""
 FAILED: Final = ("failed", REFUSED)
+_ROW: Final = re.compile(r"row [\d, ()]+: ")
+"""How errors of stacks name a row of theirs, which is none of the ensemble's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +55,7 @@ class Run:
         return found
 
     def array(self, name: str) -> Floats:
-        """Give an array of the trajectories with a row for every member, not numbers for those that were not run."""
+        """Give an array of the trajectories with a row for every member, NaN for those that were not run."""
         parts = [output(trajectory, name) for trajectory in self.trajectories]
         if len(parts) == 1 and len(parts[0]) == self.inputs.count:
             return parts[0]
@@ -100,10 +103,10 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
             if progress is not None:
                 progress((start + fraction * size) / len(able))
 
-        ran, trajectory, refused = _each(
-            able[start : start + size],
-            lambda some, tell=tell: inputs.run(some, plan.t, tell if progress else None),
-        )
+        def attempt(some: Rows, tell: Callable[[float], object] = tell) -> Trajectory:
+            return inputs.run(some, plan.t, tell if progress is not None else None)
+
+        ran, trajectory, refused = _each(able[start : start + size], attempt, is_run=True)
         faults |= refused
         if trajectory is not None:
             rows.append(ran)
@@ -119,7 +122,8 @@ def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
     """Tell which members have a body, a load and a state to begin with, and why others have not."""
     size = 1 if is_each_alone(inputs.plan) else max(inputs.count, 1)
     every = np.arange(inputs.count)
-    able, faults = [every[:0]], {}
+    able: list[Rows] = [every[:0]]
+    faults: dict[int, PolhodeError] = {}
     for start in range(0, inputs.count, size):
         rows, _, refused = _each(every[start : start + size], inputs.made)
         able.append(rows)
@@ -127,18 +131,25 @@ def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
     return np.concatenate(able), faults
 
 
-def _each(rows: Rows, attempt: Callable[[Rows], T]) -> tuple[Rows, T | None, dict[int, PolhodeError]]:
+def _each(
+    rows: Rows, attempt: Callable[[Rows], T], *, is_run: bool = False
+) -> tuple[Rows, T | None, dict[int, PolhodeError]]:
     """Attempt all at once; where that is refused in halves, down to the members that are at fault.
 
-    Only refusals of values count: wrong types and shapes are mistakes of the whole call.
+    Only refusals of values count: wrong types and shapes are mistakes of the whole call, and so is what a run
+    refuses without naming a row.
     """
     try:
         return rows, attempt(rows), {}
     except PolhodeError as error:
+        named = _ROW.match(str(error))
+        if is_run and not named:
+            raise
         if len(rows) == 1:
+            error.args = (_ROW.sub("", str(error), count=1),)
             return rows[:0], None, {int(rows[0]): error}
     half = len(rows) // 2
-    parts = [_each(rows[:half], attempt), _each(rows[half:], attempt)]
+    parts = [_each(rows[:half], attempt, is_run=is_run), _each(rows[half:], attempt, is_run=is_run)]
     able = np.concatenate([part[0] for part in parts])
     faults = parts[0][2] | parts[1][2]
     return able, attempt(able) if len(able) else None, faults
@@ -151,18 +162,19 @@ def _raise_first(run: Run, faults: dict[int, PolhodeError]) -> None:
         return
     row = int(failed[0])
     member = run.inputs.first + row
-    fault: PolhodeError | None = faults.get(row)
-    if fault is None:
-        place = int(np.flatnonzero(run.rows == row)[0])
-        for trajectory in run.trajectories:
-            size = trajectory.status.size
-            if place < size:
-                fault = next(one for one in trajectory.failures if getattr(one, "row", 0) == place)
-                break
-            place -= size
-    told = type(fault)(f"member {member}: {fault}")
+    fault = faults[row] if row in faults else _failure(run, row)
+    told = type(fault)(f"member {member}: {_ROW.sub('', str(fault), count=1)}")
     told.__dict__.update(vars(fault))
     raise told
+
+
+def _failure(run: Run, row: int) -> PolhodeError:
+    """Give the failure of a member that was run."""
+    place = int(np.flatnonzero(run.rows == row)[0])
+    if len(run.trajectories) > 1:  # each of one member
+        return run.trajectories[place].failures[0]
+    failures = run.trajectories[0].failures
+    return next(fault for fault in failures if getattr(fault, "row", 0) == place)
 
 
 def arrays_of_chunk(

@@ -1,4 +1,4 @@
-"""States of blocks merged in a binary tree that depends on the number of blocks alone, in whatever order they come."""
+"""States of blocks, merged in a tree that depends on their number alone, whatever order they come in."""
 
 from __future__ import annotations
 
