@@ -52,7 +52,7 @@ def all_bytes(result: Any) -> bytes:
 
 def slow(**options: Any) -> polhode.Ensemble:
     """Chunks that take about a tenth of a second each."""
-    return twisted(2000, t=(0.0, 40.0), chunk=100, **options)
+    return twisted(2000, t=(0.0, 80.0), chunk=100, **options)
 
 
 if __name__ == "__main__":

@@ -85,7 +85,7 @@ class Reduction(ABC):
         of = self.__dict__.get("of")
         if of is not None:
             parts["of"] = of if isinstance(of, str) else getattr(of, "__qualname__", repr(of))
-        return one_line(self, parts)
+        return one_line(self, parts).removeprefix("_")
 
 
 class _State(NamedTuple):

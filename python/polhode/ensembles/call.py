@@ -115,7 +115,7 @@ def ensemble(
     given |= {f"states.{name}": value for name, value in sorted((states or {}).items())}
     arguments = {place: _argument(place, value) for place, value in given.items()}
     times = _core.real_numbers(t, "t").copy()
-    # A body at rest is nowhere sooner than at times that make no run.
+    # Times that make no run are refused now, by one that costs nothing.
     _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0.0, 0.0, 0.0))
     times.setflags(write=False)
     plan = Plan(

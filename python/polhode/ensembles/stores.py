@@ -104,7 +104,11 @@ class ZarrStore:
         # The second format has fixed-width words, and every reader of today knows it.
         self.group = zarr.open_group(path, mode="w", zarr_format=2)
         for name, (axis, values) in coordinates(plan).items():
-            array = self.group.create_array(name, data=np.asarray(values))
+            values = np.asarray(values)
+            # By default zero stands for what is missing, and a time of zero is read as none.
+            missing = np.nan if values.dtype.kind == "f" else ""
+            array = self.group.create_array(name, shape=values.shape, dtype=values.dtype, fill_value=missing)
+            array[:] = values
             array.attrs["_ARRAY_DIMENSIONS"] = [axis]
         for name, variable in layout(plan).items():
             array = self.group.create_array(
