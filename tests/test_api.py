@@ -24,8 +24,10 @@ from polhode import RigidBody, loads, solids
 ROOT = Path(__file__).resolve().parents[1]
 MODULES = [
     "polhode",
+    "polhode.distributions",
     "polhode.forms",
     "polhode.laminae",
+    "polhode.reductions",
     "polhode.regions",
     "polhode.rods",
     "polhode.solids",
@@ -59,6 +61,10 @@ HEAVY = (
     "pandas",
     "PIL",
     "pyvista",
+    "dask",
+    "distributed",
+    "xarray",
+    "zarr",
 )
 
 
@@ -106,6 +112,7 @@ class TestNames:
         known = {
             "animation",
             "cli",
+            "ensembles",
             "events",
             "free_motion",
             "gyrostat",

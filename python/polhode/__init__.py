@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from polhode import (
+        distributions,
         equimomental,
         errors,
         euler_angles,
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
         loads,
         orbits,
         parallel_axis,
+        reductions,
         regions,
         rods,
         solids,
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
         principal_axes,
         principal_moments,
     )
+    from polhode.ensembles.call import Ensemble, ensemble
     from polhode.events import Event, Events
     from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
     from polhode.gyrostat import Bifurcations, Equilibria, Wheel, wheel
@@ -81,6 +84,7 @@ _HOMES = (
     "polhode.trajectory",
     "polhode.events",
     "polhode.free_motion",
+    "polhode.ensembles.call",
 )
 """Modules whose names are public here; the other names are modules."""
 
@@ -88,6 +92,7 @@ __all__ = [
     "AngularMomentum",
     "Bifurcations",
     "Cones",
+    "Ensemble",
     "Equilibria",
     "ErrorBar",
     "ErrorBound",
@@ -119,6 +124,8 @@ __all__ = [
     "Uncertain",
     "Wheel",
     "__version__",
+    "distributions",
+    "ensemble",
     "equimomental",
     "errors",
     "euler_angles",
@@ -130,6 +137,7 @@ __all__ = [
     "parallel_axis",
     "principal_axes",
     "principal_moments",
+    "reductions",
     "regions",
     "rods",
     "solids",

@@ -49,6 +49,7 @@ __all__ = [
     "cone",
     "constant_force",
     "constant_torque",
+    "covariance_factor",
     "cube",
     "cylinder",
     "damping",
@@ -87,6 +88,7 @@ __all__ = [
     "pyramid",
     "quaternion_from_euler_angles",
     "quaternion_from_matrix",
+    "random_numbers",
     "ray_kappa",
     "read_plates",
     "read_stl",
@@ -910,3 +912,12 @@ def stream_solid(
     orient: bool = False,
     progress: Callable[[float], object] | None = None,
 ) -> tuple[RigidBody, int, float, float]: ...
+def covariance_factor(covariance: ArrayLike) -> _Floats: ...
+def random_numbers(
+    law: Literal["bits", "uniform", "normal", "rotation"],
+    seed: int,
+    stream: int,
+    first: int,
+    count: int,
+    width: int,
+) -> Any: ...

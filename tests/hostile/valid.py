@@ -96,6 +96,7 @@ VALUES: dict[str, Any] = {
     "initial": [0.5, 0.0], "wrench": None, "update": None, "period": None,
     "scale": None, "wheels": None, "dipole": [0.5, 0.25, 0.0], "field": [0.0, 0.5, 0.25], "gain": 0.125,
     "elapsed": 0.5, "limit": None, "strength": [0.0, 0.5, 0.25],
+    "law": "normal", "seed": 7, "stream": 9, "first": 3, "count": 5, "width": 4,
     "value": [1.0, 2.0], "sigma": [0.125, 0.25], "covariance": None, "source": None,
 }  # fmt: skip
 """What a parameter of this name takes; numbers that float32 has too."""
@@ -136,6 +137,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "MassAccumulator.merge": {"other": polhode.MassAccumulator()},
     "canonical_axes": {"axes": np.eye(3).tolist()},
     "principal_derivative": {"axes": np.eye(3).tolist()},
+    "covariance_factor": {"covariance": [[1.0, 0.5], [0.5, 2.0]]},
     "rectangle": {"size": [1.0, 2.0]},
     "ellipse": {"semi_axes": [1.0, 2.0]},
     "triangle": {"vertices": [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]},

@@ -8,6 +8,7 @@
 //! | `I = V diag(I₁, I₂, I₃) Vᵀ` | [`principal`] |
 //! | `I ω̇ + ω × I ω = N`, `q̇ = ½ q∘ω`, `T = ½ ω·I ω`, `L = I ω` | [`motion`] |
 //! | `Σ = S Sᵀ`: what is not known of a body, and what it makes of all that follows | [`uncertainty`] |
+//! | numbers drawn for the members of an ensemble | [`random`] |
 //! | triangles from files | [`io`] |
 //! | eigenvalues, sums, lanes, threads: the only part that is not physics | [`numerics`] |
 //! | what can be wrong, as plain data | [`error`] |
@@ -49,6 +50,7 @@ pub mod mass;
 pub mod motion;
 pub mod numerics;
 pub mod principal;
+pub mod random;
 pub mod uncertainty;
 
 pub use error::Error;

@@ -50,6 +50,7 @@ mod orbits;
 mod parallel_axis;
 mod particles;
 mod principal;
+mod random;
 mod realizable;
 mod regions;
 mod rigid_body;
@@ -118,6 +119,8 @@ mod _core {
         canonical_axes, classify_tops, principal_axes, principal_derivative, principal_gaps,
         principal_moments, ray_kappa,
     };
+    #[pymodule_export]
+    use crate::random::{covariance_factor, random_numbers};
     #[pymodule_export]
     use crate::realizable::{nearest_valid, within_box};
     #[pymodule_export]

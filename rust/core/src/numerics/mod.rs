@@ -21,6 +21,7 @@
 //! | [`jet`] | numbers with their derivatives |
 //! | `assign` | `+=` and its like, by `+` and its like |
 //! | [`parabola`] | numbers to second order along a line |
+//! | [`covariance`] | factors of covariances, also of semidefinite ones |
 //! | [`quadrature`] | adaptive integrals over boxes, with their errors |
 //! | [`sign_changes`] | all places in an interval at which a polynomial changes its sign |
 //! | [`threads`] | large stacks on all cores, with progress and Ctrl-C |
@@ -31,6 +32,7 @@
 
 mod assign;
 pub mod complex;
+pub mod covariance;
 pub mod dispatch;
 pub mod double_double;
 pub mod eigen3;

@@ -1,7 +1,8 @@
 //! Standard deviations and covariances that are given, as linear forms of standard normal variables.
 
 use super::variable::{Source, Variable};
-use crate::error::{Error, UncertaintyFault, finite};
+use crate::error::{Error, finite};
+use crate::numerics::covariance::factor;
 
 /// A linear form: what one standard deviation of each variable does to a number, in the order of the variables.
 pub type Form = Vec<(Variable, f64)>;
@@ -12,9 +13,6 @@ pub struct Given {
     /// The forms.
     pub forms: Vec<Form>,
 }
-
-/// What is left of a variance, relative to it, that is rounding.
-const ROUNDING: f64 = 1e-13;
 
 impl Given {
     /// Independent numbers with these standard deviations; one without has no variable.
@@ -52,47 +50,14 @@ impl Given {
     /// When the matrix is not symmetric, or some combination of the numbers would have a negative variance.
     pub fn correlated(covariance: &[f64], source: Source) -> Result<Self, Error> {
         let count = covariance.len().isqrt();
-        let (scale, mut rest) = correlations(covariance, count)?;
-        // Cholesky's decomposition of the correlations, so that numbers of any units stand side by side; the number with most of
-        // its variance left comes next, so that what is left at the end is rounding or no covariance.
-        let mut forms = vec![Form::new(); count];
-        for step in 0..count {
-            let left = |i: usize| rest[i * count + i];
-            let pivot = (0..count)
-                .max_by(|&i, &j| left(i).total_cmp(&left(j)))
-                .unwrap_or(0);
-            if left(pivot) <= ROUNDING {
-                break;
-            }
-            let root = left(pivot).sqrt();
-            let column: Vec<f64> = (0..count).map(|i| rest[i * count + pivot] / root).collect();
-            for i in 0..count {
-                for j in 0..count {
-                    rest[i * count + j] -= column[i] * column[j];
-                }
-                if column[i] != 0.0 {
-                    forms[i].push((variable(source, step), scale[i] * column[i]));
-                }
-            }
-            // What the pivot explains of itself is all of it.
-            for i in 0..count {
-                rest[i * count + pivot] = 0.0;
-                rest[pivot * count + i] = 0.0;
-            }
-        }
-        // Where a variance is used up nothing may be left beside it.
-        for i in 0..count {
-            let worst = (0..count)
-                .map(|j| rest[i * count + j])
-                .fold(0.0_f64, |a, b| if b.abs() > a.abs() { b } else { a });
-            if worst.abs() > ROUNDING * (count as f64) {
-                return Err(UncertaintyFault::NotPositive {
-                    index: i,
-                    left: -worst.abs(),
-                }
-                .into());
-            }
-        }
+        let factor = factor(covariance)?;
+        let form = |row: &[f64]| {
+            let parts = row.iter().enumerate();
+            (parts.filter(|(_, part)| **part != 0.0))
+                .map(|(step, &part)| (variable(source, step), part))
+                .collect()
+        };
+        let forms = factor.chunks(count.max(1)).map(form).collect();
         Ok(Self { forms })
     }
 
@@ -111,50 +76,6 @@ impl Given {
     }
 }
 
-/// Standard deviations, and the matrix of correlations by rows.
-fn correlations(covariance: &[f64], count: usize) -> Result<(Vec<f64>, Vec<f64>), Error> {
-    let at = |i: usize, j: usize| covariance[i * count + j];
-    for i in 0..count {
-        for j in 0..count {
-            finite("covariance", at(i, j))?;
-        }
-        if at(i, i) < 0.0 {
-            return Err(UncertaintyFault::NegativeVariance {
-                index: i,
-                variance: at(i, i),
-            }
-            .into());
-        }
-    }
-    let scale: Vec<f64> = (0..count).map(|i| at(i, i).sqrt()).collect();
-    let mut matrix = vec![0.0; count * count];
-    for i in 0..count {
-        for j in 0..count {
-            let (a, b) = (at(i, j), at(j, i));
-            if (a - b).abs() > 1e-12 * (scale[i] * scale[j]) {
-                return Err(UncertaintyFault::NotSymmetric {
-                    row: i,
-                    column: j,
-                    a,
-                    b,
-                }
-                .into());
-            }
-            if scale[i] > 0.0 && scale[j] > 0.0 {
-                matrix[i * count + j] = 0.5 * (a / scale[i] / scale[j] + b / scale[i] / scale[j]);
-            } else if a != 0.0 {
-                // Of a number that is known, with another.
-                return Err(UncertaintyFault::NotPositive {
-                    index: i.max(j),
-                    left: -a.abs(),
-                }
-                .into());
-            }
-        }
-    }
-    Ok((scale, matrix))
-}
-
 /// Component `index` of a source, of which there are fewer than 2³².
 fn variable(source: Source, index: usize) -> Variable {
     source.variable(u32::try_from(index).unwrap_or(u32::MAX))
@@ -163,6 +84,7 @@ fn variable(source: Source, index: usize) -> Variable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::UncertaintyFault;
 
     #[test]
     fn a_covariance_comes_back() {

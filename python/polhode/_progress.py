@@ -1,0 +1,109 @@
+"""A bar on stderr that shows how far long work is and when it will be over."""
+
+from __future__ import annotations
+
+import sys
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from typing import TextIO
+
+    Tell: TypeAlias = Callable[[float], object]
+    Progress: TypeAlias = bool | Tell | None
+
+__all__ = ["duration", "watched"]
+
+_SILENT: Final = 2.0
+"""Seconds within which nothing is shown: most work is over by then."""
+_BETWEEN: Final = 0.2
+_WIDTH: Final = 30
+
+
+@contextmanager
+def watched(what: str, progress: Progress = None) -> Iterator[Tell | None]:
+    """Give a function that takes the fraction done; None where nobody is told.
+
+    Parameters
+    ----------
+    what : str
+        The words before the bar.
+    progress : bool or callable, optional
+        A function of one's own, called with the fraction; True and False for a bar and none. By default a
+        bar where stderr is a terminal, once two seconds have passed.
+
+    Yields
+    ------
+    callable or None
+    """
+    if progress is None:
+        progress = sys.stderr is not None and sys.stderr.isatty()
+        bar = _Bar(what, sys.stderr, _SILENT) if progress else None
+    elif isinstance(progress, bool):
+        bar = _Bar(what, sys.stderr, 0.0) if progress else None
+    elif callable(progress):
+        yield progress
+        return
+    else:
+        kind = type(progress).__name__
+        raise TypeError(
+            f"progress: expected True, False, None or a function of the fraction done, got {kind}"
+        )
+    if bar is None:
+        yield None
+        return
+    try:
+        yield bar.tell
+    finally:
+        bar.clear()
+
+
+def duration(seconds: float) -> str:
+    """Write a time span in words that are as long as they need to be.
+
+    Parameters
+    ----------
+    seconds : float
+
+    Returns
+    -------
+    str
+    """
+    if seconds < 60.0:
+        return f"{seconds:.0f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {rest:02} s"
+
+
+class _Bar:
+    """A line that is written over."""
+
+    def __init__(self, what: str, stream: TextIO, silent: float) -> None:
+        self.what, self.stream = what, stream
+        self.start = time.monotonic()
+        self.due = self.start + silent
+        self.shown = 0
+
+    def tell(self, fraction: float) -> None:
+        now = time.monotonic()
+        if now < self.due:
+            return
+        self.due = now + _BETWEEN
+        full = round(_WIDTH * min(max(fraction, 0.0), 1.0))
+        passed = now - self.start
+        left = f", {duration(passed / fraction - passed)} left" if fraction > 0.0 else ""
+        line = f"{self.what} [{'=' * full}{' ' * (_WIDTH - full)}] {100 * fraction:3.0f} %{left}"
+        self._write(line.ljust(self.shown))
+        self.shown = len(line)
+
+    def clear(self) -> None:
+        if self.shown:
+            self._write(" " * self.shown)
+            self._write("")
+
+    def _write(self, line: str) -> None:
+        self.stream.write(f"\r{line}")
+        self.stream.flush()

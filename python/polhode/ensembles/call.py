@@ -1,0 +1,249 @@
+"""The call that makes an ensemble: what is given is looked at before anything is run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+
+from polhode import _core
+from polhode._draws import Distribution, Made
+from polhode.distributions import per_member
+from polhode.ensembles.cluster import check_client
+from polhode.ensembles.plan import VECTORS, Inputs, Plan, is_each_alone
+from polhode.ensembles.recipe import draws, resolved
+from polhode.ensembles.result import Ensemble
+from polhode.ensembles.running import admitted, output
+from polhode.ensembles.tree import BLOCK
+from polhode.errors import PolhodeError
+from polhode.reductions import Reduction
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from polhode._progress import Progress
+
+__all__ = ["Ensemble", "ensemble"]
+
+_PROBED: Final = 16
+"""If so many members cannot begin, the call is wrong rather than their luck."""
+
+
+def ensemble(
+    body: Any,
+    t: ArrayLike,
+    omega: Any,
+    attitude: Any = None,
+    load: Any = None,
+    *,
+    n: int,
+    seed: int,
+    chunk: int = 4096,
+    position: Any = None,
+    velocity: Any = None,
+    about: Literal["center_of_mass", "origin"] = "center_of_mass",
+    method: str = "auto",
+    rtol: float = 1e-10,
+    atol: float | None = None,
+    states: Mapping[str, Any] | None = None,
+    outputs: Sequence[str] | None = None,
+    on_failure: Literal["keep", "raise"] = "keep",
+    reduce: Reduction | Mapping[str, Reduction] | None = None,
+    client: Any = None,
+    progress: Progress = None,
+) -> Ensemble:
+    """Make an ensemble: one motion, many times over, with numbers that are drawn.
+
+    Every argument of :meth:`RigidBody.simulate` that describes the body, the load or the start may be a
+    distribution of :mod:`polhode.distributions`, or a function of a random generator. Member k's numbers
+    depend on `seed`, on the name of the argument and on k alone.
+
+    Parameters
+    ----------
+    body : RigidBody or distribution
+    t : array_like, shape (T,)
+        Output times, as of :meth:`RigidBody.simulate`.
+    omega, attitude, position, velocity : array_like or distribution
+        At the start, for each member.
+    load : Load or distribution, optional
+    n : int
+        How many members.
+    seed : int
+        From 0 to 2**64 - 1.
+    chunk : int, optional
+        Members that are run, written or sent to a worker together. With `reduce` a multiple of 4096.
+    about, method, rtol, atol, states
+        As of :meth:`RigidBody.simulate`.
+    outputs : sequence of str, optional
+        Which states are kept: of ``"omega"``, ``"quaternion"``, ``"position"``, ``"velocity"`` and the names
+        of the load's own states. By default the first two, those of the load, and position and velocity where
+        either is given.
+    on_failure : {"keep", "raise"}, optional
+        A member whose numbers make no body or whose integration fails has a `status` that says so and states
+        that are not numbers; or it ends the ensemble.
+    reduce : Reduction or dict of str to Reduction, optional
+        What is kept in place of the states, from :mod:`polhode.reductions`.
+    client : distributed.Client, optional
+        Of a dask cluster that runs the chunks; by default the threads of this machine do.
+    progress : bool or callable, optional
+        A function of the fraction done, or whether to show a bar; by default on a terminal after two seconds.
+
+    Returns
+    -------
+    Ensemble
+
+    Examples
+    --------
+    >>> from polhode import RigidBody, distributions, ensemble
+    >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+    >>> spin = distributions.normal((0.0, 0.0, 1.0), sigma=0.1)
+    >>> many = ensemble(body, [0, 10], spin, distributions.uniform_rotation(), n=1000, seed=1)
+    >>> many
+    Ensemble(1000 members, 2 times, seed=1, draws omega, attitude, 1 chunks of 1000, 2.74 MB a chunk)
+    >>> many.compute().omega.shape
+    (1000, 2, 3)
+    """
+    size, cut = _count(n, "n"), _count(chunk, "chunk")
+    if on_failure not in ("keep", "raise"):
+        raise ValueError(f'on_failure: expected "keep" or "raise", got {on_failure!r}')
+    given = {
+        "body": body, "omega": omega, "attitude": attitude, "load": load, "position": position,
+        "velocity": velocity,
+    }  # fmt: skip
+    given |= {f"states.{name}": value for name, value in sorted((states or {}).items())}
+    arguments = {place: _argument(place, value) for place, value in given.items()}
+    times = _core.real_numbers(t, "t").copy()
+    # Times that make no run are refused now, by one that costs nothing.
+    _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0.0, 0.0, 0.0))
+    times.setflags(write=False)
+    plan = Plan(
+        recipe=resolved(arguments, seed),
+        t=times,
+        options={"about": about, "method": method, "rtol": rtol, "atol": atol},
+        n=size,
+        seed=int(seed),
+        chunk=cut,
+        outputs={},
+        raises=on_failure == "raise",
+    )
+    for place, draw in plan.draws().items():
+        draw.distribution.check(size, place)
+    if about == "origin" and method == "auto" and any(draws(plan.recipe["body"])):
+        raise ValueError(
+            'method: "auto" would choose by the bodies of a chunk, and bodies are drawn; with about="origin" '
+            'name one: "exact" where all are symmetric tops under gravity, else "taylor" or "dop853"'
+        )
+    _check_reduce(reduce, plan)
+    if client is not None:
+        check_client(client)
+    plan = Plan(**vars(plan) | {"outputs": _outputs(plan, outputs)})
+    kept = dict(reduce) if reduce is not None and not isinstance(reduce, Reduction) else reduce
+    return Ensemble(plan, kept, client, progress)
+
+
+def _count(number: Any, name: str) -> int:
+    if isinstance(number, bool) or not isinstance(number, int | np.integer):
+        raise TypeError(f"{name}: expected a positive integer, got {number!r}")
+    if not 0 < number < 2**62:
+        raise ValueError(f"{name}: expected a positive integer, got {number}")
+    return int(number)
+
+
+def _argument(place: str, value: Any) -> Any:
+    """Give a distribution, or what is the same for all members in a form that stays as it is."""
+    if isinstance(value, Distribution | Made) or value is None:
+        return value
+    if place == "body" and isinstance(value, _core.RigidBody):
+        return _one(value, place)
+    if place == "load" and isinstance(value, _core.Load):
+        return _one(value, place)
+    if place in VECTORS and hasattr(value, "as_quat"):
+        value = value.as_quat()
+    if callable(value):
+        return per_member(value)
+    if place in ("body", "load"):
+        kind = "RigidBody" if place == "body" else "Load"
+        raise TypeError(
+            f"{place}: expected a {kind}, a distribution, distributions.made(...) or a function of a "
+            f"generator, got {type(value).__name__}"
+        )
+    array = _core.real_numbers(value, place).copy()
+    if array.ndim != 1 or array.shape != (VECTORS.get(place, array.size),):
+        raise ValueError(
+            f"{place}: expected {VECTORS.get(place, 'some')} numbers for all members, got shape "
+            f"{array.shape}; a row for each goes in distributions.samples"
+        )
+    array.setflags(write=False)
+    return array
+
+
+def _one(value: Any, place: str) -> Any:
+    if value.shape:
+        raise ValueError(
+            f"{place}: expected one for all members, got a stack of shape {value.shape}; "
+            "distributions.made makes one for each of what is drawn"
+        )
+    return value
+
+
+def _check_reduce(reduce: Any, plan: Plan) -> None:
+    if reduce is None:
+        return
+    if not isinstance(reduce, Reduction):
+        if not isinstance(reduce, dict) or not reduce:
+            raise TypeError(
+                f"reduce: expected a reduction or a dict of them, got {type(reduce).__name__}; "
+                "polhode.reductions has them"
+            )
+        for name, one in reduce.items():
+            if not isinstance(one, Reduction):
+                raise TypeError(f"reduce: {name!r} is no reduction but {type(one).__name__}")
+    if plan.chunk % BLOCK and plan.chunks > 1:
+        raise ValueError(
+            f"chunk: with reduce= it must be a multiple of {BLOCK}, the blocks that are merged in a fixed "
+            f"tree so that bits are the same for every chunk; got {plan.chunk}"
+        )
+    if is_each_alone(plan):
+        raise ValueError(
+            "load: a function gives one load for each member, and members that are run one by one are not "
+            "reduced; make loads of what is drawn by distributions.made"
+        )
+
+
+def _outputs(plan: Plan, outputs: Sequence[str] | None) -> dict[str, int]:
+    """Give the names of the states that are kept with their components; refuse calls that cannot be run."""
+    trial = _trial(plan)
+    known = {name: output(trial, name).shape[-1] for name in ("omega", "quaternion", "position", "velocity")}
+    own = {name: f"states.{name}" for name in trial.states}
+    known |= {place: output(trial, place).shape[-1] for place in own.values()}
+    if outputs is None:
+        moves = plan.recipe["position"] is not None or plan.recipe["velocity"] is not None
+        names = ["omega", "quaternion", *(("position", "velocity") if moves else ()), *own.values()]
+    else:
+        if isinstance(outputs, str):
+            raise TypeError(f"outputs: expected a sequence of names, got the word {outputs!r}")
+        names = [own.get(name, name) for name in outputs]
+        for name in names:
+            if name not in known:
+                words = [*("omega", "quaternion", "position", "velocity"), *own]
+                raise ValueError(f"outputs: {name!r} is not one of {', '.join(map(repr, words))}")
+    return {name: known[name] for name in dict.fromkeys(names)}
+
+
+def _trial(plan: Plan) -> Any:
+    """Begin the first members, so that what is wrong with all of them is told now."""
+    inputs: Inputs = plan.inputs(0, min(plan.n, _PROBED))
+    able, faults = admitted(inputs)
+    if not len(able):
+        fault = faults[0]
+        raise type(fault)(f"none of the first {inputs.count} members can begin; member 0: {fault}")
+    faults = {}
+    for row in able:
+        try:
+            return inputs.run(np.array([row]), plan.t[:1])
+        except PolhodeError as error:
+            faults[int(row)] = error
+    row, fault = next(iter(faults.items()))
+    raise type(fault)(f"none of the first {inputs.count} members can begin; member {row}: {fault}")

@@ -1,0 +1,129 @@
+"""Chunks of an ensemble on a dask cluster: tasks, of which a bounded number is under way."""
+
+from __future__ import annotations
+
+import pickle
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from polhode._extras import require
+from polhode.ensembles.fingerprint import build
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from polhode.ensembles.engine import Task
+
+__all__ = ["check_client", "chunks_of_client"]
+
+R = TypeVar("R")
+
+
+def check_client(client: Any) -> None:
+    """Refuse what is no client of dask, or one that gives promises in place of results."""
+    distributed = require("distributed", extra="cluster", purpose="client=")
+    if not isinstance(client, distributed.Client):
+        raise TypeError(f"client: expected a dask.distributed.Client, got {type(client).__name__}")
+    if client.asynchronous:
+        raise ValueError("client: it is asynchronous; make one without asynchronous=True")
+
+
+def chunks_of_client(
+    client: Any, task: Task[R], pending: Sequence[int], tell: Callable[[float], object] | None
+) -> Iterator[tuple[int, R]]:
+    """Do chunks on the workers of a cluster, and give them in the order in which they are done.
+
+    Parameters
+    ----------
+    client : distributed.Client
+    task : callable
+    pending : sequence of int
+        The chunks.
+    tell : callable or None
+        Told the fraction of all members that is done.
+
+    Yields
+    ------
+    tuple of int and object
+        The chunk and its result.
+
+    Raises
+    ------
+    RuntimeError
+        Where a worker has another polhode, before any chunk is begun.
+    """
+    distributed = require("distributed", extra="cluster", purpose="client=")
+    _check_workers(client)
+    plan = task.plan
+    # As a task of its own, whose argument the scheduler keeps: a worker that comes later, or in place of one
+    # that died, gets it as the others did.
+    held = client.submit(_received, _sent(task), build(), pure=False)
+    waiting = iter(pending)
+    done = plan.n - sum(plan.bounds(index)[1] for index in pending)
+    places: dict[Any, int] = {}
+
+    def begun() -> Any:
+        """Submit the next chunk, if there is one."""
+        for index in waiting:
+            future = client.submit(_done, held, index, pure=False)
+            places[future] = index
+            return future
+        return None
+
+    threads = sum(client.nthreads().values())
+    first = [future for _ in range(2 * threads + 2) if (future := begun()) is not None]
+    under_way = distributed.as_completed(first)
+    try:
+        for future in under_way:
+            index = places.pop(future)
+            result: R = future.result()
+            # The worker may forget it, and the next one may begin.
+            future.release()
+            following = begun()
+            if following is not None:
+                under_way.add(following)
+            yield index, result
+            done += plan.bounds(index)[1]
+            if tell is not None:
+                tell(done / plan.n)
+    finally:
+        # Also after Ctrl-C or an error: what has not begun never does.
+        client.cancel([*places, held])
+
+
+def _check_workers(client: Any) -> None:
+    """Refuse workers whose polhode is not the one here."""
+    here = build()
+    for worker, there in client.run(_build_of_worker).items():
+        if tuple(there) != here:
+            raise RuntimeError(
+                f"client: worker {worker} has {_told(there)} and this process {_told(here)}; "
+                "the same package must be installed on all of them"
+            )
+
+
+def _build_of_worker() -> tuple[str, str]:
+    return build()
+
+
+def _told(found: tuple[str, str]) -> str:
+    return f"polhode {found[0]} (core {found[1][:8]})"
+
+
+def _sent(task: Any) -> bytes:
+    """Write the task, with functions of the user's own by value."""
+    cloudpickle = require("cloudpickle", extra="cluster", purpose="client=")
+    data: bytes = cloudpickle.dumps(task)
+    return data
+
+
+def _received(data: bytes, wanted: tuple[str, str]) -> Any:
+    if build() != tuple(wanted):
+        raise RuntimeError(
+            f"this worker has {_told(build())} and the client {_told(wanted)}; "
+            "the same package must be installed on all of them"
+        )
+    return pickle.loads(data)
+
+
+def _done(task: Any, index: int) -> Any:
+    return task(index)

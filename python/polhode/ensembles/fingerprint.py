@@ -1,0 +1,100 @@
+"""Digests: of what an ensemble is, so that no other one goes on in its place, and of the compiled core."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from pathlib import Path
+from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _core
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from polhode.ensembles.plan import Plan
+
+__all__ = ["build", "fingerprint"]
+
+
+@cache
+def build() -> tuple[str, str]:
+    """Give the version of polhode and a digest of its compiled core."""
+    data = Path(str(_core.__file__)).read_bytes()
+    return _core.__version__, hashlib.blake2b(data, digest_size=16).hexdigest()
+
+
+def fingerprint(plan: Plan) -> str:
+    """Give a digest of all that decides the numbers of an ensemble, but its seed, its size and its chunks.
+
+    Parameters
+    ----------
+    plan : Plan
+
+    Returns
+    -------
+    str
+        The same in every process, unlike a hash of Python or the bytes of a pickle.
+    """
+    digest = hashlib.blake2b(digest_size=16)
+    parts = (plan.recipe, plan.t, plan.options, sorted(plan.outputs.items()))
+    for word in _words(parts, ()):
+        digest.update(len(word).to_bytes(8, "little"))
+        digest.update(word)
+    return digest.hexdigest()
+
+
+def _words(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
+    """Go through a value down to its bytes; what it is within, by its address, so that circles end."""
+    yield type(value).__qualname__.encode()
+    match value:
+        case None | bool() | int() | str():
+            yield repr(value).encode()
+        case float():
+            yield value.hex().encode()
+        case bytes():
+            yield value
+        case np.ndarray() | np.generic():
+            array = np.asarray(value)
+            yield f"{array.dtype.str}{array.shape}".encode()
+            if array.dtype.kind == "O":
+                for item in array.ravel():
+                    yield from _words(item, above)
+            else:
+                yield np.ascontiguousarray(array).tobytes()
+        case _ if id(value) in above:
+            yield b"above"
+        case _:
+            yield from _inner(value, (*above, id(value)))
+
+
+def _inner(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
+    match value:
+        case tuple() | list():
+            yield str(len(value)).encode()
+            for item in value:
+                yield from _words(item, above)
+        case dict():
+            for key in sorted(value, key=repr):
+                yield from _words(key, above)
+                yield from _words(value[key], above)
+        case set() | frozenset():
+            for item in sorted(value, key=repr):
+                yield from _words(item, above)
+        case FunctionType():
+            # What a function does, not where it was read: two notebooks define the same one.
+            yield value.__qualname__.encode()
+            cells = [cell.cell_contents for cell in value.__closure__ or ()]
+            yield from _words((value.__code__, value.__defaults__, value.__kwdefaults__, cells), above)
+        case CodeType():
+            yield value.co_code
+            yield from _words((value.co_names, value.co_varnames, value.co_consts), above)
+        case type() | BuiltinFunctionType() | ModuleType():
+            name = getattr(value, "__qualname__", value.__name__)
+            yield f"{getattr(value, '__module__', '')}.{name}".encode()
+        case _:
+            reduced = value.__reduce_ex__(2)
+            yield from _words(reduced if isinstance(reduced, str) else tuple(reduced[:3]), above)

@@ -1,0 +1,176 @@
+"""What an ensemble is, as plain values that go to other processes: all that a chunk of it needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode import _core
+from polhode._draws import PerMember
+from polhode.ensembles.recipe import draws, value
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from polhode.ensembles.recipe import Draw, Node
+    from polhode.trajectory import Trajectory
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.intp]
+
+__all__ = ["VECTORS", "Inputs", "Plan"]
+
+VECTORS: Final = {"omega": 3, "attitude": 4, "position": 3, "velocity": 3}
+"""Arguments that are one vector for each member, and their components."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Members 0 to n - 1 and the times at which their states are asked for."""
+
+    recipe: dict[str, Node]
+    """Body, load and the state at the start; of states of the load its names as ``states.NAME``."""
+    t: Floats
+    options: dict[str, Any]
+    """Of `simulate`."""
+    n: int
+    seed: int
+    chunk: int
+    outputs: dict[str, int]
+    """Which arrays of the trajectory are kept, and their components."""
+    raises: bool
+    """Whether a member that fails ends the ensemble."""
+
+    @property
+    def chunks(self) -> int:
+        """The number of chunks."""
+        return -(-self.n // self.chunk)
+
+    def bounds(self, index: int) -> tuple[int, int]:
+        """Give the first member of a chunk and how many it has."""
+        first = index * self.chunk
+        return first, min(self.chunk, self.n - first)
+
+    def draws(self) -> dict[str, Draw]:
+        """Give the distributions by their places; one that stands at two places is at the first."""
+        return {draw.place: draw for node in self.recipe.values() for draw in draws(node)}
+
+    def inputs(self, first: int, count: int) -> Inputs:
+        """Draw the numbers of members."""
+        drawn = {
+            place: draw.distribution.rows(draw.source, first, count) for place, draw in self.draws().items()
+        }
+        return Inputs(self, first, count, drawn)
+
+
+@dataclass(frozen=True, eq=False)
+class Inputs:
+    """What some members have drawn."""
+
+    plan: Plan
+    first: int
+    count: int
+    drawn: dict[str, Any]
+
+    def arrays(self) -> dict[str, Floats]:
+        """Give the numbers by their places, without those that are kept as the states at the start."""
+        kept = self.plan.outputs
+        return {
+            place: array
+            for place, array in self.drawn.items()
+            if isinstance(array, np.ndarray)
+            and place not in kept
+            and not (place == "attitude" and "quaternion" in kept)
+        }
+
+    def made(self, rows: Rows) -> dict[str, Any]:
+        """Give the arguments of `simulate` for members, the body among them.
+
+        Parameters
+        ----------
+        rows : numpy.ndarray of int
+            Which of these members.
+
+        Returns
+        -------
+        dict
+            A load that is made for each member by itself is a list.
+        """
+        found: dict[str, Any] = {"states": {}}
+        for place, node in self.plan.recipe.items():
+            one = value(node, self.drawn, rows)
+            if place in VECTORS and one is not None:
+                one = _vectors(one, place, VECTORS[place], len(rows))
+            elif place == "body":
+                one = _bodies(one, len(rows))
+            elif place == "load":
+                one = _loads(one, len(rows))
+            if place.startswith("states."):
+                found["states"][place.removeprefix("states.")] = np.asarray(one, dtype=float)
+            else:
+                found[place] = one
+        found["states"] = found["states"] or None
+        return found
+
+    def run(self, rows: Rows, t: Floats, progress: Any = None) -> Trajectory:
+        """Run members; one that fails on the way keeps the others."""
+        arguments = self.made(rows) | self.plan.options | {"on_failure": "keep", "progress": progress}
+        if isinstance(arguments["load"], list):
+            (arguments["load"],) = arguments["load"]
+        body: _core.RigidBody = arguments.pop("body")
+        return body.simulate(t, **arguments)
+
+
+def is_each_alone(plan: Plan) -> bool:
+    """Tell whether members have loads that cannot stand in one stack."""
+    return any(
+        isinstance(draw.distribution, PerMember) and draw.place == "load" for draw in plan.draws().values()
+    )
+
+
+def _vectors(given: Any, place: str, size: int, count: int) -> Floats:
+    array = _core.real_numbers(given, place)
+    if array.shape not in ((size,), (count, size)):
+        raise ValueError(
+            f"{place}: expected {size} numbers for each member, got an array of shape {array.shape} "
+            f"for {count} of them"
+        )
+    return np.ascontiguousarray(np.broadcast_to(array, (count, size)))
+
+
+def _bodies(given: Any, count: int) -> _core.RigidBody:
+    if isinstance(given, list):
+        for one in given:
+            _check_kind(one, _core.RigidBody, "body")
+        given = _core.RigidBody.stack(given)
+    _check_kind(given, _core.RigidBody, "body")
+    _check_shape(given.shape, count, "body")
+    found: _core.RigidBody = given
+    return found
+
+
+def _loads(given: Any, count: int) -> Any:
+    if given is None:
+        return None
+    if isinstance(given, list):
+        for one in given:
+            _check_kind(one, _core.Load, "load")
+            _check_shape(one.shape, 1, "load")
+        return given
+    _check_kind(given, _core.Load, "load")
+    _check_shape(given.shape, count, "load")
+    return given
+
+
+def _check_kind(given: Any, kind: type, place: str) -> None:
+    if not isinstance(given, kind):
+        raise TypeError(f"{place}: expected a {kind.__name__} for each member, got {type(given).__name__}")
+
+
+def _check_shape(shape: tuple[int, ...], count: int, place: str) -> None:
+    if shape not in ((), (count,)):
+        raise ValueError(
+            f"{place}: expected one for each of {count} members or one for all, got a stack of shape {shape}"
+        )

@@ -1,0 +1,288 @@
+"""An ensemble that is ready to run."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+
+import numpy as np
+
+from polhode import _core
+from polhode._extras import require
+from polhode._progress import watched
+from polhode._repr import short
+from polhode.ensembles.cluster import chunks_of_client
+from polhode.ensembles.engine import chunks_here
+from polhode.ensembles.layout import bytes_of_member, coordinates, layout
+from polhode.ensembles.reducing import nodes_of_chunk, tree_of
+from polhode.ensembles.running import arrays_of_chunk
+from polhode.ensembles.stores import NpzStore, ZarrStore, opened
+from polhode.ensembles.tree import BLOCK
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from xarray import Dataset
+
+    from polhode._progress import Progress
+    from polhode.ensembles.engine import Task
+    from polhode.ensembles.plan import Plan
+    from polhode.ensembles.stores import Store
+    from polhode.reductions import Reduction
+    from polhode.trajectory import Trajectory
+
+__all__ = ["Ensemble", "Memory"]
+
+R = TypeVar("R")
+_STATE: Final = 400
+"""Bytes of a state while it is integrated, handed over and kept, beside what stays of it."""
+
+
+class Memory(NamedTuple):
+    """How much memory an ensemble takes, in bytes, about.
+
+    Attributes
+    ----------
+    worker : int
+        While one chunk is run: on this machine, or on each thread of a worker.
+    results : int
+        Of all members, where ``compute`` keeps their states; 0 where they are reduced.
+    """
+
+    worker: int
+    results: int
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """What is done with a chunk."""
+
+    plan: Plan
+    function: Callable[..., Any]
+
+    def __call__(self, index: int, progress: Callable[[float], object] | None = None) -> Any:
+        return self.function(index=index, progress=progress)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Ensemble:
+    """Many members of which each has drawn its numbers; :func:`polhode.ensemble` makes it.
+
+    Nothing is run before :meth:`compute`, :meth:`to_zarr` or :meth:`to_npz`. All numbers are the same for any
+    number of threads and workers, and in whatever order chunks are run.
+
+    Attributes
+    ----------
+    plan : Plan
+        What goes to other processes.
+    reduce : Reduction, mapping of str to Reduction or None
+    client : distributed.Client or None
+    progress : bool, callable or None
+    """
+
+    plan: Plan
+    reduce: Reduction | Mapping[str, Reduction] | None = None
+    client: Any = None
+    progress: Progress = None
+
+    def __len__(self) -> int:
+        """Count the members."""
+        return self.plan.n
+
+    def __repr__(self) -> str:
+        plan = self.plan
+        drawn = ", ".join(plan.draws()) or "nothing"
+        kept = "reduced, " if self.reduce is not None else ""
+        return (
+            f"Ensemble({plan.n} members, {len(plan.t)} times, seed={plan.seed}, draws {drawn}, {kept}"
+            f"{plan.chunks} chunks of {min(plan.chunk, plan.n)}, {_size(self.memory.worker)} a chunk)"
+        )
+
+    @property
+    def memory(self) -> Memory:
+        """How much memory it takes."""
+        plan = self.plan
+        kept = bytes_of_member(plan)
+        rows = min(plan.chunk, plan.n)
+        worker = min(rows, BLOCK) if self.reduce is not None else rows
+        each = 2 * kept + (len(plan.t) + 4) * _STATE
+        return Memory(worker * each, 0 if self.reduce is not None else plan.n * kept)
+
+    def member(self, k: int) -> Trajectory:
+        """Run one member.
+
+        Parameters
+        ----------
+        k : int
+            From 0 on.
+
+        Returns
+        -------
+        Trajectory
+            With the bits that the member has in the ensemble.
+
+        Raises
+        ------
+        PolhodeError
+            Where the member has no motion or its integration fails.
+
+        Examples
+        --------
+        >>> from polhode import RigidBody, distributions, ensemble
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
+        >>> many = ensemble(body, [0, 10], distributions.normal((0, 0, 1), sigma=0.1), n=1000, seed=1)
+        >>> many.member(999)
+        Trajectory(2 times from 0 to 10)
+        """
+        plan = self.plan
+        if not 0 <= k < plan.n:
+            raise IndexError(f"k: there are members 0 to {plan.n - 1}, got {k}")
+        made = plan.inputs(k, 1).made(np.arange(1))
+        for name, value in made.items():
+            if isinstance(value, _core.RigidBody | _core.Load):
+                made[name] = value[0] if value.shape else value
+            elif isinstance(value, np.ndarray | list):
+                made[name] = value[0]
+        if made["states"]:
+            made["states"] = {
+                name: value[0] if value.ndim == 2 else value for name, value in made["states"].items()
+            }
+        body: _core.RigidBody = made.pop("body")
+        return body.simulate(plan.t, **made, **plan.options)
+
+    def compute(self) -> Any:
+        """Run all members.
+
+        Returns
+        -------
+        xarray.Dataset or object
+            Without `reduce` the states: ``omega`` (member, time, axis), ``quaternion`` (member, time,
+            quaternion_component), ``status`` (member), those of the load, and what was drawn, under the
+            name of the argument. With it the result of the reduction, or a dict of results.
+
+        Raises
+        ------
+        MemoryError
+            Where the states would not fit into the memory of this machine.
+        """
+        plan = self.plan
+        if self.reduce is not None:
+            return self._reduced()
+        xarray = require("xarray", extra="cluster", purpose="Ensemble.compute")
+        _check_room(self.memory.results, plan.n)
+        variables = layout(plan)
+        arrays = {name: np.empty((plan.n, *one.tail), one.dtype) for name, one in variables.items()}
+        for index, chunk in self._run(partial(arrays_of_chunk, plan), range(plan.chunks)):
+            first, count = plan.bounds(index)
+            for name, array in arrays.items():
+                array[first : first + count] = chunk[name]
+        found: Dataset = xarray.Dataset(
+            {name: (one.dims, arrays[name], one.attributes) for name, one in variables.items()},
+            coordinates(plan),
+            {"seed": plan.seed, "n": plan.n, "chunk": plan.chunk, "version": _core.__version__},
+        )
+        return found
+
+    def to_zarr(self, path: str | os.PathLike[str]) -> None:
+        """Run all members and write their states, a chunk at a time, to a zarr group; needs zarr.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Of a directory that is not there yet. ``xarray.open_zarr(path)`` reads it.
+
+        Raises
+        ------
+        FileExistsError
+            Where there is something already; :meth:`resume` goes on with it.
+        """
+        self._check_states("to_zarr")
+        self._fill(ZarrStore(Path(path), self.plan, is_new=True))
+
+    def to_npz(self, path: str | os.PathLike[str]) -> None:
+        """Run all members and write their states, a chunk at a time, to files that NumPy reads.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Of a directory that is not there yet: ``chunk-00000000.npz`` and so on, with the arrays of
+            :meth:`compute`, beside ``ensemble.json``, which tells what ensemble it is.
+
+        Raises
+        ------
+        FileExistsError
+            Where there is something already; :meth:`resume` goes on with it.
+        """
+        self._check_states("to_npz")
+        self._fill(NpzStore(Path(path), self.plan, is_new=True))
+
+    def resume(self, path: str | os.PathLike[str]) -> None:
+        """Run the chunks that are missing where :meth:`to_zarr` or :meth:`to_npz` was ended.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+
+        Raises
+        ------
+        FileFormatError
+            For another ensemble: of another seed, size, chunk, version of polhode, or with other inputs.
+        """
+        self._check_states("resume")
+        self._fill(opened(Path(path), self.plan))
+
+    def _check_states(self, what: str) -> None:
+        if self.reduce is not None:
+            raise ValueError(
+                f"{what}: writes states, and with reduce= none are kept; call compute, or leave it out"
+            )
+
+    def _fill(self, store: Store) -> None:
+        for index, arrays in self._run(partial(arrays_of_chunk, self.plan), store.pending()):
+            store.write(index, arrays)
+
+    def _reduced(self) -> Any:
+        named: dict[str, Any] = self.reduce if isinstance(self.reduce, dict) else {"": self.reduce}
+        reductions = tuple(named.values())
+        tree = tree_of(self.plan, reductions)
+        work = partial(nodes_of_chunk, self.plan, reductions)
+        for _, nodes in self._run(work, range(self.plan.chunks)):
+            for place, state in nodes.items():
+                tree.add(place, state)
+        parts, left_out = tree.root
+        found = {
+            name: reduction.finished(part, left_out)
+            for (name, reduction), part in zip(named.items(), parts, strict=True)
+        }
+        return found if isinstance(self.reduce, dict) else found[""]
+
+    def _run(self, function: Callable[..., R], pending: Sequence[int]) -> Iterator[tuple[int, R]]:
+        task: Task[R] = _Work(self.plan, function)
+        with watched(f"{self.plan.n} members", self.progress) as tell:
+            if self.client is None:
+                yield from chunks_here(task, pending, tell)
+            else:
+                yield from chunks_of_client(self.client, task, pending, tell)
+
+
+def _check_room(needed: int, n: int) -> None:
+    """Refuse what the machine does not have, before any of it is computed."""
+    try:
+        room = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):  # not every system tells
+        return
+    if needed > room:
+        raise MemoryError(
+            f"compute: the states of {n} members take {_size(needed)} and this machine has {_size(room)}; "
+            "write them with to_zarr or to_npz, ask for fewer times, or give reduce="
+        )
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e9:.3g} GB" if count >= 10**9 else f"{count / 1e6:.3g} MB"

@@ -1,0 +1,187 @@
+"""Members run: a chunk at a time, those that cannot begin left out and told."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, TypeVar
+
+import numpy as np
+
+from polhode.ensembles.layout import short_name
+from polhode.ensembles.plan import is_each_alone
+from polhode.errors import PolhodeError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from polhode.ensembles.plan import Inputs, Plan
+    from polhode.trajectory import Trajectory
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.intp]
+
+__all__ = ["REFUSED", "Run", "arrays_of_chunk", "run_members"]
+
+T = TypeVar("T")
+
+REFUSED: Final = "refused"
+"""The status of a member that has no motion: its numbers make no body, load or state."""
+FAILED: Final = ("failed", REFUSED)
+_ROW: Final = re.compile(r"row [\d, ()]+: ")
+"""How errors of stacks name a row of theirs, which is none of the ensemble's."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What became of some members."""
+
+    inputs: Inputs
+    rows: Rows
+    """Those that were run, of these members."""
+    trajectories: list[Trajectory]
+    """Of all of them, or one for each."""
+    faults: dict[int, str]
+    """Why the others were not, by their numbers in the ensemble."""
+
+    @property
+    def status(self) -> NDArray[np.str_]:
+        """How each member ended."""
+        found = np.full(self.inputs.count, REFUSED, dtype="U8")
+        if self.trajectories:
+            found[self.rows] = np.concatenate([np.atleast_1d(one.status) for one in self.trajectories])
+        return found
+
+    def array(self, name: str) -> Floats:
+        """Give an array of the trajectories with a row for every member, NaN for those that were not run."""
+        parts = [output(trajectory, name) for trajectory in self.trajectories]
+        if len(parts) == 1 and len(parts[0]) == self.inputs.count:
+            return parts[0]
+        plan = self.inputs.plan
+        found = np.full((self.inputs.count, len(plan.t), plan.outputs[name]), np.nan)
+        if parts:
+            found[self.rows] = np.concatenate(parts)
+        return found
+
+
+def output(trajectory: Trajectory, name: str) -> Floats:
+    """Give an array of a trajectory, that of a state of the load as ``states.NAME``."""
+    if name.startswith("states."):
+        return trajectory.states[name.removeprefix("states.")]
+    found: Floats = getattr(trajectory, name)
+    return found
+
+
+def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], object] | None = None) -> Run:
+    """Run members of an ensemble.
+
+    Parameters
+    ----------
+    plan : Plan
+    first, count : int
+    progress : callable, optional
+        Told the fraction done.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    IntegrationError
+        Where the plan says so, for the first member that fails.
+    """
+    inputs = plan.inputs(first, count)
+    able, faults = admitted(inputs)
+    rows, found = [], []
+    size = 1 if is_each_alone(plan) else max(len(able), 1)
+    for start in range(0, len(able), size):
+
+        def tell(fraction: float, start: int = start) -> None:
+            if progress is not None:
+                progress((start + fraction * size) / len(able))
+
+        def attempt(some: Rows, tell: Callable[[float], object] = tell) -> Trajectory:
+            return inputs.run(some, plan.t, tell if progress is not None else None)
+
+        ran, trajectory, refused = _each(able[start : start + size], attempt, is_run=True)
+        faults |= refused
+        if trajectory is not None:
+            rows.append(ran)
+            found.append(trajectory)
+    taken = np.concatenate(rows) if rows else np.arange(0)
+    run = Run(inputs, taken, found, {first + row: str(fault) for row, fault in sorted(faults.items())})
+    if plan.raises:
+        _raise_first(run, faults)
+    return run
+
+
+def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
+    """Tell which members have a body, a load and a state to begin with, and why others have not."""
+    size = 1 if is_each_alone(inputs.plan) else max(inputs.count, 1)
+    every = np.arange(inputs.count)
+    able: list[Rows] = [every[:0]]
+    faults: dict[int, PolhodeError] = {}
+    for start in range(0, inputs.count, size):
+        rows, _, refused = _each(every[start : start + size], inputs.made)
+        able.append(rows)
+        faults |= refused
+    return np.concatenate(able), faults
+
+
+def _each(
+    rows: Rows, attempt: Callable[[Rows], T], *, is_run: bool = False
+) -> tuple[Rows, T | None, dict[int, PolhodeError]]:
+    """Attempt all at once; where that is refused in halves, down to the members that are at fault.
+
+    Only refusals of values count: wrong types and shapes are mistakes of the whole call, and so is what a run
+    refuses without naming a row.
+    """
+    try:
+        return rows, attempt(rows), {}
+    except PolhodeError as error:
+        named = _ROW.match(str(error))
+        if is_run and not named:
+            raise
+        if len(rows) == 1:
+            error.args = (_ROW.sub("", str(error), count=1),)
+            return rows[:0], None, {int(rows[0]): error}
+    half = len(rows) // 2
+    parts = [_each(rows[:half], attempt, is_run=is_run), _each(rows[half:], attempt, is_run=is_run)]
+    able = np.concatenate([part[0] for part in parts])
+    faults = parts[0][2] | parts[1][2]
+    return able, attempt(able) if len(able) else None, faults
+
+
+def _raise_first(run: Run, faults: dict[int, PolhodeError]) -> None:
+    """Raise what ended the first member that failed."""
+    failed = np.flatnonzero(np.isin(run.status, FAILED))
+    if not len(failed):
+        return
+    row = int(failed[0])
+    member = run.inputs.first + row
+    fault = faults[row] if row in faults else _failure(run, row)
+    told = type(fault)(f"member {member}: {_ROW.sub('', str(fault), count=1)}")
+    told.__dict__.update(vars(fault))
+    raise told
+
+
+def _failure(run: Run, row: int) -> PolhodeError:
+    """Give the failure of a member that was run."""
+    place = int(np.flatnonzero(run.rows == row)[0])
+    if len(run.trajectories) > 1:  # each of one member
+        return run.trajectories[place].failures[0]
+    failures = run.trajectories[0].failures
+    return next(fault for fault in failures if getattr(fault, "row", 0) == place)
+
+
+def arrays_of_chunk(
+    plan: Plan, index: int, progress: Callable[[float], object] | None = None
+) -> dict[str, NDArray[np.generic]]:
+    """Run a chunk and give its arrays: states, what was drawn, and the status at the end."""
+    run = run_members(plan, *plan.bounds(index), progress)
+    states = {short_name(name): run.array(name) for name in plan.outputs}
+    drawn = {short_name(place): array for place, array in run.inputs.arrays().items()}
+    return states | drawn | {"status": run.status}

@@ -1,0 +1,190 @@
+"""Chunks in files: each is there as a whole or not at all, so that what was ended goes on where it was."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+import numpy as np
+
+from polhode._extras import require
+from polhode.ensembles.fingerprint import build, fingerprint
+from polhode.ensembles.layout import coordinates, layout
+from polhode.errors import FileFormatError
+from polhode.files.writing import write_bytes, writing
+
+if TYPE_CHECKING:
+    from polhode.ensembles.plan import Plan
+
+    Arrays = dict[str, np.ndarray[Any, Any]]
+
+__all__ = ["NpzStore", "Store", "ZarrStore", "opened"]
+
+_HEADER: Final = "ensemble.json"
+_KIND: Final = "polhode ensemble"
+
+
+class Store(Protocol):
+    """Where the chunks of an ensemble are kept."""
+
+    def pending(self) -> list[int]:
+        """Give the chunks that are not there."""
+
+    def write(self, index: int, arrays: Arrays) -> None:
+        """Write a chunk."""
+
+
+def header(plan: Plan) -> dict[str, Any]:
+    """Give what tells one ensemble from another."""
+    return {
+        "kind": _KIND,
+        "version": build()[0],
+        "seed": plan.seed,
+        "n": plan.n,
+        "chunk": plan.chunk,
+        "t": plan.t.tolist(),
+        "inputs": fingerprint(plan),
+    }
+
+
+class NpzStore:
+    """A directory with a file for every chunk.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    plan : Plan
+    is_new : bool
+        Whether it is made now; else it is one of this ensemble.
+    """
+
+    def __init__(self, path: Path, plan: Plan, *, is_new: bool) -> None:
+        self.path, self.plan = path, plan
+        if is_new:
+            _check_new(path)
+            path.mkdir(parents=True, exist_ok=True)
+            write_bytes(path / _HEADER, json.dumps(header(plan), indent=1).encode())
+        else:
+            _check_same(path, json.loads((path / _HEADER).read_text("utf-8")), plan)
+
+    def pending(self) -> list[int]:
+        """Give the chunks that are not there."""
+        return [index for index in range(self.plan.chunks) if not self.file(index).exists()]
+
+    def write(self, index: int, arrays: Arrays) -> None:
+        """Write a chunk."""
+        with writing(self.file(index)) as stream:
+            np.savez(stream, **arrays)  # type: ignore[arg-type]  # a name may be any word
+
+    def file(self, index: int) -> Path:
+        """Give the file of a chunk."""
+        return self.path / f"chunk-{index:08}.npz"
+
+
+class ZarrStore:
+    """A zarr group that xarray opens, with one piece for every chunk.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    plan : Plan
+    is_new : bool
+        Whether it is made now; else it is one of this ensemble.
+    """
+
+    def __init__(self, path: Path, plan: Plan, *, is_new: bool) -> None:
+        zarr = require("zarr", extra="cluster", purpose="to_zarr")
+        self.plan = plan
+        if not is_new:
+            self.group = zarr.open_group(path, mode="r+")
+            _check_same(path, dict(self.group.attrs), plan)
+            return
+        _check_new(path)
+        # The second format has fixed-width words, and every reader of today knows it.
+        self.group = zarr.open_group(path, mode="w", zarr_format=2)
+        for name, (axis, values) in coordinates(plan).items():
+            values = np.asarray(values)
+            # By default zero stands for what is missing, and a time of zero is read as none.
+            missing = np.nan if values.dtype.kind == "f" else ""
+            array = self.group.create_array(name, shape=values.shape, dtype=values.dtype, fill_value=missing)
+            array[:] = values
+            array.attrs["_ARRAY_DIMENSIONS"] = [axis]
+        for name, variable in layout(plan).items():
+            array = self.group.create_array(
+                name,
+                shape=(plan.n, *variable.tail),
+                chunks=(plan.chunk, *(max(size, 1) for size in variable.tail)),
+                dtype=variable.dtype,
+                fill_value="" if variable.dtype == "<U8" else np.nan,
+            )
+            array.attrs.update({"_ARRAY_DIMENSIONS": list(variable.dims), **variable.attributes})
+        self.group.attrs.update(header(plan))  # last: what has no header was never begun
+        zarr.consolidate_metadata(self.group.store)
+
+    def pending(self) -> list[int]:
+        """Give the chunks that are not there."""
+        plan, status = self.plan, self.group["status"]
+        return [index for index in range(plan.chunks) if not status[index * plan.chunk]]
+
+    def write(self, index: int, arrays: Arrays) -> None:
+        """Write a chunk: its status last, which says that the rest is there."""
+        first, count = self.plan.bounds(index)
+        for name in layout(self.plan):
+            self.group[name][first : first + count] = arrays[name]
+
+
+def opened(path: Path, plan: Plan) -> Store:
+    """Open the store of this ensemble that is at a path.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    plan : Plan
+
+    Returns
+    -------
+    Store
+
+    Raises
+    ------
+    FileFormatError
+        For what is no ensemble, or another one.
+    """
+    if (path / _HEADER).is_file():
+        return NpzStore(path, plan, is_new=False)
+    if (path / ".zgroup").is_file():
+        return ZarrStore(path, plan, is_new=False)
+    if not path.exists():
+        raise FileNotFoundError(f"{path}: there is nothing to go on with; to_zarr and to_npz begin anew")
+    raise FileFormatError(f"{path}: holds no ensemble that to_zarr or to_npz has begun")
+
+
+def _check_new(path: Path) -> None:
+    if path.is_dir() and not any(path.iterdir()):
+        return
+    if path.exists():
+        raise FileExistsError(f"{path}: is there already; resume goes on with it, another path begins anew")
+
+
+def _check_same(path: Path, found: dict[str, Any], plan: Plan) -> None:
+    if found.get("kind") != _KIND:
+        raise FileFormatError(f"{path}: holds no ensemble that to_zarr or to_npz has begun")
+    for name, here in header(plan).items():
+        there = found.get(name)
+        if there == here:
+            continue
+        if name == "version":
+            way = f"install polhode {there}, or begin anew at another path"
+        else:
+            way = "go on with the ensemble that it was begun with, or begin anew at another path"
+        if name in ("t", "inputs"):
+            what = (
+                "the times are"
+                if name == "t"
+                else "the body, the load, the state at the start or an option is"
+            )
+            raise FileFormatError(f"{path}: holds another ensemble: {what} not the same ({way})")
+        raise FileFormatError(
+            f"{path}: holds another ensemble: {name} is {there} there and {here} here ({way})"
+        )

@@ -1,0 +1,411 @@
+"""Ensembles on one machine: members and their bits, failures, files that go on after a kill, what is refused."""
+
+from __future__ import annotations
+
+import json
+import operator
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polhode
+import pytest
+import xarray
+from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, slow, twisted
+from polhode import RigidBody, distributions, ensemble, loads, orbits, reductions
+from polhode.ensembles.fingerprint import fingerprint
+from polhode.errors import FileFormatError, IntegrationError, InvalidInertiaError
+from scipy.spatial.transform import Rotation
+
+TESTS = Path(__file__).parent
+
+
+def python(code: str, **environment: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=100,
+        cwd=TESTS,
+        env=os.environ | environment,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+class TestMembers:
+    def test_each_has_the_bits_of_its_own_run(self) -> None:
+        many = twisted(60)
+        found = many.compute()
+        assert {"complete", "refused"} == set(found.status.values)
+        for k in range(60):
+            if found.status[k] == "refused":
+                assert np.isnan(found.omega[k]).all()
+                with pytest.raises(InvalidInertiaError, match="triangle"):
+                    many.member(k)
+                continue
+            alone = many.member(k)
+            assert np.array_equal(alone.omega, found.omega[k])
+            assert np.array_equal(alone.quaternion, found.quaternion[k])
+
+    def test_they_are_what_simulate_makes_of_what_is_drawn(self) -> None:
+        many = ensemble(BODY, TIMES, SPIN, distributions.uniform_rotation(), n=20, seed=3)
+        found = many.compute()
+        omega = SPIN.draw(20, seed=3, argument="omega")
+        attitude = distributions.uniform_rotation().draw(20, seed=3, argument="attitude")
+        alone = BODY.simulate(TIMES, omega, attitude)
+        assert np.array_equal(found.omega, alone.omega)
+        assert np.array_equal(found.quaternion, alone.quaternion)
+        assert np.array_equal(found.time, TIMES)
+        assert found.omega.dims == ("member", "time", "axis")
+        assert found.quaternion.dims == ("member", "time", "quaternion_component")
+        assert (found.attrs["seed"], found.attrs["n"]) == (3, 20)
+
+    def test_more_members_leave_the_first_as_they_are(self) -> None:
+        few, many = twisted(50).compute(), twisted(80, chunk=7).compute()
+        for name in few:
+            same = np.array_equal(few[name], many[name][:50], equal_nan=few[name].dtype.kind == "f")
+            assert same, name
+
+    @pytest.mark.parametrize("method", ["auto", "taylor", "dop853", "splitting"])
+    def test_chunks_change_no_bit(self, method: str) -> None:
+        twist = distributions.made(
+            loads.constant_torque, distributions.normal((0, 0.1, 0), sigma=0.1), "space"
+        )
+        twist = None if method == "splitting" else twist
+        found = {
+            all_bytes(
+                ensemble(BODY, TIMES, SPIN, load=twist, n=50, seed=2, chunk=chunk, method=method).compute()
+            )
+            for chunk in (2, 9, 50, 4096)
+        }
+        assert len(found) == 1
+
+    def test_threads_and_lanes_change_no_bit(self) -> None:
+        code = (
+            "import hashlib, ensemble_cases as e\n"
+            "print(hashlib.sha256(e.all_bytes(e.twisted(400, chunk=90).compute())).hexdigest(),\n"
+            "hashlib.sha256(e.all_bytes(e.twisted(400, reduce=e.all_reductions()).compute())).hexdigest())"
+        )
+        told = {python(code, POLHODE_NUM_THREADS=str(count), PYTHONHASHSEED=str(count)) for count in (1, 2)}
+        assert len(told) == 1
+
+    def test_all_that_a_run_has(self) -> None:
+        wheel = loads.wheel(axis=(0, 0, 1), inertia=0.1, rate=5.0, torque=0.01)
+        moving = ensemble(
+            BODY, TIMES, (0, 0, 1), Rotation.identity(), wheel,
+            n=4, seed=1, position=distributions.normal((0, 0, 0), sigma=1.0), velocity=(1.0, 0.0, 0.0),
+            states={"wheel": distributions.uniform([0.4], [0.6])},
+        )  # fmt: skip
+        found = moving.compute()
+        assert np.allclose(found.position[:, -1] - found.position[:, 0], [4.0, 0.0, 0.0])
+        assert found.wheel.dims == ("member", "time", "wheel_component")
+        assert ((found.wheel[:, 0] >= 0.4) & (found.wheel[:, 0] <= 0.6)).all()
+        alone = moving.member(3)
+        assert np.array_equal(alone.position, found.position[3])
+        assert np.array_equal(alone.states["wheel"], found.wheel[3])
+        few = ensemble(BODY, TIMES, SPIN, n=2, seed=1, outputs=["position"]).compute()
+        assert set(few) == {"position", "omega", "status"}
+        assert few.omega.dims == ("member", "omega_0"), "what was drawn, where the state is not kept"
+
+    def test_orbits_are_drawn_too(self) -> None:
+        pull = distributions.made(
+            loads.gravity_gradient,
+            4.0,
+            position=distributions.normal((3, 0, 0), sigma=0.01),
+            velocity=(0, 1, 0),
+        )
+        many = ensemble(BODY, TIMES, (0, 0, 1), load=pull, n=5, seed=1)
+        found = many.compute()
+        orbit = orbits.kepler(4.0, found["load.position"][2].values, (0, 1, 0))
+        assert np.array_equal(
+            BODY.simulate(TIMES, (0, 0, 1), load=loads.gravity_gradient(orbit)).omega, found.omega[2]
+        )
+
+    def test_functions_of_a_generator(self) -> None:
+        def body(rng: np.random.Generator) -> RigidBody:
+            return RigidBody.from_principal(rng.uniform(1, 2), (1.0, 2.0, 2.5))
+
+        def spin(rng: np.random.Generator) -> Any:
+            return rng.normal(size=3)
+
+        def load(rng: np.random.Generator) -> loads.Load:
+            return loads.constant_torque(rng.normal(size=3) * 0.1)
+
+        many = ensemble(body, TIMES, spin, load=load, n=9, seed=4)
+        found = many.compute()
+        for k in (0, 8):
+            assert np.array_equal(many.member(k).omega, found.omega[k])
+        cut = ensemble(body, TIMES, spin, load=load, n=9, seed=4, chunk=2).compute()
+        assert all(np.array_equal(cut[name], found[name]) for name in found)
+
+
+class TestSources:
+    def test_two_places_draw_apart_and_one_object_the_same(self) -> None:
+        law, twin = (distributions.normal((0, 0, 1), sigma=0.1) for _ in range(2))
+
+        def drawn(first: Any, second: Any) -> Any:
+            return ensemble(BODY, [0.0], first, n=3, seed=1, velocity=second).compute()
+
+        apart, together = drawn(law, twin), drawn(law, law)
+        assert not np.array_equal(apart.omega, apart.velocity)
+        assert np.array_equal(together.omega, together.velocity)
+        assert np.array_equal(apart.omega, together.omega)
+        named = drawn(*(distributions.normal((0, 0, 1), sigma=0.1, name="x") for _ in range(2)))
+        assert np.array_equal(named.omega, named.velocity)
+
+    def test_order_of_keywords_does_not_matter(self) -> None:
+        parts = {
+            "position": distributions.normal((3, 0, 0), sigma=0.1),
+            "velocity": distributions.normal((0, 1, 0), sigma=0.1),
+        }
+        both = [
+            ensemble(BODY, TIMES, SPIN, n=3, seed=1,
+                     load=distributions.made(loads.gravity_gradient, 4.0, **dict(order)))
+            for order in (parts.items(), reversed(parts.items()))
+        ]  # fmt: skip
+        assert all_bytes(both[0].compute()) == all_bytes(both[1].compute())
+        assert fingerprint(both[0].plan) == fingerprint(both[1].plan)
+
+    def test_sums_of_loads_are_made(self) -> None:
+        part = distributions.made(loads.constant_torque, distributions.normal((0, 0, 0), sigma=0.1))
+        load = distributions.made(operator.add, part, loads.damping(np.eye(3) * 0.1))
+        found = ensemble(BODY, TIMES, SPIN, load=load, n=3, seed=1).compute()
+        one = loads.constant_torque(found["load.0.0"][1].values) + loads.damping(np.eye(3) * 0.1)
+        assert np.array_equal(BODY.simulate(TIMES, found.omega[1, 0].values, load=one).omega, found.omega[1])
+
+
+class TestFailures:
+    @staticmethod
+    def failing(**options: Any) -> polhode.Ensemble:
+        """Motors that spin up for ever: steps end where the rates do."""
+
+        def push(t: float, omega: Any, quaternion: Any) -> Any:  # noqa: ARG001
+            return 1e3 * omega**3 if omega[2] > 1.0 else -omega
+
+        return ensemble(
+            BODY, [0.0, 1.0], SPIN, load=loads.torque_callback(push), n=8, seed=2, rtol=1e-6, **options
+        )
+
+    def test_they_are_kept_with_a_status(self) -> None:
+        found = self.failing().compute()
+        failed = found.status.values == "failed"
+        assert 0 < failed.sum() < 8
+        assert np.isnan(found.omega[failed, -1]).all()
+        assert not np.isnan(found.omega[:, 0]).any()
+        assert not np.isnan(found.omega[~failed]).any()
+
+    def test_they_end_the_ensemble_where_asked_to(self) -> None:
+        first = int(np.flatnonzero(self.failing().compute().status.values == "failed")[0])
+        with pytest.raises(IntegrationError, match=f"member {first}: ") as caught:
+            self.failing(on_failure="raise").compute()
+        assert 0.0 < caught.value.time < 1.0
+        refused = int(np.flatnonzero(twisted().compute().status.values == "refused")[0])
+        with pytest.raises(InvalidInertiaError, match=f"member {refused}: "):
+            twisted(on_failure="raise").compute()
+
+    def test_errors_of_ones_own_come_back_as_they_are(self) -> None:
+        def omega(rng: np.random.Generator) -> Any:
+            raise LookupError(str(rng.integers(3)))
+
+        with pytest.raises(LookupError):
+            ensemble(BODY, TIMES, omega, n=3, seed=1)
+
+    def test_a_call_that_nobody_can_begin_is_wrong(self) -> None:
+        flat = distributions.made(RigidBody.from_principal, 1.0, distributions.normal((1, 1, 9), sigma=0.1))
+        with pytest.raises(InvalidInertiaError, match="none of the first 16 members can begin; member 0"):
+            ensemble(flat, TIMES, SPIN, n=100, seed=1)
+
+
+class TestFiles:
+    def test_npz(self, tmp_path: Path) -> None:
+        many = twisted(100, chunk=30)
+        many.to_npz(tmp_path / "out")
+        files = sorted((tmp_path / "out").glob("chunk-*.npz"))
+        assert len(files) == 4
+        want = many.compute()
+        for name in want:
+            found = np.concatenate([np.load(file)[name] for file in files])
+            assert np.array_equal(found, want[name], equal_nan=found.dtype.kind == "f")
+        told = json.loads((tmp_path / "out" / "ensemble.json").read_text("utf-8"))
+        assert (told["seed"], told["n"], told["chunk"], told["t"]) == (5, 100, 30, list(TIMES))
+
+    def test_zarr(self, tmp_path: Path) -> None:
+        many = twisted(100, chunk=30)
+        many.to_zarr(tmp_path / "out.zarr")
+        with xarray.open_zarr(tmp_path / "out.zarr") as found:
+            want = many.compute()
+            for name in want:
+                assert found[name].dims == want[name].dims
+                assert np.array_equal(found[name], want[name], equal_nan=want[name].dtype.kind == "f")
+            assert np.array_equal(found.time, TIMES)
+            assert found.attrs["seed"] == 5
+
+    @pytest.mark.parametrize("kind", ["npz", "zarr"])
+    def test_what_was_killed_goes_on(self, kind: str, tmp_path: Path) -> None:
+        whole, part = tmp_path / "whole", tmp_path / "part"
+        many = slow()
+        getattr(many, f"to_{kind}")(whole)
+        process = subprocess.Popen([sys.executable, str(TESTS / "ensemble_cases.py"), kind, str(part)])
+        pattern = "chunk-*.npz" if kind == "npz" else "status/[0-9]*"
+        try:
+            deadline = time.monotonic() + 60.0
+            while len(list(part.glob(pattern))) < 3 and time.monotonic() < deadline:
+                time.sleep(0.005)
+        finally:
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        kept = {file: file.stat().st_mtime_ns for file in part.glob(pattern)}
+        assert 3 <= len(kept) < 20
+        many.resume(part)
+        assert all(file.stat().st_mtime_ns == then for file, then in kept.items())
+        assert {file.name for file in part.glob(pattern)} == {file.name for file in whole.glob(pattern)}
+        for file in whole.rglob("*"):
+            if file.is_file():
+                assert (part / file.relative_to(whole)).read_bytes() == file.read_bytes()
+
+    def test_nothing_is_left_to_resume(self, tmp_path: Path) -> None:
+        many = twisted(20)
+        many.to_npz(tmp_path / "out")
+        before = {file: file.stat().st_mtime_ns for file in (tmp_path / "out").iterdir()}
+        many.resume(tmp_path / "out")
+        assert {file: file.stat().st_mtime_ns for file in (tmp_path / "out").iterdir()} == before
+
+    @pytest.mark.parametrize("kind", ["npz", "zarr"])
+    def test_another_ensemble_is_refused(
+        self, kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        path = tmp_path / "out"
+        getattr(twisted(20, chunk=10), f"to_{kind}")(path)
+        for other, told in [
+            (twisted(20, chunk=10, seed=6), "seed is 5 there and 6 here"),
+            (twisted(21, chunk=10), "n is 20 there and 21 here"),
+            (twisted(20, chunk=5), "chunk is 10 there and 5 here"),
+            (twisted(20, chunk=10, t=(0.0, 1.5, 4.5)), "the times are not the same"),
+            (twisted(20, chunk=10, rtol=1e-9), "the start or an option is not the same"),
+        ]:
+            with pytest.raises(FileFormatError, match=told):
+                other.resume(path)
+        with pytest.raises(FileExistsError, match="resume goes on with it"):
+            getattr(twisted(20, chunk=10), f"to_{kind}")(path)
+        monkeypatch.setattr("polhode.ensembles.stores.build", lambda: ("9.9", ""))
+        with pytest.raises(FileFormatError, match=r"version is .* there and 9.9 here \(install polhode"):
+            twisted(20, chunk=10).resume(path)
+
+    def test_what_is_no_ensemble_is_refused(self, tmp_path: Path) -> None:
+        with pytest.raises(FileNotFoundError, match="nothing to go on with"):
+            twisted(20).resume(tmp_path / "none")
+        with pytest.raises(FileFormatError, match="holds no ensemble"):
+            twisted(20).resume(tmp_path)
+        (tmp_path / "ensemble.json").write_text("{}")
+        with pytest.raises(FileFormatError, match="holds no ensemble"):
+            twisted(20).resume(tmp_path)
+
+    def test_a_fingerprint_is_the_same_in_every_process(self) -> None:
+        code = "import ensemble_cases as e; from polhode.ensembles.fingerprint import *; print(fingerprint(e.twisted().plan))"
+        told = {python(code, PYTHONHASHSEED=seed).strip() for seed in ("1", "2")}
+        assert told == {fingerprint(twisted().plan)}
+
+    def test_a_fingerprint_sees_what_functions_do(self) -> None:
+        def of(function: Any) -> str:
+            return fingerprint(ensemble(BODY, TIMES, function, n=2, seed=1).plan)
+
+        def scaled(factor: float) -> Any:
+            return lambda rng: rng.normal(size=3) * factor
+
+        assert of(scaled(1.0)) == of(scaled(1.0))
+        assert of(scaled(1.0)) != of(scaled(2.0))
+        assert of(lambda rng: rng.normal(size=3)) != of(lambda rng: rng.uniform(size=3))
+
+
+REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
+    ({"n": 0}, ValueError, "n: expected a positive integer, got 0"),
+    ({"n": 2.5}, TypeError, "n: expected a positive integer"),
+    ({"chunk": -1}, ValueError, "chunk: expected a positive integer"),
+    ({"seed": -1}, ValueError, "seed: expected an integer from 0"),
+    ({"seed": None}, TypeError, "seed: expected an integer from 0"),
+    ({"on_failure": "skip"}, ValueError, "on_failure: expected"),
+    ({"omega": np.zeros((10, 3))}, ValueError, "a row for each goes in distributions.samples"),
+    ({"omega": distributions.uniform((0, 0), (1, 1))}, ValueError, "omega: expected 3 numbers for each member"),
+    ({"omega": distributions.samples(np.zeros((9, 3)))}, ValueError, "omega: 10 members want a row each"),
+    ({"body": 3.0}, TypeError, "body: expected a RigidBody, a distribution"),
+    ({"body": RigidBody.stack([BODY, BODY])}, ValueError, "body: expected one for all members"),
+    ({"body": distributions.made(abs, 2.0)}, TypeError, "body: expected a RigidBody for each member"),
+    ({"load": 3.0}, TypeError, "load: expected a Load, a distribution"),
+    ({"load": lambda _: 3.0}, TypeError, "load: expected a Load for each member, got float"),
+    ({"method": "euler"}, ValueError, "method: expected one of"),
+    ({"rtol": 2.0}, ValueError, "rtol"),
+    ({"outputs": "omega"}, TypeError, "outputs: expected a sequence of names"),
+    ({"outputs": ["spin"]}, ValueError, "outputs: 'spin' is not one of 'omega'"),
+    ({"t": [1.0, 0.0, 2.0]}, ValueError, "t must be strictly"),
+    ({"reduce": 3}, TypeError, "reduce: expected a reduction or a dict"),
+    ({"reduce": {"a": 3}}, TypeError, "reduce: 'a' is no reduction but int"),
+    ({"reduce": reductions.mean("omega"), "chunk": 5}, ValueError, "chunk: with reduce= it must be a multiple"),
+    (
+        {"reduce": reductions.mean("omega"), "load": lambda _: loads.damping(np.eye(3))},
+        ValueError,
+        "load: a function gives one load for each member",
+    ),
+    ({"client": 3}, TypeError, "client: expected a dask.distributed.Client, got int"),
+    ({"progress": 3}, TypeError, "progress: expected True, False, None or a function"),
+    (
+        {"about": "origin", "body": distributions.made(RigidBody.from_principal, 1.0, distributions.uniform((1, 1, 1), (1.1, 1.1, 1.1)))},
+        ValueError,
+        'method: "auto" would choose by the bodies of a chunk',
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "kind", "told"), REFUSED)
+def test_refused(change: dict[str, Any], kind: type[Exception], told: str) -> None:
+    call: dict[str, Any] = {"body": BODY, "t": TIMES, "omega": SPIN, "n": 10, "seed": 1} | change
+    with pytest.raises(kind, match=told):
+        ensemble(**call).compute()
+
+
+class TestTheObject:
+    def test_it_prints_on_a_line(self) -> None:
+        assert repr(twisted(10_000)) == (
+            "Ensemble(10000 members, 3 times, seed=5, draws body.1, omega, attitude, load.0, 3 chunks of 4096, "
+            "13.5 MB a chunk)"
+        )
+        assert "reduced, 3 chunks" in repr(twisted(10_000, reduce=reductions.mean("omega")))
+        assert len(twisted(10_000)) == 10_000
+
+    def test_it_goes_through_pickle(self) -> None:
+        again = pickle.loads(pickle.dumps(twisted(20)))
+        assert all_bytes(again.compute()) == all_bytes(twisted(20).compute())
+
+    def test_more_states_than_memory_are_refused_before_the_first(self) -> None:
+        with pytest.raises(MemoryError, match="write them with to_zarr or to_npz, ask for fewer times"):
+            twisted(10**12).compute()
+
+    def test_a_member_that_is_none(self) -> None:
+        with pytest.raises(IndexError, match="k: there are members 0 to 299, got 300"):
+            twisted().member(300)
+
+    def test_states_are_not_written_where_they_are_reduced(self, tmp_path: Path) -> None:
+        many = twisted(10, reduce=reductions.mean("omega"))
+        for write in (many.to_npz, many.to_zarr, many.resume):
+            with pytest.raises(ValueError, match="writes states, and with reduce= none are kept"):
+                write(tmp_path / "out")
+
+    def test_progress_is_told_up_to_the_end(self) -> None:
+        told: list[float] = []
+        twisted(500, chunk=100, progress=told.append).compute()
+        assert told == sorted(told)
+        assert told[-1] == 1.0
+        assert len(told) >= 5
+        told.clear()
+        twisted(
+            9000, reduce={"s": reductions.mean(last_spin)} | all_reductions(), progress=told.append
+        ).compute()
+        assert told == sorted(told)
+        assert told[-1] == 1.0
