@@ -19,6 +19,7 @@ from cyclopts import App, CycloptsError, Parameter
 from polhode.cli.options import (
     BodyOptions,
     CheckOptions,
+    FlybyOptions,
     LedgerOptions,
     MoleculeOptions,
     OutputOptions,
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = ["app", "run"]
 
-COMMANDS: Final = ("report", "check", "molecule", "spin", "ledger", "demo")
+COMMANDS: Final = ("report", "check", "molecule", "spin", "flyby", "ledger", "demo")
 GOOD: Final = 0
 BAD_VERDICT: Final = 1
 BAD_INPUT: Final = 2
@@ -167,6 +168,34 @@ def spin(
 
     check_outputs([*(("--save", path) for path in spin.save), ("--output", output.output)], [file])
     _show(spin_report(file, spin, body), output)
+    return GOOD
+
+
+@app.command
+def flyby(
+    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
+    /,
+    *,
+    flyby: Annotated[FlybyOptions, Parameter(name="*")] = FlybyOptions(),  # noqa: B008
+    body: Body = AS_STORED,
+    output: Output = SHOWN,
+) -> int:
+    """Tell what a planet's pull makes of the spin of a tumbling asteroid, from many clones with all phases.
+
+    Parameters
+    ----------
+    file
+        A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file), or - for standard input.
+    """
+    from polhode.cli.flyby import draw_flyby, flyby_report
+    from polhode.cli.outputs import check_outputs
+
+    check_outputs([*(("--save", path) for path in flyby.save), ("--output", output.output)], [file])
+    told, found = flyby_report(file, flyby, body)
+    for path in flyby.save:
+        draw_flyby(found, path)
+        told.notes.append(f"saved {path}")
+    _show(told, output)
     return GOOD
 
 

@@ -11,6 +11,7 @@ from cyclopts import Parameter
 __all__ = [
     "BodyOptions",
     "CheckOptions",
+    "FlybyOptions",
     "LedgerOptions",
     "LengthUnit",
     "MoleculeOptions",
@@ -192,6 +193,73 @@ class LedgerOptions:
     overwrite: Annotated[bool, Parameter(name="--overwrite", negative="")] = False
     ignore: Annotated[Words, Parameter(name="--ignore", negative="", show_default=False)] = ()
     picture: Annotated[Path | None, Parameter(name="--picture")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlybyOptions:
+    """A tumbling body past a planet.
+
+    Attributes
+    ----------
+    moments
+        Three principal moments instead of a file, as in "0.64 0.97 1"; only their ratios matter.
+    periods
+        The two periods before the flyby: rotation about the long axis and mean precession of that axis, as in
+        "264.178 h, 27.38547 h"; a bare number is in s.
+    mode
+        Which of the two motions has these periods.
+    eccentricity
+        Of the orbit past the planet: more than 1 for a flyby, 4.25 for Apophis in 2029.
+    periapsis
+        Least distance from the planet's centre, as in "38011.486 km"; a bare number is in m.
+    mu
+        Gravitational parameter of the planet, as in "398600.4418 km^3/s^2"; a bare number is in m^3/s^2. By
+        default that of the Earth.
+    inclination, node, argument
+        Of the orbit, as in "30 deg"; they matter where --pole is stated.
+    span
+        How long, with the least distance in the middle, as in "6 d"; a bare number is in s.
+    pole
+        Direction of the angular momentum before the flyby, three numbers along the axes of the orbit's
+        elements; by default all directions.
+    pole_sigma
+        How well it is known: a standard deviation along each of two axes across it, as in "5 deg".
+    clones
+        How many.
+    seed
+        Of the random numbers: the same seed gives the same clones.
+    rtol
+        Relative tolerance of the integration.
+    client
+        Address of the scheduler of a dask cluster that runs the clones, as in tcp://127.0.0.1:8786; by default
+        the threads of this machine do.
+    save
+        Where to draw the distributions (.png, .pdf, .svg). May be repeated.
+    """
+
+    moments: Annotated[
+        Words, Parameter(name="--moments", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    periods: Annotated[
+        Words, Parameter(name="--periods", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    mode: Annotated[Literal["long-axis", "short-axis"], Parameter(name="--mode")] = "long-axis"
+    eccentricity: Annotated[float, Parameter(name="--eccentricity")] = 1.0
+    periapsis: Annotated[str, Parameter(name="--periapsis")] = "40000 km"
+    mu: Annotated[str, Parameter(name="--mu")] = "3.986004418e14"
+    inclination: Annotated[str, Parameter(name="--inclination")] = "0"
+    node: Annotated[str, Parameter(name="--node")] = "0"
+    argument: Annotated[str, Parameter(name="--argument")] = "0"
+    span: Annotated[str, Parameter(name="--span")] = "6 d"
+    pole: Annotated[
+        Words, Parameter(name="--pole", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    pole_sigma: Annotated[str, Parameter(name="--pole-sigma")] = "0"
+    clones: Annotated[int, Parameter(name="--clones")] = 1000
+    seed: Annotated[int, Parameter(name="--seed")] = 0
+    rtol: Annotated[float, Parameter(name="--rtol")] = 1e-10
+    client: Annotated[str | None, Parameter(name="--client")] = None
+    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,6 +10,7 @@ from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, OUTLI
 from polhode.plot._bodies import body, principal_axes
 from polhode.plot._cones import cones
 from polhode.plot._ellipsoid import ellipsoid, poinsot, polhodes
+from polhode.plot._flyby import flyby
 from polhode.plot._motion import angular_momentum, angular_velocity, euler_angles, invariants
 from polhode.plot._portrait import portrait, portraits
 from polhode.plot._top import effective_potential, nutation
@@ -26,6 +27,7 @@ __all__ = [
     "effective_potential",
     "ellipsoid",
     "euler_angles",
+    "flyby",
     "invariants",
     "nutation",
     "poinsot",

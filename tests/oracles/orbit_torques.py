@@ -1,7 +1,7 @@
 """Ends of motions that an attractor's field turns, on orbits of every eccentricity, and their derivatives.
 
-By Taylor series in 40 digits; the orbit is integrated with the body. ``python -m oracles.flybys`` in the
-folder ``tests`` writes ``oracles/tables/flybys.json``.
+By Taylor series in 40 digits; the orbit is integrated with the body. ``python -m oracles.orbit_torques`` in the
+folder ``tests`` writes ``oracles/tables/orbit_torques.json``.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from mpmath import mpf
 from oracles.load_variations import Setting, end, jacobian
 from oracles.motion_cases import TABLES
 
-__all__ = ["CASES", "Flyby", "Known", "setting", "table"]
+__all__ = ["CASES", "Known", "Passage", "setting", "table"]
 
-TABLE = TABLES / "flybys.json"
+TABLE = TABLES / "orbit_torques.json"
 DIGITS = 40
 CHANGE = mpf("1e-18")
 NEAR = (1e-12, 1e-9, 1e-6, 1e-3)
@@ -30,7 +30,7 @@ BODY = {"moments": [0.64, 0.97, 1.0], "mass": 1.0}
 OMEGA = [0.3, -0.4, 1.2]
 
 
-class Flyby(NamedTuple):
+class Passage(NamedTuple):
     """An eccentricity, and the share of the way to the farthest direction at which the motion starts."""
 
     eccentricity: float
@@ -47,11 +47,11 @@ class Known(NamedTuple):
 
 # From the periapsis and through it, on hyperbolas from far away too.
 CASES = tuple(
-    Flyby(e, start) for e in ECCENTRICITIES for start in ((0.0, -0.7, -0.93) if e > 1.01 else (0.0, -0.7))
+    Passage(e, start) for e in ECCENTRICITIES for start in ((0.0, -0.7, -0.93) if e > 1.01 else (0.0, -0.7))
 )
 
 
-def setting(case: Flyby) -> Setting:
+def setting(case: Passage) -> Setting:
     """The motion of a case: the distance of the periapsis and the speed there are one."""
     e = case.eccentricity
     mu = 1.0 / (1.0 + e)
@@ -68,10 +68,10 @@ def setting(case: Flyby) -> Setting:
     return Setting(BODY, OMEGA, load, False, float(round(time, 3)))
 
 
-def table() -> dict[Flyby, Known]:
+def table() -> dict[Passage, Known]:
     """What is known of each of `CASES`."""
     rows = json.loads(TABLE.read_text("utf-8"))
-    return {Flyby(*key): Known(*map(np.array, values)) for key, *values in rows}
+    return {Passage(*key): Known(*map(np.array, values)) for key, *values in rows}
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from oracles.flybys import CASES, Flyby, setting, table
 from oracles.load_cases import ATTITUDE
+from oracles.orbit_torques import CASES, Passage, setting, table
 from polhode import MotionSensitivity, RigidBody, loads
 
 KNOWN = table()
@@ -26,7 +26,7 @@ def slopes_of(found: MotionSensitivity) -> np.ndarray:
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
-def test_a_flyby_and_its_derivatives(case: Flyby) -> None:
+def test_a_passage_and_its_derivatives(case: Passage) -> None:
     known, given = KNOWN[case], setting(case)
     body = RigidBody.from_principal(given.body["mass"], given.body["moments"])
     (term,) = given.load

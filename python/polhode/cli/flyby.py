@@ -1,0 +1,149 @@
+"""``polhode flyby``: clones of a tumbling body past a planet, in numbers and pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode import RigidBody, orbits, plot
+from polhode._extras import require
+from polhode.cli.layout import Cell, Column, Field, Report, Table
+from polhode.cli.loading import load_body
+from polhode.cli.quantities import quantities, quantity, vector
+from polhode.cli.source import shown
+from polhode.errors import PolhodeError
+from polhode.files.picture import save_picture
+from polhode.flybys import Flyby, flyby
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from polhode.cli.options import BodyOptions, FlybyOptions
+
+__all__ = ["draw_flyby", "flyby_report"]
+
+HOUR: Final = 3600.0
+SHARES: Final = (0.05, 0.5, 0.95)
+PICTURES: Final = (".png", ".pdf", ".svg")
+
+
+def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[Report, Flyby]:
+    """Run the clones and report on them; give them too."""
+    found, orbit = _run(file, options, body)
+    report = Report()
+    fast = float(np.linalg.norm(orbit.velocity)) if options.eccentricity > 0 else 0.0
+    elements = orbit.elements
+    report.section(
+        "",
+        Field("file", "file", "(moments)" if file is None else shown(file)),
+        Field("clones", "clones", len(found.failed)),
+        Field("seed", "seed", options.seed),
+    )
+    report.section(
+        "orbit",
+        Field("eccentricity", "eccentricity", float(elements.eccentricity)),
+        Field("periapsis", "least distance", float(elements.periapsis) / 1e3, "km"),
+        Field("span", "span", quantity(options.span, "s", "--span") / HOUR, "h"),
+        Field("speed", "speed at the start", fast / 1e3, "km/s"),
+    )
+    report.section(
+        "before",
+        Field("before.mode", "mode", str(found.before.mode[0])),
+        Field("before.rotation_period", "P_psi", float(found.before.rotation_period[0]) / HOUR, "h"),
+        Field("before.precession_period", "P_phi", float(found.before.precession_period[0]) / HOUR, "h"),
+    )
+    columns = (
+        Column("name", "number"),
+        Column("low", "5 %"),
+        Column("median", "median"),
+        Column("high", "95 %"),
+        Column("unit", "unit"),
+    )
+    rows = [
+        _row("P_psi", found.after.rotation_period / HOUR, "h"),
+        _row("P_phi", found.after.precession_period / HOUR, "h"),
+        _row("spin rate, ratio", found.spin_ratio, ""),
+        _row("pole shift", np.degrees(found.pole_shift), "deg"),
+    ]
+    report.section("after", Table("after", columns, rows))
+    shares = [
+        {"mode": name, "share": Cell(f"{100.0 * share:.3g} %", share)}
+        for name, share in found.modes().items()
+    ]
+    report.section("modes after", Table("modes", (Column("mode", "mode"), Column("share", "clones")), shares))
+    if found.failed.any():
+        report.notes.append(f"{int(found.failed.sum())} clones failed and are in none of these numbers")
+    report.notes.append("spin rate: 2 E/|L|; pole shift: the angle between L before and after")
+    return report, found
+
+
+def draw_flyby(found: Flyby, path: Path) -> None:
+    """Draw the spread of four numbers."""
+    figure_module: Any = require("matplotlib.figure", extra="plot", purpose="drawing")
+    figure = figure_module.Figure(figsize=(11.0, 7.4), facecolor="white", layout="constrained")
+    axes = figure.subplots(2, 2).ravel()
+    plot.flyby(found, "rotation_period", axes[0], time_unit="h", time_scale=HOUR)
+    plot.flyby(found, "precession_period", axes[1], time_unit="h", time_scale=HOUR)
+    plot.flyby(found, "spin_ratio", axes[2])
+    plot.flyby(found, "pole_shift", axes[3])
+    save_picture(figure, path)
+
+
+def _run(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[Flyby, orbits.Orbit]:
+    if (file is None) == (not options.moments):
+        raise PolhodeError("flyby: give a file, or principal moments with --moments")
+    for path in options.save:
+        if path.suffix.lower() not in PICTURES:
+            raise PolhodeError(f"--save: {path.name!r} ends in none of {', '.join(PICTURES)}")
+    if options.clones < 1:
+        raise PolhodeError(f"--clones: expected a positive number, got {options.clones}")
+    if not options.periods:
+        raise PolhodeError('--periods: state the two periods, as in "264.178 h, 27.38547 h"')
+    if file is not None:
+        asteroid = load_body(file, body).body
+    else:
+        asteroid = RigidBody.from_principal(1.0, quantities(options.moments, 3, "kg m^2", "--moments"))
+    rotation, precession = quantities(options.periods, 2, "s", "--periods")
+    span = quantity(options.span, "s", "--span")
+    if not span > 0.0:
+        raise PolhodeError(f"--span: must be positive, got {span:g}")
+    if options.eccentricity < 0.0:
+        raise PolhodeError(f"--eccentricity: must not be negative, got {options.eccentricity:g}")
+    orbit = orbits.from_elements(
+        quantity(options.mu, "m^3/s^2", "--mu"),
+        eccentricity=options.eccentricity,
+        periapsis=quantity(options.periapsis, "m", "--periapsis"),
+        inclination=quantity(options.inclination, "rad", "--inclination"),
+        node=quantity(options.node, "rad", "--node"),
+        argument=quantity(options.argument, "rad", "--argument"),
+        since_periapsis=-0.5 * span,
+    )
+    client = None
+    if options.client is not None:
+        distributed: Any = require("distributed", extra="cluster", purpose="--client")
+        client = distributed.Client(options.client)
+    try:
+        found = flyby(
+            asteroid,
+            orbit,
+            span,
+            rotation_period=rotation,
+            precession_period=precession,
+            mode=options.mode,
+            pole=vector(options.pole, "", "--pole") if options.pole else None,
+            pole_sigma=quantity(options.pole_sigma, "rad", "--pole-sigma"),
+            n=options.clones,
+            seed=options.seed,
+            rtol=options.rtol,
+            client=client,
+        )
+    finally:
+        if client is not None:
+            client.close()
+    return found, orbit
+
+
+def _row(name: str, values: Any, unit: str) -> dict[str, Any]:
+    low, median, high = (float(x) for x in np.nanquantile(values, SHARES))
+    return {"name": name, "low": low, "median": median, "high": high, "unit": unit}

@@ -1,0 +1,87 @@
+"""What became of clones after a flyby."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from polhode.plot._style import axes_2d, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["flyby"]
+
+_COLORS = {"short-axis": "#0072b2", "long-axis": "#d55e00"}
+_OTHER = "#999999"
+
+
+def flyby(
+    found: Any,
+    of: Literal["spin_ratio", "pole_shift", "rotation_period", "precession_period"] = "spin_ratio",
+    ax: Axes | None = None,
+    *,
+    time_unit: str = "",
+    time_scale: float = 1.0,
+    bins: int = 40,
+) -> Axes:
+    """Draw how a number is spread among clones after a flyby, by their modes, and what it was before.
+
+    Parameters
+    ----------
+    found : Flyby
+        Of :func:`polhode.flybys.flyby`.
+    of : {"spin_ratio", "pole_shift", "rotation_period", "precession_period"}
+    ax : matplotlib.axes.Axes, optional
+    time_unit : str, optional
+        Of the periods, for the label.
+    time_scale : float, optional
+        How many units of time that unit is: periods are divided by it.
+    bins : int, optional
+        How many bars; long tails (the last percent at each end) are drawn in the outermost.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = axes_2d(ax)
+    unit = f" / {time_unit}" if time_unit else ""
+    values: Any
+    before: float | None = None
+    match of:
+        case "spin_ratio":
+            label, values, before = "spin rate after over before", found.spin_ratio, 1.0
+        case "pole_shift":
+            label, values = "shift of the pole / degrees", np.degrees(found.pole_shift)
+        case "rotation_period" | "precession_period":
+            symbol = "$P_\\psi$" if of == "rotation_period" else "$P_\\varphi$"
+            label, values = f"{symbol}{unit}", getattr(found.after, of) / time_scale
+            before = float(np.nanmedian(getattr(found.before, of))) / time_scale
+        case _:
+            raise ValueError(
+                'of: expected "spin_ratio", "pole_shift", "rotation_period" or "precession_period", '
+                f"got {of!r}"
+            )
+    known = np.isfinite(values)
+    low, high = np.quantile(values[known], (0.005, 0.995)) if known.any() else (0.0, 1.0)
+    if not high > low:
+        low, high = low - 0.5, high + 0.5
+    edges = np.linspace(0.0 if of == "pole_shift" else low, high, bins + 1)
+    shown = np.clip(values, edges[0], edges[-1])
+    modes = list(np.unique(found.after.mode[known]))
+    ax.hist(
+        [shown[known & (found.after.mode == mode)] for mode in modes],
+        edges.tolist(),
+        stacked=True,
+        color=[_COLORS.get(str(mode), _OTHER) for mode in modes],
+        label=[f"{mode} after" for mode in modes],
+        edgecolor="white",
+        linewidth=0.4,
+    )
+    if before is not None:
+        ax.axvline(before, color="black", linewidth=1.2, linestyle="--", label="before")
+    ax.set_xlabel(label)
+    ax.set_ylabel("clones")
+    ax.legend(frameon=False, fontsize="small")
+    return tidy(ax)
