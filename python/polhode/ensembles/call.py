@@ -101,7 +101,7 @@ def ensemble(
     >>> spin = distributions.normal((0.0, 0.0, 1.0), sigma=0.1)
     >>> many = ensemble(body, [0, 10], spin, distributions.uniform_rotation(), n=1000, seed=1)
     >>> many
-    Ensemble(1000 members, 2 times, seed=1, draws omega, attitude, 1 chunks of 1000, 2.74 MB a chunk)
+    Ensemble(1000 members, 2 times, seed=1, draws omega, attitude, 1 chunk of 1000, 1.03 MB a chunk)
     >>> many.compute().omega.shape
     (1000, 2, 3)
     """
