@@ -18,7 +18,7 @@ import polhode
 import pytest
 import xarray
 from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, slow, twisted
-from polhode import RigidBody, distributions, ensemble, loads, orbits, reductions
+from polhode import RigidBody, Uncertain, distributions, ensemble, loads, orbits, reductions
 from polhode.ensembles.fingerprint import fingerprint
 from polhode.errors import FileFormatError, IntegrationError, InvalidInertiaError
 from scipy.spatial.transform import Rotation
@@ -137,11 +137,14 @@ class TestMembers:
         def load(rng: np.random.Generator) -> loads.Load:
             return loads.constant_torque(rng.normal(size=3) * 0.1)
 
-        many = ensemble(body, TIMES, spin, load=load, n=9, seed=4)
+        def attitude(rng: np.random.Generator) -> Rotation:
+            return Rotation.from_rotvec(rng.normal(size=3))
+
+        many = ensemble(body, TIMES, spin, attitude, load, n=9, seed=4)
         found = many.compute()
         for k in (0, 8):
             assert np.array_equal(many.member(k).omega, found.omega[k])
-        cut = ensemble(body, TIMES, spin, load=load, n=9, seed=4, chunk=2).compute()
+        cut = ensemble(body, TIMES, spin, attitude, load, n=9, seed=4, chunk=2).compute()
         assert all(np.array_equal(cut[name], found[name]) for name in found)
 
 
@@ -158,6 +161,12 @@ class TestSources:
         assert np.array_equal(apart.omega, together.omega)
         named = drawn(*(distributions.normal((0, 0, 1), sigma=0.1, name="x") for _ in range(2)))
         assert np.array_equal(named.omega, named.velocity)
+
+    def test_rotations_are_made(self) -> None:
+        turn = distributions.made(Rotation.from_rotvec, distributions.normal((0, 0, 0), sigma=1.0))
+        found = ensemble(BODY, [0.0], SPIN, turn, n=5, seed=1).compute()
+        want = Rotation.from_rotvec(found["attitude.0"].values)
+        assert (want.inv() * Rotation.from_quat(found.quaternion[:, 0].values)).magnitude().max() < 1e-15
 
     def test_order_of_keywords_does_not_matter(self) -> None:
         parts = {
@@ -339,6 +348,8 @@ REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"omega": distributions.samples(np.zeros((9, 3)))}, ValueError, "omega: 10 members want a row each"),
     ({"body": 3.0}, TypeError, "body: expected a RigidBody, a distribution"),
     ({"body": RigidBody.stack([BODY, BODY])}, ValueError, "body: expected one for all members"),
+    ({"body": BODY.with_sigma(mass=0.1)}, ValueError, "body: carries a covariance"),
+    ({"omega": Uncertain((0, 0, 1), sigma=0.1)}, TypeError, "omega: an Uncertain is given"),
     ({"body": distributions.made(abs, 2.0)}, TypeError, "body: expected a RigidBody for each member"),
     ({"load": 3.0}, TypeError, "load: expected a Load, a distribution"),
     ({"load": lambda _: 3.0}, TypeError, "load: expected a Load for each member, got float"),

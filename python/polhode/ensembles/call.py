@@ -185,6 +185,11 @@ def _one(value: Any, place: str) -> Any:
             f"{place}: expected one for all members, got a stack of shape {value.shape}; "
             "distributions.made makes one for each of what is drawn"
         )
+    if isinstance(value, _core.RigidBody) and value.covariance is not None:
+        raise ValueError(
+            "body: carries a covariance, and an ensemble draws distributions alone; draw the body's numbers by "
+            "distributions.made(RigidBody, ...), or give the body without sigmas"
+        )
     return value
 
 
