@@ -87,7 +87,7 @@ _HOMES = (
 )
 """Modules whose names are public here; the other names are modules."""
 
-_APART = {name: ("polhode.ensembles.call",) for name in ("Ensemble", "ensemble")}
+_APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",))
 """Names whose module is imported for them alone: it has many files."""
 
 __all__ = [

@@ -187,8 +187,8 @@ def _one(value: Any, place: str) -> Any:
         )
     if isinstance(value, _core.RigidBody) and value.covariance is not None:
         raise ValueError(
-            "body: carries a covariance, and an ensemble draws distributions alone; draw the body's numbers by "
-            "distributions.made(RigidBody, ...), or give the body without sigmas"
+            "body: carries a covariance, and an ensemble draws distributions alone; draw the body's numbers "
+            "by distributions.made(RigidBody, ...), or give the body without sigmas"
         )
     return value
 
