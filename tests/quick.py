@@ -24,6 +24,8 @@ ROOTS = ("rust", "core", "src", "python", "polhode")
 NAMED = {
     "integrate": ["simulate", "taylor", "sensitivity", "load_terms"],
     "simulate": ["simulate", "events", "exact_runs"],
+    "ensembles": ["ensemble", "reductions"],
+    "random": ["distributions"],
     "problem": ["simulate", "bad_inputs"],
     "numerics": ["principal_axes", "free_motion_cases", "heavy_top_cases", "taylor"],
     "principal": ["principal_axes", "canonical_axes"],

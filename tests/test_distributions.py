@@ -1,4 +1,4 @@
-"""What members draw: bits that are published, laws of the numbers, names that keep draws apart or together."""
+"""What members draw: bits that are published, laws, names that keep draws apart or together."""
 
 from __future__ import annotations
 
@@ -214,7 +214,7 @@ PRINTED = [
     (lambda: uniform(0, 1), "Uniform(low=0.0, high=1.0)"),
     (uniform_rotation, "UniformRotation()"),
     (lambda: samples(np.zeros((9, 3))), "Samples(values=<shape (9, 3)>, order='as given')"),
-    (lambda: per_member(abs, name="b"), "PerMember(abs, name='b')"),
+    (lambda: per_member(id, name="b"), "PerMember(id, name='b')"),
     (lambda: made(operator.add, 1, uniform(0, 1)), "Made(add, 1, Uniform(low=0.0, high=1.0))"),
     (lambda: made(loads.damping, matrix=2), "Made(damping, matrix=2)"),
 ]

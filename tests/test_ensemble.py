@@ -1,4 +1,4 @@
-"""Ensembles on one machine: members and their bits, failures, files that go on after a kill, what is refused."""
+"""Ensembles on one machine: bits, failures, files that go on after a kill, what is refused."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import polhode
 import pytest
 import xarray
 from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, slow, twisted
-from polhode import RigidBody, distributions, ensemble, loads, orbits, reductions
+from polhode import RigidBody, Uncertain, distributions, ensemble, loads, orbits, reductions
 from polhode.ensembles.fingerprint import fingerprint
 from polhode.errors import FileFormatError, IntegrationError, InvalidInertiaError
 from scipy.spatial.transform import Rotation
@@ -76,10 +76,8 @@ class TestMembers:
 
     @pytest.mark.parametrize("method", ["auto", "taylor", "dop853", "splitting"])
     def test_chunks_change_no_bit(self, method: str) -> None:
-        twist = distributions.made(
-            loads.constant_torque, distributions.normal((0, 0.1, 0), sigma=0.1), "space"
-        )
-        twist = None if method == "splitting" else twist
+        torque = distributions.normal((0, 0.1, 0), sigma=0.1)
+        twist = distributions.made(loads.constant_torque, torque, "space") if method == "taylor" else None
         found = {
             all_bytes(
                 ensemble(BODY, TIMES, SPIN, load=twist, n=50, seed=2, chunk=chunk, method=method).compute()
@@ -139,11 +137,14 @@ class TestMembers:
         def load(rng: np.random.Generator) -> loads.Load:
             return loads.constant_torque(rng.normal(size=3) * 0.1)
 
-        many = ensemble(body, TIMES, spin, load=load, n=9, seed=4)
+        def attitude(rng: np.random.Generator) -> Rotation:
+            return Rotation.from_rotvec(rng.normal(size=3))
+
+        many = ensemble(body, TIMES, spin, attitude, load, n=9, seed=4)
         found = many.compute()
         for k in (0, 8):
             assert np.array_equal(many.member(k).omega, found.omega[k])
-        cut = ensemble(body, TIMES, spin, load=load, n=9, seed=4, chunk=2).compute()
+        cut = ensemble(body, TIMES, spin, attitude, load, n=9, seed=4, chunk=2).compute()
         assert all(np.array_equal(cut[name], found[name]) for name in found)
 
 
@@ -160,6 +161,12 @@ class TestSources:
         assert np.array_equal(apart.omega, together.omega)
         named = drawn(*(distributions.normal((0, 0, 1), sigma=0.1, name="x") for _ in range(2)))
         assert np.array_equal(named.omega, named.velocity)
+
+    def test_rotations_are_made(self) -> None:
+        turn = distributions.made(Rotation.from_rotvec, distributions.normal((0, 0, 0), sigma=1.0))
+        found = ensemble(BODY, [0.0], SPIN, turn, n=5, seed=1).compute()
+        want = Rotation.from_rotvec(found["attitude.0"].values)
+        assert (want.inv() * Rotation.from_quat(found.quaternion[:, 0].values)).magnitude().max() < 1e-15
 
     def test_order_of_keywords_does_not_matter(self) -> None:
         parts = {
@@ -309,7 +316,10 @@ class TestFiles:
             twisted(20).resume(tmp_path)
 
     def test_a_fingerprint_is_the_same_in_every_process(self) -> None:
-        code = "import ensemble_cases as e; from polhode.ensembles.fingerprint import *; print(fingerprint(e.twisted().plan))"
+        code = (
+            "import ensemble_cases as e; from polhode.ensembles.fingerprint import *\n"
+            "print(fingerprint(e.twisted().plan))"
+        )
         told = {python(code, PYTHONHASHSEED=seed).strip() for seed in ("1", "2")}
         assert told == {fingerprint(twisted().plan)}
 
@@ -325,6 +335,7 @@ class TestFiles:
         assert of(lambda rng: rng.normal(size=3)) != of(lambda rng: rng.uniform(size=3))
 
 
+MASS = distributions.uniform(1.0, 2.0)
 REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"n": 0}, ValueError, "n: expected a positive integer, got 0"),
     ({"n": 2.5}, TypeError, "n: expected a positive integer"),
@@ -333,10 +344,12 @@ REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"seed": None}, TypeError, "seed: expected an integer from 0"),
     ({"on_failure": "skip"}, ValueError, "on_failure: expected"),
     ({"omega": np.zeros((10, 3))}, ValueError, "a row for each goes in distributions.samples"),
-    ({"omega": distributions.uniform((0, 0), (1, 1))}, ValueError, "omega: expected 3 numbers for each member"),
+    ({"omega": distributions.uniform((0, 0), (1, 1))}, ValueError, "omega: expected 3 numbers for each"),
     ({"omega": distributions.samples(np.zeros((9, 3)))}, ValueError, "omega: 10 members want a row each"),
     ({"body": 3.0}, TypeError, "body: expected a RigidBody, a distribution"),
     ({"body": RigidBody.stack([BODY, BODY])}, ValueError, "body: expected one for all members"),
+    ({"body": BODY.with_sigma(mass=0.1)}, ValueError, "body: carries a covariance"),
+    ({"omega": Uncertain((0, 0, 1), sigma=0.1)}, TypeError, "omega: an Uncertain is given"),
     ({"body": distributions.made(abs, 2.0)}, TypeError, "body: expected a RigidBody for each member"),
     ({"load": 3.0}, TypeError, "load: expected a Load, a distribution"),
     ({"load": lambda _: 3.0}, TypeError, "load: expected a Load for each member, got float"),
@@ -347,7 +360,7 @@ REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"t": [1.0, 0.0, 2.0]}, ValueError, "t must be strictly"),
     ({"reduce": 3}, TypeError, "reduce: expected a reduction or a dict"),
     ({"reduce": {"a": 3}}, TypeError, "reduce: 'a' is no reduction but int"),
-    ({"reduce": reductions.mean("omega"), "chunk": 5}, ValueError, "chunk: with reduce= it must be a multiple"),
+    ({"reduce": reductions.mean("omega"), "chunk": 5}, ValueError, "chunk: with reduce= it must be"),
     (
         {"reduce": reductions.mean("omega"), "load": lambda _: loads.damping(np.eye(3))},
         ValueError,
@@ -356,7 +369,7 @@ REFUSED: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"client": 3}, TypeError, "client: expected a dask.distributed.Client, got int"),
     ({"progress": 3}, TypeError, "progress: expected True, False, None or a function"),
     (
-        {"about": "origin", "body": distributions.made(RigidBody.from_principal, 1.0, distributions.uniform((1, 1, 1), (1.1, 1.1, 1.1)))},
+        {"about": "origin", "body": distributions.made(RigidBody.from_principal, MASS, (1.0, 1.0, 1.5))},
         ValueError,
         'method: "auto" would choose by the bodies of a chunk',
     ),
@@ -373,8 +386,8 @@ def test_refused(change: dict[str, Any], kind: type[Exception], told: str) -> No
 class TestTheObject:
     def test_it_prints_on_a_line(self) -> None:
         assert repr(twisted(10_000)) == (
-            "Ensemble(10000 members, 3 times, seed=5, draws body.1, omega, attitude, load.0, 3 chunks of 4096, "
-            "13.5 MB a chunk)"
+            "Ensemble(10000 members, 3 times, seed=5, draws body.1, omega, attitude, load.0, "
+            "3 chunks of 4096, 21.9 MB a chunk)"
         )
         assert "reduced, 3 chunks" in repr(twisted(10_000, reduce=reductions.mean("omega")))
         assert len(twisted(10_000)) == 10_000
@@ -386,6 +399,20 @@ class TestTheObject:
     def test_more_states_than_memory_are_refused_before_the_first(self) -> None:
         with pytest.raises(MemoryError, match="write them with to_zarr or to_npz, ask for fewer times"):
             twisted(10**12).compute()
+
+    @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the system does not tell")
+    @pytest.mark.parametrize("options", ["n=100_000, t=(0, 1)", "n=10_000, t=range(100)"])
+    def test_a_chunk_takes_as_much_memory_as_is_told(self, options: str) -> None:
+        code = (
+            "import re, pathlib, ensemble_cases as e\n"
+            "from polhode.ensembles.running import arrays_of_chunk\n"
+            "status = pathlib.Path('/proc/self/status')\n"
+            "peak = lambda: 1024 * int(re.search(r'VmHWM:\\s*(\\d+)', status.read_text())[1])\n"
+            f"many = e.twisted({options}, chunk=2**20)\n"
+            "start = peak(); arrays_of_chunk(many.plan, 0)\n"
+            "print((peak() - start) / many.memory.worker)"
+        )
+        assert 0.3 < float(python(code)) < 1.1
 
     def test_a_member_that_is_none(self) -> None:
         with pytest.raises(IndexError, match="k: there are members 0 to 299, got 300"):

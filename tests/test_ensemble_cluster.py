@@ -44,7 +44,7 @@ def workers() -> Iterator[Any]:
         yield client
 
 
-class Beside(distributed.WorkerPlugin):
+class Beside(distributed.WorkerPlugin):  # type: ignore[misc,name-defined]  # found by pytest alone
     """Puts a folder before others, also of workers that come later."""
 
     def __init__(self, folder: str) -> None:
@@ -128,7 +128,7 @@ def test_what_was_ended_goes_on_with_a_cluster(workers: Any, tmp_path: Path) -> 
 
 
 def test_an_error_of_a_member_comes_back_and_ends_the_rest(workers: Any) -> None:
-    with pytest.raises(ValueError, match="member [0-9]+: "):
+    with pytest.raises(ValueError, match=r"member [0-9]+: "):
         twisted(500, chunk=20, client=workers, on_failure="raise").compute()
 
     late = ensemble(

@@ -1,4 +1,4 @@
-"""Progress of long work: a bar on a terminal after two seconds, nothing in a pipe, or a function of one's own."""
+"""Progress of long work: a bar on a terminal after two seconds, nothing in a pipe, or one's own function."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import sys
 from typing import Any
 
 import pytest
-from polhode import _progress
 from polhode._progress import duration, watched
 
 
@@ -20,7 +19,7 @@ class Terminal(io.StringIO):
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The time that passes is what a test says."""
     now = [100.0]
-    monkeypatch.setattr(_progress.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
     return now
 
 
@@ -37,7 +36,7 @@ def shown(monkeypatch: pytest.MonkeyPatch, stream: Any, progress: Any, clock: li
 def test_a_bar_on_a_terminal_after_two_seconds(monkeypatch: pytest.MonkeyPatch, clock: list[float]) -> None:
     text = shown(monkeypatch, Terminal(), None, clock)
     lines = text.split("\r")
-    assert lines[1].startswith("work [============")
+    assert lines[1].startswith("work [==========  ")
     assert " 32 %, 4 s left" in lines[1]
     assert 10 < len(lines) < 25
     # What was shown is wiped away at the end.

@@ -1,4 +1,4 @@
-"""What ensembles keep in place of states: against NumPy on the states, in trees of every shape, within stated errors."""
+"""What ensembles keep in place of states: against NumPy, in trees of every shape, within stated errors."""
 
 from __future__ import annotations
 
@@ -181,6 +181,7 @@ class TestWhatIsNoNumber:
         assert np.isnan(found["mean"].mean)
 
 
+WHEEL = loads.wheel(axis=(0, 0, 1), inertia=0.1, rate=1.0)
 REFUSED: list[tuple[Any, type[Exception], str]] = [
     (lambda: reductions.mean("spin"), ValueError, "of: 'spin' is not one of 'omega'"),
     (lambda: reductions.mean(3), TypeError, "of: expected the name of a state or a function"),  # type: ignore[arg-type]
@@ -190,10 +191,9 @@ REFUSED: list[tuple[Any, type[Exception], str]] = [
     (lambda: reductions.quantiles([], "omega"), ValueError, "q: expected one or more numbers from 0 to 1"),
     (lambda: run(reductions.mean(lambda _: 1.0)), ValueError, "of: expected a first axis of 10 members"),
     (lambda: run(reductions.mean(lambda motion: motion.omega.T)), ValueError, "of: expected a first axis"),
-    (lambda: run(reductions.covariance("omega"), t=np.arange(400)), ValueError, "1000 numbers of a member at most"),
-    (lambda: run(reductions.mode_changes(), load=loads.rotor((0, 0, 1)) + WHEEL), ValueError, "carries wheels"),
+    (lambda: run(reductions.covariance("omega"), t=np.arange(400)), ValueError, "1000 numbers of a member"),
+    (lambda: run(reductions.mode_changes(), load=WHEEL), ValueError, "carries wheels"),
 ]  # fmt: skip
-WHEEL = loads.wheel(axis=(0, 0, 1), inertia=0.1, rate=1.0)
 
 
 def run(reduction: Any, t: Any = TIMES, load: Any = None) -> Any:

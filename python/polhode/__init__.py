@@ -65,7 +65,7 @@ else:
 
         if name not in __all__:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        for home in _HOMES:
+        for home in _APART.get(name, _HOMES):
             value = getattr(import_module(home), name, None)
             if value is not None:
                 break
@@ -85,9 +85,11 @@ _HOMES = (
     "polhode.trajectory",
     "polhode.events",
     "polhode.free_motion",
-    "polhode.ensembles.call",
 )
 """Modules whose names are public here; the other names are modules."""
+
+_APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",))
+"""Names whose module is imported for them alone: it has many files."""
 
 __all__ = [
     "AngularMomentum",

@@ -98,10 +98,10 @@ class Distribution:
         >>> from polhode import distributions
         >>> spin = distributions.normal((0.0, 0.0, 1.0), sigma=0.1)
         >>> spin.draw(2, seed=1).round(3)
-        array([[-0.039, -0.004,  0.997],
-               [ 0.037, -0.099,  0.993]])
+        array([[0.022, 0.162, 0.69 ],
+               [0.046, 0.002, 1.024]])
         >>> spin.draw(1, seed=1, first=1).round(3)
-        array([[ 0.037, -0.099,  0.993]])
+        array([[0.046, 0.002, 1.024]])
         """
         name = argument if self.name is None else given_name(self.name)
         return self.rows(source(seed, name), first, n)

@@ -252,8 +252,8 @@ def mean(of: Of) -> Reduction:
     >>> spin = distributions.normal((0.0, 0.0, 1.0), sigma=0.1)
     >>> many = ensemble(body, [0, 10], spin, n=4000, seed=1, reduce=reductions.mean("omega"))
     >>> many.compute().mean.round(2)
-    array([[-0.  ,  0.  ,  1.  ],
-           [ 0.  , -0.  ,  1.  ]])
+    array([[0., 0., 1.],
+           [0., 0., 1.]])
     """
     return _Mean(_of(of))
 

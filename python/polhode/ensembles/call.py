@@ -101,7 +101,7 @@ def ensemble(
     >>> spin = distributions.normal((0.0, 0.0, 1.0), sigma=0.1)
     >>> many = ensemble(body, [0, 10], spin, distributions.uniform_rotation(), n=1000, seed=1)
     >>> many
-    Ensemble(1000 members, 2 times, seed=1, draws omega, attitude, 1 chunks of 1000, 2.74 MB a chunk)
+    Ensemble(1000 members, 2 times, seed=1, draws omega, attitude, 1 chunk of 1000, 1.03 MB a chunk)
     >>> many.compute().omega.shape
     (1000, 2, 3)
     """
@@ -184,6 +184,11 @@ def _one(value: Any, place: str) -> Any:
         raise ValueError(
             f"{place}: expected one for all members, got a stack of shape {value.shape}; "
             "distributions.made makes one for each of what is drawn"
+        )
+    if isinstance(value, _core.RigidBody) and value.covariance is not None:
+        raise ValueError(
+            "body: carries a covariance, and an ensemble draws distributions alone; draw the body's numbers "
+            "by distributions.made(RigidBody, ...), or give the body without sigmas"
         )
     return value
 

@@ -131,6 +131,10 @@ def is_each_alone(plan: Plan) -> bool:
 
 
 def _vectors(given: Any, place: str, size: int, count: int) -> Floats:
+    if isinstance(given, list):  # of a function that is called for each member
+        given = [one.as_quat() if hasattr(one, "as_quat") else one for one in given]
+    elif hasattr(given, "as_quat"):
+        given = given.as_quat()
     array = _core.real_numbers(given, place)
     if array.shape not in ((size,), (count, size)):
         raise ValueError(

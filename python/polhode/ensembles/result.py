@@ -17,6 +17,7 @@ from polhode._repr import short
 from polhode.ensembles.cluster import chunks_of_client
 from polhode.ensembles.engine import chunks_here
 from polhode.ensembles.layout import bytes_of_member, coordinates, layout
+from polhode.ensembles.recipe import draws
 from polhode.ensembles.reducing import nodes_of_chunk, tree_of
 from polhode.ensembles.running import arrays_of_chunk
 from polhode.ensembles.stores import NpzStore, ZarrStore, opened
@@ -37,8 +38,11 @@ if TYPE_CHECKING:
 __all__ = ["Ensemble", "Memory"]
 
 R = TypeVar("R")
-_STATE: Final = 400
-"""Bytes of a state while it is integrated, handed over and kept, beside what stays of it."""
+_STATE: Final = 120
+"""Bytes of a state while it is integrated and handed over, beside the copies that are kept; measured."""
+_MEMBER: Final = 500
+_MADE: Final = 2000
+"""Bytes of a body or a load that a member has for itself."""
 
 
 class Memory(NamedTuple):
@@ -101,7 +105,8 @@ class Ensemble:
         kept = "reduced, " if self.reduce is not None else ""
         return (
             f"Ensemble({plan.n} members, {len(plan.t)} times, seed={plan.seed}, draws {drawn}, {kept}"
-            f"{plan.chunks} chunks of {min(plan.chunk, plan.n)}, {_size(self.memory.worker)} a chunk)"
+            f"{plan.chunks} chunk{'s'[: plan.chunks - 1]} of {min(plan.chunk, plan.n)}, "
+            f"{_size(self.memory.worker)} a chunk)"
         )
 
     @property
@@ -111,7 +116,8 @@ class Ensemble:
         kept = bytes_of_member(plan)
         rows = min(plan.chunk, plan.n)
         worker = min(rows, BLOCK) if self.reduce is not None else rows
-        each = 2 * kept + (len(plan.t) + 4) * _STATE
+        own = sum(any(draws(plan.recipe[place])) for place in ("body", "load"))
+        each = 2 * kept + len(plan.t) * _STATE + _MEMBER + own * _MADE
         return Memory(worker * each, 0 if self.reduce is not None else plan.n * kept)
 
     def member(self, k: int) -> Trajectory:

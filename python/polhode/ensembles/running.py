@@ -124,8 +124,12 @@ def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:
     every = np.arange(inputs.count)
     able: list[Rows] = [every[:0]]
     faults: dict[int, PolhodeError] = {}
+
+    def is_made(some: Rows) -> None:
+        inputs.made(some)
+
     for start in range(0, inputs.count, size):
-        rows, _, refused = _each(every[start : start + size], inputs.made)
+        rows, _, refused = _each(every[start : start + size], is_made)
         able.append(rows)
         faults |= refused
     return np.concatenate(able), faults
@@ -149,9 +153,13 @@ def _each(
             error.args = (_ROW.sub("", str(error), count=1),)
             return rows[:0], None, {int(rows[0]): error}
     half = len(rows) // 2
-    parts = [_each(rows[:half], attempt, is_run=is_run), _each(rows[half:], attempt, is_run=is_run)]
-    able = np.concatenate([part[0] for part in parts])
-    faults = parts[0][2] | parts[1][2]
+    able: Rows = rows[:0]
+    faults: dict[int, PolhodeError] = {}
+    for part in (rows[:half], rows[half:]):
+        # What comes of a part is not kept: all that are able go together in the end.
+        some, refused = _each(part, attempt, is_run=is_run)[::2]
+        able = np.concatenate([able, some])
+        faults |= refused
     return able, attempt(able) if len(able) else None, faults
 
 

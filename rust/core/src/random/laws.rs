@@ -54,6 +54,7 @@ fn ratio(r: f64, [above, below]: &[[f64; 8]; 2]) -> f64 {
     horner(above) / horner(below)
 }
 
+#[expect(clippy::excessive_precision, reason = "as the source prints them")]
 const CENTRE: [[f64; 8]; 2] = [
     [
         3.387_132_872_796_366_608,
@@ -77,6 +78,7 @@ const CENTRE: [[f64; 8]; 2] = [
     ],
 ];
 
+#[expect(clippy::excessive_precision, reason = "as the source prints them")]
 const SIDE: [[f64; 8]; 2] = [
     [
         1.423_437_110_749_683_577_34,
@@ -100,6 +102,7 @@ const SIDE: [[f64; 8]; 2] = [
     ],
 ];
 
+#[expect(clippy::excessive_precision, reason = "as the source prints them")]
 const TAIL: [[f64; 8]; 2] = [
     [
         6.657_904_643_501_103_777_2,

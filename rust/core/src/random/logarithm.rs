@@ -1,10 +1,10 @@
 //! The natural logarithm by sums, products and one quotient: the same bits on every machine, which a library's need not have.
 
 /// ln 2 in two parts, the first short enough that its multiples are exact.
-const LN_2: [f64; 2] = [6.931_471_803_691_238_2e-1, 1.908_214_929_270_587_7e-10];
+const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 /// (ln(1 + f) − 2s)/s in powers of s², with s = f/(2 + f): the minimax polynomial of FreeBSD's `msun`.
 const TAIL: [f64; 7] = [
-    6.666_666_666_666_735_1e-1,
+    6.666_666_666_666_735e-1,
     3.999_999_999_940_942e-1,
     2.857_142_874_366_239e-1,
     2.222_219_843_214_978_4e-1,
