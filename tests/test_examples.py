@@ -14,6 +14,7 @@ pytest.importorskip("matplotlib")
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 PRINTED = {
+    "apophis": [r"before: 0\.[67]\d to 1\.[34]\d", r"short-axis: 9\d % after"],
     "asteroid": [r"rotation 5\.4100 d, precession 7\.3500 d", r"relative change [0-9]e-1[5-7]|0e\+00"],
     "edge_mill": [r"11688\.000 N, by hand 11688\.000 N"],
     "gravity_gradient": [r"theory: 4218\.4 s", r"from 2°: 42(19|20)\.\d s"],

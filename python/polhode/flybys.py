@@ -1,7 +1,7 @@
 """Tumbling asteroids past a planet: how the spin of many clones of one changes.
 
-On 13 April 2029 Apophis, a tumbler, passes inside the geostationary ring. Where in its tumble it is by then nobody
-knows; clones with all phases and directions tell what may become of it.
+On 13 April 2029 Apophis, a tumbler, passes inside the geostationary ring. Where in its tumble it is by then
+nobody knows; clones with all phases and directions tell what may become of it.
 """
 
 from __future__ import annotations
@@ -264,27 +264,26 @@ def _turned(motion: FreeMotion, phase: Floats, turn: Floats) -> Floats:
 
 def _toward(motion: FreeMotion, phase: Floats, pole: Floats, around: Floats, tilt: Floats) -> Floats:
     """Attitudes at phases, with L near a direction."""
-    z = np.array([0.0, 0.0, 1.0])
     side = np.eye(3)[int(np.argmin(np.abs(pole)))]
     one = np.cross(pole, side) / np.linalg.norm(np.cross(pole, side))
     two = np.cross(pole, one)
-    # From z to the pole: half a turn about what is midway between them, or where they are opposite about any axis across.
-    half = pole + z
-    size = np.linalg.norm(half)
-    axis = half / size if size > 1e-8 else np.array([1.0, 0.0, 0.0])
-    aligned = np.array([*axis, 0.0])
+    # The shortest turn to the pole from z; or from -z, where that is nearer and half a turn about x leads.
+    near = np.array([0.0, 0.0, 1.0 if pole[2] >= 0.0 else -1.0])
+    aligned = np.array([*np.cross(near, pole), 1.0 + near @ pole])
+    if pole[2] < 0.0:
+        aligned = _product(aligned, np.array([1.0, 0.0, 0.0, 0.0]))
     spun = np.stack([0 * around, 0 * around, np.sin(around / 2), np.cos(around / 2)], axis=-1)
     angle = np.linalg.norm(tilt, axis=-1)
     share = 0.5 * np.sinc(angle / (2 * np.pi))  # sin(angle/2)/angle
     leaning = np.concatenate(
         [(tilt @ np.stack([one, two])) * share[:, None], np.cos(angle / 2)[:, None]], axis=-1
     )
-    turn = _product(_product(leaning, np.broadcast_to(aligned, leaning.shape)), spun)
+    turn = _product(_product(leaning, aligned), spun)
     return _product(turn, motion.at(phase).quaternion)
 
 
 def _product(p: Floats, q: Floats) -> Floats:
-    """Give p∘q of quaternions (x, y, z, w), each of unit length to rounding."""
+    """Give p∘q of quaternions (x, y, z, w), at unit length."""
     a, s, b, t = p[..., :3], p[..., 3:], q[..., :3], q[..., 3:]
     vector = s * b + t * a + np.cross(a, b)
     found = np.concatenate([vector, s * t - np.sum(a * b, axis=-1, keepdims=True)], axis=-1)

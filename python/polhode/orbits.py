@@ -227,7 +227,7 @@ def kepler(
     >>> import numpy as np
     >>> from polhode import orbits
     >>> orbit = orbits.kepler(1.0, (1, 0, 0), (0, 1, 0))
-    >>> orbit.at(np.pi / 2).position.round(12)
+    >>> orbit.at(np.pi / 2).position.round(12) + 0.0
     array([0., 1., 0.])
     >>> orbit.frame(0.0).omega
     array([ 0., -1.,  0.])
@@ -329,7 +329,7 @@ def from_elements(
     --------
     >>> from polhode import orbits
     >>> comet = orbits.from_elements(1.0, eccentricity=1.0, periapsis=0.5)
-    >>> comet.velocity
+    >>> comet.velocity + 0.0
     array([0., 2., 0.])
     """
     if (periapsis is None) == (semi_major_axis is None):

@@ -1,7 +1,7 @@
 """Ends of motions that an attractor's field turns, on orbits of every eccentricity, and their derivatives.
 
-By Taylor series in 40 digits; the orbit is integrated with the body. ``python -m oracles.orbit_torques`` in the
-folder ``tests`` writes ``oracles/tables/orbit_torques.json``.
+By Taylor series in 40 digits; the orbit is integrated with the body. ``python -m oracles.orbit_torques`` in
+the folder ``tests`` writes ``oracles/tables/orbit_torques.json``.
 """
 
 from __future__ import annotations

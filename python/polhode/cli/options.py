@@ -231,8 +231,8 @@ class FlybyOptions:
     rtol
         Relative tolerance of the integration.
     client
-        Address of the scheduler of a dask cluster that runs the clones, as in tcp://127.0.0.1:8786; by default
-        the threads of this machine do.
+        Address of the scheduler of a dask cluster that runs the clones, as in tcp://127.0.0.1:8786; by
+        default the threads of this machine do.
     save
         Where to draw the distributions (.png, .pdf, .svg). May be repeated.
     """
