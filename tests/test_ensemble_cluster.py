@@ -69,6 +69,14 @@ def test_bits_are_those_of_this_machine_for_any_number_of_workers(workers: Any) 
         assert all_bytes(many.compute()) == reduced
 
 
+@pytest.mark.long
+def test_bits_of_seven_workers(workers: Any) -> None:
+    scaled(workers, 7)
+    assert all_bytes(twisted(5000, chunk=60, client=workers).compute()) == all_bytes(twisted(5000).compute())
+    many = twisted(100_000, reduce=all_reductions(), client=workers)
+    assert all_bytes(many.compute()) == all_bytes(twisted(100_000, reduce=all_reductions()).compute())
+
+
 def test_functions_of_ones_own_go_along(workers: Any) -> None:
     factor = 0.5
 
