@@ -70,6 +70,11 @@ HEAVY = (
 )
 
 
+def test_examples_of_every_module_are_run() -> None:
+    modules = {name for name in polhode.__all__ if isinstance(getattr(polhode, name), types.ModuleType)}
+    assert {f"polhode.{name}" for name in modules} <= set(MODULES)
+
+
 def public_objects() -> Iterator[tuple[str, Any]]:
     """Every function, class, method and property that a user can reach, compiled or not, by dotted name."""
     seen: set[int] = set()
