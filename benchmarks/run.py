@@ -29,6 +29,7 @@ FILES_OF_ROWS = (
     "gyrostat",
     "heavy_top",
     "simulate",
+    "flyby",
     "callbacks",
     "threads",
 )

@@ -260,6 +260,23 @@ impl Orbit {
             let root = self.beta.sqrt();
             s = t * self.beta / self.scaled_mu;
             (low, high) = (s - 2.0 / root, s + 2.0 / root);
+        } else if self.beta < 0.0 {
+            // From the periapsis: e sinh H − H = M, so that H is between asinh(M/e) and asinh(M/(e − 1)), and at most √−β t/q.
+            let root = (-self.beta).sqrt();
+            let over_one = -self.beta * self.distance / self.scaled_mu;
+            let mean = t.abs() / self.scaled_mu * root.powi(3);
+            let least = (mean / (1.0 + over_one)).asinh();
+            let most = (mean / over_one)
+                .asinh()
+                .min(root * t.abs() / self.distance);
+            let start = ((mean + least) / (1.0 + over_one)).asinh().min(most);
+            let (least, most) = (least / root, most / root * (1.0 + 4.0 * f64::EPSILON));
+            s = start / root * t.signum();
+            (low, high) = if t > 0.0 {
+                (0.9 * least, most)
+            } else {
+                (-most, -0.9 * least)
+            };
         } else {
             s = t / self.distance;
             (low, high) = (0.0_f64.min(s), 0.0_f64.max(s));

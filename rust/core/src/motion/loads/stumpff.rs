@@ -3,19 +3,32 @@
 /// Below this β s² the closed forms cancel, and eleven terms of the series are exact.
 const SERIES: f64 = 2.5;
 
+/// 1/(n (n − 1)) for n = 2j + k, j < 11.
+const fn reciprocals(k: usize) -> [f64; 11] {
+    let mut found = [0.0; 11];
+    let mut j = 0;
+    while j < 11 {
+        let n = (2 * j + k) as f64;
+        found[j] = 1.0 / (n * (n - 1.0));
+        j += 1;
+    }
+    found
+}
+
 /// `Σ_{0≤j<11} (−x)^j (k − 2)!/(2j + k)!`: `c_2`, `c_3`, `2 c_4` and `6 c_5`.
-fn series(x: f64, k: f64) -> f64 {
-    (0..11).rev().fold(0.0, |sum, j| {
-        let n = 2.0 * f64::from(j) + k;
-        (1.0 - x * sum) / (n * (n - 1.0))
-    })
+#[inline(always)]
+fn series<const K: usize>(x: f64) -> f64 {
+    const { reciprocals(K) }
+        .iter()
+        .rev()
+        .fold(0.0, |sum, reciprocal| reciprocal * (1.0 - x * sum))
 }
 
 /// `G_4` and `G_5`, by `c_{k+2}(x) = (1/k! − c_k(x))/x`.
 pub(super) fn further(beta: f64, s: f64) -> [f64; 2] {
     let x = beta * s * s;
     let [c4, c5] = if x.abs() < SERIES {
-        [series(x, 4.0) / 2.0, series(x, 5.0) / 6.0]
+        [series::<4>(x) / 2.0, series::<5>(x) / 6.0]
     } else {
         let [_, _, g2, g3] = functions(beta, s);
         [(0.5 - g2 / (s * s)) / x, (1.0 / 6.0 - g3 / (s * s * s)) / x]
@@ -27,7 +40,7 @@ pub(super) fn further(beta: f64, s: f64) -> [f64; 2] {
 pub(super) fn functions(beta: f64, s: f64) -> [f64; 4] {
     let x = beta * s * s;
     let (c2, c3) = if x.abs() < SERIES {
-        (series(x, 2.0), series(x, 3.0))
+        (series::<2>(x), series::<3>(x))
     } else if x > 0.0 {
         let root = x.sqrt();
         let half = (0.5 * root).sin();

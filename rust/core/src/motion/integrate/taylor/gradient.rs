@@ -30,6 +30,8 @@ type Vectors<T> = [[T; 3]; COUNT];
 pub(super) struct Gradient<T> {
     position: Vectors<T>,
     velocity: Vectors<T>,
+    /// ω.
+    spin: Vectors<T>,
     squares: [T; COUNT],
     /// r⁻³ and r⁻⁵, and (r₂r₃, r₃r₁, r₁r₂).
     cubes: [T; COUNT],
@@ -48,6 +50,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         Self {
             position: [[zero; 3]; COUNT],
             velocity: [[zero; 3]; COUNT],
+            spin: [[zero; 3]; COUNT],
             squares: [zero; COUNT],
             cubes: [zero; COUNT],
             fifths: [zero; COUNT],
@@ -129,19 +132,39 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         sum.map(|x| -(self.strength * x))
     }
 
-    /// The next coefficient of the power `a` of the squares, of which the first is one.
+    /// The next coefficients of r⁻³ and r⁻⁵, of which the first are one.
     #[inline(always)]
-    fn power(&self, a: f64, powers: &[Pack<L, R>; COUNT], k: usize) -> Pack<L, R> {
+    fn powers(&self, k: usize) -> [Pack<L, R>; 2] {
         if k == 0 {
-            return Pack::new(1.0);
+            return [Pack::new(1.0); 2];
         }
-        let mut sum = Pack::new(0.0);
-        for j in 1..=k {
-            let factor = Pack::new(a * j as f64 - (k - j) as f64);
-            sum = (self.squares[j] * factor).mul_add(powers[k - j], sum);
+        let mut sums = [Pack::new(0.0); 2];
+        let before = self.cubes[..k].iter().zip(&self.fifths[..k]).rev();
+        for (j, (square, (cube, fifth))) in self.squares[1..=k].iter().zip(before).enumerate() {
+            // (a + 1) j − k with a = −3/2 and −5/2, in halves and so without rounding.
+            let at = (j + 1) as f64;
+            let (once, twice) = (-0.5 * at - k as f64, -1.5 * at - k as f64);
+            sums = [
+                (*square * Pack::new(once)).mul_add(*cube, sums[0]),
+                (*square * Pack::new(twice)).mul_add(*fifth, sums[1]),
+            ];
         }
-        sum * Pack::over(k)
+        sums.map(|sum| sum * Pack::over(k))
     }
+}
+
+/// `sum` and (a₂b₃, a₃b₁, a₁b₂).
+#[inline(always)]
+fn products_term<L: Number, const R: usize>(
+    a: &[Pack<L, R>; 3],
+    b: &[Pack<L, R>; 3],
+    sum: [Pack<L, R>; 3],
+) -> [Pack<L, R>; 3] {
+    [
+        a[1].mul_add(b[2], sum[0]),
+        a[2].mul_add(b[0], sum[1]),
+        a[0].mul_add(b[1], sum[2]),
+    ]
 }
 
 impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Gradient<Pack<L, R>> {
@@ -194,41 +217,49 @@ impl<S: Series<Pack<L, R>, B>, L: Number, const R: usize, const B: usize> Next<'
             series,
             field,
         } = self;
-        let zero = Pack::new(0.0);
-        let (mut square, mut products) = (zero, [zero; 3]);
-        for j in 0..=k {
-            let (a, b) = (&it.position[j], &it.position[k - j]);
+        it.spin[k] = series.get(k).w;
+        let zero = [Pack::new(0.0); 3];
+        let (positions, spins) = (&it.position[..=k], &it.spin[..=k]);
+        // Sums that do not wait for each other go on side by side; those of numbers with derivatives, which fill the registers,
+        // one after the other.
+        let (mut squares, mut products) = (zero, zero);
+        for (a, b) in positions.iter().zip(positions.iter().rev()) {
             for i in 0..3 {
-                square = a[i].mul_add(b[i], square);
+                squares[i] = a[i].mul_add(b[i], squares[i]);
+            }
+            if !L::VARIES {
+                products = products_term(a, b, products);
             }
         }
-        for i in 0..3 {
-            let (next, last) = ((i + 1) % 3, (i + 2) % 3);
-            for j in 0..=k {
-                let (a, b) = (&it.position[j], &it.position[k - j]);
-                products[i] = a[next].mul_add(b[last], products[i]);
+        if L::VARIES {
+            for (a, b) in positions.iter().zip(positions.iter().rev()) {
+                products = products_term(a, b, products);
+            }
+        }
+        let (mut turned, mut moved) = (zero, zero);
+        let velocities = &it.velocity[..=k];
+        for ((r, v), w) in positions.iter().zip(velocities).zip(spins.iter().rev()) {
+            turned = cross_term(r, w, turned);
+            if !L::VARIES {
+                moved = cross_term(v, w, moved);
+            }
+        }
+        if L::VARIES {
+            for (v, w) in velocities.iter().zip(spins.iter().rev()) {
+                moved = cross_term(v, w, moved);
             }
         }
         // u₀ is one but for rounding: lengths are over the distance at the start of the step.
-        it.squares[k] = square;
+        it.squares[k] = squares[0] + squares[1] + squares[2];
         it.products[k] = products;
-        it.cubes[k] = it.power(-1.5, &it.cubes, k);
-        it.fifths[k] = it.power(-2.5, &it.fifths, k);
-        let (mut turned, mut moved, mut pulled) = ([zero; 3], [zero; 3], [zero; 3]);
-        let mut torque = [zero; 3];
-        // Loops of their own, since numbers with derivatives fill the registers.
-        for j in 0..=k {
-            turned = cross_term(&it.position[j], &series.get(k - j).w, turned);
-        }
-        for j in 0..=k {
-            moved = cross_term(&it.velocity[j], &series.get(k - j).w, moved);
-        }
-        for i in 0..3 {
-            for j in 0..=k {
-                pulled[i] = it.cubes[k - j].mul_add(it.position[j][i], pulled[i]);
-            }
-            for j in 0..=k {
-                torque[i] = it.fifths[k - j].mul_add(it.products[j][i], torque[i]);
+        [it.cubes[k], it.fifths[k]] = it.powers(k);
+        let (mut pulled, mut torque) = (zero, zero);
+        let positions = &it.position[..=k];
+        let powers = it.cubes[..=k].iter().zip(&it.fifths[..=k]).rev();
+        for ((r, p), (cube, fifth)) in positions.iter().zip(&it.products[..=k]).zip(powers) {
+            for i in 0..3 {
+                pulled[i] = cube.mul_add(r[i], pulled[i]);
+                torque[i] = fifth.mul_add(p[i], torque[i]);
             }
         }
         let reciprocal = Pack::over(k + 1);
