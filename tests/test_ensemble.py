@@ -86,6 +86,26 @@ class TestMembers:
         }
         assert len(found) == 1
 
+    def test_loads_of_one_chunk_do_not_choose_the_method(self) -> None:
+        """Dry friction has no series: alone, a wheel without it would be run by another method."""
+
+        def wheel(friction: Any) -> loads.Load:
+            return loads.wheel(axis=(0, 0, 1), inertia=0.1, rate=1.0, dry_friction=friction)
+
+        friction = distributions.samples(np.where(np.arange(30) % 3 == 1, 0.02, 0.0))
+        many = [
+            ensemble(BODY, TIMES, SPIN, load=distributions.made(wheel, friction), n=30, seed=1, chunk=chunk)
+            for chunk in (1, 3, 30)
+        ]
+        assert len({all_bytes(one.compute()) for one in many}) == 1
+        assert many[0].plan.options["method"] == "dop853"
+        alone = BODY.simulate(TIMES, SPIN.draw(2, seed=1)[1], load=wheel(0.02))
+        assert np.array_equal(many[0].compute().omega[1], alone.omega)
+        # Who has dry friction later than in the first members is told.
+        late = distributions.samples(np.where(np.arange(30) == 29, 0.02, 0.0))
+        with pytest.raises(ValueError, match='the method "taylor" needs loads whose series'):
+            ensemble(BODY, TIMES, SPIN, load=distributions.made(wheel, late), n=30, seed=1).compute()
+
     def test_threads_and_lanes_change_no_bit(self) -> None:
         code = (
             "import hashlib, ensemble_cases as e\n"
