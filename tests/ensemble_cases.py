@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import polhode
 from polhode import RigidBody, distributions, loads, reductions
 
+TESTS = Path(__file__).parent
 BODY = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
 SPIN = distributions.normal((0.2, 0.1, 1.0), [[0.04, 0.01, 0.0], [0.01, 0.04, 0.0], [0.0, 0.0, 0.01]])
 TIMES = (0.0, 1.5, 4.0)
@@ -53,6 +57,21 @@ def all_bytes(result: Any) -> bytes:
 def slow(**options: Any) -> polhode.Ensemble:
     """Chunks that take about a tenth of a second each."""
     return twisted(2000, t=(0.0, 80.0), chunk=100, **options)
+
+
+def python(code: str, **environment: str) -> str:
+    """What a program prints that runs beside the tests, in an environment."""
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=100,
+        cwd=TESTS,
+        env=os.environ | environment,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 if __name__ == "__main__":

@@ -66,6 +66,15 @@ class TestNumbers:
         words, found = bits(3, 4, 0, 1000, 3), _core.random_numbers("uniform", 3, 4, 0, 1000, 3)
         assert np.array_equal(found, ((words >> np.uint64(11)) | np.uint64(1)) * 2.0**-53)
 
+    def test_no_release_changes_what_is_made_of_them(self) -> None:
+        seed = 20260413
+        (rotation,) = uniform_rotation().draw(1, seed=seed).tolist()
+        assert rotation[0].hex() == "-0x1.231db91980fa6p-1"
+        assert rotation[3].hex() == "-0x1.090a88a10bcd8p-2"
+        (pair,) = normal((0, 0), [[2, 0.5], [0.5, 1]]).draw(1, seed=seed).tolist()
+        assert [x.hex() for x in pair] == ["-0x1.9d1d2bc3eb351p+0", "-0x1.bbd420fd0d3eep+0"]
+        assert samples([1, 2, 3, 4, 5], "shuffled").draw(5, seed=seed).tolist() == [3, 5, 1, 4, 2]
+
     def test_normal_numbers_are_exact_to_a_few_units_in_the_last_place(self) -> None:
         words, found = bits(5, 6, 0, 300, 1)[:, 0], _core.random_numbers("normal", 5, 6, 0, 300, 1)[:, 0]
         with mpmath.workdps(40):

@@ -252,3 +252,18 @@ def test_without_dry_friction_bits_are_those_of_a_wheel_without_it() -> None:
         for none in (None, 0.0)
     ]
     np.testing.assert_array_equal(runs[0].omega, runs[1].omega)
+
+
+@pytest.mark.parametrize("friction", [[0.0, 0.02], [0.02, 0.0], [0.0, 0.0, 0.02]])
+def test_in_a_stack_some_wheels_may_have_none(friction: list[float]) -> None:
+    """The method is chosen for the wheel that asks most of it, wherever it stands."""
+    t, omega = np.array([0.0, 3.0, 9.0, 30.0]), (0.2, 0.1, 1.0)
+    together = BODY.simulate(
+        t, omega, load=loads.wheel(ALONG, J, rate=1.0, dry_friction=friction), rtol=1e-12
+    )
+    for row, torque in enumerate(friction):
+        alone = BODY.simulate(t, omega, load=loads.wheel(ALONG, J, rate=1.0, dry_friction=torque), rtol=1e-12)
+        np.testing.assert_allclose(together.omega[row], alone.omega, atol=1e-10)
+        np.testing.assert_allclose(together.states["wheel"][row], alone.states["wheel"], atol=1e-10)
+    with pytest.raises(PolhodeError, match="no dry friction"):
+        BODY.simulate(t, omega, load=loads.wheel(ALONG, J, rate=1.0, dry_friction=friction), method="taylor")

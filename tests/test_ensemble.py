@@ -1,43 +1,20 @@
-"""Ensembles on one machine: bits, failures, files that go on after a kill, what is refused."""
+"""Ensembles on one machine: members and their bits, failures, what is refused."""
 
 from __future__ import annotations
 
-import json
 import operator
-import os
 import pickle
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import polhode
 import pytest
-import xarray
-from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, slow, twisted
+from ensemble_cases import BODY, SPIN, TIMES, all_bytes, all_reductions, last_spin, python, twisted
 from polhode import RigidBody, Uncertain, distributions, ensemble, loads, orbits, reductions
 from polhode.ensembles.fingerprint import fingerprint
-from polhode.errors import FileFormatError, IntegrationError, InvalidInertiaError
+from polhode.errors import IntegrationError, InvalidInertiaError
 from scipy.spatial.transform import Rotation
-
-TESTS = Path(__file__).parent
-
-
-def python(code: str, **environment: str) -> str:
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=100,
-        cwd=TESTS,
-        env=os.environ | environment,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 class TestMembers:
@@ -85,6 +62,26 @@ class TestMembers:
             for chunk in (2, 9, 50, 4096)
         }
         assert len(found) == 1
+
+    def test_loads_of_one_chunk_do_not_choose_the_method(self) -> None:
+        """Dry friction has no series: alone, a wheel without it would be run by another method."""
+
+        def wheel(friction: Any) -> loads.Load:
+            return loads.wheel(axis=(0, 0, 1), inertia=0.1, rate=1.0, dry_friction=friction)
+
+        friction = distributions.samples(np.where(np.arange(30) % 3 == 1, 0.02, 0.0))
+        many = [
+            ensemble(BODY, TIMES, SPIN, load=distributions.made(wheel, friction), n=30, seed=1, chunk=chunk)
+            for chunk in (1, 3, 30)
+        ]
+        assert len({all_bytes(one.compute()) for one in many}) == 1
+        assert many[0].plan.options["method"] == "dop853"
+        alone = BODY.simulate(TIMES, SPIN.draw(2, seed=1)[1], load=wheel(0.02))
+        assert np.array_equal(many[0].compute().omega[1], alone.omega)
+        # Who has dry friction later than in the first members is told.
+        late = distributions.samples(np.where(np.arange(30) == 29, 0.02, 0.0))
+        with pytest.raises(ValueError, match='the method "taylor" needs loads whose series'):
+            ensemble(BODY, TIMES, SPIN, load=distributions.made(wheel, late), n=30, seed=1).compute()
 
     def test_threads_and_lanes_change_no_bit(self) -> None:
         code = (
@@ -229,110 +226,6 @@ class TestFailures:
         flat = distributions.made(RigidBody.from_principal, 1.0, distributions.normal((1, 1, 9), sigma=0.1))
         with pytest.raises(InvalidInertiaError, match="none of the first 16 members can begin; member 0"):
             ensemble(flat, TIMES, SPIN, n=100, seed=1)
-
-
-class TestFiles:
-    def test_npz(self, tmp_path: Path) -> None:
-        many = twisted(100, chunk=30)
-        many.to_npz(tmp_path / "out")
-        files = sorted((tmp_path / "out").glob("chunk-*.npz"))
-        assert len(files) == 4
-        want = many.compute()
-        for name in want:
-            found = np.concatenate([np.load(file)[name] for file in files])
-            assert np.array_equal(found, want[name], equal_nan=found.dtype.kind == "f")
-        told = json.loads((tmp_path / "out" / "ensemble.json").read_text("utf-8"))
-        assert (told["seed"], told["n"], told["chunk"], told["t"]) == (5, 100, 30, list(TIMES))
-
-    def test_zarr(self, tmp_path: Path) -> None:
-        many = twisted(100, chunk=30)
-        many.to_zarr(tmp_path / "out.zarr")
-        with xarray.open_zarr(tmp_path / "out.zarr") as found:
-            want = many.compute()
-            for name in want:
-                assert found[name].dims == want[name].dims
-                assert np.array_equal(found[name], want[name], equal_nan=want[name].dtype.kind == "f")
-            assert np.array_equal(found.time, TIMES)
-            assert found.attrs["seed"] == 5
-
-    @pytest.mark.parametrize("kind", ["npz", "zarr"])
-    def test_what_was_killed_goes_on(self, kind: str, tmp_path: Path) -> None:
-        whole, part = tmp_path / "whole", tmp_path / "part"
-        many = slow()
-        getattr(many, f"to_{kind}")(whole)
-        process = subprocess.Popen([sys.executable, str(TESTS / "ensemble_cases.py"), kind, str(part)])
-        pattern = "chunk-*.npz" if kind == "npz" else "status/[0-9]*"
-        try:
-            deadline = time.monotonic() + 60.0
-            while len(list(part.glob(pattern))) < 3 and time.monotonic() < deadline:
-                time.sleep(0.005)
-        finally:
-            process.send_signal(signal.SIGKILL)
-            process.wait()
-        kept = {file: file.stat().st_mtime_ns for file in part.glob(pattern)}
-        assert 3 <= len(kept) < 20
-        many.resume(part)
-        assert all(file.stat().st_mtime_ns == then for file, then in kept.items())
-        assert {file.name for file in part.glob(pattern)} == {file.name for file in whole.glob(pattern)}
-        for file in whole.rglob("*"):
-            if file.is_file():
-                assert (part / file.relative_to(whole)).read_bytes() == file.read_bytes()
-
-    def test_nothing_is_left_to_resume(self, tmp_path: Path) -> None:
-        many = twisted(20)
-        many.to_npz(tmp_path / "out")
-        before = {file: file.stat().st_mtime_ns for file in (tmp_path / "out").iterdir()}
-        many.resume(tmp_path / "out")
-        assert {file: file.stat().st_mtime_ns for file in (tmp_path / "out").iterdir()} == before
-
-    @pytest.mark.parametrize("kind", ["npz", "zarr"])
-    def test_another_ensemble_is_refused(
-        self, kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        path = tmp_path / "out"
-        getattr(twisted(20, chunk=10), f"to_{kind}")(path)
-        for other, told in [
-            (twisted(20, chunk=10, seed=6), "seed is 5 there and 6 here"),
-            (twisted(21, chunk=10), "n is 20 there and 21 here"),
-            (twisted(20, chunk=5), "chunk is 10 there and 5 here"),
-            (twisted(20, chunk=10, t=(0.0, 1.5, 4.5)), "the times are not the same"),
-            (twisted(20, chunk=10, rtol=1e-9), "the start or an option is not the same"),
-        ]:
-            with pytest.raises(FileFormatError, match=told):
-                other.resume(path)
-        with pytest.raises(FileExistsError, match="resume goes on with it"):
-            getattr(twisted(20, chunk=10), f"to_{kind}")(path)
-        monkeypatch.setattr("polhode.ensembles.stores.build", lambda: ("9.9", ""))
-        with pytest.raises(FileFormatError, match=r"version is .* there and 9.9 here \(install polhode"):
-            twisted(20, chunk=10).resume(path)
-
-    def test_what_is_no_ensemble_is_refused(self, tmp_path: Path) -> None:
-        with pytest.raises(FileNotFoundError, match="nothing to go on with"):
-            twisted(20).resume(tmp_path / "none")
-        with pytest.raises(FileFormatError, match="holds no ensemble"):
-            twisted(20).resume(tmp_path)
-        (tmp_path / "ensemble.json").write_text("{}")
-        with pytest.raises(FileFormatError, match="holds no ensemble"):
-            twisted(20).resume(tmp_path)
-
-    def test_a_fingerprint_is_the_same_in_every_process(self) -> None:
-        code = (
-            "import ensemble_cases as e; from polhode.ensembles.fingerprint import *\n"
-            "print(fingerprint(e.twisted().plan))"
-        )
-        told = {python(code, PYTHONHASHSEED=seed).strip() for seed in ("1", "2")}
-        assert told == {fingerprint(twisted().plan)}
-
-    def test_a_fingerprint_sees_what_functions_do(self) -> None:
-        def of(function: Any) -> str:
-            return fingerprint(ensemble(BODY, TIMES, function, n=2, seed=1).plan)
-
-        def scaled(factor: float) -> Any:
-            return lambda rng: rng.normal(size=3) * factor
-
-        assert of(scaled(1.0)) == of(scaled(1.0))
-        assert of(scaled(1.0)) != of(scaled(2.0))
-        assert of(lambda rng: rng.normal(size=3)) != of(lambda rng: rng.uniform(size=3))
 
 
 MASS = distributions.uniform(1.0, 2.0)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Literal
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -10,12 +11,11 @@ from polhode import _core
 from polhode._draws import Distribution, Made
 from polhode.distributions import per_member
 from polhode.ensembles.cluster import check_client
-from polhode.ensembles.plan import VECTORS, Inputs, Plan, is_each_alone
+from polhode.ensembles.plan import VECTORS, Plan, is_each_alone
 from polhode.ensembles.recipe import draws, resolved
 from polhode.ensembles.result import Ensemble
-from polhode.ensembles.running import admitted, output
 from polhode.ensembles.tree import BLOCK
-from polhode.errors import PolhodeError
+from polhode.ensembles.trial import outputs_of, settled, trial_of
 from polhode.reductions import Reduction
 
 if TYPE_CHECKING:
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from polhode._progress import Progress
 
 __all__ = ["Ensemble", "ensemble"]
-
-_PROBED: Final = 16
-"""If so many members cannot begin, the call is wrong rather than their luck."""
 
 
 def ensemble(
@@ -75,7 +72,7 @@ def ensemble(
     chunk : int, optional
         Members that are run, written or sent to a worker together. With `reduce` a multiple of 4096.
     about, method, rtol, atol, states
-        As of :meth:`RigidBody.simulate`.
+        As of :meth:`RigidBody.simulate`. With loads that are drawn "auto" is settled by the first members.
     outputs : sequence of str, optional
         Which states are kept: of ``"omega"``, ``"quaternion"``, ``"position"``, ``"velocity"`` and the names
         of the load's own states. By default the first two, those of the load, and position and velocity where
@@ -138,7 +135,12 @@ def ensemble(
     _check_reduce(reduce, plan)
     if client is not None:
         check_client(client)
-    plan = Plan(**vars(plan) | {"outputs": _outputs(plan, outputs)})
+    begun, trial = trial_of(plan)
+    plan = replace(
+        plan,
+        outputs=outputs_of(plan, trial, outputs),
+        options=plan.options | {"method": settled(plan, begun)},
+    )
     kept = dict(reduce) if reduce is not None and not isinstance(reduce, Reduction) else reduce
     return Ensemble(plan, kept, client, progress)
 
@@ -215,40 +217,3 @@ def _check_reduce(reduce: Any, plan: Plan) -> None:
             "load: a function gives one load for each member, and members that are run one by one are not "
             "reduced; make loads of what is drawn by distributions.made"
         )
-
-
-def _outputs(plan: Plan, outputs: Sequence[str] | None) -> dict[str, int]:
-    """Give the names of the states that are kept with their components; refuse calls that cannot be run."""
-    trial = _trial(plan)
-    known = {name: output(trial, name).shape[-1] for name in ("omega", "quaternion", "position", "velocity")}
-    own = {name: f"states.{name}" for name in trial.states}
-    known |= {place: output(trial, place).shape[-1] for place in own.values()}
-    if outputs is None:
-        moves = plan.recipe["position"] is not None or plan.recipe["velocity"] is not None
-        names = ["omega", "quaternion", *(("position", "velocity") if moves else ()), *own.values()]
-    else:
-        if isinstance(outputs, str):
-            raise TypeError(f"outputs: expected a sequence of names, got the word {outputs!r}")
-        names = [own.get(name, name) for name in outputs]
-        for name in names:
-            if name not in known:
-                words = [*("omega", "quaternion", "position", "velocity"), *own]
-                raise ValueError(f"outputs: {name!r} is not one of {', '.join(map(repr, words))}")
-    return {name: known[name] for name in dict.fromkeys(names)}
-
-
-def _trial(plan: Plan) -> Any:
-    """Begin the first members, so that what is wrong with all of them is told now."""
-    inputs: Inputs = plan.inputs(0, min(plan.n, _PROBED))
-    able, faults = admitted(inputs)
-    if not len(able):
-        fault = faults[0]
-        raise type(fault)(f"none of the first {inputs.count} members can begin; member 0: {fault}")
-    faults = {}
-    for row in able:
-        try:
-            return inputs.run(np.array([row]), plan.t[:1])
-        except PolhodeError as error:
-            faults[int(row)] = error
-    row, fault = next(iter(faults.items()))
-    raise type(fault)(f"none of the first {inputs.count} members can begin; member {row}: {fault}")

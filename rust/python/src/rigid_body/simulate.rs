@@ -1,7 +1,7 @@
 //! The motion under a load.
 
 use nalgebra::Vector3;
-use polhode::motion::simulate::{Method, Plan, Refusal, Tolerance};
+use polhode::motion::simulate::{Method, Plan, Refusal, Tolerance, most_demanding};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -176,7 +176,7 @@ impl PyRigidBody {
             states: acts.read_states(states, false)?,
         };
         let events = Functions::read(events)?;
-        let of_first = start.terms.rows.first().map_or(&[][..], Vec::as_slice);
+        let of_one = most_demanding(&start.terms.rows, pivoted);
         let interrupt = Interrupt::new(progress);
         let plan = Plan::new(
             &start.bodies.rows,
@@ -184,7 +184,7 @@ impl PyRigidBody {
             &times,
             parse_method(method)?,
             tolerance,
-            acts.is_analytic().then_some(of_first),
+            acts.is_analytic().then_some(of_one),
             &|done| interrupt.poll(done),
         )
         .map_err(|Refusal { body, error }| {

@@ -73,6 +73,17 @@ impl Method {
     }
 }
 
+/// Of the loads on a stack, whose terms are of the same kinds, one that asks most of a method: a row without a series where there
+/// is one, such as a wheel with dry friction among others without.
+#[must_use]
+pub fn most_demanding<T: AsRef<[Term]>>(rows: &[T], pivoted: bool) -> &[Term] {
+    let lacks_series = |terms: &&T| {
+        let mut all = terms.as_ref().iter();
+        all.any(|term| !term.character(pivoted).has_series)
+    };
+    (rows.iter().find(lacks_series).or(rows.first())).map_or(&[], T::as_ref)
+}
+
 /// The top that `body` is to rounding about the origin of its frame: its motion under gravity is known in closed form.
 ///
 /// # Errors

@@ -31,6 +31,7 @@ mod stepper;
 mod steps;
 mod summed;
 
+pub use self::choose::most_demanding;
 pub use self::events::{Events, NoEvents};
 pub use self::many::{Calls, Row, Rows, simulate_many};
 pub use self::one::simulate;

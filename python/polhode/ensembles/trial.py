@@ -1,0 +1,123 @@
+"""The first members of an ensemble, begun and not run: what is wrong with all of them is told at once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from polhode.ensembles.plan import is_each_alone
+from polhode.ensembles.recipe import draws
+from polhode.ensembles.running import admitted, output
+from polhode.errors import PolhodeError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from polhode.ensembles.plan import Plan
+    from polhode.trajectory import Trajectory
+
+    Rows = NDArray[np.intp]
+
+__all__ = ["outputs_of", "settled", "trial_of"]
+
+_PROBED: Final = 16
+"""If so many members cannot begin, the call is wrong rather than their luck."""
+_STATES: Final = ("omega", "quaternion", "position", "velocity")
+_CHOSEN: Final = ("exact", "taylor")
+"""The methods of which "auto" takes the first that can serve; the next can always."""
+
+
+def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
+    """Begin the first members.
+
+    Parameters
+    ----------
+    plan : Plan
+
+    Returns
+    -------
+    tuple of numpy.ndarray and Trajectory
+        Those that can begin, and the start of the first of these.
+
+    Raises
+    ------
+    PolhodeError
+        Where none can.
+    """
+    inputs = plan.inputs(0, min(plan.n, _PROBED))
+    able, faults = admitted(inputs)
+    begun, first = [], None
+    for row in able.tolist():
+        try:
+            trial = inputs.run(np.array([row]), plan.t[:1])
+        except PolhodeError as error:
+            faults[row] = error
+            continue
+        begun.append(row)
+        if first is None:
+            first = trial
+    if first is None:
+        row, fault = min(faults.items())
+        raise type(fault)(f"none of the first {inputs.count} members can begin; member {row}: {fault}")
+    return np.array(begun), first
+
+
+def settled(plan: Plan, begun: Rows) -> str:
+    """Give the method of all members, where "auto" would choose by the loads of a chunk.
+
+    Parameters
+    ----------
+    plan : Plan
+    begun : numpy.ndarray of int
+        Members that can begin.
+
+    Returns
+    -------
+    str
+    """
+    method: str = plan.options["method"]
+    if method != "auto" or is_each_alone(plan) or not any(draws(plan.recipe["load"])):
+        return method
+    for tried in _CHOSEN:
+        trial = replace(plan, options=plan.options | {"method": tried})
+        try:
+            trial.inputs(0, min(plan.n, _PROBED)).run(begun, plan.t[:1])
+        except PolhodeError:
+            continue
+        return tried
+    return "dop853"
+
+
+def outputs_of(plan: Plan, trial: Trajectory, outputs: Sequence[str] | None) -> dict[str, int]:
+    """Give the names of the states that are kept, with their components.
+
+    Parameters
+    ----------
+    plan : Plan
+    trial : Trajectory
+        Of one member.
+    outputs : sequence of str or None
+        Those that were asked for.
+
+    Returns
+    -------
+    dict of str to int
+    """
+    own = {name: f"states.{name}" for name in trial.states}
+    known = {place: output(trial, place).shape[-1] for place in (*_STATES, *own.values())}
+    if outputs is None:
+        moves = plan.recipe["position"] is not None or plan.recipe["velocity"] is not None
+        names = [*(_STATES if moves else _STATES[:2]), *own.values()]
+        return {name: known[name] for name in names}
+    if isinstance(outputs, str):
+        raise TypeError(f"outputs: expected a sequence of names, got the word {outputs!r}")
+    for name in outputs:
+        if name not in _STATES and name not in own:
+            words = ", ".join(map(repr, (*_STATES, *own)))
+            raise ValueError(f"outputs: {name!r} is not one of {words}")
+    names = [own.get(name, name) for name in outputs]
+    return {name: known[name] for name in names}
