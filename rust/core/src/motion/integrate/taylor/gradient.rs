@@ -153,9 +153,25 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
     }
 }
 
+// The components are written out, since a loop would keep the sums in memory.
+
+/// `sum` and (a₁b₁, a₂b₂, a₃b₃).
+#[inline(always)]
+fn product_terms<L: Number, const R: usize>(
+    a: &[Pack<L, R>; 3],
+    b: &[Pack<L, R>; 3],
+    sum: [Pack<L, R>; 3],
+) -> [Pack<L, R>; 3] {
+    [
+        a[0].mul_add(b[0], sum[0]),
+        a[1].mul_add(b[1], sum[1]),
+        a[2].mul_add(b[2], sum[2]),
+    ]
+}
+
 /// `sum` and (a₂b₃, a₃b₁, a₁b₂).
 #[inline(always)]
-fn products_term<L: Number, const R: usize>(
+fn crossed_terms<L: Number, const R: usize>(
     a: &[Pack<L, R>; 3],
     b: &[Pack<L, R>; 3],
     sum: [Pack<L, R>; 3],
@@ -175,17 +191,14 @@ impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Grad
         series: &impl Series<Pack<L, R>, B>,
         field: &Field<Pack<L, R>, B>,
     ) -> [Pack<L, R>; 3] {
-        let next = Next {
+        // A function of its own: within a larger one the sums are not kept in registers, and the caller of numbers with
+        // derivatives is not compiled for the widest lanes.
+        dispatch(Next {
             gradient: self,
             k,
             series,
             field,
-        };
-        if L::VARIES {
-            dispatch(next) // whose caller is not compiled for the widest lanes
-        } else {
-            next.coefficient()
-        }
+        })
     }
 }
 
@@ -224,16 +237,14 @@ impl<S: Series<Pack<L, R>, B>, L: Number, const R: usize, const B: usize> Next<'
         // one after the other.
         let (mut squares, mut products) = (zero, zero);
         for (a, b) in positions.iter().zip(positions.iter().rev()) {
-            for i in 0..3 {
-                squares[i] = a[i].mul_add(b[i], squares[i]);
-            }
+            squares = product_terms(a, b, squares);
             if !L::VARIES {
-                products = products_term(a, b, products);
+                products = crossed_terms(a, b, products);
             }
         }
         if L::VARIES {
             for (a, b) in positions.iter().zip(positions.iter().rev()) {
-                products = products_term(a, b, products);
+                products = crossed_terms(a, b, products);
             }
         }
         let (mut turned, mut moved) = (zero, zero);
@@ -257,10 +268,8 @@ impl<S: Series<Pack<L, R>, B>, L: Number, const R: usize, const B: usize> Next<'
         let positions = &it.position[..=k];
         let powers = it.cubes[..=k].iter().zip(&it.fifths[..=k]).rev();
         for ((r, p), (cube, fifth)) in positions.iter().zip(&it.products[..=k]).zip(powers) {
-            for i in 0..3 {
-                pulled[i] = cube.mul_add(r[i], pulled[i]);
-                torque[i] = fifth.mul_add(p[i], torque[i]);
-            }
+            pulled = product_terms(&[*cube; 3], r, pulled);
+            torque = product_terms(&[*fifth; 3], p, torque);
         }
         let reciprocal = Pack::over(k + 1);
         for i in 0..3 {
