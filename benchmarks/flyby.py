@@ -1,6 +1,6 @@
 """Clones of Apophis past the Earth beside SciPy's DOP853 and heyoka's batches of eight, from the same starts.
 
-heyoka (``pip install heyoka``) integrates the orbit with each clone, in units in which all numbers are of order
+heyoka (``pip install heyoka``) integrates the orbit with each clone, in units that make all numbers of order
 one; it is left out where it is not installed.
 """
 

@@ -94,8 +94,9 @@ pub fn solve_many<'a, E: From<Error> + Send>(
     });
 }
 
-/// Motions that a thread takes at a time: many, since lanes idle at the end of a block, but some for every thread.
+/// Motions that a thread takes at a time: many, since lanes idle at the end of a block, but many blocks too, since the first is done
+/// before the others begin.
 fn block(count: usize) -> usize {
-    let share = count.div_ceil(4 * thread_count());
+    let share = count.div_ceil(16 * thread_count());
     share.next_multiple_of(ROWS).clamp(2 * ROWS, MOST)
 }
