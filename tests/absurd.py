@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from polhode import RigidBody, _core, regions
+from polhode import RigidBody, _core, orbits, regions
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -227,8 +227,13 @@ OTHERS: dict[str, Callable[[], object]] = {
     ),
     "RigidBody.__getitem__ of rows": lambda: COLUMN[np.broadcast_to(0, ABSURD)],
     "with_states": lambda: _core.with_states(None, np.broadcast_to(1.0, ABSURD)),
+    "covariance_factor": lambda: _core.covariance_factor(np.broadcast_to(0.0, (10**6, 10**6))),
+    "random_numbers": lambda: _core.random_numbers("normal", 0, 0, 0, ABSURD, 3),
     "oblate_states, absurd times": lambda: _core.oblate_states(
         1.0, V, (1.0, 0.2, 0.1), 0.01, 0.1, V, np.broadcast_to(1.0, ABSURD)
+    ),
+    "local_frames": lambda: _core.local_frames(
+        orbits.kepler(1.0, (1, 0, 0), (0, 1, 0)), np.broadcast_to(1.0, ABSURD)
     ),
     "sampled_states": lambda: _core.sampled_states(
         np.broadcast_to(1.0, ABSURD), np.broadcast_to(1.0, (ABSURD, 3)), [1.0]

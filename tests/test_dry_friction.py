@@ -87,6 +87,16 @@ def test_a_wheel_turns_about_without_rest_where_the_motor_is_strong() -> None:
     np.testing.assert_allclose(speed(run), [2.0, 0.0, -0.25 * BETWEEN * 3.0], atol=1e-13)
 
 
+@pytest.mark.parametrize(
+    ("rate", "inertia", "most"),
+    [(1e-150, J, 0.01), (1.0, 1e-170, 0.01), (1.0, J, 1e156), (1e-12, 1e-300, 1.0)],
+)
+def test_a_wheel_stops_at_once(rate: float, inertia: float, most: float) -> None:
+    wheel = loads.wheel(ALONG, inertia, rate=rate, dry_friction=most)
+    run = PLAIN.simulate([0.0, 5.0, 10.0], omega=(0, 0, 0.3), load=wheel)
+    np.testing.assert_allclose(run.omega[1:, 2], 0.3 + inertia * rate / I3, rtol=1e-15)
+
+
 @METHODS
 @pytest.mark.parametrize("above", [1e-3, 1e-9])
 def test_the_stop_is_an_event_where_it_is(method: Method, above: float) -> None:

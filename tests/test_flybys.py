@@ -63,12 +63,23 @@ def test_their_directions_and_phases_are_all_as_likely() -> None:
 
 
 @pytest.mark.parametrize(
-    "pole", [(0, 0, 1), (0, 0, -1), (0.1, -0.2, -1.0), (1, 0, 0), (1e-9, 0, -1), (3.0, 4.0, 0.0)]
+    "pole",
+    [
+        (0, 0, 1),
+        (0, 0, -1),
+        (0.1, -0.2, -1.0),
+        (1, 0, 0),
+        (1e-9, 0, -1),
+        (0, 0, 1e-200),
+        (1e200, 0, 0),
+        (3.0, 4.0, 0.0),
+    ],
 )
 def test_a_pole_is_where_the_momentum_points(pole: tuple[float, float, float]) -> None:
     found = passed(50, pole=pole)
     direction = found.before.momentum / np.linalg.norm(found.before.momentum, axis=-1, keepdims=True)
-    toward = np.array(pole) / np.linalg.norm(pole)
+    toward = np.array(pole) / np.abs(pole).max()
+    toward = toward / np.linalg.norm(toward)
     np.testing.assert_allclose(direction, np.broadcast_to(toward, direction.shape), atol=1e-14)
     assert np.ptp(found.spin_ratio) > 0.01  # their phases differ
 
@@ -153,6 +164,22 @@ def test_all_clones_are_in_the_picture(of: Any) -> None:
         (lambda: passed(pole=(0, 0, 0)), ValueError, "pole: expected three numbers that are not all zero"),
         (lambda: passed(pole=(0, 1)), ValueError, "pole: expected three numbers"),
         (lambda: passed(pole_sigma=-1.0), ValueError, "pole_sigma: must not be negative"),
+        (lambda: passed(pole_sigma=0.1), TypeError, "pole_sigma: it is that of a direction; give pole= too"),
+        (
+            lambda: passed(pole=(0, 0, 1), pole_sigma=[0.1, 0.2]),
+            ValueError,
+            "pole_sigma: expected one finite number",
+        ),
+        (
+            lambda: flybys.flyby(APOPHIS, ORBIT, [1, 2], **PERIODS),  # type: ignore[arg-type]
+            ValueError,
+            "span: expected one finite number",
+        ),
+        (
+            lambda: flybys.flyby(APOPHIS, orbits.sampled(EARTH, [1e3, 1e6], np.eye(3)[:2]), 1e5, **PERIODS),
+            PolhodeError,
+            "1000",
+        ),
         (lambda: passed(rotation_period=HOUR), PolhodeError, "period"),
         (lambda: passed(n=0), ValueError, "n: expected a positive integer"),
         (

@@ -152,6 +152,51 @@ def test_a_sampled_orbit_serves_all_that_orbits_serve() -> None:
         np.testing.assert_array_equal(omega_of(again), got[0])
 
 
+@pytest.mark.parametrize("name", ["oblate", "sampled"])
+def test_the_frame_turns_as_it_says(name: str) -> None:
+    # The plane turns: positions of the oblate orbit, as it is and in a table.
+    t = np.linspace(-1.0, 13.0, 20001)
+    orbit = OBLATE if name == "oblate" else orbits.sampled(MU, t, OBLATE.at(t).position)
+    for at in (0.5, 3.0, 9.0):
+        h = 1e-4
+        before, after = (Rotation.from_quat(orbit.frame(at + step).quaternion) for step in (-h, h))
+        seen = (before.inv() * after).as_rotvec() / (2 * h)
+        np.testing.assert_allclose(orbit.frame(at).omega, seen, atol=1e-7 if name == "oblate" else 1e-5)
+        assert abs(seen[2]) > 1e-3
+    ball = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0))
+    frame = orbit.frame(0.0)
+    control = loads.feedback(200.0, 200.0, orbit)
+    run = ball.simulate(T, frame.omega, frame.quaternion, load=control, rtol=1e-10)
+    off = Rotation.from_quat(orbit.frame(T).quaternion).inv() * run.rotation
+    assert off.magnitude().max() < 0.02
+
+
+@pytest.mark.parametrize(("eccentricity", "far"), [(3.0, 1e5), (3.0, 1e8), (1.0, 1e8), (0.99999, 1e6)])
+def test_far_out_and_back(eccentricity: float, far: float) -> None:
+    arguments = {"eccentricity": eccentricity, "periapsis": 1.0, "since_periapsis": -far}
+    plain = orbits.from_elements(MU, **arguments)
+    round_ = orbits.from_elements(MU, **arguments, j2=0.0, radius=0.9)
+    for t in (0.3 * far, 0.99 * far, far, 2.0 * far):
+        exact = plain.at(t)
+        # The time from the periapsis is a difference, and with it the direction afterwards.
+        loss = 1e-13 * far + 1e-16 * far**2
+        np.testing.assert_allclose(round_.at(t).position, exact.position, rtol=1e-9, atol=loss)
+    bulged = orbits.from_elements(MU, **arguments, j2=1e-3, radius=0.9)
+    assert np.isfinite(bulged.at([far, 3.0 * far]).position).all()
+
+
+def test_too_many_revolutions_are_refused() -> None:
+    period = OBLATE.period
+    assert np.isfinite(OBLATE.at([2.9e4 * period]).position).all()
+    for make in (
+        lambda: OBLATE.at(3.1e4 * period),
+        lambda: OBLATE.frame(-3.1e4 * period),
+        lambda: BODY.simulate([0.0, 3.1e4 * period], OMEGA, load=loads.gravity_gradient(OBLATE)),
+    ):
+        with pytest.raises(PolhodeError, match="at most 30 000 revolutions"):
+            make()
+
+
 def test_two_attractors_are_a_sum() -> None:
     far = orbits.kepler(5.0, (9.0, 0, 1.0), (0, 0.8, 0), epoch=0.0)
     pulls = [loads.gravity_gradient(orbit) for orbit in (orbits.kepler(MU, *START, epoch=0.0), far)]

@@ -74,6 +74,7 @@ __all__ = [
     "kepler_period",
     "kepler_states",
     "least_spin",
+    "local_frames",
     "magnetic",
     "motion_sensitivity",
     "nearest_valid",
@@ -662,6 +663,7 @@ def oblate_states(
     pole: ArrayLike,
     elapsed: ArrayLike,
 ) -> tuple[_Floats, _Floats]: ...
+def local_frames(orbit: object, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 def sampled_states(times: ArrayLike, position: ArrayLike, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 def constant_torque(vector: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
 def constant_force(

@@ -51,7 +51,9 @@ class LocalFrame(NamedTuple):
     quaternion : numpy.ndarray, shape (..., 4)
         Its attitude in space as (x, y, z, w), of either sign: that of a body whose axes these are.
     omega : numpy.ndarray, shape (..., 3)
-        Its angular velocity relative to space, components in this frame: ``(0, -h/r**2, 0)``.
+        Its angular velocity relative to space, components in this frame: ``(0, -h/r**2, -r a/h)`` with the
+        angular momentum h of the orbit and the acceleration a along its normal, which turns the plane; on a
+        Kepler orbit there is none.
     """
 
     quaternion: Floats
@@ -80,14 +82,9 @@ class Path:
         -------
         LocalFrame
         """
-        r, v = self.at(t)
-        swept = np.cross(r, v)
-        size, distance = np.linalg.norm(swept, axis=-1), np.linalg.norm(r, axis=-1)
-        z, y = -r / distance[..., None], -swept / size[..., None]
-        matrix = np.stack([np.cross(y, z), y, z], axis=-1)
-        omega = np.zeros_like(r)
-        omega[..., 1] = -size / distance / distance
-        return LocalFrame(_core.quaternion_from_matrix(matrix), omega)
+        times = _core.real_numbers(t, "t")
+        found = _core.local_frames(self, times.ravel())
+        return LocalFrame(*(one.reshape(*one.shape[:-2], *times.shape, one.shape[-1]) for one in found))
 
     def dipole_field(self, strength: ArrayLike) -> DipoleField:
         """Give the magnetic field along the orbit of a dipole at the attractor.

@@ -138,11 +138,13 @@ def clones(
     motion = body.free_motion_from_periods(rotation_period, precession_period, mode=mode, sense=sense)
     if motion.shape:
         raise ValueError(f"body and periods: expected one of each, got a stack of shape {motion.shape}")
-    long = float(_core.real_numbers(span, "span"))
-    if not (long > 0.0 and np.isfinite(long)):
+    long, spread = _number(span, "span"), _number(pole_sigma, "pole_sigma")
+    if not long > 0.0:
         raise ValueError(f"span: must be positive, got {long}")
-    if not (pole_sigma >= 0.0 and np.isfinite(pole_sigma)):
-        raise ValueError(f"pole_sigma: must not be negative, got {pole_sigma}")
+    if not spread >= 0.0:
+        raise ValueError(f"pole_sigma: must not be negative, got {spread}")
+    if pole is None and spread > 0.0:
+        raise TypeError("pole_sigma: it is that of a direction; give pole= too")
     phase = distributions.uniform(0.0, float(rotation_period), name="phase")
     if pole is None:
         attitude = distributions.made(
@@ -153,7 +155,8 @@ def clones(
         if toward.shape != (3,) or not np.isfinite(toward).all() or not toward.any():
             raise ValueError(f"pole: expected three numbers that are not all zero, got {toward.tolist()}")
         around = distributions.uniform(0.0, 2 * np.pi, name="azimuth")
-        tilt = distributions.normal(np.zeros(2), sigma=pole_sigma, name="direction")
+        toward = toward / np.abs(toward).max()
+        tilt = distributions.normal(np.zeros(2), sigma=spread, name="direction")
         attitude = distributions.made(_toward, motion, phase, toward / np.linalg.norm(toward), around, tilt)
     start = 0.0 if getattr(orbit, "epoch", None) is None else float(orbit.epoch)  # type: ignore[union-attr,arg-type]
     return ensemble(
@@ -196,6 +199,11 @@ def flyby(
     -------
     Flyby
 
+    Raises
+    ------
+    PolhodeError
+        When all clones fail: why the first did.
+
     Examples
     --------
     >>> from polhode import RigidBody, flybys, orbits
@@ -221,7 +229,12 @@ def flyby(
         progress=progress,
         **options,
     )
-    return told(body, many.compute())
+    found = told(body, many.compute())
+    if found.failed.all():
+        # Why tells a clone alone.
+        alone = {"rotation_period": rotation_period, "precession_period": precession_period, "seed": seed}
+        clones(body, orbit, span, n=1, on_failure="raise", **alone | options).compute()
+    return found
 
 
 def told(body: RigidBody, states: Any) -> Flyby:
@@ -251,6 +264,13 @@ def _tumble(body: RigidBody, omega: Floats, quaternion: Floats) -> Tumble:
         spread(2.0 * energy / np.linalg.norm(momentum, axis=-1), np.nan),
         spread(momentum, np.nan),
     )
+
+
+def _number(given: Any, name: str) -> float:
+    found = _core.real_numbers(given, name)
+    if found.ndim or not np.isfinite(found):
+        raise ValueError(f"{name}: expected one finite number, got {found.tolist()}")
+    return float(found)
 
 
 def _omega(motion: FreeMotion, phase: Floats) -> Floats:

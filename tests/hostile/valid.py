@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import polhode
-from polhode import RigidBody, _core, loads, molecules, solids, validity
+from polhode import RigidBody, _core, loads, molecules, orbits, solids, validity
 
 NO_TEST = {
     # Files and pictures have tests of their own; a compiled load is a machine address, to be trusted or not.
@@ -176,6 +176,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "pole": [0.0, 0.0, 1.0],
         "elapsed": [0.5, 1.0],
     },
+    "local_frames": {"orbit": orbits.kepler(1.0, (1.0, 0.0, 0.0), (0.0, 1.0, 0.25))},
     "sampled_states": {
         "times": [0.0, 1.0, 2.0],
         "position": [[1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.0, 1.0, 0.5]],

@@ -32,7 +32,6 @@ def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) ->
     """Run the clones and report on them; give them too."""
     found, orbit = _run(file, options, body)
     report = Report()
-    fast = float(np.linalg.norm(orbit.velocity)) if options.eccentricity > 0 else 0.0
     elements = orbit.elements
     report.section(
         "",
@@ -45,7 +44,7 @@ def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) ->
         Field("eccentricity", "eccentricity", float(elements.eccentricity)),
         Field("periapsis", "least distance", float(elements.periapsis) / 1e3, "km"),
         Field("span", "span", quantity(options.span, "s", "--span") / HOUR, "h"),
-        Field("speed", "speed at the start", fast / 1e3, "km/s"),
+        Field("speed", "speed at the start", float(np.linalg.norm(orbit.velocity)) / 1e3, "km/s"),
     )
     report.section(
         "before",

@@ -110,7 +110,7 @@ mod _core {
     };
     #[pymodule_export]
     use crate::orbits::{
-        dipole_field, kepler_period, kepler_states, oblate_states, sampled_states,
+        dipole_field, kepler_period, kepler_states, local_frames, oblate_states, sampled_states,
     };
     #[pymodule_export]
     use crate::parallel_axis::{inertia_from_center_of_mass, inertia_to_center_of_mass};

@@ -2,9 +2,11 @@
 
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
+use polhode::motion::attitude::components;
 use polhode::motion::loads::kepler::Orbit;
 use polhode::motion::loads::magnetic::field_and_rate;
 use polhode::motion::loads::{Oblate, Path};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::arrays::{list_floats, read, samples, series, try_rows, write, write_of};
@@ -31,6 +33,12 @@ impl Orbits {
     /// From an object with the attributes of one.
     pub(crate) fn read(orbit: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = orbit.py();
+        if !Self::is(orbit) {
+            return Err(PyTypeError::new_err(format!(
+                "orbit: expected one of polhode.orbits, got {}",
+                orbit.get_type()
+            )));
+        }
         let part = |name: &str| orbit.getattr(name);
         let mu: Stack<f64> = read(&part("mu")?, "mu")?;
         if orbit.hasattr("times")? {
@@ -161,7 +169,13 @@ pub(crate) fn oblate_states<'py>(
     let orbits = through(py, mu, position, velocity)?;
     let paths = Bulges::read([j2, radius, pole])?.around(py, &orbits, None)?;
     let elapsed = list_floats(elapsed, "t", "n", &[])?;
-    states(py, &paths, elapsed.as_slice()?)
+    let elapsed = elapsed.as_slice()?;
+    let far = elapsed.iter().fold(0.0, |far: f64, t| far.max(t.abs()));
+    for path in &paths.rows {
+        path.check(0.0, 0.0, far)
+            .map_err(|error| to_py(py, &error))?;
+    }
+    states(py, &paths, elapsed)
 }
 
 /// Position and velocity along cubic splines through positions at some times.
@@ -188,9 +202,40 @@ pub(crate) fn sampled_states<'py>(
     let asked = asked.as_slice()?;
     // All paths have the same times.
     if let Some(path) = paths.rows.first() {
-        (asked.iter().try_for_each(|&t| path.check(t, t))).map_err(|error| to_py(py, &error))?;
+        (asked.iter().try_for_each(|&t| path.check(0.0, t, t)))
+            .map_err(|error| to_py(py, &error))?;
     }
     states(py, &paths, asked)
+}
+
+/// The frame that points down, and its angular velocity, on orbits of `polhode.orbits` at times.
+///
+/// Parameters
+/// ----------
+/// orbit : Orbit or SampledOrbit
+/// t : array_like, shape (n,)
+///
+/// Returns
+/// -------
+/// quaternion : numpy.ndarray, shape (..., n, 4)
+/// omega : numpy.ndarray, shape (..., n, 3)
+#[pyfunction]
+pub(crate) fn local_frames<'py>(
+    py: Python<'py>,
+    orbit: &Bound<'py, PyAny>,
+    t: &Bound<'py, PyAny>,
+) -> PyResult<(Floats<'py>, Floats<'py>)> {
+    let paths = Orbits::read(orbit)?.paths;
+    let t = list_floats(t, "t", "n", &[])?;
+    let t = t.as_slice()?;
+    for path in &paths.rows {
+        (t.iter().try_for_each(|&t| path.check(0.0, t, t))).map_err(|error| to_py(py, &error))?;
+    }
+    let found = at_times(py, &paths, t, |path, t| path.frame(0.0, t))?;
+    Ok((
+        write_of(py, &found, |(attitude, _)| components(attitude))?,
+        write_of(py, &found, |(_, rate)| *rate)?,
+    ))
 }
 
 /// Position and velocity on each path at each of some times; an epoch that there is none of is zero.
@@ -199,20 +244,30 @@ fn states<'py>(
     paths: &Stack<Path>,
     times: &[f64],
 ) -> PyResult<(Floats<'py>, Floats<'py>)> {
+    let found = at_times(py, paths, times, |path, t| path.at(0.0, t))?;
+    Ok((
+        write_of(py, &found, |state| state.0)?,
+        write_of(py, &found, |state| state.1)?,
+    ))
+}
+
+/// What is known of each path at each of some times.
+fn at_times<T>(
+    py: Python<'_>,
+    paths: &Stack<Path>,
+    times: &[f64],
+    known: impl Fn(&Path, f64) -> T,
+) -> PyResult<Stack<T>> {
     let shape = [&paths.shape[..], &[times.len()]].concat();
     let mut rows = memory::vector("result", &shape, 1)?;
     let mut beat = Beat::new(py);
     for path in &paths.rows {
         for row in times.chunks(BLOCK) {
             beat.mark()?;
-            rows.extend(row.iter().map(|&t| path.at(0.0, t)));
+            rows.extend(row.iter().map(|&t| known(path, t)));
         }
     }
-    let found = Stack { shape, rows };
-    Ok((
-        write_of(py, &found, |state| state.0)?,
-        write_of(py, &found, |state| state.1)?,
-    ))
+    Ok(Stack { shape, rows })
 }
 
 /// The time of a revolution of Kepler orbits; infinite but for ellipses.

@@ -1,11 +1,11 @@
 //! What a feedback turns the body toward.
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::path::Path;
 use super::spline::Spline;
 use crate::error::{Error, all_finite, finite};
-use crate::motion::attitude::{components, from_axes};
+use crate::motion::attitude::components;
 
 /// From one sample of a target to the next it turns by less than a quarter of a turn: `cos(π/4)`.
 const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -24,7 +24,7 @@ pub enum Aim {
         /// The start of the motion where there is none.
         epoch: Option<f64>,
     },
-    /// The frame of an orbit that points down: z to the attractor, y along minus the orbit's normal.
+    /// The [frame](Path::frame) of an orbit that points down.
     Down(Path),
     /// One known at some times.
     Sampled(Sampling),
@@ -149,17 +149,17 @@ impl Aim {
         }
     }
 
-    /// That it is known from one time to another.
+    /// That it is known from one time to another of a motion that began at `start`.
     ///
     /// # Errors
     /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples).
-    pub fn check(&self, from: f64, to: f64) -> Result<(), Error> {
+    pub fn check(&self, start: f64, from: f64, to: f64) -> Result<(), Error> {
         match self {
             Self::Sampled(sampling) => {
                 sampling.vector.check_at(from)?;
                 sampling.vector.check_at(to)
             }
-            Self::Down(path) => path.check(from, to),
+            Self::Down(path) => path.check(start, from, to),
             Self::Fixed(_) | Self::Turning { .. } => Ok(()),
         }
     }
@@ -179,15 +179,7 @@ impl Aim {
                 let now = turn * attitude;
                 (now, now.inverse_transform_vector(rate))
             }
-            Self::Down(path) => {
-                let (r, v) = path.at(start, t);
-                let swept = r.cross(&v);
-                let (distance, size) = (r.norm(), swept.norm());
-                let (y, z) = (-swept / size, -r / distance);
-                let axes = Matrix3::from_columns(&[y.cross(&z), y, z]);
-                let rate = Vector3::new(0.0, -size / distance / distance, 0.0);
-                (from_axes(&axes), rate)
-            }
+            Self::Down(path) => path.frame(start, t),
             Self::Sampled(sampling) => {
                 let [vector, slope] = sampling.vector.at(t);
                 let [scalar, rise] = sampling.scalar.at(t);

@@ -150,8 +150,8 @@ impl Law for Feedback {
         self.aim.breaks().to_vec()
     }
 
-    fn check(&self, _: &Subject, from: f64, to: f64) -> Result<(), Error> {
-        self.aim.check(from, to)
+    fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
+        self.aim.check(subject.start, from, to)
     }
 
     #[inline]

@@ -156,7 +156,7 @@ impl Law for GravityGradient {
         if subject.pivoted {
             return Err(Error::Motion(MotionFault::PivotedInOrbit));
         }
-        self.path.check(from, to)
+        self.path.check(subject.start, from, to)
     }
 
     fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {

@@ -11,6 +11,8 @@ use crate::numerics::double_double::{DoubleDouble, two_product};
 use crate::numerics::jet::Jet;
 use crate::numerics::number::Real;
 
+/// A step of the iteration so small that another one would change nothing.
+const NEAR: f64 = 1e-6;
 /// 2π and what it leaves out.
 const TURN: DoubleDouble = DoubleDouble {
     high: std::f64::consts::TAU,
@@ -261,14 +263,12 @@ impl Orbit {
             s = t * self.beta / self.scaled_mu;
             (low, high) = (s - 2.0 / root, s + 2.0 / root);
         } else if self.beta < 0.0 {
-            // From the periapsis: e sinh H − H = M, so that H is between asinh(M/e) and asinh(M/(e − 1)), and at most √−β t/q.
+            // From the periapsis: e sinh H − H = M, so that H is at least asinh(M/e), and at most √−β t/q.
             let root = (-self.beta).sqrt();
             let over_one = -self.beta * self.distance / self.scaled_mu;
             let mean = t.abs() / self.scaled_mu * root.powi(3);
             let least = (mean / (1.0 + over_one)).asinh();
-            let most = (mean / over_one)
-                .asinh()
-                .min(root * t.abs() / self.distance);
+            let most = root * t.abs() / self.distance;
             let start = ((mean + least) / (1.0 + over_one)).asinh().min(most);
             let (least, most) = (least / root, most / root * (1.0 + 4.0 * f64::EPSILON));
             s = start / root * t.signum();
@@ -301,17 +301,25 @@ impl Orbit {
             let bend = self.sigma * g[0] + (self.scaled_mu - self.beta * self.distance) * g[1];
             let radical = (16.0 * slope * slope - 20.0 * excess * bend).abs().sqrt();
             let next = s - 5.0 * excess / (slope + radical);
-            let shrinks = (next - s).abs() <= 0.5 * before.abs();
-            let next = if shrinks && next > low && next < high {
-                next
-            } else {
-                0.5 * (low + high)
-            };
-            before = next - s;
-            if (next - s).abs() <= f64::EPSILON * s.abs() || next == low || next == high {
+            let change = (next - s).abs();
+            if change <= f64::EPSILON * s.abs() {
                 return next;
             }
-            s = next;
+            if change <= 0.5 * before && next > low && next < high {
+                // What is left is the cube of that.
+                if change <= NEAR * s.abs() && change * bend.abs() <= NEAR * slope {
+                    return next;
+                }
+                before = change;
+                s = next;
+                continue;
+            }
+            let middle = 0.5 * (low + high);
+            if middle == low || middle == high {
+                return middle;
+            }
+            before = (middle - s).abs();
+            s = middle;
         }
         s
     }

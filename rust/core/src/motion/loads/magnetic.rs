@@ -213,7 +213,7 @@ impl Law for Magnetic {
             Source::Dipole { .. } if subject.pivoted => {
                 Err(Error::Motion(MotionFault::PivotedInOrbit))
             }
-            Source::Dipole { path, .. } => path.check(from, to),
+            Source::Dipole { path, .. } => path.check(subject.start, from, to),
             Source::Uniform(_) => Ok(()),
         }
     }

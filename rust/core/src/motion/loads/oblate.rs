@@ -9,6 +9,8 @@ use crate::error::{Error, all_finite, finite};
 
 /// The order of the series of a piece.
 const ORDER: usize = 24;
+/// How far series are made and kept.
+const MOST_REVOLUTIONS: f64 = 3e4;
 /// What the last terms of a series are at the end of its piece, relative to the distance.
 const LAST: f64 = 1e-18;
 
@@ -28,11 +30,14 @@ pub struct Oblate {
     tracks: [RwLock<Vec<Piece>>; 2],
 }
 
-/// A series of the position around a time, both in the units of the orbit.
+/// A series of the position around a time; the times in the units of the orbit, the series in units of its own.
 #[derive(Clone, Debug)]
 struct Piece {
     from: f64,
     to: f64,
+    /// The units of length and time of the series.
+    length: f64,
+    time: f64,
     position: [Vector3<f64>; ORDER + 1],
 }
 
@@ -93,6 +98,31 @@ impl Oblate {
         &self.pole
     }
 
+    /// The acceleration at a position.
+    #[must_use]
+    pub fn acceleration(&self, position: &Vector3<f64>) -> Vector3<f64> {
+        let distance = position.norm();
+        let n = position / distance;
+        let (s, part) = (n.dot(&self.pole), 1.5 * self.bulge() / distance / distance);
+        let pull = self.mu() / distance / distance;
+        -(n * (1.0 + part * (1.0 - 5.0 * s * s)) + self.pole * (2.0 * part * s)) * pull
+    }
+
+    /// That its series, which are kept, are not too many until a time after the state it was given with.
+    ///
+    /// # Errors
+    /// [`Error::OutOfDomain`] after more than 30 000 revolutions.
+    pub fn check(&self, elapsed: f64) -> Result<(), Error> {
+        if elapsed.abs() <= MOST_REVOLUTIONS * self.orbit.period() {
+            return Ok(());
+        }
+        Err(Error::OutOfDomain {
+            what: "the time from the epoch of an orbit about an oblate attractor",
+            law: "at most 30 000 revolutions (give its state at a later epoch)",
+            value: elapsed,
+        })
+    }
+
     /// Position and velocity at a time after the state the orbit was given with; not numbers where it has fallen into the attractor.
     #[must_use]
     pub fn at(&self, elapsed: f64) -> (Vector3<f64>, Vector3<f64>) {
@@ -135,10 +165,18 @@ impl Oblate {
 
     /// The series around a state, and how long it is.
     fn piece(&self, from: f64, [r, v]: [Vector3<f64>; 2], sense: f64) -> Piece {
-        let (mu, k) = (
-            self.orbit.scaled_mu(),
-            1.5 * self.orbit.scaled_mu() * self.bulge,
+        // Units near its own, so that no term leaves the range of float64.
+        let mu = self.orbit.scaled_mu();
+        let distance = r.norm();
+        let free = (distance / mu).sqrt() * distance;
+        let length = distance.log2().round().exp2();
+        let time = free.min(distance / v.norm()).log2().round().exp2();
+        let (mu, bulge) = (
+            mu / length * (time / length) * (time / length),
+            self.bulge / length / length,
         );
+        let k = 1.5 * mu * bulge;
+        let (r, v) = (r / length, v * (time / length));
         let mut position = [Vector3::zeros(); ORDER + 1];
         (position[0], position[1]) = (r, v);
         let zero = [0.0; ORDER + 1];
@@ -160,10 +198,12 @@ impl Oblate {
             position[n + 2] = acceleration / ((n + 1) * (n + 2)) as f64;
         }
         let reach = |n: usize| (LAST * r.norm() / position[n].norm()).powf(1.0 / n as f64);
-        let step = reach(ORDER).min(reach(ORDER - 1));
+        let step = reach(ORDER).min(reach(ORDER - 1)) * time;
         Piece {
             from,
             to: from + sense * step,
+            length,
+            time,
             position,
         }
     }
@@ -172,13 +212,13 @@ impl Oblate {
 impl Piece {
     /// Position and velocity at a time.
     fn at(&self, t: f64) -> [Vector3<f64>; 2] {
-        let x = t - self.from;
+        let x = (t - self.from) / self.time;
         let (mut r, mut v) = (Vector3::zeros(), Vector3::zeros());
         for n in (0..=ORDER).rev() {
             v = v * x + r;
             r = r * x + self.position[n];
         }
-        [r, v]
+        [r * self.length, v * (self.length / self.time)]
     }
 }
 

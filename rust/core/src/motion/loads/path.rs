@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::kepler::Orbit;
 use super::oblate::Oblate;
 use super::spline::Spline;
 use crate::error::{Error, finite};
+use crate::motion::attitude::from_axes;
 
 /// Position and velocity of C from an attractor, in N, at any time of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,6 +89,31 @@ impl Path {
         }
     }
 
+    /// The frame that points down, and its angular velocity relative to N in its own components: z to the attractor, y along minus the
+    /// normal n of the orbit.
+    ///
+    /// With the angular momentum h it is `h/r² n + r (r̈·n)/h r̂`: the second part is that of a plane that turns.
+    #[must_use]
+    pub fn frame(&self, start: f64, t: f64) -> (UnitQuaternion<f64>, Vector3<f64>) {
+        let (r, v) = self.at(start, t);
+        let swept = r.cross(&v);
+        let (distance, size) = (r.norm(), swept.norm());
+        let (normal, outward) = (swept / size, r / distance);
+        let across = match &self.0 {
+            Way::Kepler(..) => 0.0,
+            Way::Oblate(orbit, _) => orbit.acceleration(&r).dot(&normal),
+            Way::Sampled(spline) => spline.bend(t).dot(&normal),
+        };
+        let (y, z) = (-normal, -outward);
+        let axes = Matrix3::from_columns(&[y.cross(&z), y, z]);
+        let rate = Vector3::new(
+            0.0,
+            -size / distance / distance,
+            0.0 - distance * (across / size),
+        );
+        (from_axes(&axes), rate)
+    }
+
     /// Whether it begins with the motion, wherever in time that is.
     #[must_use]
     pub fn needs_epoch(&self) -> bool {
@@ -112,15 +138,17 @@ impl Path {
         }
     }
 
-    /// That it is known from one time to another.
+    /// That it is known from one time to another of a motion that began at `start`.
     ///
     /// # Errors
-    /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples).
-    pub fn check(&self, from: f64, to: f64) -> Result<(), Error> {
-        if let Way::Sampled(spline) = &self.0 {
-            spline.check_at(from)?;
-            spline.check_at(to)?;
+    /// [`OutsideSamples`](crate::error::MotionFault::OutsideSamples); too many revolutions about an oblate attractor.
+    pub fn check(&self, start: f64, from: f64, to: f64) -> Result<(), Error> {
+        match &self.0 {
+            Way::Kepler(..) => Ok(()),
+            Way::Oblate(orbit, epoch) => [from, to]
+                .iter()
+                .try_for_each(|t| orbit.check(t - epoch.unwrap_or(start))),
+            Way::Sampled(spline) => spline.check_at(from).and_then(|()| spline.check_at(to)),
         }
-        Ok(())
     }
 }

@@ -87,6 +87,12 @@ impl Spline {
         ]
     }
 
+    /// Its second derivative at time `t`.
+    pub(super) fn bend(&self, t: f64) -> Vector3<f64> {
+        let (from, [_, _, c2, c3]) = self.piece(t);
+        c2 * 2.0 + c3 * (6.0 * (t - from))
+    }
+
     /// Checks that `t` is within its times.
     ///
     /// # Errors

@@ -3,13 +3,15 @@
 /// Below this β s² the closed forms cancel, and eleven terms of the series are exact.
 const SERIES: f64 = 2.5;
 
-/// 1/(n (n − 1)) for n = 2j + k, j < 11.
-const fn reciprocals(k: usize) -> [f64; 11] {
-    let mut found = [0.0; 11];
-    let mut j = 0;
+/// The coefficients of [`series`].
+const fn coefficients(k: usize) -> [f64; 12] {
+    let mut found = [0.0; 12];
+    let (mut j, mut coefficient) = (0, 1.0);
     while j < 11 {
         let n = (2 * j + k) as f64;
-        found[j] = 1.0 / (n * (n - 1.0));
+        coefficient /= n * (n - 1.0);
+        found[j] = coefficient;
+        coefficient = -coefficient;
         j += 1;
     }
     found
@@ -18,10 +20,14 @@ const fn reciprocals(k: usize) -> [f64; 11] {
 /// `Σ_{0≤j<11} (−x)^j (k − 2)!/(2j + k)!`: `c_2`, `c_3`, `2 c_4` and `6 c_5`.
 #[inline(always)]
 fn series<const K: usize>(x: f64) -> f64 {
-    const { reciprocals(K) }
-        .iter()
-        .rev()
-        .fold(0.0, |sum, reciprocal| reciprocal * (1.0 - x * sum))
+    let c = const { coefficients(K) };
+    // Even and odd powers side by side: two short chains wait less than a long one.
+    let y = x * x;
+    let pairs = c.as_chunks::<2>().0.iter().rev();
+    let [even, odd] = pairs.fold([0.0; 2], |sums, pair| {
+        [sums[0] * y + pair[0], sums[1] * y + pair[1]]
+    });
+    even + x * odd
 }
 
 /// `G_4` and `G_5`, by `c_{k+2}(x) = (1/k! − c_k(x))/x`.

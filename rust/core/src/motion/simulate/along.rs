@@ -181,14 +181,14 @@ impl<E> View<'_, E> {
             let guess = middle + (middle - low) * (was * f_middle / radical);
             // A bracket on both sides of the guess, where it is a number.
             let mut points = [(middle, f_middle), (middle, f_middle)];
-            if guess.is_finite() && guess != middle && (guess - low) * (guess - high) < 0.0 {
+            if guess != middle && is_within(guess, low, high) {
                 points[1] = (guess, self.inner(guess)?);
             }
             for (x, f) in points {
                 if f == 0.0 {
                     return Ok(x);
                 }
-                if (x - low) * (x - high) < 0.0 {
+                if is_within(x, low, high) {
                     if sign(f) == was {
                         (low, f_low) = (x, f);
                     } else {
@@ -207,6 +207,11 @@ impl<E> View<'_, E> {
         let phase = self.stepper.within(at)?;
         (self.function)(&mut *self.stepper, at, &phase)
     }
+}
+
+/// Whether a place lies between two others, whichever of them is the larger.
+fn is_within(place: f64, one: f64, other: f64) -> bool {
+    one < place && place < other || other < place && place < one
 }
 
 /// A function through Chebyshev points, as a polynomial.
