@@ -25,7 +25,7 @@ MOMENTS = np.array([0.64, 0.97, 1.0])
 BODY = RigidBody.from_principal(1.0, MOMENTS)
 ORBIT = orbits.from_elements(MU, eccentricity=4.253901873, periapsis=38011.486, since_periapsis=-SPAN / 2)
 CLONES, BESIDE_SCIPY, BESIDE_HEYOKA = 20_000, 5, 800
-RTOL, ERROR = 1e-12, 1e-10
+RTOL = 1e-12
 
 
 def ensemble(clones: int = CLONES) -> Any:
@@ -78,31 +78,39 @@ def rows() -> Iterator[Row]:
         )
 
 
-def by_scipy(omega: NDArray[np.float64], quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
-    """ω at the end; the orbit is integrated with the body, in days and thousands of kilometres."""
+def equations(state: Any, mu: float) -> list[Any]:
+    """The rates of orbit, attitude and ω, for numbers or symbols."""
+    rx, ry, rz, vx, vy, vz, x, y, z, w, p, q, r = state
+    square = rx * rx + ry * ry + rz * rz
+    pull = mu * square**-1.5
+    # r in the body: the transpose of the rotation.
+    ux = (1 - 2 * (y * y + z * z)) * rx + 2 * (x * y + z * w) * ry + 2 * (x * z - y * w) * rz
+    uy = 2 * (x * y - z * w) * rx + (1 - 2 * (x * x + z * z)) * ry + 2 * (y * z + x * w) * rz
+    uz = 2 * (x * z + y * w) * rx + 2 * (y * z - x * w) * ry + (1 - 2 * (x * x + y * y)) * rz
+    a, b, c = MOMENTS.tolist()
+    k = 3 * mu * square**-2.5
+    return [
+        vx, vy, vz, -pull * rx, -pull * ry, -pull * rz,
+        0.5 * (w * p + y * r - z * q), 0.5 * (w * q + z * p - x * r), 0.5 * (w * r + x * q - y * p),
+        -0.5 * (x * p + y * q + z * r),
+        (b - c) / a * (q * r - k * uy * uz), (c - a) / b * (r * p - k * uz * ux),
+        (a - b) / c * (p * q - k * ux * uy),
+    ]  # fmt: skip
+
+
+def units() -> tuple[NDArray[np.float64], float]:
+    """The orbit's state at the start and μ, in days and 1e5 kilometres."""
     position, velocity = (np.asarray(one) for one in ORBIT.at(0.0))
-    mu = MU * DAY**2 / 1e9
+    return np.concatenate([position / 1e5, velocity * DAY / 1e5]), MU * DAY**2 / 1e15
 
-    def rates(_t: float, s: Any) -> list[float]:
-        rx, ry, rz, vx, vy, vz, x, y, z, w, p, q, r = s.tolist()
-        square = rx * rx + ry * ry + rz * rz
-        pull = mu / (square * square**0.5)
-        # r in the body: the transpose of the rotation.
-        ux = (1 - 2 * (y * y + z * z)) * rx + 2 * (x * y + z * w) * ry + 2 * (x * z - y * w) * rz
-        uy = 2 * (x * y - z * w) * rx + (1 - 2 * (x * x + z * z)) * ry + 2 * (y * z + x * w) * rz
-        uz = 2 * (x * z + y * w) * rx + 2 * (y * z - x * w) * ry + (1 - 2 * (x * x + y * y)) * rz
-        a, b, c = MOMENTS
-        k = 3 * pull / square
-        return [
-            vx, vy, vz, -pull * rx, -pull * ry, -pull * rz,
-            0.5 * (w * p + y * r - z * q), 0.5 * (w * q + z * p - x * r), 0.5 * (w * r + x * q - y * p),
-            -0.5 * (x * p + y * q + z * r),
-            (b - c) / a * (q * r - k * uy * uz), (c - a) / b * (r * p - k * uz * ux),
-            (a - b) / c * (p * q - k * ux * uy),
-        ]  # fmt: skip
 
-    start = np.concatenate([position / 1e3, velocity * DAY / 1e3, quaternion, omega * DAY])
-    run = solve_ivp(rates, (0.0, SPAN / DAY), start, "DOP853", rtol=RTOL, atol=RTOL)
+def by_scipy(omega: NDArray[np.float64], quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
+    """ω at the end; the orbit is integrated with the body."""
+    orbit, mu = units()
+    start = np.concatenate([orbit, quaternion, omega * DAY])
+    run = solve_ivp(
+        lambda _, s: equations(s.tolist(), mu), (0.0, SPAN / DAY), start, "DOP853", rtol=RTOL, atol=RTOL
+    )
     return run.y[10:, -1] / DAY
 
 
@@ -110,34 +118,17 @@ def by_heyoka() -> Callable[[Any, Any], NDArray[np.float64]]:
     """A function that gives ω at the end of many clones."""
     import heyoka
 
-    names = ("rx", "ry", "rz", "vx", "vy", "vz", "x", "y", "z", "w", "p", "q", "r")
-    rx, ry, rz, vx, vy, vz, x, y, z, w, p, q, r = variables = heyoka.make_vars(*names)
-    position, velocity = (np.asarray(one) for one in ORBIT.at(0.0))
-    mu = MU * DAY**2 / 1e15  # days and 1e5 kilometres
-    square = rx * rx + ry * ry + rz * rz
-    pull = mu * square**-1.5
-    ux = (1 - 2 * (y * y + z * z)) * rx + 2 * (x * y + z * w) * ry + 2 * (x * z - y * w) * rz
-    uy = 2 * (x * y - z * w) * rx + (1 - 2 * (x * x + z * z)) * ry + 2 * (y * z + x * w) * rz
-    uz = 2 * (x * z + y * w) * rx + 2 * (y * z - x * w) * ry + (1 - 2 * (x * x + y * y)) * rz
-    a, b, c = (float(moment) for moment in MOMENTS)
-    k = 3 * mu * square**-2.5
-    equations = [
-        vx, vy, vz, -pull * rx, -pull * ry, -pull * rz,
-        0.5 * (w * p + y * r - z * q), 0.5 * (w * q + z * p - x * r), 0.5 * (w * r + x * q - y * p),
-        -0.5 * (x * p + y * q + z * r),
-        (b - c) / a * (q * r - k * uy * uz), (c - a) / b * (r * p - k * uz * ux),
-        (a - b) / c * (p * q - k * ux * uy),
-    ]  # fmt: skip
-    start = np.concatenate([position / 1e5, velocity * DAY / 1e5])
+    variables = heyoka.make_vars("rx", "ry", "rz", "vx", "vy", "vz", "x", "y", "z", "w", "p", "q", "r")
+    orbit, mu = units()
     batch = heyoka.taylor_adaptive_batch(
-        list(zip(variables, equations, strict=True)), np.zeros((13, 8)), tol=RTOL
+        list(zip(variables, equations(variables, mu), strict=True)), np.zeros((13, 8)), tol=RTOL
     )
 
     def run(omega: Any, quaternion: Any) -> NDArray[np.float64]:
         ends = []
         for first in range(0, len(omega), 8):
             batch.set_time(0.0)
-            batch.state[:6] = start[:, None]
+            batch.state[:6] = orbit[:, None]
             batch.state[6:10] = quaternion[first : first + 8].T
             batch.state[10:] = omega[first : first + 8].T * DAY
             batch.propagate_until(SPAN / DAY)

@@ -117,6 +117,19 @@ def test_a_clone_is_a_motion_under_the_gradient() -> None:
     np.testing.assert_array_equal(one.omega, omega[7])
 
 
+def test_a_thousand_clones_beside_twice_the_precision() -> None:
+    states = flybys.clones(APOPHIS, ORBIT, 6 * DAY, n=1000, rtol=1e-12, **PERIODS).compute()
+    omega, quaternion = states.omega.to_numpy(), states.quaternion.to_numpy()
+    load = loads.gravity_gradient(ORBIT)
+    exact = APOPHIS.simulate([0, 6 * DAY], omega[:, 0], quaternion[:, 0], load=load, rtol=1e-20)
+    off = Rotation.from_quat(exact.quaternion[:, 1]).inv() * Rotation.from_quat(quaternion[:, 1])
+    assert off.magnitude().max() <= 1e-10
+    assert (
+        np.abs(omega[:, 1] - exact.omega[:, 1]).max()
+        <= 1e-11 * np.linalg.norm(exact.omega[:, 1], axis=-1).min()
+    )
+
+
 def test_spin_ratio_and_pole_shift_are_what_they_say() -> None:
     states = flybys.clones(APOPHIS, ORBIT, 6 * DAY, n=2000, **PERIODS).compute()
     omega, turned = states.omega.to_numpy(), states.quaternion.to_numpy()
