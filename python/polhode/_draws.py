@@ -11,6 +11,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._repr import one_line
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,6 +25,7 @@ __all__ = [
     "Made",
     "Normal",
     "PerMember",
+    "Refusal",
     "Samples",
     "Source",
     "Uniform",
@@ -103,8 +105,15 @@ class Distribution:
         >>> spin.draw(1, seed=1, first=1).round(3)
         array([[0.046, 0.002, 1.024]])
         """
+        for given, what in ((n, "n"), (first, "first")):
+            if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < 0:
+                raise ValueError(f"{what}: expected a number of members, not negative, got {given!r}")
         name = argument if self.name is None else given_name(self.name)
-        return self.rows(source(seed, name), first, n)
+        found = self.rows(source(seed, name), first, n)
+        for one in found if isinstance(found, list) else ():
+            if isinstance(one, Refusal):
+                raise one.error
+        return found
 
     def rows(self, source: Source, first: int, count: int) -> Any:
         """Draw those of the members from `first` on."""
@@ -244,6 +253,13 @@ class Samples(Distribution):
         return one_line(self, {"values": self.values, "order": self.order} | _named(self))
 
 
+@dataclass(frozen=True)
+class Refusal:
+    """What stands for the value of a member whose numbers are refused."""
+
+    error: PolhodeError
+
+
 @final
 @dataclass(frozen=True, eq=False, repr=False)
 class PerMember(Distribution):
@@ -261,10 +277,15 @@ class PerMember(Distribution):
     def rows(self, source: Source, first: int, count: int) -> list[Any]:
         """Call the function for members, each with a generator of its own."""
         key = np.array(source, dtype=np.uint64)
-        return [
-            self.function(np.random.Generator(np.random.Philox(counter=_counter(member), key=key)))
-            for member in range(first, first + count)
-        ]
+        found: list[Any] = []
+        for member in range(first, first + count):
+            rng = np.random.Generator(np.random.Philox(counter=_counter(member), key=key))
+            try:
+                found.append(self.function(rng))
+            except PolhodeError as error:
+                # Of this member alone: whoever asks for its value is told.
+                found.append(Refusal(error))
+        return found
 
     def __repr__(self) -> str:
         return f"PerMember({_called(self.function)}{_and_name(self)})"

@@ -65,13 +65,10 @@ class Order(NamedTuple):
         By weight: sorted along the first axis, shape (m, k).
     error : int
         By how much a rank may be wrong, at most.
-    turns : int
-        How many times numbers were left out.
     """
 
     buffers: dict[int, Floats]
     error: int = 0
-    turns: int = 0
 
     def merged(self, other: Order, most: int | None) -> Order:
         """Those of both; beyond `most` numbers of a weight every other one is left out."""
@@ -82,7 +79,7 @@ class Order(NamedTuple):
             buffers[weight] = (
                 values if held is None else np.sort(np.concatenate([held, values]), axis=0, kind="stable")
             )
-        both = Order(buffers, self.error + other.error, self.turns + other.turns)
+        both = Order(buffers, self.error + other.error)
         return both if most is None else compacted(both, most)
 
 
@@ -95,15 +92,16 @@ def compacted(order: Order, most: int) -> Order:
     """Leave out every other number where there are more than `most` of one weight.
 
     Of 2m numbers in order either those in odd or those in even places stay, with twice the weight: a rank is
-    wrong by one weight at most. Odd and even take turns, so that the errors do not add up.
+    wrong by one weight at most. Which of them is a coin that the number in the middle tosses, the same
+    everywhere: so the errors of many blocks do not add up.
     """
-    buffers, error, turns = dict(order.buffers), order.error, order.turns
+    buffers, error = dict(order.buffers), order.error
     weight = 1
     while weight <= max(buffers):
         values = buffers.get(weight)
         if values is not None and len(values) > most:
             even = len(values) // 2 * 2
-            kept = values[turns % 2 : even : 2]
+            kept = values[_coin(values[even // 2], weight) : even : 2]
             rest = values[even:]
             if len(rest):
                 buffers[weight] = rest
@@ -113,9 +111,19 @@ def compacted(order: Order, most: int) -> Order:
             buffers[2 * weight] = (
                 kept if above is None else np.sort(np.concatenate([above, kept]), axis=0, kind="stable")
             )
-            error, turns = error + weight, turns + 1
+            error += weight
         weight *= 2
-    return Order(buffers, error, turns)
+    return Order(buffers, error)
+
+
+def _coin(row: Floats, weight: int) -> int:
+    """Toss a coin, 0 or 1, by the bits of some numbers (multiplicative hashing).
+
+    Another one for each weight: a number that its own coin has left in is often the one that is asked again.
+    """
+    word = int(np.bitwise_xor.reduce(np.ascontiguousarray(row).view(np.uint64)))
+    word ^= weight * 0xBF58476D1CE4E5B9
+    return (word * 0x9E3779B97F4A7C15 >> 63) & 1
 
 
 def level_of(order: Order, parts: Floats) -> Floats:

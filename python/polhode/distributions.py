@@ -262,7 +262,16 @@ def made(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Made:
     """
     if not callable(function):
         raise TypeError(f"function: expected a function that makes bodies or loads, got {function!r}")
-    return Made(function, args, kwargs)
+    return Made(function, tuple(map(_own, args)), {name: _own(part) for name, part in kwargs.items()})
+
+
+def _own(part: Any) -> Any:
+    """Give an argument, an array as one that nobody changes."""
+    if not isinstance(part, np.ndarray):
+        return part
+    copy = part.copy()
+    copy.setflags(write=False)
+    return copy
 
 
 def _fixed(value: Any, name: str) -> Floats:

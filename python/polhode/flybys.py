@@ -218,6 +218,11 @@ def flyby(
     >>> bool(found.spin_ratio.min() < 0.8), bool(found.spin_ratio.max() > 1.2)
     (True, True)
     """
+    for name in ("reduce", "outputs"):
+        if name in options:
+            raise TypeError(
+                f"{name}: flyby tells the start and the end of all clones; flybys.clones takes it"
+            )
     many = clones(
         body,
         orbit,

@@ -25,6 +25,7 @@ from polhode._paths import (
     vector,
 )
 from polhode._repr import short
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -277,7 +278,7 @@ def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
     """
     mass = np.array(_core.real_numbers(mu, "mu"))
     if not (np.isfinite(mass).all() and np.min(mass, initial=1.0) > 0.0):
-        raise ValueError(f"mu: must be positive, got {mass.tolist()}")
+        raise PolhodeError(f"mu: must be positive, got {mass.tolist()}")
     times, places = np.array(_core.real_numbers(t, "t")), vector(position, "position")
     _core.sampled_states(times, places, times[:1])  # checks them
     if not do_broadcast(mass, places[..., 0, 0]):
@@ -340,14 +341,14 @@ def from_elements(
     def number(given: Any, name: str) -> Floats:
         found = _core.real_numbers(given, name)
         if not np.isfinite(found).all():
-            raise ValueError(f"{name}: must be finite, got {found.tolist()}")
+            raise PolhodeError(f"{name}: must be finite, got {found.tolist()}")
         return found
 
     mass, e = number(mu, "mu"), number(eccentricity, "eccentricity")
     if np.min(e, initial=0.0) < 0.0:
-        raise ValueError(f"eccentricity: must not be negative, got {e.tolist()}")
+        raise PolhodeError(f"eccentricity: must not be negative, got {e.tolist()}")
     if np.min(mass, initial=1.0) <= 0.0:
-        raise ValueError(f"mu: must be positive, got {mass.tolist()}")
+        raise PolhodeError(f"mu: must be positive, got {mass.tolist()}")
     if periapsis is not None:
         least = number(periapsis, "periapsis")
     else:
@@ -358,7 +359,7 @@ def from_elements(
             )
         least = axis * (1.0 - e)
     if np.min(least, initial=1.0) <= 0.0:
-        raise ValueError(
+        raise PolhodeError(
             f"periapsis: must be positive, got {least.tolist()}; a hyperbola has a negative semi_major_axis, "
             "a parabola none"
         )
@@ -372,7 +373,7 @@ def from_elements(
         )
     mass, e, least, nu, i, node_, argument_ = np.broadcast_arrays(*given)
     if np.any(1.0 + e * np.cos(nu) <= 0.0):
-        raise ValueError(
+        raise PolhodeError(
             f"anomaly: {nu.tolist()} is beyond the asymptote of an orbit with eccentricity {e.tolist()}"
         )
     zero = np.zeros_like(node_)

@@ -121,7 +121,7 @@ def ensemble(
         options={"about": about, "method": method, "rtol": rtol, "atol": atol},
         n=size,
         seed=int(seed),
-        chunk=cut,
+        chunk=min(cut, size),
         outputs={},
         raises=on_failure == "raise",
     )

@@ -71,6 +71,20 @@ def _words(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
             yield from _inner(value, (*above, id(value)))
 
 
+def _is_own(value: Any) -> bool:
+    """Whether what a function reads of its module is part of it: data, and functions of the user's."""
+    if isinstance(value, FunctionType):
+        return not value.__module__.startswith("polhode")
+    plain = (bool, int, float, complex, str, bytes, tuple, list, dict, set, frozenset)
+    return isinstance(value, (*plain, np.ndarray, np.generic))
+
+
+def _names(code: CodeType) -> list[str]:
+    """Give the names that a function and those within it read from outside."""
+    within = [name for inner in code.co_consts if isinstance(inner, CodeType) for name in _names(inner)]
+    return sorted({*code.co_names, *within})
+
+
 def _inner(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
     match value:
         case tuple() | list():
@@ -88,7 +102,9 @@ def _inner(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
             # What a function does, not where it was read: two notebooks define the same one.
             yield value.__qualname__.encode()
             cells = [cell.cell_contents for cell in value.__closure__ or ()]
-            yield from _words((value.__code__, value.__defaults__, value.__kwdefaults__, cells), above)
+            read = {name: value.__globals__.get(name) for name in _names(value.__code__)}
+            read = {name: one for name, one in read.items() if _is_own(one)}
+            yield from _words((value.__code__, value.__defaults__, value.__kwdefaults__, cells, read), above)
         case CodeType():
             yield value.co_code
             yield from _words((value.co_names, value.co_varnames, value.co_consts), above)
@@ -96,5 +112,8 @@ def _inner(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
             name = getattr(value, "__qualname__", value.__name__)
             yield f"{getattr(value, '__module__', '')}.{name}".encode()
         case _:
+            called = vars(type(value)).get("__call__")
+            if isinstance(called, FunctionType):
+                yield from _words(called, above)
             reduced = value.__reduce_ex__(2)
             yield from _words(reduced if isinstance(reduced, str) else tuple(reduced[:3]), above)

@@ -10,6 +10,7 @@ import numpy as np
 from polhode import _core
 from polhode._draws import PerMember
 from polhode.ensembles.recipe import draws, value
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -108,7 +109,7 @@ class Inputs:
             elif place == "load":
                 one = _loads(one, len(rows))
             if place.startswith("states."):
-                found["states"][place.removeprefix("states.")] = np.asarray(one, dtype=float)
+                found["states"][place.removeprefix("states.")] = _states(one, place)
             else:
                 found[place] = one
         found["states"] = found["states"] or None
@@ -166,6 +167,13 @@ def _loads(given: Any, count: int) -> Any:
     _check_kind(given, _core.Load, "load")
     _check_shape(given.shape, count, "load")
     return given
+
+
+def _states(given: Any, place: str) -> Floats:
+    array = np.asarray(given, dtype=float)
+    if not np.isfinite(array).all():
+        raise PolhodeError(f"{place}: must be finite, got {array[~np.isfinite(array)][0]}")
+    return array
 
 
 def _check_kind(given: Any, kind: type, place: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from polhode._draws import Distribution, Made, PerMember, Source, given_name, source
+from polhode._draws import Distribution, Made, PerMember, Refusal, Source, given_name, source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -68,6 +68,9 @@ def _resolved(argument: Any, place: str, seed: int, seen: dict[int, Node]) -> No
         name = place if argument.name is None else given_name(argument.name)
         node = Draw(argument, place, source(seed, name))
     else:
+        for name in argument.kwargs:
+            if not name.isidentifier():
+                raise ValueError(f"{place}: {name!r} is no name of an argument")
         parts = {key: _resolved(part, f"{place}.{key}", seed, seen) for key, part in argument.parts().items()}
         args = tuple(parts[str(index)] for index in range(len(argument.args)))
         node = Make(argument.function, args, tuple((name, parts[name]) for name in sorted(argument.kwargs)))
@@ -102,7 +105,13 @@ def value(node: Node, drawn: Mapping[str, Any], rows: Rows) -> Any:
     """
     if isinstance(node, Draw):
         found = drawn[node.place]
-        return [found[row] for row in rows] if isinstance(node.distribution, PerMember) else found[rows]
+        if not isinstance(node.distribution, PerMember):
+            return found[rows]
+        values = [found[row] for row in rows]
+        for one in values:
+            if isinstance(one, Refusal):
+                raise type(one.error)(*one.error.args)
+        return values
     if isinstance(node, Make):
         args = [value(part, drawn, rows) for part in node.args]
         kwargs = {name: value(part, drawn, rows) for name, part in node.kwargs}

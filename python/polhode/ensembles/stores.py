@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import zipfile
+import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
@@ -70,7 +72,16 @@ class NpzStore:
 
     def pending(self) -> list[int]:
         """Give the chunks that are not there."""
-        return [index for index in range(self.plan.chunks) if not self.file(index).exists()]
+        return [index for index in range(self.plan.chunks) if not self._is_whole(index)]
+
+    def _is_whole(self, index: int) -> bool:
+        """Whether the file of a chunk can be read to its end."""
+        try:
+            with zipfile.ZipFile(self.file(index)) as archive:
+                names = {f"{name}.npy" for name in layout(self.plan)}
+                return names <= set(archive.namelist()) and archive.testzip() is None
+        except (FileNotFoundError, zipfile.BadZipFile, EOFError, zlib.error):
+            return False
 
     def write(self, index: int, arrays: Arrays) -> None:
         """Write a chunk."""
@@ -95,7 +106,7 @@ class ZarrStore:
 
     def __init__(self, path: Path, plan: Plan, *, is_new: bool) -> None:
         zarr = require("zarr", extra="cluster", purpose="to_zarr")
-        self.plan = plan
+        self.path, self.plan = path, plan
         if not is_new:
             self.group = zarr.open_group(path, mode="r+")
             _check_same(path, dict(self.group.attrs), plan)
@@ -117,6 +128,7 @@ class ZarrStore:
                 chunks=(plan.chunk, *(max(size, 1) for size in variable.tail)),
                 dtype=variable.dtype,
                 fill_value="" if variable.dtype == "<U8" else np.nan,
+                config={"write_empty_chunks": True},  # a piece that is not there is one that was lost
             )
             array.attrs.update({"_ARRAY_DIMENSIONS": list(variable.dims), **variable.attributes})
         self.group.attrs.update(header(plan))  # last: what has no header was never begun
@@ -125,7 +137,17 @@ class ZarrStore:
     def pending(self) -> list[int]:
         """Give the chunks that are not there."""
         plan, status = self.plan, self.group["status"]
-        return [index for index in range(plan.chunks) if not status[index * plan.chunk]]
+        return [
+            index
+            for index in range(plan.chunks)
+            if not status[index * plan.chunk] or not all(self._holds(name, index) for name in layout(plan))
+        ]
+
+    def _holds(self, name: str, index: int) -> bool:
+        """Whether the piece of an array is there, of a chunk that has been written."""
+        array = self.group[name]
+        piece = ".".join([str(index), *("0" for _ in array.shape[1:])])
+        return (self.path / name / piece).is_file()
 
     def write(self, index: int, arrays: Arrays) -> None:
         """Write a chunk: its status last, which says that the rest is there."""

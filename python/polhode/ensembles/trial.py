@@ -10,16 +10,17 @@ import numpy as np
 from polhode.ensembles.plan import is_each_alone
 from polhode.ensembles.recipe import draws
 from polhode.ensembles.running import admitted, output
-from polhode.errors import PolhodeError
+from polhode.errors import IntegrationError, PolhodeError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from polhode.ensembles.plan import Plan
     from polhode.trajectory import Trajectory
 
+    Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
 
 __all__ = ["outputs_of", "settled", "trial_of"]
@@ -53,9 +54,12 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
     begun, first = [], None
     for row in able.tolist():
         try:
-            trial = inputs.run(np.array([row]), plan.t[:1])
+            trial = inputs.run(np.array([row]), _beginning(plan.t))
         except PolhodeError as error:
             faults[row] = error
+            continue
+        if trial.failures and not isinstance(trial.failures[0], IntegrationError):
+            faults[row] = trial.failures[0]
             continue
         begun.append(row)
         if first is None:
@@ -64,6 +68,11 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
         row, fault = min(faults.items())
         raise type(fault)(f"none of the first {inputs.count} members can begin; member {row}: {fault}")
     return np.array(begun), first
+
+
+def _beginning(t: Floats) -> Floats:
+    """Give the start and a time soon after: what a run is refused for shows there too."""
+    return t if len(t) == 1 else np.array([t[0], t[0] + 1e-6 * (t[1] - t[0])])
 
 
 def settled(plan: Plan, begun: Rows) -> str:
@@ -92,6 +101,18 @@ def settled(plan: Plan, begun: Rows) -> str:
     return "dop853"
 
 
+def _check_names(plan: Plan, own: Mapping[str, str]) -> None:
+    """Refuse states of the load whose names mean something else in the results, or nothing in a file."""
+    taken = {"member", "time", "axis", "quaternion_component", "status", *_STATES}
+    taken |= {place for place in plan.draws() if not place.startswith("states.")}
+    for name in own:
+        if name in taken or "/" in name or name in (".", ".."):
+            raise ValueError(
+                f"load: a state has the name {name!r}, which means something else in the results; give it "
+                "another one by name="
+            )
+
+
 def outputs_of(plan: Plan, trial: Trajectory, outputs: Sequence[str] | None) -> dict[str, int]:
     """Give the names of the states that are kept, with their components.
 
@@ -108,6 +129,7 @@ def outputs_of(plan: Plan, trial: Trajectory, outputs: Sequence[str] | None) -> 
     dict of str to int
     """
     own = {name: f"states.{name}" for name in trial.states}
+    _check_names(plan, own)
     known = {place: output(trial, place).shape[-1] for place in (*_STATES, *own.values())}
     if outputs is None:
         moves = plan.recipe["position"] is not None or plan.recipe["velocity"] is not None
