@@ -150,6 +150,16 @@ def test_a_chunk_is_no_larger_than_the_ensemble(tmp_path: Path) -> None:
     begun(chunk=2**61).to_zarr(tmp_path / "a")
 
 
+def test_what_is_reduced_has_one_shape() -> None:
+    def of(motion: Any) -> np.ndarray:
+        last: np.ndarray = motion.omega[:, -1]
+        return last if len(last) == 4096 else last[:, 0]
+
+    many = ensemble(BODY, [0, 1], SPIN, n=5000, seed=1, reduce=reductions.mean(of))
+    with pytest.raises(ValueError, match=r"of: gave shape \(3,\) for some members and \(\) for others"):
+        many.compute()
+
+
 def sketched(seed: int) -> float:
     """Sketch 64 blocks in a tree of equals; by how much ranks are off, in parts of the bound, on average."""
     rng = np.random.default_rng(seed)

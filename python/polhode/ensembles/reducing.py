@@ -32,6 +32,9 @@ def tree_of(plan: Plan, reductions: tuple[Reduction, ...]) -> Tree[State]:
     """Give the tree of all blocks, without any of them."""
 
     def merge(one: State, other: State) -> State:
+        for a, b in zip(one.parts, other.parts, strict=True):
+            if a is not None and b is not None and a.shape != b.shape:
+                raise ValueError(f"of: gave shape {a.shape} for some members and {b.shape} for others")
         parts = tuple(
             b if a is None else a if b is None else reduction.merged(a, b, plan.n)
             for reduction, a, b in zip(reductions, one.parts, other.parts, strict=True)
