@@ -80,6 +80,14 @@ def test_a_motor_moves_the_wheel_only_beyond_the_friction(torque: float, moves: 
     assert speed(run)[-1] == pytest.approx(gain, abs=1e-13)
 
 
+@pytest.mark.parametrize(("more", "moves"), [(1e-14, False), (1e-12, True)])
+def test_what_has_just_been_found_to_hold_holds(more: float, moves: bool) -> None:
+    # By so much more than the friction, relative to it.
+    wheel = loads.wheel(ALONG, J, torque=0.25 * (1 + more), dry_friction=0.25)
+    run = PLAIN.simulate([0.0, 4e6], omega=(0, 0, 0), load=wheel)
+    assert bool(speed(run)[-1] > 1e-7) is moves
+
+
 def test_a_wheel_turns_about_without_rest_where_the_motor_is_strong() -> None:
     wheel = loads.wheel(ALONG, J, rate=2.0, torque=-0.5, dry_friction=0.25)
     stop = 2.0 / (0.75 * BETWEEN)

@@ -78,6 +78,14 @@ def test_a_state_needs_a_name_of_its_own(name: str) -> None:
         ensemble(BODY, [0, 1], SPIN, load=drawn, n=2, seed=1)
 
 
+@pytest.mark.parametrize("name", ["file", "allow_pickle", "args", "x y"])
+def test_any_other_word_may_name_a_state(name: str, tmp_path: Path) -> None:
+    many = ensemble(BODY, [0, 1], SPIN, load=wheel(name=name), n=3, seed=1)
+    many.to_npz(tmp_path / "a")
+    with np.load(tmp_path / "a" / "chunk-00000000.npz") as found:
+        np.testing.assert_array_equal(found[name], many.compute()[name])
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

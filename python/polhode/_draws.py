@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, final
@@ -65,7 +66,7 @@ def source(seed: int, name: str) -> Source:
     return Source(int(seed), int.from_bytes(digest, "little"))
 
 
-class Distribution:
+class Distribution(ABC):
     """What members draw; made by the functions of this module.
 
     Attributes
@@ -115,12 +116,22 @@ class Distribution:
                 raise one.error
         return found
 
+    @abstractmethod
     def rows(self, source: Source, first: int, count: int) -> Any:
         """Draw those of the members from `first` on."""
-        raise NotImplementedError
+
+    @property
+    def most(self) -> int | None:
+        """The most members that can draw from it; None for any number."""
+        return None
 
     def check(self, n: int, place: str) -> None:
         """Refuse a number of members that cannot be drawn."""
+        if self.most is not None and n > self.most:
+            raise ValueError(
+                f"{place}: {n} members want a row each and the samples have {self.most}; "
+                'give as many, or draw them order="with replacement"'
+            )
 
 
 def given_name(name: str) -> str:
@@ -241,13 +252,10 @@ class Samples(Distribution):
             return self.values[_shuffled(source, size)[first : first + count]]
         return self.values[first : first + count]
 
-    def check(self, n: int, place: str) -> None:
-        """Refuse more members than there are rows."""
-        if self.order != "with replacement" and n > len(self.values):
-            raise ValueError(
-                f"{place}: {n} members want a row each and the samples have {len(self.values)}; "
-                'give as many, or draw them order="with replacement"'
-            )
+    @property
+    def most(self) -> int | None:
+        """The number of rows, where each is drawn once."""
+        return None if self.order == "with replacement" else len(self.values)
 
     def __repr__(self) -> str:
         return one_line(self, {"values": self.values, "order": self.order} | _named(self))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -63,12 +64,17 @@ class LocalFrame(NamedTuple):
         return short(self)
 
 
-class Path:
-    """What all orbits tell from their states."""
+class Path(ABC):
+    """What all orbits tell."""
 
+    @property
+    @abstractmethod
+    def begins(self) -> float:
+        """Its epoch, which is zero where there is none; of a table the first of its times."""
+
+    @abstractmethod
     def at(self, t: ArrayLike) -> OrbitState:
         """Give position and velocity at times of any shape."""
-        raise NotImplementedError
 
     def frame(self, t: ArrayLike) -> LocalFrame:
         """Give the frame that points down, and its angular velocity, at times of any shape.
@@ -123,6 +129,11 @@ class SampledOrbit(Path):
     def shape(self) -> tuple[int, ...]:
         """The shape of the stack."""
         return np.broadcast_shapes(np.shape(self.mu), self.position.shape[:-2])
+
+    @property
+    def begins(self) -> float:
+        """The first of its times."""
+        return float(self.times[0])
 
     def at(self, t: ArrayLike) -> OrbitState:
         """Give position and velocity at times of any shape.

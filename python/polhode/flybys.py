@@ -118,7 +118,7 @@ def clones(
     orbit : Orbit or SampledOrbit
         About the planet.
     span : float
-        How long, from the epoch of the orbit or else from 0.
+        How long, from the epoch of the orbit, or from 0 where it has none; from the first time of a table.
     rotation_period, precession_period, mode, sense
         As of :meth:`RigidBody.free_motion_from_periods`.
     pole : array_like, shape (3,), optional
@@ -158,10 +158,9 @@ def clones(
         toward = toward / np.abs(toward).max()
         tilt = distributions.normal(np.zeros(2), sigma=spread, name="direction")
         attitude = distributions.made(_toward, motion, phase, toward / np.linalg.norm(toward), around, tilt)
-    start = 0.0 if getattr(orbit, "epoch", None) is None else float(orbit.epoch)  # type: ignore[union-attr,arg-type]
     return ensemble(
         body,
-        [start, start + long],
+        [orbit.begins, orbit.begins + long],
         distributions.made(_omega, motion, phase),
         attitude,
         loads.gravity_gradient(orbit),
@@ -234,7 +233,7 @@ def flyby(
         progress=progress,
         **options,
     )
-    found = told(body, many.compute())
+    found = _told(body, many.compute())
     if found.failed.all():
         # Why tells a clone alone.
         alone = {"rotation_period": rotation_period, "precession_period": precession_period, "seed": seed}
@@ -242,7 +241,7 @@ def flyby(
     return found
 
 
-def told(body: RigidBody, states: Any) -> Flyby:
+def _told(body: RigidBody, states: Any) -> Flyby:
     """Tell how clones tumble at the start and at the end, from the states of their ensemble."""
     omega, quaternion = states.omega.to_numpy(), states.quaternion.to_numpy()
     failed = ~np.isfinite(omega[:, -1]).all(axis=-1)

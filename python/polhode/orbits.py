@@ -111,6 +111,11 @@ class Orbit(Path):
         return np.broadcast_shapes(*shapes)
 
     @property
+    def begins(self) -> float:
+        """Its epoch, or zero."""
+        return 0.0 if self.epoch is None else self.epoch
+
+    @property
     def period(self) -> Any:
         """Time of a revolution; infinite but for ellipses. A rounded parabola may be a very long ellipse.
 
@@ -173,7 +178,7 @@ class Orbit(Path):
                 self.j2,
                 self.radius,
                 self.pole,
-                times.ravel() - (self.epoch or 0.0),
+                times.ravel() - self.begins,
             )
             return reshaped(found, times.shape)
         new = (np.newaxis,) * times.ndim
@@ -182,7 +187,7 @@ class Orbit(Path):
                 np.asarray(self.mu)[(..., *new)],
                 self.position[(..., *new, slice(None))],
                 self.velocity[(..., *new, slice(None))],
-                times - (self.epoch or 0.0),
+                times - self.begins,
             )
         )
 

@@ -16,6 +16,19 @@ if TYPE_CHECKING:
 __all__ = ["Model"]
 
 
+class Crossing:
+    """A function whose fall through zero ends a run of SciPy."""
+
+    terminal, direction = True, -1
+
+    def __init__(self, function: Callable[[float, np.ndarray], float]) -> None:
+        self.function = function
+
+    def __call__(self, t: float, y: np.ndarray) -> float:
+        """Evaluate it."""
+        return self.function(t, y)
+
+
 class Model:
     """Body and wheels as one system with a mass matrix; a wheel at rest is a row of it less.
 
@@ -73,10 +86,7 @@ class Model:
         for low, high in itertools.pairwise(times):
             t = low
             while t < high:
-                events = [self._event(k, turns) for k in range(len(self.axes))]
-                for event in events:
-                    event.terminal = True  # type: ignore[attr-defined]
-                    event.direction = -1  # type: ignore[attr-defined]
+                events = [Crossing(self._event(k, turns)) for k in range(len(self.axes))]
                 run = solve_ivp(
                     lambda t, y, turns=turns: self.rates(t, y, turns), (t, high), y, "DOP853",
                     events=events, rtol=1e-13, atol=1e-14, max_step=0.05,

@@ -85,8 +85,11 @@ class NpzStore:
 
     def write(self, index: int, arrays: Arrays) -> None:
         """Write a chunk."""
-        with writing(self.file(index)) as stream:
-            np.savez(stream, **arrays)  # type: ignore[arg-type]  # a name may be any word
+        # Not by savez, some of whose own arguments a state may be called.
+        with writing(self.file(index)) as stream, zipfile.ZipFile(stream, "w") as archive:
+            for name, array in arrays.items():
+                with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                    np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
 
     def file(self, index: int) -> Path:
         """Give the file of a chunk."""

@@ -72,7 +72,8 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 ///     c: torque over rate, not with `speed`.
 /// dry_friction : array_like, shape (...), optional
 ///     c₀, not with `speed`: a torque against the rate whatever its size (Coulomb's law). At rest it is whatever keeps the wheel
-///     there, and the wheel slips where that takes more than c₀. "auto" is then "dop853", which finds the times of both.
+///     there, and the wheel slips where that takes more than c₀. "auto" is then "dop853", which finds the times of both. A run
+///     goes forward in time.
 /// limit : float, optional
 ///     The most that ``|τ|`` can be, beside a feedback; "auto" is then "dop853".
 /// name : str, optional

@@ -105,3 +105,23 @@ impl Bearing {
         self.index
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_of_some_roundings_is_rest() {
+        let (inertia, omega) = (0.5, Vector3::new(0.0, 0.0, 0.7));
+        for (roundings, turns) in [(8.0, 0.0), (128.0, 1.0), (-128.0, -1.0)] {
+            let rate = roundings * f64::EPSILON * omega.z;
+            let phase = Phase {
+                omega,
+                own: [inertia * (omega.z + rate)].into(),
+                ..Phase::nan()
+            };
+            let bearing = Bearing::at(0, Vector3::z(), inertia, 1.0, &phase);
+            assert!(bearing.turns == turns, "{roundings}");
+        }
+    }
+}

@@ -42,7 +42,7 @@ impl<E> Run<E> {
             load.settle(from, &self.phase);
             // Where the law of the load changes with the state, by what.
             let mut flip: Option<(Change, f64)> = None;
-            let mut flips_at_once = 0;
+            let mut flips_at_once = 0_usize;
             loop {
                 let span = Span {
                     from,
@@ -88,9 +88,7 @@ impl<E> Run<E> {
                             self.change(&change, task, load);
                             flips_at_once += 1;
                             // Several wheels may stop and slip at once.
-                            let most = HELD
-                                * (1 + u32::try_from(load.bearings().len())
-                                    .unwrap_or(u32::MAX / HELD - 1));
+                            let most = HELD as usize * (1 + load.bearings().len());
                             if flips_at_once > most {
                                 let step = 0.0;
                                 return Err(Error::Motion(MotionFault::StepTooSmall {
