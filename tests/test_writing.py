@@ -304,6 +304,10 @@ def writes_by_path(call: ast.Call) -> bool:
     """Whether a call would write a file by its name."""
     name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
     if name == "open":
+        # A member of an archive is no file: the archive itself was opened by its own line.
+        is_member = isinstance(call.func, ast.Attribute) and getattr(call.func.value, "id", "") == "archive"
+        if is_member:
+            return False
         by_name = call.args[1:] if isinstance(call.func, ast.Name) else call.args
         words = [*by_name, *(word.value for word in call.keywords if word.arg == "mode")]
         modes = [
@@ -311,7 +315,9 @@ def writes_by_path(call: ast.Call) -> bool:
         ]
         is_of_os = isinstance(call.func, ast.Attribute) and getattr(call.func.value, "id", "") == "os"
         return is_of_os or any(set(mode) & set("wax+") for mode in modes)
-    if name in ("savez", "savez_compressed", "savetxt", "savefig"):
+    if name == "ZipFile" and not any(isinstance(word, ast.Constant) for word in call.args[1:]):
+        return False
+    if name in ("savez", "savez_compressed", "savetxt", "savefig", "ZipFile"):
         return not (call.args and isinstance(call.args[0], ast.Name) and call.args[0].id == "stream")
     if isinstance(call.func, ast.Attribute):
         return name in ("write_text", "write_bytes", "tofile", "dump", "copyfile", "to_netcdf", "fdopen")
@@ -329,6 +335,8 @@ def test_no_other_module_opens_a_file_for_writing() -> None:
     }
     assert {place for place in found if place.partition(":")[0] not in allowed} == set()
     by_path = "open('a', 'w'); path.open('xb'); path.write_text(''); np.savez(path); os.open(path, flags)"
+    by_path += "; ZipFile(path, 'w')"
     assert all(writes_by_path(call) for call in calls(ast.parse(by_path)))
-    others = "open('a'); path.open('rb'); write_bytes(path, b''); np.savez(stream); figure.savefig(stream)"
+    others = "open('a'); path.open('rb'); write_bytes(path, b''); np.savez(stream); ZipFile(path)"
+    others += "; figure.savefig(stream); ZipFile(stream, 'w'); archive.open('a.npy', 'w')"
     assert not any(writes_by_path(call) for call in calls(ast.parse(others)))
