@@ -17,6 +17,8 @@ pub struct Forcing<X> {
     pub in_space: [Vector3<X>; 4],
     /// One for each gravity gradient that acts.
     pub orbits: Vec<OnOrbit<X>>,
+    /// `r·v` of each of them as the step before foretells it; none where none has been.
+    pub foretold: Vec<f64>,
 }
 
 /// A state on an orbit, lengths over the distance r₀ of this time.
@@ -26,6 +28,8 @@ pub struct OnOrbit<X> {
     pub position: Vector3<X>,
     /// In N.
     pub velocity: Vector3<X>,
+    /// r₀.
+    pub distance: X,
     /// μ/r₀³.
     pub pull: X,
     /// 3μ/r₀³ times the factor of the load.
@@ -38,7 +42,18 @@ impl<X: Real> Default for Forcing<X> {
             in_body: [Vector3::zeros(); 4],
             in_space: [Vector3::zeros(); 4],
             orbits: Vec::new(),
+            foretold: Vec::new(),
         }
+    }
+}
+
+impl<X: Real> Forcing<X> {
+    /// Nothing acts, and nothing is foretold.
+    pub fn clear(&mut self) {
+        self.in_body = [Vector3::zeros(); 4];
+        self.in_space = [Vector3::zeros(); 4];
+        self.orbits.clear();
+        self.foretold.clear();
     }
 }
 
@@ -49,6 +64,7 @@ impl<X: Real> OnOrbit<X> {
         Self {
             position: Vector3::new(X::zero(), X::zero(), X::one()),
             velocity: Vector3::zeros(),
+            distance: X::one(),
             pull: X::zero(),
             strength: X::zero(),
         }

@@ -179,7 +179,8 @@ impl<X: Exact> Timed<X> for GravityGradient {
             return forcing.orbits.push(OnOrbit::none());
         };
         let elapsed = when.time - epoch.unwrap_or(axes.subject.start);
-        let (r, v) = (axes.variables).on_orbit(orbit, elapsed, axes.first);
+        let foretold = forcing.foretold.get(forcing.orbits.len()).copied();
+        let (r, v) = (axes.variables).on_orbit(orbit, elapsed, foretold, axes.first);
         let (distance, unit) = (r.dot(&r).root(), X::from(when.unit));
         let cube = distance * distance * distance * unit * unit;
         let mu = axes.number(self.mu(), 0);
@@ -187,6 +188,7 @@ impl<X: Exact> Timed<X> for GravityGradient {
         forcing.orbits.push(OnOrbit {
             position: r / distance,
             velocity: v / (distance * unit),
+            distance,
             pull: mu / cube,
             strength: (X::from(self.coefficient()) + more) / cube,
         });

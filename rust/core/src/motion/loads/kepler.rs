@@ -1,6 +1,7 @@
 //! The Kepler orbit through a state, at any time.
 
 mod apse;
+mod equation;
 
 use nalgebra::Vector3;
 
@@ -11,8 +12,6 @@ use crate::numerics::double_double::{DoubleDouble, two_product};
 use crate::numerics::jet::Jet;
 use crate::numerics::number::Real;
 
-/// A step of the iteration so small that another one would change nothing.
-const NEAR: f64 = 1e-6;
 /// 2π and what it leaves out.
 const TURN: DoubleDouble = DoubleDouble {
     high: std::f64::consts::TAU,
@@ -165,13 +164,22 @@ impl Orbit {
     /// first. Source: Stumpff, Himmelsmechanik I, §41; Danby, Fundamentals of Celestial Mechanics, §6.9.
     #[must_use]
     pub fn at(&self, elapsed: f64) -> (Vector3<f64>, Vector3<f64>) {
+        self.at_about(elapsed, None)
+    }
+
+    /// As [`Self::at`], where `r·v` is known to be about `sigma`.
+    pub(super) fn at_about(
+        &self,
+        elapsed: f64,
+        sigma: Option<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
         if elapsed == 0.0 {
             let [position, velocity] = self.given;
             return (position * self.length, velocity * (self.length / self.time));
         }
         let t = self.reduced(elapsed / self.time - self.home);
         let (r0, mu) = (self.distance, self.scaled_mu);
-        let functions = functions(self.beta, self.solve(t));
+        let functions = self.solve(t, sigma).1;
         let ([_, g1, g2, _], r) = (functions, self.distance_at(&functions));
         let (f, g) = (1.0 - mu * g2 / r0, r0 * g1 + self.sigma * g2);
         let (f_rate, g_rate) = (-mu * g1 / (r * r0), 1.0 - mu * g2 / r);
@@ -189,6 +197,7 @@ impl Orbit {
     pub(super) fn varied<const N: usize>(
         &self,
         elapsed: f64,
+        sigma: Option<f64>,
         variable: impl Fn(f64, usize) -> Jet<N>,
     ) -> (Vector3<Jet<N>>, Vector3<Jet<N>>) {
         let number = |x: f64| Jet::<N>::constant(x);
@@ -214,6 +223,7 @@ impl Orbit {
             v0 = Vector3::from_fn(|i, _| with(self.velocity[i], apse.velocity[i]));
             time = with(t, apse.since);
         }
+        let s = self.solve(t, sigma).0;
         let distance = with(self.distance, r0.dot(&r0).root());
         let sigma = with(self.sigma, r0.dot(&v0));
         if self.frequency.high > 0.0 {
@@ -221,7 +231,6 @@ impl Orbit {
             let period = mu * number(TURN.high) / (beta * beta.root());
             time = with(t, -(period * number(revolutions)));
         }
-        let s = self.solve(t);
         let there = number(self.distance_at(&functions(self.beta, s)));
         let at = |s: Jet<N>| Jet::stumpff(beta, s);
         let [_, g1, g2, g3] = at(number(s));
@@ -249,87 +258,6 @@ impl Orbit {
             return t;
         }
         ((product - revolutions) + (rest + low * t)) / high
-    }
-
-    /// s at the time `t`, by Laguerre's iteration kept within a bracket.
-    fn solve(&self, t: f64) -> f64 {
-        if t == 0.0 || !t.is_finite() {
-            return t;
-        }
-        let (mut low, mut high, mut s);
-        if self.beta > 0.0 {
-            // E − M is at most the eccentricity, less than one, at both ends.
-            let root = self.beta.sqrt();
-            s = t * self.beta / self.scaled_mu;
-            (low, high) = (s - 2.0 / root, s + 2.0 / root);
-        } else if self.beta < 0.0 {
-            // From the periapsis: e sinh H − H = M, so that H is at least asinh(M/e), and at most √−β t/q.
-            let root = (-self.beta).sqrt();
-            let over_one = -self.beta * self.distance / self.scaled_mu;
-            let mean = t.abs() / self.scaled_mu * root.powi(3);
-            let least = (mean / (1.0 + over_one)).asinh();
-            let most = root * t.abs() / self.distance;
-            let start = ((mean + least) / (1.0 + over_one)).asinh().min(most);
-            let (least, most) = (least / root, most / root * (1.0 + 4.0 * f64::EPSILON));
-            s = start / root * t.signum();
-            (low, high) = if t > 0.0 {
-                (0.9 * least, most)
-            } else {
-                (-most, -0.9 * least)
-            };
-        } else {
-            s = t / self.distance;
-            (low, high) = (0.0_f64.min(s), 0.0_f64.max(s));
-            while (self.time_at(&functions(self.beta, s)) - t) * t.signum() < 0.0 {
-                s *= 2.0;
-                (low, high) = if t > 0.0 { (0.5 * s, s) } else { (s, 0.5 * s) };
-            }
-        }
-        // Laguerre's iteration takes three or four rounds near the root; far out on a hyperbola, where the time grows like an
-        // exponential, its steps do not shrink, and halving is faster.
-        let mut before = high - low;
-        for _ in 0..200 {
-            let g = functions(self.beta, s);
-            let excess = self.time_at(&g) - t;
-            // Not a number where the exponentials overflow: far too far.
-            if excess > 0.0 || excess.is_nan() && t > 0.0 {
-                high = s;
-            } else {
-                low = s;
-            }
-            let slope = self.distance_at(&g);
-            let bend = self.sigma * g[0] + (self.scaled_mu - self.beta * self.distance) * g[1];
-            let radical = (16.0 * slope * slope - 20.0 * excess * bend).abs().sqrt();
-            let next = s - 5.0 * excess / (slope + radical);
-            let change = (next - s).abs();
-            if change <= f64::EPSILON * s.abs() {
-                return next;
-            }
-            if change <= 0.5 * before && next > low && next < high {
-                // What is left is the cube of that.
-                if change <= NEAR * s.abs() && change * bend.abs() <= NEAR * slope {
-                    return next;
-                }
-                before = change;
-                s = next;
-                continue;
-            }
-            let middle = 0.5 * (low + high);
-            if middle == low || middle == high {
-                return middle;
-            }
-            before = (middle - s).abs();
-            s = middle;
-        }
-        s
-    }
-
-    fn time_at(&self, [_, g1, g2, g3]: &[f64; 4]) -> f64 {
-        self.distance * g1 + self.sigma * g2 + self.scaled_mu * g3
-    }
-
-    fn distance_at(&self, [g0, g1, g2, _]: &[f64; 4]) -> f64 {
-        self.distance * g0 + self.sigma * g1 + self.scaled_mu * g2
     }
 }
 

@@ -49,12 +49,34 @@ pub(super) fn functions(beta: f64, s: f64) -> [f64; 4] {
         (series::<2>(x), series::<3>(x))
     } else if x > 0.0 {
         let root = x.sqrt();
-        let half = (0.5 * root).sin();
-        (2.0 * half * half / x, (root - root.sin()) / (x * root))
+        let (sine, cosine) = (0.5 * root).sin_cos();
+        let double = 2.0 * sine * cosine;
+        (2.0 * sine * sine / x, (root - double) / (x * root))
     } else {
+        // The root is not small: neither difference cancels.
         let root = (-x).sqrt();
-        let half = (0.5 * root).sinh();
-        (2.0 * half * half / -x, (root.sinh() - root) / (-x * root))
+        let rising = (0.5 * root).exp();
+        let falling = 1.0 / rising;
+        let (sine, cosine) = (0.5 * (rising - falling), 0.5 * (rising + falling));
+        let double = 2.0 * sine * cosine;
+        (2.0 * sine * sine / -x, (double - root) / (-x * root))
     };
     [1.0 - x * c2, s * (1.0 - x * c3), s * s * c2, s * s * s * c3]
+}
+
+/// `G_k(s + h)` for k = 0..3 from those of s, for a β h² so small that its square is below rounding.
+///
+/// Those of sums: `G_0 = G_0(s) G_0(h) − β G_1(s) G_1(h)`, `G_1 = G_1(s) G_0(h) + G_0(s) G_1(h)`, and as `∂G_k/∂h = G_{k−1}`,
+/// `G_2 = G_2(s) + G_1(s) G_1(h) + G_0(s) G_2(h)`, `G_3 = G_3(s) + G_2(s) h + G_1(s) G_2(h) + G_0(s) G_3(h)`.
+pub(super) fn moved(g: &[f64; 4], beta: f64, h: f64) -> [f64; 4] {
+    let square = h * h;
+    let (less, h1) = (0.5 * beta * square, h * (1.0 - beta * square / 6.0));
+    let (h2, h3) = (0.5 * square, square * h / 6.0);
+    let [g0, g1, g2, g3] = *g;
+    [
+        g0 - (g0 * less + beta * g1 * h1),
+        g1 + (g0 * h1 - g1 * less),
+        g2 + (g1 * h1 + g0 * h2),
+        g3 + (g2 * h + g1 * h2 + g0 * h3),
+    ]
 }

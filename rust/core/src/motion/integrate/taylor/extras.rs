@@ -18,7 +18,7 @@ pub(super) struct Extras<T> {
     quadratic: Option<Box<Quadratic<T>>>,
     forced: Option<Box<Forced<T>>>,
     gradients: Vec<Gradient<T>>,
-    /// The rows whose orbits have come from the step before.
+    /// The rows whose orbits have come from the step before: their states, or where they are about.
     are_carried: Vec<bool>,
 }
 
@@ -63,7 +63,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         if let Some(forced) = &mut self.forced {
             forced.set(row, forcing, inverse_moments);
         }
-        if self.are_carried[row] {
+        if L::Real::CARRIES_ORBITS && self.are_carried[row] {
             return;
         }
         let q = [
@@ -81,14 +81,27 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         }
     }
 
-    /// Goes on to the end of a step of length `h`, where orbits go by their own series.
+    /// Goes on to the end of a step of length `h`.
     #[inline(always)]
     pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
-        if L::Real::CARRIES_ORBITS && !self.gradients.is_empty() {
+        if !self.gradients.is_empty() {
             for gradient in &mut self.gradients {
-                gradient.advance(order, h);
+                if L::Real::CARRIES_ORBITS {
+                    gradient.advance(order, h);
+                } else {
+                    gradient.foresee(order, h);
+                }
             }
             self.are_carried.fill(true);
+        }
+    }
+
+    /// Says of each orbit of one row, which is reckoned anew, what `r·v` is about; `unit` is that of rates.
+    #[inline(always)]
+    pub(super) fn foretell(&self, row: usize, unit: f64, forcing: &mut Forcing<L::Real>) {
+        if !L::Real::CARRIES_ORBITS && self.are_carried[row] {
+            let foretold = self.gradients.iter().map(|it| it.foretold(row) * unit);
+            forcing.foretold.extend(foretold);
         }
     }
 

@@ -24,15 +24,20 @@ type Vectors<T> = [[T; 3]; COUNT];
 /// that tensor is added by [`Field::tilt`]. Powers `p = u^a` of u = r·r follow from `u ṗ = a u̇ p`:
 ///
 /// ```text
-/// p_k = Σ_{0<j≤k} (a j − k + j) u_j p_{k−j}/(k u₀)
+/// p_k = Σ_{0<j≤k} ((a + 1) j − k) u_j p_{k−j}/(k u₀)
 /// ```
+///
+/// Aligned, since a register of the widest lanes that lies in two lines of the cache takes twice as long to load.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub(super) struct Gradient<T> {
     position: Vectors<T>,
     velocity: Vectors<T>,
     /// ω.
     spin: Vectors<T>,
+    /// `u_k` and `k u_k`.
     squares: [T; COUNT],
+    slopes: [T; COUNT],
     /// r⁻³ and r⁻⁵, and (r₂r₃, r₃r₁, r₁r₂).
     cubes: [T; COUNT],
     fifths: [T; COUNT],
@@ -41,6 +46,9 @@ pub(super) struct Gradient<T> {
     tilts: Vectors<T>,
     pull: T,
     strength: T,
+    /// r₀, and `r·v` at the end of the last step.
+    distance: T,
+    progress: T,
 }
 
 impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
@@ -52,12 +60,15 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
             velocity: [[zero; 3]; COUNT],
             spin: [[zero; 3]; COUNT],
             squares: [zero; COUNT],
+            slopes: [zero; COUNT],
             cubes: [zero; COUNT],
             fifths: [zero; COUNT],
             products: [[zero; 3]; COUNT],
             tilts: [[zero; 3]; COUNT],
             pull: zero,
             strength: zero,
+            distance: zero,
+            progress: zero,
         }
     }
 
@@ -75,20 +86,14 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         }
         self.pull.put(row, orbit.pull);
         self.strength.put(row, orbit.strength);
+        self.distance.put(row, orbit.distance);
     }
 
     /// Goes on to the end of a step of length `h`, where the orbit has come by its own series; lengths again over the
     /// distance there.
     #[inline(always)]
     pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
-        let mut position = [Pack::new(0.0); 3];
-        let mut velocity = [Pack::new(0.0); 3];
-        for k in (0..=order).rev() {
-            for i in 0..3 {
-                position[i] = position[i].mul_add(h, self.position[k][i]);
-                velocity[i] = velocity[i].mul_add(h, self.velocity[k][i]);
-            }
-        }
+        let [position, velocity] = self.after(order, h);
         for row in 0..R {
             let r = Vector3::from_fn(|i, _| position[i].real(row));
             let v = Vector3::from_fn(|i, _| velocity[i].real(row));
@@ -97,11 +102,39 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
             let orbit = OnOrbit {
                 position: r,
                 velocity: v,
+                distance: self.distance.real(row) * distance,
                 pull: self.pull.real(row) / cube,
                 strength: self.strength.real(row) / cube,
             };
             self.set(row, &orbit, &(r / distance), &(v / distance));
         }
+    }
+
+    /// Foresees where the orbit will have come at the end of a step of length `h`.
+    #[inline(always)]
+    pub(super) fn foresee(&mut self, order: usize, h: Pack<L, R>) {
+        let [r, v] = self.after(order, h);
+        let progress = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0] * v[0]));
+        self.progress = progress * self.distance * self.distance;
+    }
+
+    /// What was foreseen of `r·v` in one row, over the unit of rates.
+    pub(super) fn foretold(&self, row: usize) -> f64 {
+        self.progress.get(row)
+    }
+
+    /// Position and velocity at a time after the start of the step, over the distance there.
+    #[inline(always)]
+    fn after(&self, order: usize, h: Pack<L, R>) -> [[Pack<L, R>; 3]; 2] {
+        let mut position = [Pack::new(0.0); 3];
+        let mut velocity = [Pack::new(0.0); 3];
+        for k in (0..=order).rev() {
+            for i in 0..3 {
+                position[i] = position[i].mul_add(h, self.position[k][i]);
+                velocity[i] = velocity[i].mul_add(h, self.velocity[k][i]);
+            }
+        }
+        [position, velocity]
     }
 
     /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
@@ -112,6 +145,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         }
         self.pull.put(row, self.pull.real(row) * twice);
         (self.strength).put(row, self.strength.real(row) * twice);
+        (self.progress).put(row, self.progress.real(row) * once);
     }
 
     /// What the elements off the diagonal of the tensor add to the coefficient of order `k`.
@@ -138,18 +172,21 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         if k == 0 {
             return [Pack::new(1.0); 2];
         }
-        let mut sums = [Pack::new(0.0); 2];
-        let before = self.cubes[..k].iter().zip(&self.fifths[..k]).rev();
-        for (j, (square, (cube, fifth))) in self.squares[1..=k].iter().zip(before).enumerate() {
-            // (a + 1) j − k with a = −3/2 and −5/2, in halves and so without rounding.
-            let at = (j + 1) as f64;
-            let (once, twice) = (-0.5 * at - k as f64, -1.5 * at - k as f64);
-            sums = [
-                (*square * Pack::new(once)).mul_add(*cube, sums[0]),
-                (*square * Pack::new(twice)).mul_add(*fifth, sums[1]),
-            ];
+        let (mut straight, mut sloped) = ([Pack::new(0.0); 2], [Pack::new(0.0); 2]);
+        let series = self.squares[1..=k].iter().zip(&self.slopes[1..=k]);
+        let before = (self.cubes[..k].iter().rev()).zip(self.fifths[..k].iter().rev());
+        for ((square, slope), (cube, fifth)) in series.zip(before) {
+            straight[0] = square.mul_add(*cube, straight[0]);
+            straight[1] = square.mul_add(*fifth, straight[1]);
+            sloped[0] = slope.mul_add(*cube, sloped[0]);
+            sloped[1] = slope.mul_add(*fifth, sloped[1]);
         }
-        sums.map(|sum| sum * Pack::over(k))
+        // a + 1 is −1/2 and −3/2.
+        let over = Pack::over(k);
+        [
+            -(sloped[0] * Pack::new(0.5)).mul_add(over, straight[0]),
+            -(sloped[1] * Pack::new(1.5)).mul_add(over, straight[1]),
+        ]
     }
 }
 
@@ -262,12 +299,13 @@ impl<S: Series<Pack<L, R>, B>, L: Number, const R: usize, const B: usize> Next<'
         }
         // u₀ is one but for rounding: lengths are over the distance at the start of the step.
         it.squares[k] = squares[0] + squares[1] + squares[2];
+        it.slopes[k] = it.squares[k] * Pack::new(k as f64);
         it.products[k] = products;
         [it.cubes[k], it.fifths[k]] = it.powers(k);
         let (mut pulled, mut torque) = (zero, zero);
-        let positions = &it.position[..=k];
-        let powers = it.cubes[..=k].iter().zip(&it.fifths[..=k]).rev();
-        for ((r, p), (cube, fifth)) in positions.iter().zip(&it.products[..=k]).zip(powers) {
+        let vectors = it.position[..=k].iter().zip(&it.products[..=k]);
+        let powers = (it.cubes[..=k].iter().rev()).zip(it.fifths[..=k].iter().rev());
+        for ((r, p), (cube, fifth)) in vectors.zip(powers) {
             pulled = product_terms(&[*cube; 3], r, pulled);
             torque = product_terms(&[*fifth; 3], p, torque);
         }

@@ -112,8 +112,12 @@ impl<X: Precision> Course<'_, X> {
         directions
     }
 
-    /// What depends on the time alone, as it is at `now`.
-    pub(in crate::motion::integrate::taylor) fn forcing(&self, now: (f64, f64)) -> Forcing<X> {
+    /// Adds what depends on the time alone, as it is at `now`.
+    pub(in crate::motion::integrate::taylor) fn force(
+        &self,
+        forcing: &mut Forcing<X>,
+        now: (f64, f64),
+    ) {
         let when = When {
             elapsed: X::pair(now.0, now.1) / X::from(self.unit),
             start: self.task.times[0],
@@ -121,14 +125,12 @@ impl<X: Precision> Course<'_, X> {
             middle: self.middle(),
             unit: self.unit,
         };
-        let mut forcing = Forcing::default();
         for (first, timed) in &self.linear.timed {
-            timed.force(&mut forcing, &self.principal_axes(*first), &when);
+            timed.force(forcing, &self.principal_axes(*first), &when);
         }
         for torque in &mut forcing.in_body {
             torque.component_mul_assign(&self.inverse_moments);
         }
-        forcing
     }
 
     /// What the states of the load do in the segment under way.

@@ -11,6 +11,7 @@ use crate::motion::integrate::taylor::pack::Pack;
 use crate::motion::integrate::taylor::push::Push;
 use crate::motion::integrate::taylor::series::Series;
 use crate::motion::integrate::taylor::step::Compensated;
+use crate::motion::loads::Forcing;
 use crate::motion::problem::{Effort, Run};
 use crate::numerics::number::{Number, Real};
 
@@ -62,6 +63,8 @@ pub(super) struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const
     pub(super) series: S,
     pub(super) field: Field<Pack<L, R>, B>,
     pub(super) extras: Extras<Pack<L, R>>,
+    /// What depends on the time in one of them: kept so that no step asks for memory.
+    pub(super) forcing: Forcing<L::Real>,
     pub(super) directions: [[Pack<L, R>; 3]; B],
     pub(super) state: Compensated<Pack<L, R>>,
     pub(super) push: Option<Box<Push<Pack<L, R>>>>,
@@ -91,6 +94,7 @@ where
             series: S::new(),
             field: Field::none(zero),
             extras: Extras::new(&settings.parts),
+            forcing: Forcing::default(),
             directions: [[zero; 3]; B],
             state: Compensated::new(),
             push: settings.parts.is_pushed.then(|| Box::new(Push::new())),

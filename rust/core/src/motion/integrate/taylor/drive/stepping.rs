@@ -109,9 +109,11 @@ where
         if self.extras.is_timed() {
             for row in 0..R {
                 if let Some(lead) = &self.leads[row] {
-                    let forcing = lead.job.course.forcing(self.now[row]);
-                    let inverse = lead.job.course.inverse_moments();
-                    self.extras.set(row, &forcing, inverse, &q);
+                    let course = &lead.job.course;
+                    self.forcing.clear();
+                    self.extras.foretell(row, course.unit(), &mut self.forcing);
+                    course.force(&mut self.forcing, self.now[row]);
+                    (self.extras).set(row, &self.forcing, course.inverse_moments(), &q);
                 }
             }
         }
