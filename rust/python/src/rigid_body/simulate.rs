@@ -12,6 +12,7 @@ use crate::arrays::read;
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
 use crate::depth::Deeper;
+use crate::elsewhere::{handed_over, is_any};
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
 use crate::hints;
@@ -86,6 +87,9 @@ impl PyRigidBody {
     /// Returns
     /// -------
     /// Trajectory
+    ///     Where omega, attitude, position or velocity is an array of dask, or an `xarray.DataArray` that holds one: an
+    ///     `xarray.Dataset` of such arrays, as of ``Trajectory.to_xarray``, with a `status`. It is run chunk by chunk
+    ///     when it is computed, with the same bits. Names and coordinates of the axes go along.
     ///
     /// Raises
     /// ------
@@ -137,6 +141,28 @@ impl PyRigidBody {
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
+        if is_any(&[Some(omega), attitude, position, velocity]) {
+            let options = PyDict::new(py);
+            for (name, value) in [
+                ("load", load),
+                ("position", position),
+                ("velocity", velocity),
+                ("events", events),
+                ("states", states),
+            ] {
+                options.set_item(name, value)?;
+            }
+            options.set_item("about", about)?;
+            options.set_item("method", method)?;
+            options.set_item("rtol", rtol)?;
+            options.set_item("atol", atol)?;
+            options.set_item("on_failure", on_failure)?;
+            options.set_item("progress", &progress)?;
+            let given = (slf, t, omega, attitude);
+            if let Some(motion) = handed_over(py, "simulated", given, Some(&options))? {
+                return Ok(motion);
+            }
+        }
         let _deeper = Deeper::run("simulate")?;
         let pivoted = is_pivot(about)?;
         if pivoted && velocity.is_some() {

@@ -52,7 +52,8 @@ impl MassAccumulator {
     }
 
     /// The number after that of the last particle.
-    fn end(&self) -> u64 {
+    #[must_use]
+    pub fn end(&self) -> u64 {
         self.pieces
             .last_key_value()
             .map_or(0, |(_, piece)| piece.end)
