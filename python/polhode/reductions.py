@@ -58,7 +58,13 @@ class Reduction(ABC):
     def values(self, trajectory: Trajectory) -> Floats:
         """Give the numbers of the members of a trajectory, shape (members, ...)."""
         of: Of = self.__dict__["of"]
-        found = getattr(trajectory, of) if isinstance(of, str) else of(trajectory)
+        try:
+            found = getattr(trajectory, of) if isinstance(of, str) else of(trajectory)
+        except ValueError as error:
+            if "read-only" in str(error):
+                way = "all reductions share the states; change a copy, such as motion.omega.copy()"
+                raise ValueError(f"of: {error}: {way}") from error
+            raise
         array = _core.real_numbers(found, "of")
         count = len(trajectory.omega)
         if array.shape[:1] != (count,):
@@ -124,6 +130,10 @@ class _Covariance(Reduction):
 
     def begun(self, values: Floats, n: int) -> _State:  # noqa: ARG002
         rows = _flat(values)
+        if not rows.shape[1]:
+            raise ValueError(
+                f"of: a covariance of nothing: got an array of shape {values.shape}, which is empty"
+            )
         if rows.shape[1] > MOST_CORRELATED:
             raise ValueError(
                 f"of: a covariance is of {MOST_CORRELATED} numbers of a member at most, got {rows.shape[1]}; "
@@ -210,10 +220,6 @@ class _ModeChanges(Reduction):
         found = []
         for time in (0, -1):
             omega, attitude = trajectory.omega[:, time], trajectory.quaternion[:, time]
-            # A member that failed has no end; it is left out later and may have any mode until then.
-            lost = np.isnan(omega).any(axis=1)
-            omega, attitude = omega.copy(), attitude.copy()
-            omega[lost], attitude[lost] = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0)
             modes = trajectory.body.free_motion(omega, attitude).mode
             found.append([places[mode] for mode in modes])
         return np.array(found, dtype=float).T

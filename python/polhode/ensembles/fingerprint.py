@@ -115,5 +115,11 @@ def _inner(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
             called = vars(type(value)).get("__call__")
             if isinstance(called, FunctionType):
                 yield from _words(called, above)
-            reduced = value.__reduce_ex__(2)
+            try:
+                reduced = value.__reduce_ex__(2)
+            except TypeError as error:
+                raise TypeError(
+                    f"a function or a value of the ensemble cannot be told from another one in files: {error}"
+                    "; make locks, open files and the like within the function that uses them"
+                ) from error
             yield from _words(reduced if isinstance(reduced, str) else tuple(reduced[:3]), above)
