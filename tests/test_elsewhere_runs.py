@@ -207,6 +207,24 @@ class TestExactMotions:
         assert found.omega.dims == ("body", "orbit", "t", "component")
         assert np.array_equal(found.sel(orbit=8).omega, motion.at(times[1]).omega)
 
+    def test_what_is_refused(self) -> None:
+        motion, times = self.MOTIONS["free"], da.from_array(T, chunks=2)
+        for bad, words in (
+            (times + 1j, "t: expected real numbers, got dtype complex128"),
+            (times[times > 1.0], r"t: the sizes of its chunks are not known"),
+        ):
+            with pytest.raises((TypeError, ValueError), match=words):
+                motion.at(bad)
+        sure = BODY.with_sigma(mass=0.1)
+        with pytest.raises(ValueError, match="t: the motion is uncertain"):
+            sure.free_motion(OMEGA[0]).at(times)
+        with pytest.raises(ValueError, match="t: the motion is uncertain"):
+            BODY.free_motion(Uncertain(OMEGA[0], 0.1)).at(times)
+        with pytest.raises(ValueError, match="body: carries a covariance"):
+            sure.simulate(T, lazily(OMEGA, 5))
+        with pytest.raises(ValueError, match="body and omega|omega and body"):
+            STACK.simulate(T, lazily(OMEGA[:7], 5))
+
     def test_names_that_are_taken(self) -> None:
         named = xarray.DataArray(T, dims="component").chunk(component=2)
         with pytest.raises(ValueError, match="t: its axis 'component' has the name of one of the result"):
@@ -256,7 +274,11 @@ LAZY = lazily(OMEGA, 5)
             {"omega": xarray.DataArray(OMEGA, dims=("n", "xyz")).chunk(n=5), "attitude": np.ones((2, 10, 4))},
             r"a stack of 2 axes beside axes named n",
         ),
-        ({"attitude": TURNS[:7]}, r"body|size|shape"),
+        ({"attitude": TURNS[:7]}, r"omega and attitude: their axis 'body' has 10 and 7 rows"),
+        ({"omega": LAZY + 1j}, r"omega: expected real numbers, got dtype complex128"),
+        ({"omega": da.from_array(np.full((2, 3), "a"))}, r"omega: expected real numbers, got dtype <U1"),
+        ({"omega": da.ma.masked_greater(LAZY, 0.0)}, r"omega: its elements may be masked"),
+        ({"on_failure": "never"}, r"on_failure: expected"),
         ({"load": 3.0}, r"load"),
     ],
 )

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from polhode._elsewhere.datasets import dataset, require_xarray
-from polhode._elsewhere.kinds import dask_array, labelled
+from polhode._elsewhere.kinds import check_real, dask_array, labelled
 
 __all__ = ["motion_at"]
 
@@ -29,6 +29,13 @@ def motion_at(motion: Any, t: Any) -> Any:
     """
     if dask_array(t) is None:
         return None
+    check_real(dask_array(t), "t")
+    body = motion.gyrostat.body if hasattr(motion, "gyrostat") else motion.body
+    if body.covariance is not None or any(one is not None for one in getattr(motion, "uncertain_start", ())):
+        raise ValueError(
+            "t: the motion is uncertain, and states at times of dask have no place for a covariance; compute "
+            "the times, or begin without sigmas"
+        )
     xarray = require_xarray()
     depth = len(motion.shape)
     stack = ["body"] if depth == 1 else [f"body_{axis}" for axis in range(depth)]

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode._core import real_numbers
-from polhode._elsewhere.kinds import dask_array, labelled
+from polhode._elsewhere.kinds import check_real, dask_array, labelled
 from polhode._extras import require
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
 __all__ = ["Labels", "dataset", "one_chunk", "require_xarray"]
 
@@ -35,8 +35,7 @@ def one_chunk(array: Any, name: str, size: int) -> None:
     lazy = dask_array(array)
     if lazy is None:
         return
-    if np.isnan(np.array(shape, dtype=float)).any():
-        raise ValueError(f"{name}: the sizes of its chunks are not known; .compute_chunk_sizes() finds them")
+    check_real(lazy, name)
     count = len(lazy.chunks[-1])
     if count > 1:
         way = f"chunk({{{array.dims[-1]!r}: -1}})" if labelled(array) is not None else "rechunk({-1: -1})"
@@ -85,6 +84,7 @@ class Labels:
             )
         self.stack = named
         self.cuts: dict[str, tuple[int, ...]] = {}
+        self.sizes: dict[str, tuple[int, str]] = {}
 
     def named(self, array: Any, name: str) -> Any:
         """Give an array with names; that of its last axis is the argument's own."""
@@ -99,6 +99,13 @@ class Labels:
             kept = [axis for axis, size in enumerate(array.shape[:-1]) if size != 1]
             picked = array[tuple(slice(None) if axis in kept else 0 for axis in range(len(dims)))]
             found = xarray.DataArray(picked, dims=[*(dims[axis] for axis in kept), f"{name} in"])
+        for dim, size in zip(found.dims[:-1], found.shape[:-1], strict=True):
+            known = self.sizes.setdefault(str(dim), (size, name))
+            if known[0] != size:
+                raise ValueError(
+                    f"{known[1]} and {name}: their axis {dim!r} has {known[0]} and {size} rows; they go together "
+                    "as in NumPy where they are the same, or one"
+                )
         self.cuts |= {str(dim): cuts for dim, cuts in found.chunksizes.items()}
         return found
 
@@ -111,14 +118,13 @@ class Labels:
         chunks = tuple(self.cuts.get(str(dim), -1) for dim in found.dims)
         return found.copy(data=da.from_array(found.data, chunks=chunks))
 
-    def rows(self, arrays: Iterable[Any]) -> Any:
+    def rows(self) -> Any:
         """Count the rows along the first axis of the stack."""
         da = require("dask.array", extra="cluster", purpose="a motion of dask arrays")
-        sizes = {str(dim): size for array in arrays for dim, size in array.sizes.items()}
         if not self.stack:
             return self.named(np.zeros(1), "row")
         first, xarray = self.stack[0], require_xarray()
-        numbers = da.arange(sizes.get(first, 1), chunks=self.cuts.get(first, -1))
+        numbers = da.arange(self.sizes.get(first, (1, ""))[0], chunks=self.cuts.get(first, -1))
         return xarray.DataArray(numbers[:, None], dims=[first, "row in"])
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["dask_array", "in_memory", "is_stored", "labelled"]
+__all__ = ["check_real", "dask_array", "in_memory", "is_stored", "labelled"]
 
 
 def _library(array: Any) -> str:
@@ -15,7 +15,7 @@ def _library(array: Any) -> str:
 
 def labelled(array: Any) -> Any:
     """Give an array with names for its axes, of xarray; else None."""
-    return array if _library(array) == "xarray" and hasattr(array, "dims") else None
+    return array if _library(array) == "xarray" and hasattr(array, "variable") else None
 
 
 def dask_array(array: Any) -> Any:
@@ -43,3 +43,16 @@ def in_memory(array: Any) -> Any:
     if labelled(array) is not None:
         return in_memory(array.variable.data)
     return np.asarray(array) if isinstance(array, np.memmap) else array
+
+
+def check_real(array: Any, name: str) -> None:
+    """Refuse an array of dask of no real numbers, or of so many as nobody knows, before it is computed."""
+    if array.dtype.kind not in "biuf":
+        raise TypeError(f"{name}: expected real numbers, got dtype {array.dtype}")
+    if np.isnan(np.array(array.shape, dtype=float)).any():
+        raise ValueError(f"{name}: the sizes of its chunks are not known; .compute_chunk_sizes() finds them")
+    if isinstance(array._meta, np.ma.MaskedArray):
+        raise TypeError(
+            f"{name}: its elements may be masked and have no value; give them values with "
+            "dask.array.ma.filled(array, value)"
+        )

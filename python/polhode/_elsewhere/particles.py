@@ -38,15 +38,13 @@ def summed(masses: Any, positions: Any, start: int) -> MassAccumulator | None:
     MassAccumulator or None
         None where both are in memory, or are a stack of bodies.
     """
-    if getattr(masses, "ndim", 1) != 1 or getattr(positions, "ndim", 2) != 2:
+    by_dask = dask_array(masses) is not None or dask_array(positions) is not None
+    if not by_dask and not is_stored(masses) and not is_stored(positions):
         return None
-    if dask_array(masses) is not None or dask_array(positions) is not None:
-        _check(masses, positions)
-        return _by_dask(masses, positions, start)
-    if is_stored(masses) or is_stored(positions):
-        _check(masses, positions)
-        return _in_pieces(masses, positions, start)
-    return None
+    if np.ndim(masses) != 1 or np.ndim(positions) != 2:
+        return None
+    _check(masses, positions)
+    return (_by_dask if by_dask else _in_pieces)(masses, positions, start)
 
 
 def _check(masses: Any, positions: Any) -> None:

@@ -59,6 +59,10 @@ def simulated(body: RigidBody, t: Any, omega: Any, attitude: Any, options: dict[
             "states: a run of dask arrays begins with the states that the load has by itself; run the chunks "
             "by themselves, with dask.delayed"
         )
+    if body.covariance is not None:
+        raise ValueError(
+            "body: carries a covariance, which a run of dask arrays has no place for; give it without sigmas"
+        )
     for name, value in given.items():
         if isinstance(value, _core.Uncertain):
             raise TypeError(f"{name}: a run of dask arrays has no covariance; give its value, {name}.value")
@@ -66,8 +70,10 @@ def simulated(body: RigidBody, t: Any, omega: Any, attitude: Any, options: dict[
     for name, value in given.items():
         one_chunk(value, name, _VECTORS[name])
     _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0.0, 0.0, 0.0))  # refuses bad times
-    rest = {"velocity": (0.0, 0.0, 0.0)} if "velocity" in given else {}
-    states = _first(body, times, options | rest | {"on_failure": "keep"}).states
+    rest: dict[str, Any] = {"velocity": (0.0, 0.0, 0.0)} if "velocity" in given else {}
+    if options["on_failure"] == "raise":
+        rest["on_failure"] = "keep"
+    states = _first(body, times, options | rest).states
     options = _settled(body, times, options)
     labels = Labels(list(given.values()), [1] * len(given), [body.shape, _shape_of(options["load"])])
     arrays = {name: labels.named(value, name) for name, value in given.items()}
@@ -76,7 +82,7 @@ def simulated(body: RigidBody, t: Any, omega: Any, attitude: Any, options: dict[
     if _shape_of(options["load"]):
         rows = np.arange(np.prod(options["load"].shape)).reshape(options["load"].shape)
         arrays["row of load"] = labels.chunked(rows[..., None], rows.shape, "load")
-    arrays["row"] = labels.rows(arrays.values())
+    arrays["row"] = labels.rows()
     tails = {"omega": 3, "quaternion": 4, "position": 3, "velocity": 3}
     tails |= {f"states.{name}": value.shape[-1] for name, value in states.items()}
     found = xarray.apply_ufunc(
