@@ -137,6 +137,25 @@ def test_an_accumulator_takes_them_between_others(cloud: Any, whole: RigidBody) 
     assert late.finish() == whole
 
 
+@pytest.mark.parametrize("kind", ["mapped", "dask"])
+def test_chunks_without_places_are_appended_to_others(
+    cloud: Any, whole: RigidBody, kind: str, tmp_path: Path
+) -> None:
+    masses, positions = cloud
+    if kind == "mapped":
+        np.save(tmp_path / "masses.npy", masses)
+        masses = np.load(tmp_path / "masses.npy", mmap_mode="r")
+    else:
+        masses = da.from_array(masses, chunks=3000)
+    left, right = MassAccumulator(), MassAccumulator()
+    for first in (0, 4096):
+        left.add(masses[first : first + 4096], positions[first : first + 4096])
+    for first, last in ((8192, 12_288), (12_288, COUNT)):
+        right.add(masses[first:last], positions[first:last])
+    left.merge(right)
+    assert left.finish() == whole
+
+
 def test_an_error_leaves_an_accumulator_as_it_was(cloud: Any, tmp_path: Path) -> None:
     masses, positions = cloud
     total = MassAccumulator()

@@ -7,26 +7,20 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from polhode._core import MassAccumulator, RigidBody
 
-__all__ = ["add_particles", "body_of_particles", "motion_at", "simulated"]
+__all__ = ["body_of_particles", "motion_at", "simulated", "summed"]
 
 
 def body_of_particles(masses: Any, positions: Any) -> RigidBody | None:
     """Serve ``RigidBody.from_particles``."""
-    from polhode._elsewhere.particles import summed
-
     total = summed(masses, positions, 0)
     return None if total is None else total.finish()
 
 
-def add_particles(accumulator: MassAccumulator, masses: Any, positions: Any, start: int) -> bool | None:
+def summed(masses: Any, positions: Any, start: int) -> MassAccumulator | None:
     """Serve ``MassAccumulator.add``."""
     from polhode._elsewhere.particles import summed
 
-    total = summed(masses, positions, start)
-    if total is None:
-        return None
-    accumulator.merge(total)
-    return True
+    return summed(masses, positions, start)
 
 
 def simulated(body: RigidBody, t: Any, omega: Any, attitude: Any, **options: Any) -> Any:

@@ -103,8 +103,8 @@ class Labels:
             known = self.sizes.setdefault(str(dim), (size, name))
             if known[0] != size:
                 raise ValueError(
-                    f"{known[1]} and {name}: their axis {dim!r} has {known[0]} and {size} rows; give both the "
-                    "same, or one"
+                    f"{known[1]} and {name}: their axis {dim!r} has {known[0]} and {size} rows; give "
+                    "both the same, or one"
                 )
         self.cuts |= {str(dim): cuts for dim, cuts in found.chunksizes.items()}
         return found

@@ -94,9 +94,19 @@ impl PyMassAccumulator {
         let start = start.map(number_of_particle).transpose()?;
         if is_any(&[Some(masses), Some(positions)]) {
             let first = start.unwrap_or_else(|| py.detach(|| this.lock().end()));
-            let given = (slf, masses, positions, first);
-            if handed_over(py, "add_particles", given, None)?.is_some() {
-                return Ok(());
+            if let Some(chunk) = handed_over(py, "summed", (masses, positions, first), None)? {
+                let chunk = chunk.cast_into::<Self>()?;
+                let chunk = chunk.get();
+                let merged = py.detach(|| {
+                    let chunk = chunk.lock().clone();
+                    let mut sums = this.lock();
+                    if start.is_some() {
+                        sums.merge(&chunk)
+                    } else {
+                        sums.merge_next(&chunk)
+                    }
+                });
+                return merged.map_err(|error| to_py(py, &error));
             }
         }
         let arrays = ParticleArrays::read(masses, positions, "n")?;

@@ -144,6 +144,17 @@ impl MassAccumulator {
         Ok(())
     }
 
+    /// Adds the next chunk, which another accumulator has summed at its place: as if it had been added here without one.
+    ///
+    /// # Errors
+    /// As of [`merge`](Self::merge).
+    pub fn merge_next(&mut self, next: &Self) -> Result<(), Error> {
+        let is_placed = self.is_placed;
+        self.merge(next)?;
+        self.is_placed = is_placed;
+        Ok(())
+    }
+
     /// The body of all particles so far; more may be added afterwards.
     ///
     /// # Errors
