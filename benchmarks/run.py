@@ -29,6 +29,7 @@ FILES_OF_ROWS = (
     "gyrostat",
     "heavy_top",
     "simulate",
+    "chunks",
     "flyby",
     "callbacks",
     "threads",

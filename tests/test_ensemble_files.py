@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
-from ensemble_cases import BODY, TESTS, TIMES, python, slow, twisted
+from ensemble_cases import BODY, TESTS, TIMES, all_bytes, all_reductions, python, slow, twisted
 from polhode import ensemble
 from polhode.ensembles.fingerprint import fingerprint
 from polhode.errors import FileFormatError
@@ -121,3 +121,91 @@ class TestFiles:
         assert of(scaled(1.0)) == of(scaled(1.0))
         assert of(scaled(1.0)) != of(scaled(2.0))
         assert of(lambda rng: rng.normal(size=3)) != of(lambda rng: rng.uniform(size=3))
+
+
+class TestCheckpoints:
+    """Reductions that are ended go on with what they have."""
+
+    def ended(self, path: Path, at: float = 0.4, **options: Any) -> float:
+        """End a run at a part, and give how far it was."""
+
+        class Enough(Exception):  # noqa: N818
+            pass
+
+        told = 0.0
+
+        def end(fraction: float) -> None:
+            nonlocal told
+            told = fraction
+            if fraction >= at:
+                raise Enough
+
+        with pytest.raises(Enough):
+            self.reduced(progress=end, **options).compute(checkpoint=path)
+        return told
+
+    def reduced(self, **options: Any) -> Any:
+        return twisted(5 * 4096 + 99, t=(0.0, 0.1), **{"reduce": all_reductions()} | options)
+
+    def test_they_have_the_bits_of_one_run(self, tmp_path: Path) -> None:
+        path = tmp_path / "kept.npz"
+        want = all_bytes(self.reduced().compute())
+        self.ended(path)
+        told: list[float] = []
+        assert all_bytes(self.reduced(progress=told.append).compute(checkpoint=path)) == want
+        assert told[0] > 0.2
+        # And again, without any run.
+        runs: list[float] = []
+        assert all_bytes(self.reduced(progress=runs.append).compute(checkpoint=path)) == want
+        assert runs == []
+
+    def test_what_was_killed_goes_on(self, tmp_path: Path) -> None:
+        path = tmp_path / "kept.npz"
+        code = (
+            "import sys, ensemble_cases as e, polhode.ensembles.checkpoints as c\n"
+            "c._BETWEEN = 0.0\n"
+            "e.twisted(20 * 4096, t=(0, 2), reduce=e.all_reductions()).compute(checkpoint=sys.argv[1])"
+        )
+        process = subprocess.Popen([sys.executable, "-c", code, str(path)], cwd=TESTS)
+        try:
+            deadline = time.monotonic() + 60.0
+            while not path.exists() and time.monotonic() < deadline:
+                time.sleep(0.005)
+        finally:
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        told: list[float] = []
+        many = twisted(20 * 4096, t=(0, 2), reduce=all_reductions(), progress=told.append)
+        found = many.compute(checkpoint=path)
+        assert told[0] >= 0.05
+        assert all_bytes(found) == all_bytes(twisted(20 * 4096, t=(0, 2), reduce=all_reductions()).compute())
+
+    @pytest.mark.parametrize(
+        ("change", "words"),
+        [
+            ({"seed": 6}, "seed is 5 there and 6 here"),
+            ({"chunk": 8192}, "chunk is 4096 there and 8192 here"),
+            ({"reduce": {"mean": all_reductions()["mean"]}}, "an option or a reduction is not the same"),
+            ({"rtol": 1e-9}, "an option or a reduction is not the same"),
+        ],
+    )
+    def test_another_one_is_refused(self, change: dict[str, Any], words: str, tmp_path: Path) -> None:
+        path = tmp_path / "kept.npz"
+        self.ended(path)
+        before = path.read_bytes()
+        with pytest.raises(FileFormatError, match=words):
+            self.reduced(**change).compute(checkpoint=path)
+        assert path.read_bytes() == before
+
+    def test_what_is_no_checkpoint_is_refused(self, tmp_path: Path) -> None:
+        path = tmp_path / "kept.npz"
+        self.ended(path)
+        whole = path.read_bytes()
+        np.savez(tmp_path / "other.npz", a=np.ones(3))
+        for bad in (whole[: len(whole) // 2], b"anything", b"", (tmp_path / "other.npz").read_bytes()):
+            path.write_bytes(bad)
+            with pytest.raises(FileFormatError, match="holds no reductions that compute has begun"):
+                self.reduced().compute(checkpoint=path)
+            assert path.read_bytes() == bad
+        with pytest.raises(ValueError, match=r"checkpoint: keeps reductions, .* to_zarr"):
+            twisted(20).compute(checkpoint=path)

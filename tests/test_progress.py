@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import io
 import sys
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from polhode import RigidBody, solids
 from polhode._progress import duration, watched
+from polhode.uncertainty import propagate
 
 
 class Terminal(io.StringIO):
@@ -83,3 +88,22 @@ def test_what_is_neither_is_refused() -> None:
 )
 def test_durations(seconds: float, words: str) -> None:
     assert duration(seconds) == words
+
+
+def test_pieces_of_a_file_and_draws_show_a_bar_on_a_terminal_alone(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    rows = np.memmap(tmp_path / "rows", dtype="f8", mode="w+", shape=(100_000, 4))
+    rows[:] = 1.0
+    body = solids.box((1, 2, 3), mass=1.0).with_sigma(mass=0.1)
+    monkeypatch.setattr("polhode._elsewhere.particles._PIECE", 4096)
+    monkeypatch.setattr("polhode._progress._SILENT", 0.0)
+    works: dict[str, Callable[[], object]] = {
+        "100000 particles [": lambda: RigidBody.from_particles(rows[:, 0], rows[:, 1:]),
+        "500 draws [": lambda: propagate(lambda one: one.mass, body, "monte-carlo", n=500, seed=1),
+    }
+    for words, work in works.items():
+        for stream in (Terminal(), io.StringIO()):
+            monkeypatch.setattr(sys, "stderr", stream)
+            work()
+            assert (words in stream.getvalue()) == stream.isatty()

@@ -167,3 +167,13 @@ class TestSecondOrder:
         method: Any = "third-order"
         with pytest.raises(ValueError, match=r"linear.*second-order.*monte-carlo"):
             propagate(lambda b: b.mass, body, method=method)
+
+
+def test_draws_tell_how_far_they_are() -> None:
+    told: list[float] = []
+    body = Bodies().body(given(0.003))
+    found = propagate(ten, body, "monte-carlo", n=50, seed=1, progress=told.append)
+    assert told == pytest.approx(np.arange(1, 51) / 50)
+    assert np.array_equal(
+        found.value, propagate(ten, body, "monte-carlo", n=50, seed=1, progress=False).value
+    )

@@ -520,6 +520,7 @@ class RigidBody:
         on_failure: Literal["raise", "keep"] = "raise",
         progress: Callable[[float], object] | None = None,
         states: dict[str, Any] | None = None,
+        max_steps: int | None = None,
     ) -> Trajectory: ...
     @property
     def shape(self) -> tuple[int, ...]: ...

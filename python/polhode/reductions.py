@@ -58,7 +58,13 @@ class Reduction(ABC):
     def values(self, trajectory: Trajectory) -> Floats:
         """Give the numbers of the members of a trajectory, shape (members, ...)."""
         of: Of = self.__dict__["of"]
-        found = getattr(trajectory, of) if isinstance(of, str) else of(trajectory)
+        try:
+            found = getattr(trajectory, of) if isinstance(of, str) else of(trajectory)
+        except ValueError as error:
+            if "read-only" in str(error):
+                way = "all reductions share the states; change a copy, such as motion.omega.copy()"
+                raise ValueError(f"of: {error}: {way}") from error
+            raise
         array = _core.real_numbers(found, "of")
         count = len(trajectory.omega)
         if array.shape[:1] != (count,):
@@ -88,7 +94,7 @@ class Reduction(ABC):
         return one_line(self, parts).removeprefix("_")
 
 
-class _State(NamedTuple):
+class Kept(NamedTuple):
     """A state, and the shape of what is reduced."""
 
     shape: Shape
@@ -104,13 +110,13 @@ def _flat(values: Floats) -> Floats:
 class _Mean(Reduction):
     of: Of
 
-    def begun(self, values: Floats, n: int) -> _State:  # noqa: ARG002
-        return _State(values.shape[1:], moments(_flat(values), products=False))
+    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
+        return Kept(values.shape[1:], moments(_flat(values), products=False))
 
-    def merged(self, one: _State, other: _State, n: int) -> _State:  # noqa: ARG002
-        return _State(one.shape, one.of.merged(other.of))
+    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
+        return Kept(one.shape, one.of.merged(other.of))
 
-    def finished(self, state: _State | None, left_out: int) -> Means:
+    def finished(self, state: Kept | None, left_out: int) -> Means:
         if state is None:
             return Means(np.array(np.nan), 0, left_out)
         found: Moments = state.of
@@ -122,19 +128,23 @@ class _Mean(Reduction):
 class _Covariance(Reduction):
     of: Of
 
-    def begun(self, values: Floats, n: int) -> _State:  # noqa: ARG002
+    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
         rows = _flat(values)
+        if not rows.shape[1]:
+            raise ValueError(
+                f"of: a covariance of nothing: got an array of shape {values.shape}, which is empty"
+            )
         if rows.shape[1] > MOST_CORRELATED:
             raise ValueError(
                 f"of: a covariance is of {MOST_CORRELATED} numbers of a member at most, got {rows.shape[1]}; "
                 "take those that matter, such as lambda motion: motion.omega[:, -1]"
             )
-        return _State(values.shape[1:], moments(rows, products=True))
+        return Kept(values.shape[1:], moments(rows, products=True))
 
-    def merged(self, one: _State, other: _State, n: int) -> _State:  # noqa: ARG002
-        return _State(one.shape, one.of.merged(other.of))
+    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
+        return Kept(one.shape, one.of.merged(other.of))
 
-    def finished(self, state: _State | None, left_out: int) -> MeansAndCovariance:
+    def finished(self, state: Kept | None, left_out: int) -> MeansAndCovariance:
         if state is None:
             return MeansAndCovariance(np.full(0, np.nan), np.full((0, 0), np.nan), 0, left_out)
         found: Moments = state.of
@@ -149,19 +159,19 @@ class _Histogram(Reduction):
     bins: Floats
     of: Of
 
-    def begun(self, values: Floats, n: int) -> _State:  # noqa: ARG002
+    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
         rows, size = _flat(values), len(self.bins) - 1
         place = np.searchsorted(self.bins, rows, side="right")
         place[rows == self.bins[-1]] = size  # the last bin has both of its edges
         place[np.isnan(rows)] = size + 2
         columns = np.arange(rows.shape[1]) * (size + 3)
         counts = np.bincount((place + columns).ravel(), minlength=rows.shape[1] * (size + 3))
-        return _State(values.shape[1:], (len(rows), counts.reshape(rows.shape[1], size + 3)))
+        return Kept(values.shape[1:], (len(rows), counts.reshape(rows.shape[1], size + 3)))
 
-    def merged(self, one: _State, other: _State, n: int) -> _State:  # noqa: ARG002
-        return _State(one.shape, (one.of[0] + other.of[0], one.of[1] + other.of[1]))
+    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
+        return Kept(one.shape, (one.of[0] + other.of[0], one.of[1] + other.of[1]))
 
-    def finished(self, state: _State | None, left_out: int) -> HistogramCounts:
+    def finished(self, state: Kept | None, left_out: int) -> HistogramCounts:
         size = len(self.bins) - 1
         shape, (count, counts) = (
             ((), (0, np.zeros((1, size + 3), dtype=np.int64))) if state is None else (state.shape, state.of)
@@ -177,16 +187,16 @@ class _Quantiles(Reduction):
     q: Floats
     of: Of
 
-    def begun(self, values: Floats, n: int) -> _State:  # noqa: ARG002
+    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
         rows = _flat(values)
-        return _State(values.shape[1:], (len(rows), np.isnan(rows).any(axis=0), ordered(rows)))
+        return Kept(values.shape[1:], (len(rows), np.isnan(rows).any(axis=0), ordered(rows)))
 
-    def merged(self, one: _State, other: _State, n: int) -> _State:
+    def merged(self, one: Kept, other: Kept, n: int) -> Kept:
         most = None if n <= MOST_EXACT else KEPT
         (count, strange, order), (more, others, beside) = one.of, other.of
-        return _State(one.shape, (count + more, strange | others, order.merged(beside, most)))
+        return Kept(one.shape, (count + more, strange | others, order.merged(beside, most)))
 
-    def finished(self, state: _State | None, left_out: int) -> QuantileLevels:
+    def finished(self, state: Kept | None, left_out: int) -> QuantileLevels:
         if state is None:
             return QuantileLevels(self.q, np.full(len(self.q), np.nan), 0.0, 0, left_out)
         order: Order
@@ -210,23 +220,19 @@ class _ModeChanges(Reduction):
         found = []
         for time in (0, -1):
             omega, attitude = trajectory.omega[:, time], trajectory.quaternion[:, time]
-            # A member that failed has no end; it is left out later and may have any mode until then.
-            lost = np.isnan(omega).any(axis=1)
-            omega, attitude = omega.copy(), attitude.copy()
-            omega[lost], attitude[lost] = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0)
             modes = trajectory.body.free_motion(omega, attitude).mode
             found.append([places[mode] for mode in modes])
         return np.array(found, dtype=float).T
 
-    def begun(self, values: Floats, n: int) -> _State:  # noqa: ARG002
+    def begun(self, values: Floats, n: int) -> Kept:  # noqa: ARG002
         size = len(MODES)
         code = values[:, 0].astype(np.int64) * size + values[:, 1].astype(np.int64)
-        return _State((), np.bincount(code, minlength=size * size).reshape(size, size))
+        return Kept((), np.bincount(code, minlength=size * size).reshape(size, size))
 
-    def merged(self, one: _State, other: _State, n: int) -> _State:  # noqa: ARG002
-        return _State((), one.of + other.of)
+    def merged(self, one: Kept, other: Kept, n: int) -> Kept:  # noqa: ARG002
+        return Kept((), one.of + other.of)
 
-    def finished(self, state: _State | None, left_out: int) -> ModeTable:
+    def finished(self, state: Kept | None, left_out: int) -> ModeTable:
         size = len(MODES)
         table = np.zeros((size, size), dtype=np.int64) if state is None else state.of
         return ModeTable(MODES, table, int(table.sum()), left_out)

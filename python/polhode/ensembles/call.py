@@ -45,6 +45,7 @@ def ensemble(
     rtol: float = 1e-10,
     atol: float | None = None,
     states: Mapping[str, Any] | None = None,
+    max_steps: int | None = None,
     outputs: Sequence[str] | None = None,
     on_failure: Literal["keep", "raise"] = "keep",
     reduce: Reduction | Mapping[str, Reduction] | None = None,
@@ -71,8 +72,9 @@ def ensemble(
         From 0 to 2**64 - 1.
     chunk : int, optional
         Members that are run, written or sent to a worker together. With `reduce` a multiple of 4096.
-    about, method, rtol, atol, states
-        As of :meth:`RigidBody.simulate`. With loads that are drawn "auto" is settled by the first members.
+    about, method, rtol, atol, states, max_steps
+        As of :meth:`RigidBody.simulate`. With loads that are drawn "auto" is settled by the first members. A
+        member that takes more than `max_steps` fails.
     outputs : sequence of str, optional
         Which states are kept: of ``"omega"``, ``"quaternion"``, ``"position"``, ``"velocity"`` and the names
         of the load's own states. By default the first two, those of the load, and position and velocity where
@@ -118,7 +120,8 @@ def ensemble(
     plan = Plan(
         recipe=resolved(arguments, seed),
         t=times,
-        options={"about": about, "method": method, "rtol": rtol, "atol": atol},
+        options={"about": about, "method": method, "rtol": rtol, "atol": atol}
+        | ({} if max_steps is None else {"max_steps": max_steps}),
         n=size,
         seed=int(seed),
         chunk=min(cut, size),

@@ -112,7 +112,13 @@ def _told(found: tuple[str, str]) -> str:
 def _sent(task: Any) -> bytes:
     """Write the task, with functions of the user's own by value."""
     cloudpickle = require("cloudpickle", extra="cluster", purpose="client=")
-    data: bytes = cloudpickle.dumps(task)
+    try:
+        data: bytes = cloudpickle.dumps(task)
+    except (TypeError, pickle.PicklingError) as error:
+        raise TypeError(
+            f"client: a function or a value of the ensemble cannot be sent to workers: {error}; make locks, "
+            "open files and the like within the function that uses them"
+        ) from error
     return data
 
 

@@ -27,12 +27,14 @@ def build() -> tuple[str, str]:
     return _core.__version__, hashlib.blake2b(data, digest_size=16).hexdigest()
 
 
-def fingerprint(plan: Plan) -> str:
+def fingerprint(plan: Plan, *more: Any) -> str:
     """Give a digest of all that decides the numbers of an ensemble, but its seed, its size and its chunks.
 
     Parameters
     ----------
     plan : Plan
+    *more : object
+        What else decides them.
 
     Returns
     -------
@@ -40,7 +42,7 @@ def fingerprint(plan: Plan) -> str:
         The same in every process, unlike a hash of Python or the bytes of a pickle.
     """
     digest = hashlib.blake2b(digest_size=16)
-    parts = (plan.recipe, plan.t, plan.options, sorted(plan.outputs.items()))
+    parts = (plan.recipe, plan.t, plan.options, sorted(plan.outputs.items()), *more)
     for word in _words(parts, ()):
         digest.update(len(word).to_bytes(8, "little"))
         digest.update(word)
@@ -115,5 +117,11 @@ def _inner(value: Any, above: tuple[int, ...]) -> Iterator[bytes]:
             called = vars(type(value)).get("__call__")
             if isinstance(called, FunctionType):
                 yield from _words(called, above)
-            reduced = value.__reduce_ex__(2)
+            try:
+                reduced = value.__reduce_ex__(2)
+            except TypeError as error:
+                raise TypeError(
+                    f"a function or a value of the ensemble cannot be told from another one in files: {error}"
+                    "; make locks, open files and the like within the function that uses them"
+                ) from error
             yield from _words(reduced if isinstance(reduced, str) else tuple(reduced[:3]), above)

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
-from polhode._draws import PerMember
+from polhode._draws import PerMember, Refusal
 from polhode.ensembles.recipe import draws, value
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from polhode.ensembles.recipe import Draw, Node
@@ -85,6 +87,15 @@ class Inputs:
             and place not in kept
             and not (place == "attitude" and "quaternion" in kept)
         }
+
+    def starts(self, place: str) -> Iterator[tuple[int, Floats]]:
+        """Go through what members drew for a state at the start, such as it is."""
+        for row, one in enumerate(self.drawn.get(place, ())):
+            one = one.as_quat() if hasattr(one, "as_quat") else one
+            if not isinstance(one, Refusal) and np.shape(one) == (
+                self.plan.outputs.get(place, VECTORS.get(place)),
+            ):
+                yield row, np.asarray(one, dtype=float)
 
     def made(self, rows: Rows) -> dict[str, Any]:
         """Give the arguments of `simulate` for members, the body among them.

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from polhode.ensembles.running import FAILED, run_members
+from polhode.ensembles.running import FAILED, picked, run_members
 from polhode.ensembles.tree import BLOCK, Place, Tree
 
 if TYPE_CHECKING:
@@ -81,6 +81,7 @@ def _block(
     kept = good[run.rows]
     if not kept.any():
         return State((None,) * len(reductions), left_out)
-    (trajectory,) = run.trajectories
-    parts = tuple(reduction.begun(reduction.values(trajectory)[kept], plan.n) for reduction in reductions)
+    # Those that failed are not shown to anybody.
+    shown = picked(run.trajectories[0], np.flatnonzero(kept))
+    parts = tuple(reduction.begun(reduction.values(shown), plan.n) for reduction in reductions)
     return State(parts, left_out)

@@ -14,6 +14,7 @@ from polhode import _core
 from polhode._extras import require
 from polhode._progress import watched
 from polhode._repr import short
+from polhode.ensembles.checkpoints import Checkpoint
 from polhode.ensembles.cluster import chunks_of_client
 from polhode.ensembles.engine import chunks_here
 from polhode.ensembles.layout import bytes_of_member, coordinates, layout
@@ -162,8 +163,14 @@ class Ensemble:
         body: _core.RigidBody = made.pop("body")
         return body.simulate(plan.t, **made, **plan.options)
 
-    def compute(self) -> Any:
+    def compute(self, *, checkpoint: str | os.PathLike[str] | None = None) -> Any:
         """Run all members.
+
+        Parameters
+        ----------
+        checkpoint : str or os.PathLike, optional
+            A file that keeps what reductions have come to, written about every five seconds. Where it is
+            there, the run goes on with it: only chunks that are missing are run, and bits are the same.
 
         Returns
         -------
@@ -176,10 +183,17 @@ class Ensemble:
         ------
         MemoryError
             Where the states would not fit into the memory of this machine.
+        FileFormatError
+            For the file of another ensemble, of other reductions or of another version of polhode.
         """
         plan = self.plan
         if self.reduce is not None:
-            return self._reduced()
+            return self._reduced(None if checkpoint is None else Path(checkpoint))
+        if checkpoint is not None:
+            raise ValueError(
+                "checkpoint: keeps reductions, and without reduce= states are kept; write these with "
+                "to_zarr or to_npz, and go on with resume"
+            )
         xarray = require("xarray", extra="cluster", purpose="Ensemble.compute")
         _check_room(self.memory.results, plan.n)
         variables = layout(plan)
@@ -253,14 +267,21 @@ class Ensemble:
         for index, arrays in self._run(partial(arrays_of_chunk, self.plan), store.pending()):
             store.write(index, arrays)
 
-    def _reduced(self) -> Any:
+    def _reduced(self, path: Path | None) -> Any:
         named: dict[str, Any] = self.reduce if isinstance(self.reduce, dict) else {"": self.reduce}
         reductions = tuple(named.values())
         tree = tree_of(self.plan, reductions)
         work = partial(nodes_of_chunk, self.plan, reductions)
-        for _, nodes in self._run(work, range(self.plan.chunks)):
-            for place, state in nodes.items():
-                tree.add(place, state)
+        kept = None if path is None else Checkpoint(path, self.plan, named, tree)
+        try:
+            for index, nodes in self._run(work, range(self.plan.chunks) if kept is None else kept.pending()):
+                for place, state in nodes.items():
+                    tree.add(place, state)
+                if kept is not None:
+                    kept.add(index)
+        finally:
+            if kept is not None and kept.done:
+                kept.write()
         parts, left_out = tree.root
         found = {
             name: reduction.finished(part, left_out)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from polhode import _core
 from polhode.ensembles.layout import short_name
 from polhode.ensembles.plan import is_each_alone
 from polhode.errors import PolhodeError
@@ -55,12 +56,17 @@ class Run:
         return found
 
     def array(self, name: str) -> Floats:
-        """Give an array of the trajectories with a row for every member, NaN for those that were not run."""
+        """Give an array of the trajectories with a row for every member.
+
+        Of those that were not run it has what they drew, at the start, and NaN.
+        """
         parts = [output(trajectory, name) for trajectory in self.trajectories]
         if len(parts) == 1 and len(parts[0]) == self.inputs.count:
             return parts[0]
         plan = self.inputs.plan
         found = np.full((self.inputs.count, len(plan.t), plan.outputs[name]), np.nan)
+        for row, start in self.inputs.starts("attitude" if name == "quaternion" else name):
+            found[row, 0] = start
         if parts:
             found[self.rows] = np.concatenate(parts)
         return found
@@ -116,6 +122,40 @@ def run_members(plan: Plan, first: int, count: int, progress: Callable[[float], 
     if plan.raises:
         _raise_first(run, faults)
     return run
+
+
+def picked(trajectory: Trajectory, rows: Rows) -> Trajectory:
+    """Give the motions of some rows of a stack, whose arrays nobody can change.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    rows : numpy.ndarray of int
+
+    Returns
+    -------
+    Trajectory
+    """
+    count = len(trajectory.omega)
+
+    def part(value: Any, depth: int) -> Any:
+        """Pick of what has a first axis for the members: so many axes, where it is an array."""
+        if isinstance(value, np.ndarray) and value.ndim == depth:
+            found = value[rows] if len(rows) < count else value.view()
+            found.setflags(write=False)
+            return found
+        return value[rows] if isinstance(value, _core.RigidBody | _core.Load) and value.shape else value
+
+    depths = {"omega": 3, "quaternion": 3, "position": 3, "velocity": 3, "about": 2}
+    depths |= dict.fromkeys(("body", "load", "steps", "evaluations", "status"), 1)
+    known = {name: part(getattr(trajectory, name), depth) for name, depth in depths.items()}
+    known["states"] = {name: part(value, 3) for name, value in trajectory.states.items()}
+    shared = ("t", "events", "pivoted", "uncertain_start")
+    known |= {name: getattr(trajectory, name) for name in shared} | {"failures": ()}
+    own = ("_rotor", "_was_loaded")
+    return type(trajectory)._of_run(
+        known | {one: trajectory.__dict__[one] for one in own if one in trajectory.__dict__}
+    )
 
 
 def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:

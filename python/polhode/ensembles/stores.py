@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Arrays = dict[str, np.ndarray[Any, Any]]
 
-__all__ = ["NpzStore", "Store", "ZarrStore", "opened"]
+__all__ = ["NpzStore", "Store", "ZarrStore", "check_same", "header", "opened"]
 
 _HEADER: Final = "ensemble.json"
 _KIND: Final = "polhode ensemble"
@@ -68,7 +68,7 @@ class NpzStore:
             path.mkdir(parents=True, exist_ok=True)
             write_bytes(path / _HEADER, json.dumps(header(plan), indent=1).encode())
         else:
-            _check_same(path, json.loads((path / _HEADER).read_text("utf-8")), plan)
+            check_same(path, json.loads((path / _HEADER).read_text("utf-8")), header(plan))
 
     def pending(self) -> list[int]:
         """Give the chunks that are not there."""
@@ -112,7 +112,7 @@ class ZarrStore:
         self.path, self.plan = path, plan
         if not is_new:
             self.group = zarr.open_group(path, mode="r+")
-            _check_same(path, dict(self.group.attrs), plan)
+            check_same(path, dict(self.group.attrs), header(plan))
             return
         _check_new(path)
         # The second format has fixed-width words, and every reader of today knows it.
@@ -192,10 +192,13 @@ def _check_new(path: Path) -> None:
         raise FileExistsError(f"{path}: is there already; resume goes on with it, another path begins anew")
 
 
-def _check_same(path: Path, found: dict[str, Any], plan: Plan) -> None:
-    if found.get("kind") != _KIND:
-        raise FileFormatError(f"{path}: holds no ensemble that to_zarr or to_npz has begun")
-    for name, here in header(plan).items():
+def check_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
+    """Refuse what is no ensemble, or another one than is wanted."""
+    if found.get("kind") != wanted["kind"]:
+        what = "ensemble that to_zarr or to_npz" if wanted["kind"] == _KIND else "reductions that compute"
+        raise FileFormatError(f"{path}: holds no {what} has begun")
+    more = " or an option" if wanted["kind"] == _KIND else ", an option or a reduction"
+    for name, here in wanted.items():
         there = found.get(name)
         if there == here:
             continue
@@ -204,11 +207,7 @@ def _check_same(path: Path, found: dict[str, Any], plan: Plan) -> None:
         else:
             way = "go on with the ensemble that it was begun with, or begin anew at another path"
         if name in ("t", "inputs"):
-            what = (
-                "the times are"
-                if name == "t"
-                else "the body, the load, the state at the start or an option is"
-            )
+            what = "the times are" if name == "t" else f"the body, the load, the state at the start{more} is"
             raise FileFormatError(f"{path}: holds another ensemble: {what} not the same ({way})")
         raise FileFormatError(
             f"{path}: holds another ensemble: {name} is {there} there and {here} here ({way})"

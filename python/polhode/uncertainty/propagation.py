@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 import numpy as np
 
+from polhode._progress import watched
 from polhode._repr import short
 from polhode.errors import PolhodeError
 from polhode.uncertainty.neighbours import Neighbours
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode import RigidBody
+    from polhode._progress import Progress
 
     Floats = NDArray[np.float64]
     Function = Callable[..., Any]
@@ -68,6 +70,7 @@ def propagate(
     arguments: Sequence[Any] = (),
     n: int = 10_000,
     seed: int | None = None,
+    progress: Progress = None,
 ) -> Propagated:
     """Uncertainty of any function of a body.
 
@@ -88,6 +91,9 @@ def propagate(
         How many draws.
     seed : int, optional
         Of the draws; the same seed gives the same draws. Required for ``"monte-carlo"``.
+    progress : bool or callable, optional
+        A function of the fraction done, or whether to show a bar; by default on a terminal after two
+        seconds.
 
     Returns
     -------
@@ -136,7 +142,7 @@ def propagate(
         if n < 2:
             message = f"n: a deviation needs at least 2 draws, got {n}"
             raise ValueError(message)
-        return _monte_carlo(f, around, n, seed)
+        return _monte_carlo(f, around, n, seed, progress)
     message = f'method: expected "linear", "second-order" or "monte-carlo", got {method!r}'
     raise ValueError(message)
 
@@ -248,9 +254,15 @@ def _second_order(f: Function, around: Neighbours) -> Propagated:
     return _told(mean, covariance, _is_linear(f, around, value, slopes))
 
 
-def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int) -> Propagated:
+def _monte_carlo(f: Function, around: Neighbours, n: int, seed: int, progress: Progress) -> Propagated:
     value = _numbers(f, around.start)
-    draws = np.array([_numbers(f, given, value.shape).ravel() for given in around.draws(n, seed)])
+    found = []
+    with watched(f"{n} draws", progress) as tell:
+        for given in around.draws(n, seed):
+            found.append(_numbers(f, given, value.shape).ravel())
+            if tell is not None:
+                tell(len(found) / n)
+    draws = np.array(found)
     mean = draws.mean(axis=0)
     covariance = np.atleast_2d(np.cov(draws, rowvar=False))
     # By the first order: where the ways lead elsewhere the draws may have any variance. What ways miss in the

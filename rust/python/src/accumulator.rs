@@ -10,6 +10,7 @@ use pyo3::types::{PyBytes, PyTuple};
 
 use crate::arrays::write;
 use crate::body::PyRigidBody;
+use crate::elsewhere::{handed_over, is_any};
 use crate::errors::to_py;
 use crate::particles::{ParticleArrays, watched};
 use crate::stack::Stack;
@@ -61,6 +62,7 @@ impl PyMassAccumulator {
     /// ----------
     /// masses : array_like, shape (n,)
     /// positions : array_like, shape (n, 3)
+    ///     Those of dask, zarr, h5py and memory maps are not loaded as a whole.
     /// start : int, optional
     ///     The number of the first of these particles in the whole; by default they come after the last one.
     ///     With it chunks may come in any order, and from several accumulators that are merged.
@@ -82,18 +84,35 @@ impl PyMassAccumulator {
     /// >>> particles.finish().center_of_mass
     /// array([3., 0., 0.])
     #[pyo3(signature = (masses, positions, start=None))]
-    fn add(
-        &self,
-        py: Python<'_>,
-        masses: &Bound<'_, PyAny>,
-        positions: &Bound<'_, PyAny>,
+    fn add<'py>(
+        slf: &Bound<'py, Self>,
+        masses: &Bound<'py, PyAny>,
+        positions: &Bound<'py, PyAny>,
         start: Option<i128>,
     ) -> PyResult<()> {
+        let (py, this) = (slf.py(), slf.get());
+        let start = start.map(number_of_particle).transpose()?;
+        if is_any(&[Some(masses), Some(positions)]) {
+            let first = start.unwrap_or_else(|| py.detach(|| this.lock().end()));
+            if let Some(chunk) = handed_over(py, "summed", (masses, positions, first), None)? {
+                let chunk = chunk.cast_into::<Self>()?;
+                let chunk = chunk.get();
+                let merged = py.detach(|| {
+                    let chunk = chunk.lock().clone();
+                    let mut sums = this.lock();
+                    if start.is_some() {
+                        sums.merge(&chunk)
+                    } else {
+                        sums.merge_next(&chunk)
+                    }
+                });
+                return merged.map_err(|error| to_py(py, &error));
+            }
+        }
         let arrays = ParticleArrays::read(masses, positions, "n")?;
         let rows = arrays.rows()?;
-        let start = start.map(number_of_particle).transpose()?;
         let added = watched(py, |watch| {
-            self.lock().add(rows.masses, rows.positions, start, watch)
+            this.lock().add(rows.masses, rows.positions, start, watch)
         })?;
         added.map_err(|error| to_py(py, &error))
     }

@@ -16,6 +16,7 @@ use crate::arrays::{read, write_of};
 use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
+use crate::elsewhere::{handed_over, is_any};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
@@ -187,6 +188,7 @@ impl PyFreeMotion {
     ///     Its ``omega`` and ``quaternion`` have the shape of the stack, then that of `t`, then their
     ///     components. The quaternion is continuous in time. A time that is not finite gives NaN; one after more than 2⁸⁸ turns,
     ///     of which nothing would be known, is refused.
+    ///     At times of dask: an `xarray.Dataset` that is computed later, chunk by chunk, with the same bits.
     ///
     /// Notes
     /// -----
@@ -207,6 +209,11 @@ impl PyFreeMotion {
     ///        [-0.1,  0. , 10. ]])
     fn at<'py>(slf: &Bound<'py, Self>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let (py, this) = (slf.py(), slf.get());
+        if is_any(&[Some(t)])
+            && let Some(motion) = handed_over(py, "motion_at", (slf, t), None)?
+        {
+            return Ok(motion);
+        }
         let fields = PyDict::new(py);
         let centers = this.centers(py)?;
         let uncertain = (&this.uncertain, slf.as_any());

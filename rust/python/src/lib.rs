@@ -3,6 +3,7 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `arrays`, `items`, `meshes` | NumPy layout |
+//! | `elsewhere` | arrays that are not in memory |
 //! | `foreign` | what other objects become as arrays, and what would be lost on the way |
 //! | `memory` | whether there is room for a result |
 //! | `shape`, `stack`, `indexing` | shape arithmetic |
@@ -26,6 +27,7 @@ mod attitudes;
 mod body;
 mod closed_form;
 mod depth;
+mod elsewhere;
 mod environment;
 mod equimomental;
 mod errors;

@@ -15,6 +15,7 @@ use crate::arrays::{read, write_numbers_of, write_of, write_words_of};
 use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
+use crate::elsewhere::{handed_over, is_any};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{StartGiven, UncertainStart};
@@ -223,6 +224,7 @@ impl PyGyrostatMotion {
     ///     Its ``omega`` and ``quaternion`` have the shape of the stack, then that of `t`, then their
     ///     components. The quaternion is continuous in time. A time that is not finite gives NaN; one after more than 2⁸⁸ turns,
     ///     of which nothing would be known, is refused. Its angular momentum includes the wheels.
+    ///     At times of dask: an `xarray.Dataset` that is computed later, chunk by chunk, with the same bits.
     ///
     /// Notes
     /// -----
@@ -230,6 +232,11 @@ impl PyGyrostatMotion {
     /// same bits alone and among others.
     fn at<'py>(slf: &Bound<'py, Self>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let (py, this) = (slf.py(), slf.get());
+        if is_any(&[Some(t)])
+            && let Some(motion) = handed_over(py, "motion_at", (slf, t), None)?
+        {
+            return Ok(motion);
+        }
         let gyrostat = this.gyrostat.get();
         let rotor = this.rotor(py)?;
         let centers = gyrostat

@@ -12,6 +12,7 @@ use crate::arrays::{read, write, write_of};
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
+use crate::elsewhere::{handed_over, is_any};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
@@ -236,6 +237,7 @@ impl PyHeavyTop {
     ///     About the origin of the body frame, which rests. Its ``omega`` and ``quaternion`` have the shape of the stack,
     ///     then that of `t`, then their components. The quaternion is continuous in time. A time that is not finite
     ///     gives NaN; one after more than 2⁸⁸ turns, of which nothing would be known, is refused.
+    ///     At times of dask: an `xarray.Dataset` that is computed later, chunk by chunk, with the same bits.
     ///
     /// Notes
     /// -----
@@ -256,6 +258,11 @@ impl PyHeavyTop {
     ///        [ 0.      , -0.841471, -0.540302]])
     fn at<'py>(slf: &Bound<'py, Self>, t: &Bound<'py, PyAny>) -> Array<'py> {
         let (py, this) = (slf.py(), slf.get());
+        if is_any(&[Some(t)])
+            && let Some(motion) = handed_over(py, "motion_at", (slf, t), None)?
+        {
+            return Ok(motion);
+        }
         let gravity =
             (py.import("polhode.loads")?).call_method1("uniform_gravity", (this.gravity(py)?,))?;
         let fields = PyDict::new(py);

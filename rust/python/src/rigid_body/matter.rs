@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, floats, read, read_or, write};
 use crate::body::PyRigidBody;
+use crate::elsewhere::{handed_over, is_any};
 use crate::errors::{at_row, to_py};
 use crate::particles::{ParticleArrays, read_labels, watched};
 use crate::shape::tuple;
@@ -23,6 +24,11 @@ impl PyRigidBody {
     /// body stands; the smallest moment of a thin body is as accurate as the coordinates are. Arrays of
     /// C-ordered float64 are read where they are, and large ones on all cores; the result has the same bits
     /// for any number of threads, and for a body alone or in any stack.
+    ///
+    /// Particles of one body that are not in memory are never loaded as a whole: those of zarr arrays, HDF5
+    /// datasets (h5py) and memory maps are read a piece at a time, those of dask arrays are summed chunk by chunk
+    /// where dask computes them, on the workers of its client if there is one. They are summed as by `MassAccumulator`:
+    /// with the same bits for any chunks.
     ///
     /// Parameters
     /// ----------
@@ -62,11 +68,16 @@ impl PyRigidBody {
     /// array([[ 0., 12., 12.],
     ///        [ 0., 48., 48.]])
     #[staticmethod]
-    fn from_particles(
-        py: Python<'_>,
-        masses: &Bound<'_, PyAny>,
-        positions: &Bound<'_, PyAny>,
+    fn from_particles<'py>(
+        py: Python<'py>,
+        masses: &Bound<'py, PyAny>,
+        positions: &Bound<'py, PyAny>,
     ) -> PyResult<Self> {
+        if is_any(&[Some(masses), Some(positions)])
+            && let Some(body) = handed_over(py, "body_of_particles", (masses, positions), None)?
+        {
+            return Ok(body.cast_into::<Self>()?.get().clone());
+        }
         if is_uncertain(masses) || is_uncertain(positions) {
             return of_uncertain_particles(py, masses, positions);
         }
@@ -221,10 +232,10 @@ impl PyRigidBody {
 }
 
 /// The bodies of particles whose masses or positions have a sigma.
-fn of_uncertain_particles(
-    py: Python<'_>,
-    masses: &Bound<'_, PyAny>,
-    positions: &Bound<'_, PyAny>,
+fn of_uncertain_particles<'py>(
+    py: Python<'py>,
+    masses: &Bound<'py, PyAny>,
+    positions: &Bound<'py, PyAny>,
 ) -> PyResult<PyRigidBody> {
     let m: Quantity<f64> = quantity_list(masses, "masses", "..., n")?;
     let r: Quantity<[f64; 3]> = quantity_list(positions, "positions", "..., n")?;

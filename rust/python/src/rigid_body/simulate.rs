@@ -12,6 +12,7 @@ use crate::arrays::read;
 use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
 use crate::depth::Deeper;
+use crate::elsewhere::{handed_over, is_any};
 use crate::errors::{at_row, to_py};
 use crate::events::Functions;
 use crate::hints;
@@ -82,16 +83,22 @@ impl PyRigidBody {
     ///     Called with the fraction done, about twenty times a second and at the end.
     /// states : dict of str and array_like, shape (..., k), optional
     ///     States of the load at the start, by name, in place of those that it begins with: to go on from other states.
+    /// max_steps : int, optional
+    ///     Steps of each body at most, a thousand million by default: one that would need many more than the others fails,
+    ///     rather than being waited for. Closed forms take none.
     ///
     /// Returns
     /// -------
     /// Trajectory
+    ///     Where omega, attitude, position or velocity is an array of dask, or an `xarray.DataArray` that holds one: an
+    ///     `xarray.Dataset` of such arrays, as of ``Trajectory.to_xarray``, with a `status`. It is run chunk by chunk
+    ///     when it is computed, with the same bits. Names and coordinates of the axes go along.
     ///
     /// Raises
     /// ------
     /// IntegrationError
     ///     With the time and state that were reached and what had been computed; also where a run would take more than
-    ///     a thousand million steps.
+    ///     `max_steps`.
     ///
     /// Notes
     /// -----
@@ -112,9 +119,10 @@ impl PyRigidBody {
     #[pyo3(
         signature = (
             t, omega, attitude=None, *, load=None, position=None, velocity=None, about="center_of_mass",
-            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None, states=None, **unknown
+            method="auto", rtol=1e-10, atol=None, events=None, on_failure="raise", progress=None, states=None,
+            max_steps=None, **unknown
         ),
-        text_signature = "($self, t, omega, attitude=None, *, load=None, position=None, velocity=None, about=\"center_of_mass\", method=\"auto\", rtol=1e-10, atol=None, events=None, on_failure=\"raise\", progress=None, states=None)"
+        text_signature = "($self, t, omega, attitude=None, *, load=None, position=None, velocity=None, about=\"center_of_mass\", method=\"auto\", rtol=1e-10, atol=None, events=None, on_failure=\"raise\", progress=None, states=None, max_steps=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
     fn simulate<'py>(
@@ -134,9 +142,33 @@ impl PyRigidBody {
         on_failure: &str,
         progress: Option<Py<PyAny>>,
         states: Given<'_, 'py>,
+        max_steps: Option<i128>,
         unknown: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
+        if is_any(&[Some(omega), attitude, position, velocity]) {
+            let options = PyDict::new(py);
+            for (name, value) in [
+                ("load", load),
+                ("position", position),
+                ("velocity", velocity),
+                ("events", events),
+                ("states", states),
+            ] {
+                options.set_item(name, value)?;
+            }
+            options.set_item("about", about)?;
+            options.set_item("method", method)?;
+            options.set_item("rtol", rtol)?;
+            options.set_item("atol", atol)?;
+            options.set_item("on_failure", on_failure)?;
+            options.set_item("progress", &progress)?;
+            options.set_item("max_steps", max_steps)?;
+            let given = (slf, t, omega, attitude);
+            if let Some(motion) = handed_over(py, "simulated", given, Some(&options))? {
+                return Ok(motion);
+            }
+        }
         let _deeper = Deeper::run("simulate")?;
         let pivoted = is_pivot(about)?;
         if pivoted && velocity.is_some() {
@@ -154,8 +186,9 @@ impl PyRigidBody {
             }
         };
         let times = read_times(py, t)?;
-        let tolerance =
-            Tolerance::new(rtol, atol.unwrap_or(0.0)).map_err(|error| to_py(py, &error))?;
+        let tolerance = Tolerance::new(rtol, atol.unwrap_or(0.0))
+            .map_err(|error| to_py(py, &error))?
+            .within(most_steps(max_steps)?);
         let nothing = PyLoad::default();
         let load = load.filter(|load| !load.is_none());
         let acts = match load {
@@ -223,7 +256,18 @@ impl PyRigidBody {
     }
 }
 
-const KEYWORDS: [&str; 14] = [
+/// The steps that a run may take.
+fn most_steps(given: Option<i128>) -> PyResult<u64> {
+    match given {
+        None => Ok(u64::MAX),
+        Some(count) if count > 0 => Ok(u64::try_from(count).unwrap_or(u64::MAX)),
+        Some(count) => Err(PyValueError::new_err(format!(
+            "max_steps: expected a positive integer, got {count}"
+        ))),
+    }
+}
+
+const KEYWORDS: [&str; 15] = [
     "t",
     "omega",
     "attitude",
@@ -238,6 +282,7 @@ const KEYWORDS: [&str; 14] = [
     "on_failure",
     "progress",
     "states",
+    "max_steps",
 ];
 
 const METHODS: [Method; 6] = [

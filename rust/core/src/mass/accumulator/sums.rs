@@ -52,7 +52,8 @@ impl MassAccumulator {
     }
 
     /// The number after that of the last particle.
-    fn end(&self) -> u64 {
+    #[must_use]
+    pub fn end(&self) -> u64 {
         self.pieces
             .last_key_value()
             .map_or(0, |(_, piece)| piece.end)
@@ -140,6 +141,17 @@ impl MassAccumulator {
             }
         }
         self.is_placed |= other.is_placed;
+        Ok(())
+    }
+
+    /// Adds the next chunk, which another accumulator has summed at its place: as if it had been added here without one.
+    ///
+    /// # Errors
+    /// As of [`merge`](Self::merge).
+    pub fn merge_next(&mut self, next: &Self) -> Result<(), Error> {
+        let is_placed = self.is_placed;
+        self.merge(next)?;
+        self.is_placed = is_placed;
         Ok(())
     }
 

@@ -9,17 +9,23 @@ use crate::mass::RigidBody;
 pub const MOST_STEPS: u64 = 1_000_000_000;
 /// The steps after which a run is judged by how far it has come.
 const JUDGED: u64 = 1 << 17;
-/// How many times [`MOST_STEPS`] a run that is judged may seem to need: its steps may yet become longer.
+/// How many times its most steps a run that is judged may seem to need: its steps may yet become longer.
 const HOPELESS: f64 = 1e3;
 
-/// Refuses to go on with a run that has taken all its steps, or is hopelessly far from the end of its `span` of time.
+/// Refuses to go on with a run that has taken all its `most_steps`, or is hopelessly far from the end of its `span` of time.
 ///
 /// # Errors
 /// [`MotionFault::TooManySteps`].
-pub(crate) fn check_steps(steps: u64, start: f64, elapsed: f64, span: f64) -> Result<(), Error> {
-    let (most, ahead) = (MOST_STEPS as f64, steps as f64 * (span / elapsed).abs());
+pub(crate) fn check_steps(
+    most_steps: u64,
+    steps: u64,
+    start: f64,
+    elapsed: f64,
+    span: f64,
+) -> Result<(), Error> {
+    let (most, ahead) = (most_steps as f64, steps as f64 * (span / elapsed).abs());
     let is_hopeless = steps >= JUDGED && ahead > HOPELESS * most;
-    if steps < MOST_STEPS && !is_hopeless {
+    if steps < most_steps && !is_hopeless {
         return Ok(());
     }
     Err(Error::Motion(MotionFault::TooManySteps {
@@ -126,7 +132,8 @@ mod tests {
 
     #[test]
     fn runs_that_cannot_end_are_refused() {
-        let is_refused = |steps, elapsed| check_steps(steps, 0.0, elapsed, 1.0).is_err();
+        let is_refused =
+            |steps, elapsed| check_steps(MOST_STEPS, steps, 0.0, elapsed, 1.0).is_err();
         assert!(is_refused(MOST_STEPS, 1.0) && !is_refused(MOST_STEPS - 1, 1.0));
         // 2¹⁷ steps for 1.3e-7 of the time are 1e12 for all of it.
         let part = JUDGED as f64 / (HOPELESS * MOST_STEPS as f64);

@@ -1,5 +1,6 @@
-//! How accurate a motion is to be.
+//! How accurate a motion is to be, and how many steps it may take.
 
+use super::limits::MOST_STEPS;
 use crate::error::{Error, finite};
 
 /// The tightest relative tolerance that float64 can serve.
@@ -7,13 +8,15 @@ pub const TIGHTEST: f64 = 10.0 * f64::EPSILON;
 /// The tightest relative tolerance that numbers of twice the precision can serve.
 pub const TIGHTEST_TWOFOLD: f64 = 1e-28;
 
-/// How accurate each step is to be.
+/// How accurate each step is to be, and how many there may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Of the attitude in radians (half), and of ω, position and velocity relative to the largest so far.
     pub relative: f64,
     /// Of ω, added to the relative one.
     pub absolute: f64,
+    /// Steps of a run at most, [`MOST_STEPS`] or fewer.
+    pub most_steps: u64,
 }
 
 impl Tolerance {
@@ -39,7 +42,20 @@ impl Tolerance {
                 value: absolute,
             });
         }
-        Ok(Self { relative, absolute })
+        Ok(Self {
+            relative,
+            absolute,
+            most_steps: MOST_STEPS,
+        })
+    }
+
+    /// The same with fewer steps at most.
+    #[must_use]
+    pub fn within(self, most_steps: u64) -> Self {
+        Self {
+            most_steps: most_steps.min(MOST_STEPS),
+            ..self
+        }
     }
 
     /// Whether it is tighter than doubles can serve.

@@ -218,7 +218,9 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         y_new: &SVector<f64, N>,
         error: &SVector<f64, N>,
     ) -> f64 {
-        let Tolerance { relative, absolute } = self.tolerance;
+        let Tolerance {
+            relative, absolute, ..
+        } = self.tolerance;
         let part = |from: usize, largest: f64, absolute: f64| {
             let size = vector(error, from).norm();
             if size == 0.0 {

@@ -212,7 +212,13 @@ impl<E> Run<E> {
                 );
                 within_steps += u64::from(stage < stages);
                 let steps = self.effort.steps + stepper.effort().steps + within_steps;
-                check_steps(steps, start, self.time - start, all)?;
+                check_steps(
+                    task.tolerance.most_steps,
+                    steps,
+                    start,
+                    self.time - start,
+                    all,
+                )?;
                 begin = end;
             }
         }

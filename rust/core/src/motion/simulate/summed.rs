@@ -27,7 +27,7 @@ pub(super) fn solve<E: From<Error>>(
         Err(error) => return Run::at_start(task, End::Failed(error)),
     };
     // Looks for events within a step of many turns count as steps.
-    let mut looks = 0;
+    let (most, mut looks) = (task.tolerance.most_steps, 0);
     let mut run = solve_seen(task, terms, &mut |step| {
         let mut summed = Summed {
             step,
@@ -54,7 +54,7 @@ pub(super) fn solve<E: From<Error>>(
                 return ControlFlow::Break(());
             }
             looks += 1;
-            if let Err(error) = check_steps(looks, start, reached, end - start) {
+            if let Err(error) = check_steps(most, looks, start, reached, end - start) {
                 halt = Some((reached, step.at(reached), End::Failed(error.into())));
                 return ControlFlow::Break(());
             }

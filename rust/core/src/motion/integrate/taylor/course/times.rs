@@ -47,6 +47,7 @@ impl<X: Precision> Course<'_, X> {
         now: f64,
     ) -> Result<(), Error> {
         check_steps(
+            self.task.tolerance.most_steps,
             steps,
             self.task.times[0],
             now / self.unit,

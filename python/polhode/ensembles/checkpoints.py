@@ -1,0 +1,124 @@
+"""Reductions that go on after a kill: the nodes of the tree in a file, with the chunks that are in them."""
+
+from __future__ import annotations
+
+import json
+import time
+import zipfile
+import zlib
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode._reducing import Moments, Order
+from polhode.ensembles.fingerprint import fingerprint
+from polhode.ensembles.reducing import State
+from polhode.ensembles.stores import check_same, header
+from polhode.errors import FileFormatError
+from polhode.files.writing import writing
+from polhode.reductions import Kept
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from polhode.ensembles.plan import Plan
+    from polhode.ensembles.tree import Tree
+    from polhode.reductions import Reduction
+
+__all__ = ["Checkpoint"]
+
+_BETWEEN: Final = 5.0
+"""Seconds of work that a kill may cost, and a chunk."""
+_KIND: Final = "polhode reductions"
+_TUPLES: Final[dict[str, Any]] = {one.__name__: one for one in (State, Kept, Moments, Order)} | {
+    "tuple": None
+}
+
+
+class Checkpoint:
+    """The state of reductions in a file, which is written anew from time to time.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    plan : Plan
+    named : mapping of str to Reduction
+    tree : Tree
+        Filled with what the file has.
+    """
+
+    def __init__(self, path: Path, plan: Plan, named: Mapping[str, Reduction], tree: Tree[State]) -> None:
+        self.path, self.plan, self.tree = path, plan, tree
+        self.head = header(plan) | {"kind": _KIND, "inputs": fingerprint(plan, dict(named))}
+        self.done: set[int] = set()
+        self.written = time.monotonic()
+        if path.exists():
+            self._read()
+
+    def pending(self) -> list[int]:
+        """Give the chunks that are not in it."""
+        return [index for index in range(self.plan.chunks) if index not in self.done]
+
+    def add(self, index: int) -> None:
+        """Tell that a chunk is in the tree."""
+        self.done.add(index)
+        if time.monotonic() - self.written >= _BETWEEN:
+            self.write()
+
+    def write(self) -> None:
+        """Write the file, as a whole or not at all."""
+        arrays: list[Any] = []
+        nodes = [[*place, _plain(state, arrays)] for place, state in self.tree.nodes.items()]
+        text = json.dumps(self.head | {"done": sorted(self.done), "nodes": nodes})
+        with writing(self.path) as stream, zipfile.ZipFile(stream, "w") as archive:
+            archive.writestr("state.json", text)
+            for number, array in enumerate(arrays):
+                with archive.open(f"{number}.npy", "w", force_zip64=True) as member:
+                    np.lib.format.write_array(member, array, allow_pickle=False)
+        self.written = time.monotonic()
+
+    def _read(self) -> None:
+        try:
+            with zipfile.ZipFile(self.path) as archive:
+                found = json.loads(archive.read("state.json"))
+                check_same(self.path, found, self.head)
+                for level, index, state in found["nodes"]:
+                    self.tree.nodes[level, index] = _restored(state, archive)
+                self.done = set(found["done"])
+        except FileFormatError:
+            raise
+        except (zipfile.BadZipFile, zlib.error, EOFError, KeyError, ValueError, TypeError) as error:
+            raise FileFormatError(
+                f"{self.path}: holds no reductions that compute has begun ({error})"
+            ) from None
+
+
+def _plain(value: Any, arrays: list[Any]) -> Any:
+    """Give a state as JSON has it, its arrays in a list."""
+    match value:
+        case None | bool() | int() | float():
+            return value
+        case np.ndarray():
+            arrays.append(value)
+            return {"array": len(arrays) - 1}
+        case np.generic():
+            return value.item()
+        case dict():
+            return {"dict": [[key, _plain(one, arrays)] for key, one in value.items()]}
+        case tuple():
+            return {type(value).__name__: [_plain(one, arrays) for one in value]}
+    raise TypeError(f"{type(value).__name__} is no part of a state")
+
+
+def _restored(value: Any, archive: zipfile.ZipFile) -> Any:
+    if not isinstance(value, dict):
+        return value
+    ((kind, parts),) = value.items()
+    if kind == "array":
+        with archive.open(f"{int(parts)}.npy") as member:
+            return np.lib.format.read_array(member, allow_pickle=False)
+    if kind == "dict":
+        return {key: _restored(one, archive) for key, one in parts}
+    made, found = _TUPLES[kind], [_restored(one, archive) for one in parts]
+    return tuple(found) if made is None else made(*found)

@@ -1,0 +1,82 @@
+"""The plan for large ensembles: its second table is what follows from the first, and bytes are those told."""
+
+from __future__ import annotations
+
+import math
+import pickle
+import re
+from pathlib import Path
+
+import pytest
+from ensemble_cases import all_reductions, twisted
+from polhode import RigidBody, flybys, orbits
+from polhode.ensembles.reducing import nodes_of_chunk
+
+PAGE = (Path(__file__).resolve().parents[1] / "docs" / "scaling.md").read_text("utf-8")
+CHUNK = 64 * 4096
+
+
+def measured(words: str, unit: str) -> float:
+    """A number of the first table."""
+    (found,) = re.findall(rf"^\| {re.escape(words)}[^|]*\| ([\d.]+) {unit} \|", PAGE, re.MULTILINE)
+    return float(found)
+
+
+MEMBER = measured("a member, on one thread", "µs") * 1e-6
+TASK = measured("a chunk, at client", "ms") * 1e-3
+BYTES = measured("states of a member", "bytes")
+ROWS = [
+    [float(cell) for cell in row.split(" | ")]
+    for row in re.findall(r"^\| (1e\d+ \| .*) \|$", PAGE, re.MULTILINE)
+]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row[0]:.0e}")
+def test_the_table_follows_from_what_was_measured(row: list[float]) -> None:
+    n, hours, chunks, scheduler, seconds, disk = row
+    assert chunks == math.ceil(n / CHUNK)
+    assert hours == pytest.approx(n * MEMBER / 3600, rel=5e-3)
+    assert scheduler == pytest.approx(chunks * TASK, rel=2e-2)
+    assert disk == pytest.approx(n * BYTES / 1e9, rel=5e-3)
+    # Whole rounds of 3000 chunks, or the scheduler where it is slower.
+    rounds = math.ceil(chunks / 3000) * min(n / chunks, CHUNK) * MEMBER
+    assert seconds == pytest.approx(max(rounds, scheduler), rel=5e-2)
+
+
+def test_the_table_goes_to_ten_thousand_million() -> None:
+    assert [row[0] for row in ROWS] == [1e6, 1e8, 1e9, 1e10]
+    assert f"{CHUNK:,} members, which are 64 blocks" in PAGE
+    seconds, kept, least = CHUNK * MEMBER, CHUNK * BYTES, TASK / MEMBER
+    assert seconds == pytest.approx(10.0, rel=0.02)
+    assert seconds / TASK == pytest.approx(3000, rel=0.03)
+    assert least == pytest.approx(90, rel=0.06)
+    assert kept == pytest.approx(48e6, rel=0.01)
+
+
+def test_bytes_of_a_member_are_those_that_the_ensemble_tells() -> None:
+    orbit = orbits.from_elements(398600.4418, eccentricity=4.25, periapsis=38011.5, since_periapsis=-2e5)
+    body = RigidBody.from_principal(1.0, (0.64, 0.97, 1.0))
+    clones = flybys.clones(
+        body, orbit, 4e5, rotation_period=951040.8, precession_period=98591.7, n=CHUNK, chunk=CHUNK
+    )
+    assert clones.memory.results / len(clones) == BYTES
+    of_states = measured("a worker while it keeps states", "kB") * 1e3
+    assert clones.memory.worker / CHUNK == pytest.approx(of_states, rel=0.02)
+    kept = measured("a worker while it reduces", "MB") * 1e6
+    reduced = flybys.clones(
+        body, orbit, 4e5, rotation_period=951040.8, precession_period=98591.7, n=CHUNK, chunk=CHUNK,
+        reduce=all_reductions()["modes"],
+    )  # fmt: skip
+    assert reduced.memory.worker == pytest.approx(kept, rel=0.1)
+
+
+def test_reductions_send_as_little_as_is_said() -> None:
+    """The state of a chunk does not grow with its members, but that of quantiles."""
+    plan = twisted(8192, t=(0.0, 0.01), chunk=8192).plan
+    for name, reduction in all_reductions().items():
+        sent = len(pickle.dumps(nodes_of_chunk(plan, (reduction,), 0)))
+        assert sent < 1.1e3 or name == "quantiles"
+        assert sent > 300
+    # Three numbers of a member, each of them eight bytes.
+    assert 3 * 65536 * 8 < 1.6e6
+    assert "up to 0.5 MB for each number" in PAGE
