@@ -15,7 +15,17 @@ from robot_damage import SAMPLES, damaged, write
 if TYPE_CHECKING:
     from pathlib import Path
 
-WORDS = {"good", "suspect", "placeholder", "impossible", "unreadable", "none", "inferred"}
+WORDS = {
+    "good",
+    "suspect",
+    "coarse",
+    "missing",
+    "placeholder",
+    "impossible",
+    "unreadable",
+    "none",
+    "inferred",
+}
 SECONDS = 5.0
 
 

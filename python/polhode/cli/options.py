@@ -124,12 +124,19 @@ class CheckOptions:
         Let links that are only suspect fail as well.
     fix
         Write the file to this one with right values where links fail, everything else as it stands.
+    density
+        Of links for which the file says no mass, such as 1000 kg/m^3: --fix then writes what their shapes
+        have.
+    mass
+        Of all links for which the file says no mass, together; shared by the volumes of their shapes.
     """
 
     packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="", show_default=False)] = ()
     allow_outside: Annotated[bool, Parameter(name="--allow-outside", negative="")] = False
     strict: Annotated[bool, Parameter(name="--strict", negative="")] = False
     fix: Annotated[Path | None, Parameter(name="--fix")] = None
+    density: Annotated[str | None, Parameter(name="--density")] = None
+    mass: Annotated[str | None, Parameter(name="--mass")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
