@@ -28,6 +28,7 @@ __all__ = ["check_report"]
 
 _UNIT = "kg m^2"
 _NOT_FOUND = " was not found"
+_HULL = " does not bound a solid: its convex hull was taken"
 _PACKAGE = re.compile(r"(?:package|model):/+([^/]+)")
 _WAY_OUT = "--fix FILE with --density or --mass writes the mass that is missing, where a link has shapes"
 _COLUMNS = (
@@ -87,16 +88,34 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
 
 
 def _gathered(notes: Iterable[str]) -> list[str]:
-    """Tell in one line of all meshes that were not found, and which option finds them."""
-    lost = [note for note in notes if note.endswith(_NOT_FOUND)]
-    others = [note for note in notes if not note.endswith(_NOT_FOUND)]
-    if not lost:
-        return others
-    names = list(dict.fromkeys(note.removesuffix(_NOT_FOUND).partition("mesh ")[2] for note in lost))
-    packages = list(dict.fromkeys(m[1] for name in names if (m := _PACKAGE.match(name)) is not None))
-    wanted = f"the folder that holds {_some(packages)}" if packages else "the folder of their package"
-    what = lost[0] if len(names) == 1 else f"{len(names)} meshes were not found: {_some(names)}"
-    return [*others, f"{what}; name {wanted} with --packages, or put them where the file says"]
+    """Tell in one line each of all meshes that were not found, and of all whose hulls were taken."""
+    told: list[str] = []
+    lost: list[str] = []
+    hulls: list[str] = []
+    for note in notes:
+        for end, names in ((_NOT_FOUND, lost), (_HULL, hulls)):
+            if note.endswith(end):
+                names.append(note)
+                break
+        else:
+            told.append(note)
+    if lost:
+        names = _names(lost, _NOT_FOUND)
+        packages = list(dict.fromkeys(m[1] for name in names if (m := _PACKAGE.match(name)) is not None))
+        wanted = f"the folder that holds {_some(packages)}" if packages else "the folder of their package"
+        what = lost[0] if len(names) == 1 else f"{len(names)} meshes were not found: {_some(names)}"
+        told.append(f"{what}; name {wanted} with --packages, or put them where the file says")
+    if hulls:
+        names = _names(hulls, _HULL)
+        many = (
+            f"{len(names)} meshes do not bound solids, so that their convex hulls were taken: {_some(names)}"
+        )
+        told.append(hulls[0] if len(names) == 1 else many)
+    return told
+
+
+def _names(notes: list[str], end: str) -> list[str]:
+    return list(dict.fromkeys(note.removesuffix(end).partition("mesh ")[2] for note in notes))
 
 
 def _some(names: list[str], most: int = 3) -> str:

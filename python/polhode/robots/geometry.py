@@ -35,7 +35,7 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
     "ellipsoid": lambda size: solids.ellipsoid(size, density=1.0),
 }
 # How well a box or a cylinder is taken to stand for the true part, of its diagonal.
-_OF_PRIMITIVES: Final = 0.01
+_OF_PRIMITIVES: Final = 0.02
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class GeometryReader:
         """Give how far the shapes may miss the surface they stand for, in metres.
 
         A mesh misses a round surface by the sagitta of its facets; a box, a cylinder and the like only stand
-        for the true part, which is taken to be within 1 % of their diagonal.
+        for the true part, which is taken to be within 2 % of their diagonal.
         """
         largest = 0.0
         for shape in link.shapes:
