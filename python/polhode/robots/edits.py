@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polhode.files.xml_source import Edit, Element, blanks_of, set_attribute, set_text
+from polhode.files.xml_source import Edit, Element, set_attribute, set_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -33,17 +33,23 @@ def first_child(source: bytes, parent: Element, text: str) -> Edit:
         start = source[parent.start : parent.inside - 2].rstrip().decode()
         return Edit(parent.start, parent.end, f"{start}>{text}</{parent.tag}>")
     first = parent.children[0].start if parent.children else parent.outside
-    return Edit(first, first, text + blanks_of(source[parent.inside : first]))
+    return Edit(first, first, text + _blanks_before(source, parent.inside, first))
 
 
 def indented(source: bytes, parent: Element, opening: str, inner: Iterable[str], closing: str) -> str:
     """Write an element with its children on lines of their own where those of the parent stand so."""
     first = parent.children[0].start if parent.children else parent.inside
-    blanks = blanks_of(source[parent.inside : first])
+    blanks = _blanks_before(source, parent.inside, first)
     if "\n" not in blanks:
         return f"{opening}{''.join(inner)}{closing}"
     step = "\t" if blanks.endswith("\t") else "  "
     return opening + "".join(f"{blanks}{step}{each}" for each in inner) + blanks + closing
+
+
+def _blanks_before(source: bytes, start: int, end: int) -> str:
+    """Give the blanks before an element, behind a comment or the start of its parent."""
+    between = source[start:end]
+    return between[len(between.rstrip()) :].decode()
 
 
 def _same(old: str | None, new: str) -> bool:

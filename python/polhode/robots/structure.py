@@ -6,7 +6,7 @@ of them may carry the mass of all; what is tied to the world needs none.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 from polhode.robots.model import WORLD
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from polhode.robots.model import Link, Robot
 
 __all__ = ["Standing", "standings", "without_mass"]
+
+_FREE: Final = ("floating", "free")
 
 
 class Standing(NamedTuple):
@@ -29,8 +31,8 @@ class Standing(NamedTuple):
         The joint that moves it, itself or through what it is tied to; "" where it floats.
     carrier : str
         A link with mass that it is tied to (itself counted); "" if there is none.
-    is_carried : bool
-        Whether something that has mass hangs on it by joints that move.
+    carries_mass : bool
+        Whether what hangs on it by joints that move has mass enough for its motions.
     stands_for : bool
         Whether a verdict on missing mass is told here: at links with shapes, else where the joint ends.
     is_root : bool
@@ -40,7 +42,7 @@ class Standing(NamedTuple):
     moves: bool
     joint: str
     carrier: str
-    is_carried: bool
+    carries_mass: bool
     stands_for: bool
     is_root: bool
 
@@ -53,6 +55,7 @@ class _Group:
         self.carrier = ""
         self.has_shape = False
         self.joint: str | None = None
+        self.is_free = True
         self.first = -1
         self.below: list[_Group] = []
 
@@ -107,6 +110,7 @@ def standings(robot: Robot, has_mass: Sequence[bool]) -> list[Standing]:
             parent.below.append(child)
             if child.joint is None and child is not ground:
                 child.joint, child.first = joint.name, number[joint.child]
+                child.is_free = joint.kind in _FREE
     heavy = _with_mass_below(groups.values())
     told: list[Standing] = []
     for i, link in enumerate(robot.links):
@@ -114,8 +118,9 @@ def standings(robot: Robot, has_mass: Sequence[bool]) -> list[Standing]:
         is_root = group.joint is None and group is not ground
         moves = group is not ground and not (is_root and robot.format == "URDF")
         stands_for = bool(link.shapes) if group.has_shape else i == group.first
-        is_carried = any(below in heavy for below in group.below)
-        told.append(Standing(moves, group.joint or "", group.carrier, is_carried, stands_for, is_root))
+        # Six motions of a free link and those of one joint are too many for a single body with mass.
+        carries_mass = sum(below in heavy for below in group.below) > group.is_free
+        told.append(Standing(moves, group.joint or "", group.carrier, carries_mass, stands_for, is_root))
     return told
 
 
@@ -167,7 +172,7 @@ def without_mass(robot_format: str, link: Link, standing: Standing) -> WithoutMa
     if not standing.stands_for:
         return WithoutMass("none", f"{mover} with what it is tied to, which is told there")
     shaped = "it has shape but no mass" if link.shapes else "no mass is tied to it"
-    if not standing.is_carried:
+    if not standing.carries_mass:
         return WithoutMass("missing", f"{mover}, and {shaped}: the mass matrix is singular there")
     if robot_format == "MJCF":
         return WithoutMass("missing", f"{mover}, and {shaped}: MuJoCo refuses it, whatever it carries")
