@@ -245,20 +245,25 @@ TENSORS: Final = {
 ROOM: Final = {
     "on the walls": Row(urdf(link("a", 6.0, 2.999, CUBE)), {"a": "good"}),
     "beyond the walls by what a box may be off": Row(
-        urdf(link("a", 6.0, 0.999 * GROWN, CUBE)), {"a": "coarse"}, "its shapes may be off by 34.6 mm"
+        urdf(link("a", 6.0, 0.999 * GROWN, CUBE)), {"a": "suspect"}, "its shapes may be off by 34.6 mm"
     ),
     "beyond what a box may be off": Row(
         urdf(link("a", 6.0, 1.001 * GROWN, CUBE)), {"a": "impossible"}, "where its shape has room for 0.5 m"
     ),
-    "centre just outside": Row(
-        urdf(link("a", 5.0, 1e-3, BALL, at="0 0 0.1001")), {"a": "coarse"}, "z = 0.1001 m, lies outside"
+    # 2 % of the diagonal of the ball's box is δ = 6.93 mm. Spread s² = I/2m about a centre d beyond the ball
+    # needs (δ − d)(0.2 + δ + d) ≥ s².
+    "centre outside by what a ball may be off": Row(
+        urdf(link("a", 0.1, 4.1e-5, BALL, at="0 0 0.1059")), {"a": "coarse"}, "z = 0.1059 m, lies outside"
     ),
-    "centre outside": Row(urdf(link("a", 5.0, 1e-3, BALL, at="0 0 0.11")), {"a": "impossible"}),
-    # 2 % of the diagonal of the ball's box: 6.93 mm.
-    "a point at the wall that may be off": Row(
-        urdf(link("a", 0.1, 1e-7, BALL, at="0 0 0.1068")), {"a": "coarse"}
+    "centre farther outside": Row(
+        urdf(link("a", 0.1, 4.1e-5, BALL, at="0 0 0.1061")), {"a": "impossible"}, "z = 0.1061 m, lies outside"
     ),
-    "a point beyond it": Row(urdf(link("a", 0.1, 1e-7, BALL, at="0 0 0.107")), {"a": "impossible"}),
+    "a point outside by what a ball may be off": Row(
+        urdf(link("a", 0.1, 1e-7, BALL, at="0 0 0.1068")),
+        {"a": "suspect"},
+        "its shapes may be off by 6.93 mm",
+    ),
+    "a point farther outside": Row(urdf(link("a", 0.1, 1e-7, BALL, at="0 0 0.107")), {"a": "impossible"}),
     "a tenth": Row(urdf(link("a", 5.0, 0.00201, BALL)), {"a": "good"}),
     "less than a tenth": Row(urdf(link("a", 5.0, 0.00199, BALL)), {"a": "suspect"}),
     "three times, with room": Row(urdf(link("a", 5.0, 0.0599, BALL, seen=CUBE)), {"a": "good"}),
@@ -279,20 +284,28 @@ ROOM: Final = {
     "with unread meshes alone, the same twice": Row(urdf(link("a", 5.0, 33.4, UNREAD)), {"a": "good"}),
 } | {
     # A ball of diameter 1 m, filled, spreads 0.15 m²; 3/2 I/m is 3 times that at 0.3, 1000 times at 100.
-    f"nothing but a joint of 1 m, moments {moment}": Row(
+    f"{what}, moments {moment}": Row(
         urdf(
-            link("base", 5.0, 0.3, UNREAD),
-            link("a", 1.0, (moment, moment, moment * 1.0001), UNREAD),
+            link("base", 5.0, 0.3, *shapes),
+            link("a", 1.0, (moment, moment, moment * 1.0001), *shapes),
             joint("base", "a", at="0.6 0.8 0"),
         ),
         {"base": "good", "a": word},
         says,
     )
-    for moment, word, says in (
-        (0.299, "good", ""),
-        (0.301, "suspect", "a ball as large as the whole robot, 1 m"),
-        (99.9, "suspect", ""),
-        (100.1, "impossible", "nothing explains more than 1000 times"),
+    for what, shapes, moment, word, says in (
+        ("nothing but a joint of 1 m", (), 0.299, "good", ""),
+        ("nothing but a joint of 1 m", (), 0.301, "suspect", "a ball as large as the whole robot, 1 m"),
+        ("nothing but a joint of 1 m", (), 99.9, "suspect", ""),
+        ("nothing but a joint of 1 m", (), 100.1, "impossible", "nothing explains more than 1000 times"),
+        ("a joint of 1 m and unread meshes", (UNREAD,), 99.9, "good", ""),
+        (
+            "a joint of 1 m and unread meshes",
+            (UNREAD,),
+            100.1,
+            "impossible",
+            "1 of its shapes could not be read",
+        ),
     )
 }
 

@@ -41,7 +41,7 @@ def test_edges_of_the_part_are_not_round() -> None:
 
 @pytest.mark.parametrize(("beyond", "word"), [(0.9, "coarse"), (1.1, "impossible")])
 def test_a_centre_beyond_the_facets(beyond: float, word: str, tmp_path: Path) -> None:
-    """A point mass just outside the flat side of a prism, by so much of the height of its arcs."""
+    """A slice without thickness outside the flat side of a prism, by so much of the height of its arcs."""
     sides, radius = 12, 0.3
     mesh = prism(sides, radius, 2.0)
     cosine, sine = np.cos(np.pi / sides), np.sin(np.pi / sides)
@@ -50,6 +50,6 @@ def test_a_centre_beyond_the_facets(beyond: float, word: str, tmp_path: Path) ->
     flat = turned[:, 0].max()
     assert flat == pytest.approx(radius * np.cos(np.pi / sides))
     x = flat + beyond * (radius - flat)
-    text = urdf(link("a", 1e-3, 1e-15, '<mesh filename="m.obj"/>', at=f"{float(x)!r} 0 0"))
+    text = urdf(link("a", 1.0, (0.38, 0.33, 0.05), '<mesh filename="m.obj"/>', at=f"{float(x)!r} 0 0"))
     (verdict,) = robots.check(robots.parse_robot(text.encode(), name="r", folder=tmp_path))
     assert verdict.verdict == word

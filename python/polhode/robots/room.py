@@ -38,6 +38,8 @@ FAR: Final = 1000.0
 """No shape that could not be read explains more: it would be 30 times larger than those that were."""
 # The densest matter, osmium, in kg/m^3.
 _DENSEST: Final = 22_590.0
+# No shape is taken to be farther off than this, of the diagonal of all.
+_COARSEST: Final = 0.05
 _STEPS: Final = 40
 
 
@@ -57,13 +59,16 @@ def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], fl
     geometry : Geometry
         All of whose shapes were read.
     coarseness : callable
-        Gives how far the shapes may be off, in metres.
+        Gives how far the shapes may be off, in metres; more than 5 % of their diagonal is not counted.
     """
     low, high = geometry.low, geometry.high
     if low is None or high is None or fit_in_box(body, low, high).possible:
         return None
-    allowed = coarseness()
     reason = _excess(body, low, high)
+    most = _COARSEST * float(np.linalg.norm(high - low))
+    if not fit_in_box(body, low - most, high + most).possible:
+        return Finding("impossible", reason)
+    allowed = min(coarseness(), most)
     if allowed > 0.0 and fit_in_box(body, low - allowed, high + allowed).possible:
         inner, outer = 0.0, allowed
         for _ in range(_STEPS):
@@ -111,7 +116,9 @@ def _apart(one: float, other: float) -> tuple[str, str]:
     return repr(one), repr(other)
 
 
-def beyond_size(body: RigidBody, geometry: Geometry, own: RigidBody | None, reach: float) -> Finding | None:
+def beyond_size(
+    body: RigidBody, geometry: Geometry, own: RigidBody | None, reach: float, *, is_all: bool
+) -> Finding | None:
     """Say how far a tensor is from any size that is known, where not all shapes could be read.
 
     What was read is a part of the link: the room of the rest is not known, but a tensor beyond 1000 times
@@ -125,22 +132,26 @@ def beyond_size(body: RigidBody, geometry: Geometry, own: RigidBody | None, reac
         Its shapes of one role, filled evenly.
     reach : float
         How far the whole robot reaches at most, as far as it is known, in metres.
+    is_all : bool
+        Whether every shape of the robot could be read.
     """
     spread = float(np.trace(body.inertia)) / 2.0 / float(body.mass)
     known: list[tuple[float, str]] = []
+    least = MOST
     if own is not None:
         known.append((float(np.trace(own.inertia)) / 2.0 / float(own.mass), f"its {geometry.role} shape"))
     if geometry.low is not None and geometry.high is not None:
         sides = geometry.high - geometry.low
         known.append((float(sides @ sides) / 12.0, "the box around those of its shapes that were read"))
     if not known and reach > 0.0:
-        # Of a ball filled evenly, 3/5 r².
+        # Of a ball filled evenly, 3/5 r². What could not be read makes the robot larger than that.
         known.append((0.15 * reach**2, f"a ball as large as the whole robot, {reach:.3g} m by its joints"))
+        least = MOST if is_all else FAR
     if not known:
         return None
     most, what = max(known)
     factor = spread / most if most > 0.0 else np.inf
-    if not factor > MOST:
+    if not factor > least:
         return None
     left = f", and {geometry.unread} of its shapes could not be read" if geometry.unread else ""
     if factor > FAR:

@@ -116,7 +116,13 @@ def judge(
         stand = standings(
             robot, [_has_mass(link, each) for link, each in zip(robot.links, read, strict=True)]
         )
-        judging = _Judging(geometry, robot.format, _placeholders(robot.links), _reach(robot, read))
+        judging = _Judging(
+            geometry,
+            robot.format,
+            _placeholders(robot.links),
+            _reach(robot, read),
+            not any(each.unread for each in read),
+        )
         found = [
             judging.link(link, each, standing)._replace(file=link.file)
             for link, each, standing in zip(robot.links, read, stand, strict=True)
@@ -183,6 +189,7 @@ class _Judging(NamedTuple):
     format: str
     placeholders: dict[float, int]
     reach: float
+    is_all: bool
 
     def link(self, link: Link, geometry: Geometry, standing: Standing) -> Verdict:
         """Judge a link."""
@@ -240,7 +247,7 @@ class _Judging(NamedTuple):
         except PolhodeError as error:
             return "impossible", str(error)
         if geometry.unread or geometry.low is None:
-            size = beyond_size(body, geometry, own, self.reach)
+            size = beyond_size(body, geometry, own, self.reach, is_all=self.is_all)
         else:
             size = beyond_room(body, geometry, lambda: self.geometry.coarseness(link))
         compared = _compared(factor, geometry) if own is not None else ""
@@ -256,10 +263,12 @@ class _Judging(NamedTuple):
             )
             if not is_true:
                 return "placeholder", _joined(told, compared, size.reason if size else "")
-        if size is not None and size.word in ("impossible", "coarse"):
-            return size.word, _joined(compared, size.reason, needed if size.word == "impossible" else "")
+        if size is not None and size.word == "impossible":
+            return size.word, _joined(compared, size.reason, needed)
         if factor is not None and not LEAST <= factor <= MOST:
-            return "suspect", _joined(compared, needed)
+            return "suspect", _joined(compared, size.reason if size else "", needed)
+        if size is not None and size.word == "coarse":
+            return size.word, _joined(compared, size.reason)
         if size is None and own is None:
             size = too_dense(body)
         return (size.word, size.reason) if size is not None else ("good", compared)
