@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode.cli.components import components_of, has_names, weighed
 from polhode.cli.progress import reading_progress
 from polhode.cli.quantities import amount, has_unit, quantity
 from polhode.cli.source import as_file
@@ -121,7 +122,9 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody
         source=solid,
         mass_unit="kg" if unit is not None else "mass",
         length="m" if unit is not None else "unit",
-        density=float(solid.body.mass) / solid.volume if density is None else _value(density),
+        density=float(solid.body.mass) / solid.volume
+        if density is None or has_names(options.density)
+        else _value(density),
         volume=solid.volume,
         assumed=assumed,
         notes=tuple(notes),
@@ -144,7 +147,7 @@ def _solid(
     weld: float,
 ) -> MeshSolid:
     with reading_progress(loaded.path) as tell:
-        return solid_of(
+        solid = solid_of(
             loaded,
             density=density,
             mass=mass,
@@ -152,8 +155,12 @@ def _solid(
             weld=weld,
             closure=options.closure,
             orient=options.orient,
+            union=options.union,
             progress=tell,
         )
+    if has_names(options.density):
+        return weighed(loaded, solid, options, scale, weld)
+    return solid._replace(components=components_of(loaded, solid, options, scale, weld))
 
 
 def _weld(options: BodyOptions) -> float:
@@ -173,7 +180,7 @@ def _taken(options: BodyOptions, unit: str | None) -> list[str]:
     return [
         f"{option} {text.strip()} has no unit: {si} was taken"
         for option, text, si in (("--density", options.density, "kg/m^3"), ("--mass", options.mass, "kg"))
-        if text is not None and not has_unit(text)
+        if text is not None and not has_unit(text) and not has_names(text)
     ]
 
 
@@ -195,6 +202,8 @@ def _value(number: float | Uncertain) -> float:
 def _amount(text: str | None, si: str, option: str, unit: str | None) -> float | Uncertain | None:
     if text is None:
         return None
+    if option == "--density" and has_names(text):  # each component has its own, which are put in later
+        return 1.0
     if unit is None and has_unit(text):
         raise PolhodeError(
             f"{option}: {text!r} has a unit, but the file's coordinates have none; state --length-unit too"
@@ -214,6 +223,7 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         weld=options.weld is not None,
         closure=options.closure is not None,
         orient=options.orient,
+        union=options.union,
         index_base=options.index_base != 1,
     )
     molecule = load(file).molecule

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polhode.cli.components import add_components
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import in_file_unit, load_body
 from polhode.cli.options import ReportOptions
@@ -108,6 +109,7 @@ def _mesh_report(
     report.section("principal axes", *body_fields(loaded, units))
     report.section("trust", *trust_fields(loaded))
     report.notes += loaded.notes
+    add_components(report, mesh.components, volume, f"{loaded.mass_unit}/{volume}")
     note_linear(report)
     if loaded.assumed:
         report.notes.append(

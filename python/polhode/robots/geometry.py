@@ -9,6 +9,7 @@ import numpy as np
 
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
+from polhode.files.components import overlaps, parts_of, told
 from polhode.files.loaded import read_mesh
 from polhode.robots.facets import sagitta
 from polhode.robots.words import quoted, shortened
@@ -36,6 +37,8 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
 }
 # How well a box or a cylinder is taken to stand for the true part, of its diagonal.
 _OF_PRIMITIVES: Final = 0.02
+# Meshes of more triangles are not searched for components that overlap.
+_MOST_FACES: Final = 50_000
 
 
 @dataclass(frozen=True)
@@ -176,7 +179,8 @@ class GeometryReader:
         mesh = read.mesh
         vertices = mesh.vertices * np.array(shape.size)
         try:
-            return RigidBody.from_mesh(vertices, mesh.faces, density=1.0, orient=True), ""
+            solid = RigidBody.from_mesh(vertices, mesh.faces, density=1.0, orient=True)
+            return solid, _overlapping(f"mesh {name}", vertices, mesh.faces)
         except ValueError as error:
             first = str(error)
         try:
@@ -243,6 +247,17 @@ class GeometryReader:
         else:
             return None
         return position - reach, position + reach
+
+
+def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
+    """Say which components of a mesh overlap; "" where none do, or where there are too many faces."""
+    if len(faces) > _MOST_FACES:
+        return ""
+    parts = parts_of(vertices, faces)
+    if len(parts) < 2:
+        return ""
+    lines = told(overlaps(parts), sum(part.volume for part in parts), " m^3")
+    return f"{name}: {'; '.join(lines)}" if lines else ""
 
 
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:
