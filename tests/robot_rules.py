@@ -322,6 +322,12 @@ FORMATS: Final = {
     "SDF, a placeholder, not static": Row(
         sdf(slink("a", weighed(5, 1)), model="<static>false</static>"), {"a": "placeholder"}
     ),
+    "SDF, a shape that is no number, static": Row(
+        sdf(slink("a", "", ROUND.replace("0.1", "x")), model="<static>true</static>"), {"a": "none"}
+    ),
+    "SDF, a shape that is no number, not static": Row(
+        sdf(slink("a", "", ROUND.replace("0.1", "x"))), {"a": "unreadable"}
+    ),
     "SDF, a static model in one that moves": Row(
         sdf(
             slink("a", weighed(5, 0.02), ROUND),

@@ -150,7 +150,8 @@ def _has_mass(link: Link, geometry: Geometry) -> bool:
     if link.problem:
         return True
     if link.inertial is None:
-        unread = any(shape.role == "collision" and shape.mass != 0.0 for shape in link.shapes)
+        solid = [shape for shape in link.shapes if shape.role == "collision"]
+        unread = any((shape.density if shape.mass is None else shape.mass) != 0.0 for shape in solid)
         return link.inferred and (geometry.body is not None or (unread and geometry.unread > 0))
     return not _is_empty(link.inertial)
 
@@ -193,12 +194,16 @@ class _Judging(NamedTuple):
 
     def link(self, link: Link, geometry: Geometry, standing: Standing) -> Verdict:
         """Judge a link."""
+        notes, declared = geometry.notes, link.inertial
+        if link.is_static:
+            told = (*notes, link.problem) if link.problem else notes
+            return Verdict(link.name, link.line, "none", "nothing moves it: its model is static", notes=told)
         if link.problem:
             return Verdict(link.name, link.line, "unreadable", link.problem)
-        notes, declared = geometry.notes, link.inertial
-        if link.is_static or (link.defaults and not standing.moves):
-            why = "its model is static" if link.is_static else "it is tied to the world"
-            return Verdict(link.name, link.line, "none", f"nothing moves it: {why}", notes=notes)
+        if link.defaults and not standing.moves:
+            return Verdict(
+                link.name, link.line, "none", "nothing moves it: it is tied to the world", notes=notes
+            )
         if not _has_mass(link, geometry):
             empty = without_mass(self.format, link, standing)
             told = (*notes, empty.note) if empty.note else notes
