@@ -170,6 +170,29 @@ class TestOverlaps:
         assert 0.0 < lacks[1] < lacks[0] < 0.02 * want
         assert lacks[0] / lacks[1] == pytest.approx(4.0, rel=0.05)
 
+    def test_many_are_told_in_few_lines(self) -> None:
+        known = [components.Overlap("1", str(k), 0.1 * k, False) for k in range(2, 12)]
+        lines = components.told(known, 10.0, " m^3")
+        assert lines[0] == "components 1 and 11 overlap: 1.1 m^3 (11 % of the volume) counts twice"
+        assert len(lines) == 9
+        assert lines[-1] == "2 more pairs of components overlap"
+        unknown = [components.Overlap("1", str(k), float("nan"), False) for k in range(2, 12)]
+        (line,) = components.told(unknown, 10.0)
+        assert line.startswith("components 1 and 2, 1 and 3, ")
+        assert " and 2 pairs more overlap: what they share counts twice; " in line
+
+
+@pytest.mark.parametrize(("depth", "is_told"), [(0.0019, False), (0.0021, True)])
+def test_check_leaves_out_what_is_little(depth: float, is_told: bool, tmp_path: Path) -> None:
+    """Two cubes of side 1 that share a slice: told from a thousandth of both on."""
+    pytest.importorskip("manifold3d")
+    (tmp_path / "two.obj").write_bytes(
+        obj(*joined(at((1, 1, 1), (0, 0, 0)), at((1, 1, 1), (1 - depth, 0, 0))))
+    )
+    text = urdf(link("a", 1.0, 0.2, '<mesh filename="two.obj"/>'))
+    (verdict,) = robots.check(robots.parse_robot(text.encode(), name="r", folder=tmp_path))
+    assert bool(verdict.notes) == is_told
+
 
 class TestUnion:
     @pytest.mark.parametrize("count", [2, 3, 4])

@@ -213,17 +213,20 @@ def told(found: Sequence[Overlap], total: float, unit: str = "") -> list[str]:
     """Say which parts overlap and by how much of the total volume, the largest first."""
     lines = []
     for one, other, volume, is_inside in sorted(
-        found, key=lambda each: -np.nan_to_num(each.volume, nan=np.inf)
+        (each for each in found if np.isfinite(each.volume)), key=lambda each: -each.volume
     ):
         how = f"component {other} lies within {one}" if is_inside else f"components {one} and {other} overlap"
-        much = (
-            f"{volume:.4g}{unit} ({100.0 * volume / total:.3g} % of the volume) counts twice"
-            if np.isfinite(volume)
-            else 'what they share counts twice; pip install "polhode[union]" tells how much'
-        )
-        lines.append(f"{how}: {much}")
+        lines.append(f"{how}: {volume:.4g}{unit} ({100.0 * volume / total:.3g} % of the volume) counts twice")
     left = len(lines) - _MOST_TOLD
-    return lines if left <= 0 else [*lines[:_MOST_TOLD], f"{left} more pairs of components overlap"]
+    if left > 0:
+        lines[_MOST_TOLD:] = [f"{left} more pairs of components overlap"]
+    unknown = [f"{each.one} and {each.other}" for each in found if not np.isfinite(each.volume)]
+    if unknown:
+        more = f" and {len(unknown) - _MOST_TOLD} pairs more" if len(unknown) > _MOST_TOLD else ""
+        pairs = ", ".join(unknown[:_MOST_TOLD]) + more
+        way = "how much is not known" if has_union() else 'pip install "polhode[union]" tells how much'
+        lines.append(f"components {pairs} overlap: what they share counts twice; {way}")
+    return lines
 
 
 def groups_of(path: Path) -> list[str]:

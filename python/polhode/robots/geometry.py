@@ -37,6 +37,8 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
 }
 # How well a box or a cylinder is taken to stand for the true part, of its diagonal.
 _OF_PRIMITIVES: Final = 0.02
+# What components share is told from this part of their volume on.
+_LITTLE: Final = 1e-3
 # Meshes of more triangles are not searched for components that overlap.
 _MOST_FACES: Final = 50_000
 
@@ -256,7 +258,9 @@ def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
     parts = parts_of(vertices, faces)
     if len(parts) < 2:
         return ""
-    lines = told(overlaps(parts), sum(part.volume for part in parts), " m^3")
+    total = sum(part.volume for part in parts)
+    found = [each for each in overlaps(parts) if not each.volume < _LITTLE * total]  # or it is not known
+    lines = told(found, total, " m^3")
     return f"{name}: {'; '.join(lines)}" if lines else ""
 
 
