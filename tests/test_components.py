@@ -252,6 +252,17 @@ class TestReport:
             assert alone["mass"] == pytest.approx(2 * 1.21, rel=1e-12)
             assert any("how far that moves corners is in no bound" in note for note in alone["notes"])
 
+    @pytest.mark.parametrize(("most", "is_told"), [(24, True), (23, False)])
+    def test_large_meshes_are_not_taken_apart(
+        self, most: int, is_told: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        from polhode.cli import components as told
+
+        assert told._MOST_FACES == 250_000
+        monkeypatch.setattr(told, "_MOST_FACES", most)
+        path = written(tmp_path / "two.obj", at((1, 1, 1), (0, 0, 0)), at((1, 1, 1), (3, 0, 0)))
+        assert ("components" in self.report(path)) == is_told
+
     def test_a_density_for_each(self, tmp_path: Path) -> None:
         boxes = [(np.array([1.0, 1, 1]), np.zeros(3)), (np.array([1, 0.5, 0.7]), np.array([2, 0.1, 0.0]))]
         path = written(tmp_path / "two.obj", *(at(*each) for each in boxes))

@@ -104,10 +104,13 @@ def add_components(report: Report, found: Components | None, volume: str, densit
 
 def _parts(loaded: Loaded, scale: float, weld: float) -> list[Part]:
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
-    groups = groups_of(loaded.path) if loaded.path.suffix.lower() == ".obj" else None
-    if groups is not None and len(groups) != len(mesh.faces):  # faces fell together when corners did
-        groups = None
-    return parts_of(mesh.vertices * scale, mesh.faces, groups)
+    vertices = mesh.vertices * scale
+    parts = parts_of(vertices, mesh.faces)
+    if len(parts) > 1 and loaded.path.suffix.lower() == ".obj":
+        groups = groups_of(loaded.path)
+        if len(groups) == len(mesh.faces):  # none fell together when corners did
+            return parts_of(vertices, mesh.faces, groups)
+    return parts
 
 
 def _unit(options: BodyOptions) -> str:

@@ -83,15 +83,20 @@ class LoadedBody:
         return float(np.linalg.norm(self.body.center_of_mass) + self.body.radii_of_gyration.max())
 
 
-def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
-    """Read the body in a file; ``-`` is standard input. A shape is kept where it is to be drawn."""
+def load_body(
+    file: Path, options: BodyOptions, *, with_shape: bool = False, with_components: bool = False
+) -> LoadedBody:
+    """Read the body in a file; ``-`` is standard input.
+
+    A shape is kept where it is to be drawn, and components are told apart where they are to be listed.
+    """
     with as_file(file) as path:
         if path.suffix.lower() == MOLECULE_SUFFIX:
             return _load_molecule(path, options)
-        return _load_mesh(path, options, with_shape)
+        return _load_mesh(path, options, with_shape, with_components)
 
 
-def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody:
+def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_components: bool) -> LoadedBody:
     for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
         if is_given:
             raise PolhodeError(f"{option}: {file} is a mesh, not a molecule; leave it out")
@@ -107,6 +112,10 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody
     weld = _weld(options)
     loaded = load(file, index_base=options.index_base)
     solid = _solid(loaded, options, density, mass, scale, weld)
+    if has_names(options.density):
+        solid = weighed(loaded, solid, options, scale, weld)
+    elif with_components:
+        solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
     notes = _taken(options, unit)
     if weld != 0.0:
@@ -147,7 +156,7 @@ def _solid(
     weld: float,
 ) -> MeshSolid:
     with reading_progress(loaded.path) as tell:
-        solid = solid_of(
+        return solid_of(
             loaded,
             density=density,
             mass=mass,
@@ -158,9 +167,6 @@ def _solid(
             union=options.union,
             progress=tell,
         )
-    if has_names(options.density):
-        return weighed(loaded, solid, options, scale, weld)
-    return solid._replace(components=components_of(loaded, solid, options, scale, weld))
 
 
 def _weld(options: BodyOptions) -> float:

@@ -34,7 +34,7 @@ def file_report(file: Path, options: BodyOptions, extra: ReportOptions = PLAIN) 
         if options.length_unit is None:
             raise PolhodeError("--mass-unit: the length of the file has no unit; state --length-unit too")
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
-    loaded = load_body(file, options)
+    loaded = load_body(file, options, with_components=True)
     units = FileUnits(options.length_unit, extra.mass_unit)
     about = _point(loaded, options, extra)
     if isinstance(loaded.source, MeshSolid):
