@@ -55,7 +55,7 @@ def judged(path: Path) -> str:
         assert told.startswith(f"{path}: ")
         assert len(told) < 1500
         return "refused"
-    verdicts = robots.check(robot)
+    verdicts = robots.check(robot, density=1000.0)
     assert {verdict.verdict for verdict in verdicts} <= WORDS
     assert all(len(verdict.reason) < 1500 for verdict in verdicts)
     better = robots.fixed(robot, verdicts, WORDS)

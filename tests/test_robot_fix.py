@@ -127,6 +127,13 @@ class TestCommand:
         assert code == 0
         assert 'value="3.0"' in better.read_text()
 
+    def test_a_density_that_serves_nothing_is_told(self, tmp_path: Path) -> None:
+        (tmp_path / "r.urdf").write_text(urdf(link("a", 5.0, 0.02, BALL)))
+        _, out, _ = run("check", tmp_path / "r.urdf", "--density", "1000 kg/m^3")
+        assert "--density changes nothing: no link that fails is without mass" in out
+        (tmp_path / "r.urdf").write_text(ARM)
+        assert "changes nothing" not in run("check", tmp_path / "r.urdf", "--density", "1000 kg/m^3")[1]
+
     def test_tensors_that_may_have_been_measured_are_named_before(self, tmp_path: Path) -> None:
         """A valid tensor beyond the room of its shape; a placeholder and a broken law are no measurements."""
         (tmp_path / "r.urdf").write_text(

@@ -17,7 +17,7 @@ from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.reading import files_read
 from polhode.files.writing import write_bytes
 from polhode.robots.sources import read_stream
-from polhode.robots.verdict import has_own_tensor
+from polhode.robots.verdict import has_own_tensor, is_without_mass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -77,6 +77,8 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     )
     notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
     report.notes += [in_options(note) for note in (*robot.notes, *_gathered(notes))]
+    if filling and not any(is_without_mass(*each) for each in zip(robot.links, verdicts, strict=True)):
+        report.notes.append(f"--{next(iter(filling))} changes nothing: no link that fails is without mass")
     report.notes += _warnings(robot, verdicts, failing)
     if options.fix is None:
         if any(verdict.better is not None for verdict in bad):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["FAILURES", "Verdict", "has_own_tensor", "judge"]
+__all__ = ["FAILURES", "Verdict", "has_own_tensor", "is_without_mass", "judge"]
 
 Word = Literal[
     "good",
@@ -140,6 +140,11 @@ def has_own_tensor(link: Link) -> bool:
     except PolhodeError:
         return False
     return True
+
+
+def is_without_mass(link: Link, verdict: Verdict) -> bool:
+    """Tell whether a link fails and its file says no mass, so that a density or a mass is needed."""
+    return verdict.verdict == "missing" or ("1 kg" in link.defaults and verdict.verdict in FAILURES)
 
 
 def _is_empty(declared: Inertial) -> bool:
@@ -296,7 +301,7 @@ def _filled(
     without = {
         i: body
         for i, (link, verdict) in enumerate(zip(robot.links, verdicts, strict=True))
-        if verdict.verdict == "missing" or ("1 kg" in link.defaults and verdict.verdict in FAILURES)
+        if is_without_mass(link, verdict)
         if (body := geometry.filled(link)) is not None
     }
     volume = sum(float(body.mass) for body in without.values())
