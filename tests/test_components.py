@@ -15,7 +15,7 @@ from oracles.meshes import box
 from polhode import RigidBody, robots, solids
 from polhode.files import body_from_file, components
 from polhode.files.components import labels, overlaps, parts_of, winding
-from robot_rules import link, urdf
+from robot_texts import link, urdf
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,7 +11,7 @@ from mesh_files import obj
 from oracles.meshes import cube
 from polhode import robots
 from polhode.robots.facets import sagitta
-from robot_rules import link, urdf
+from robot_texts import link, urdf
 
 if TYPE_CHECKING:
     from pathlib import Path

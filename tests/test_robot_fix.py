@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from command_line import run
 from polhode import robots
-from robot_rules import BALL, ROUND, bare, joint, link, mjcf, sdf, sjoint, slink, urdf, weighed
+from robot_texts import BALL, ROUND, bare, joint, link, mjcf, sdf, sjoint, slink, urdf, weighed
 from test_robots import there
 
 if TYPE_CHECKING:
