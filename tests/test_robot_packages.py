@@ -155,11 +155,9 @@ def test_a_reader_that_leaves_is_no_error(tmp_path: Path) -> None:
     """As a process: `polhode … | head -1` ends with 0 on both sides, however much there was to say."""
     write_obj(tmp_path / "cube.obj", *cube(1.0))
     (tmp_path / "r.urdf").write_text(urdf(*(link(f"link{i}", 5.0, 0.1 + 1e-3 * i) for i in range(2000))))
-    for arguments in (["report", "cube.obj", "--density", "1"], ["check", "r.urdf"]):
-        command = [sys.executable, "-m", "polhode.cli", *arguments]
-        with subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path
-        ) as process:
+    for arguments in (["report", tmp_path / "cube.obj", "--density", "1"], ["check", tmp_path / "r.urdf"]):
+        command = [sys.executable, "-m", "polhode.cli", *map(str, arguments)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
             assert process.stdout is not None
             assert process.stderr is not None
             process.stdout.read(20)
