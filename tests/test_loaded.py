@@ -95,7 +95,10 @@ class TestOnce:
         path, counts = seen(f"part{suffix}", writer(*cube(2.0)))
         assert main(["report", str(path)]) == 0
         assert str(path) in capsys.readouterr().out
-        assert (counts.opened, counts.read) == (1, int(is_for_the_core(kind)))
+        found = counts.opened, counts.read
+        # Streams keep no triangles: their components are told from the file once more.
+        again = {".stl": (0, 1), ".ply": (1, 0)}[suffix] if load(path).is_stream else (0, 0)
+        assert found == (1 + again[0], int(is_for_the_core(kind)) + again[1])
 
     @pytest.mark.parametrize("command", ["report", "molecule"])
     def test_a_molecule(self, command: str, seen: Any, capsys: pytest.CaptureFixture[str]) -> None:

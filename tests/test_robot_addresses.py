@@ -325,12 +325,12 @@ class TestIncludes:
         path = robot(arm / "r.sdf", address, SDF)
         del opened[:]
         own, lost = robots.check(robots.read_robot(path))
-        assert (own.name, own.verdict, lost.verdict) == ("own", "none", "unreadable")
+        assert (own.name, own.verdict, lost.verdict) == ("own", "placeholder", "unreadable")
         assert lost.reason.startswith("line 1: ")
         assert "lies outside" in lost.reason
         assert not [name for name in opened if "/outside/" in name]
         read = robots.check(robots.read_robot(path, allow_outside=True), allow_outside=True)
-        assert [verdict.verdict for verdict in read] == ["none", "none"]
+        assert [verdict.verdict for verdict in read] == ["placeholder", "placeholder"]
 
 
 class TestTheFileItself:

@@ -15,7 +15,17 @@ from robot_damage import SAMPLES, damaged, write
 if TYPE_CHECKING:
     from pathlib import Path
 
-WORDS = {"good", "suspect", "placeholder", "impossible", "unreadable", "none", "inferred"}
+WORDS = {
+    "good",
+    "suspect",
+    "coarse",
+    "missing",
+    "placeholder",
+    "impossible",
+    "unreadable",
+    "none",
+    "inferred",
+}
 SECONDS = 5.0
 
 
@@ -45,7 +55,7 @@ def judged(path: Path) -> str:
         assert told.startswith(f"{path}: ")
         assert len(told) < 1500
         return "refused"
-    verdicts = robots.check(robot)
+    verdicts = robots.check(robot, density=1000.0)
     assert {verdict.verdict for verdict in verdicts} <= WORDS
     assert all(len(verdict.reason) < 1500 for verdict in verdicts)
     better = robots.fixed(robot, verdicts, WORDS)

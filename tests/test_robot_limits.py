@@ -121,7 +121,7 @@ class TestDepth:
             ('<body name="b">', "</body>", WORLD.format("", "{}")),
             ("<frame>", "</frame>", WORLD.format("", '<body name="b">{}<geom size="1"/></body>')),
             ("<default class='c'>", "</default>", WORLD.format("{}", '<body name="b"/>')),
-            ("<model>", "</model>", "<sdf>{}<model><link/></model></sdf>"),
+            ("<model>", "</model>", "<sdf>{}<model><static>1</static><link/></model></sdf>"),
             ("<model>", "</model>", "<robot><link/>{}</robot>"),
         ],
     )
@@ -146,7 +146,7 @@ class TestDepth:
             (tmp_path / f"m{i}.sdf").write_text(f'<sdf><model name="m"><link/><a>{uri}</a></model></sdf>')
         links = robots.check(robots.read_robot(tmp_path / "m0.sdf"))
         assert 45 < len(links) < 60
-        assert {verdict.verdict for verdict in links[:-1]} == {"none"}
+        assert {verdict.verdict for verdict in links[:-1]} == {"placeholder"}
         assert "elements are nested more than 200 deep" in links[-1].reason
         assert len(links[-1].reason) < 400
         for i in range(60):
@@ -243,10 +243,12 @@ class TestMany:
         assert read_stream(io.BytesIO(b"n" * 10), "standard input", 10) == b"n" * 10
 
     def test_names_do_not_multiply(self, tmp_path: Path) -> None:
-        (tmp_path / "m.sdf").write_text(f"<sdf><model>{'<link/>' * 1000}</model></sdf>")
+        (tmp_path / "m.sdf").write_text(f"<sdf><model><static>1</static>{'<link/>' * 1000}</model></sdf>")
         include = f"<include><uri>m.sdf</uri><name>{'n' * 1_000_000}</name></include>"
         own = f'<link name="{"l" * 100_000}"/>'
-        (tmp_path / "r.sdf").write_text(f'<sdf><model name="m">{own}{include}</model></sdf>')
+        (tmp_path / "r.sdf").write_text(
+            f'<sdf><model name="m"><static>true</static>{own}{include}</model></sdf>'
+        )
         links = robots.read_robot(tmp_path / "r.sdf").links
         assert max(len(link.name) for link in links) < 1100
         assert links[0].name.endswith("l... (100000 characters)")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,19 +10,27 @@ from typing import TYPE_CHECKING, Any
 from polhode import robots
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.outputs import check_outputs
+from polhode.cli.quantities import quantity
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.reading import files_read
 from polhode.files.writing import write_bytes
 from polhode.robots.sources import read_stream
+from polhode.robots.verdict import has_own_tensor, is_without_mass
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from polhode.cli.options import CheckOptions
 
 __all__ = ["check_report"]
 
 _UNIT = "kg m^2"
+_NOT_FOUND = " was not found"
+_HULL = " does not bound a solid: its convex hull was taken"
+_PACKAGE = re.compile(r"(?:package|model):/+([^/]+)")
+_WAY_OUT = "--fix FILE with --density or --mass writes the mass that is missing, where a link has shapes"
 _COLUMNS = (
     Column("link", "link"),
     Column("mass", "mass", "kg"),
@@ -42,9 +51,10 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
         Whether no link fails; of the fixed file where one is written.
     """
     _check_options(options)
+    filling = _filling(options)
     with files_read() as read:
         robot = _read(file, options)
-        verdicts = robots.check(robot, options.packages, allow_outside=options.allow_outside)
+        verdicts = robots.check(robot, options.packages, allow_outside=options.allow_outside, **filling)
     check_outputs([("--fix", options.fix)], read)
     failing = robots.FAILURES | ({"suspect"} if options.strict else frozenset())
     report = Report()
@@ -56,7 +66,8 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
     )
     report.section("links", Table("links", _COLUMNS, [_row(verdict) for verdict in verdicts]))
     bad = [verdict for verdict in verdicts if verdict.verdict in failing]
-    counts = {word: sum(v.verdict == word for v in verdicts) for word in ("good", "suspect")}
+    words = ["good", "suspect", *(["coarse"] if any(v.verdict == "coarse" for v in verdicts) else [])]
+    counts = {word: sum(v.verdict == word for v in verdicts) for word in words}
     report.section(
         "verdict",
         Field("verdict", "verdict", "bad" if bad else "good"),
@@ -65,12 +76,83 @@ def check_report(file: Path, options: CheckOptions) -> tuple[Report, bool]:
         *(Field(f"count.{word}", word, count) for word, count in counts.items()),
     )
     notes = dict.fromkeys(note for verdict in verdicts for note in verdict.notes)
-    report.notes += [in_options(note) for note in (*robot.notes, *notes)]
+    report.notes += [in_options(note) for note in (*robot.notes, *_gathered(notes))]
+    if filling and not any(is_without_mass(*each) for each in zip(robot.links, verdicts, strict=True)):
+        report.notes.append(f"--{next(iter(filling))} changes nothing: no link that fails is without mass")
+    report.notes += _warnings(robot, verdicts, failing)
     if options.fix is None:
         if any(verdict.better is not None for verdict in bad):
             report.notes.append("--fix FILE writes better values into a copy")
+        if any(verdict.verdict == "missing" and verdict.better is None for verdict in bad):
+            report.notes.append(_WAY_OUT)
         return report, not bad
     return report, _fix(report, robot, verdicts, failing, options)
+
+
+def _gathered(notes: Iterable[str]) -> list[str]:
+    """Tell in one line each of all meshes that were not found, and of all whose hulls were taken."""
+    told: list[str] = []
+    lost: list[str] = []
+    hulls: list[str] = []
+    for note in notes:
+        for end, names in ((_NOT_FOUND, lost), (_HULL, hulls)):
+            if note.endswith(end):
+                names.append(note)
+                break
+        else:
+            told.append(note)
+    if lost:
+        names = _names(lost, _NOT_FOUND)
+        packages = list(dict.fromkeys(m[1] for name in names if (m := _PACKAGE.match(name)) is not None))
+        wanted = f"the folder that holds {_some(packages)}" if packages else "the folder of their package"
+        what = lost[0] if len(names) == 1 else f"{len(names)} meshes were not found: {_some(names)}"
+        told.append(f"{what}; name {wanted} with --packages, or put them where the file says")
+    if hulls:
+        names = _names(hulls, _HULL)
+        many = (
+            f"{len(names)} meshes do not bound solids, so that their convex hulls were taken: {_some(names)}"
+        )
+        told.append(hulls[0] if len(names) == 1 else many)
+    return told
+
+
+def _names(notes: list[str], end: str) -> list[str]:
+    return list(dict.fromkeys(note.removesuffix(end).partition("mesh ")[2] for note in notes))
+
+
+def _some(names: list[str], most: int = 3) -> str:
+    left = len(names) - most
+    return ", ".join(names[:most]) + (f" and {left} more" if left > 0 else "")
+
+
+def _warnings(robot: robots.Robot, verdicts: list[robots.Verdict], failing: frozenset[str]) -> list[str]:
+    """Warn of tensors that a fix would replace, though they may come from a measurement."""
+    names = [
+        link.name
+        for link, verdict in zip(robot.links, verdicts, strict=True)
+        if verdict.verdict in failing and verdict.better is not None and link.rewrite is not None
+        if has_own_tensor(link)
+    ]
+    if not names:
+        return []
+    return [
+        "warning: --fix replaces tensors that a body can have, perhaps identified or measured: "
+        f"{_some(names, 8)}; compare before you use the copy"
+    ]
+
+
+def _filling(options: CheckOptions) -> dict[str, float]:
+    """Give the density or the mass of links for which the file says none."""
+    if options.density is not None and options.mass is not None:
+        raise PolhodeError("--density and --mass: give one of them, not both")
+    found: dict[str, float] = {}
+    for name, text, unit in (("density", options.density, "kg/m^3"), ("mass", options.mass, "kg")):
+        if text is None:
+            continue
+        found[name] = quantity(text, unit, f"--{name}")
+        if not found[name] > 0.0:
+            raise PolhodeError(f"--{name}: {text} is not above 0; give the one of the material")
+    return found
 
 
 def _check_options(options: CheckOptions) -> None:
@@ -129,8 +211,8 @@ def _fix(
     for link, verdict in zip(robot.links, verdicts, strict=True):
         if verdict.verdict not in failing:
             continue
-        if verdict.better is None or link.inertial is None:
-            left.append(verdict.name)
+        if verdict.better is None:
+            left.append(verdict)
             continue
         if link.rewrite is None:
             elsewhere.append(f"{verdict.name} ({verdict.file})")
@@ -138,9 +220,10 @@ def _fix(
         rows.append(
             {
                 "link": verdict.name,
-                "center_of_mass_before": link.inertial.center_of_mass,
+                "mass": verdict.better.mass,
+                "center_of_mass_before": link.inertial.center_of_mass if link.inertial else None,
                 "center_of_mass": verdict.better.center_of_mass,
-                "inertia_before": link.inertial.inertia,
+                "inertia_before": link.inertial.inertia if link.inertial else None,
                 "inertia": verdict.better.inertia,
                 "from": f"its {verdict.shapes} shape" if verdict.shapes else "the nearest tensor of a body",
                 "diagonal": verdict.better.inertia.diagonal(),
@@ -148,6 +231,7 @@ def _fix(
         )
     columns = (
         Column("link", "link"),
+        Column("mass", "mass", "kg"),
         Column("center_of_mass_before", "C before", "m"),
         Column("center_of_mass", "C", "m"),
         Column("diagonal", "Ixx Iyy Izz", _UNIT),
@@ -155,8 +239,12 @@ def _fix(
     )
     report.section("changed", Table("changed", columns, rows))
     report.notes.append(f"wrote {path}: {len(rows)} links changed, everything else as it stands")
-    if left:
-        report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(left)}")
+    unweighed = [v.name for v in left if v.verdict == "missing"]
+    unshaped = [v.name for v in left if v.verdict != "missing"]
+    if unweighed:
+        report.notes.append(f"left as they are: {', '.join(unweighed)}; {_WAY_OUT}")
+    if unshaped:
+        report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(unshaped)}")
     if elsewhere:
         report.notes.append(f"left as they are, to be fixed in their own files: {', '.join(elsewhere)}")
     fixed = _parsed(source, str(path), robot.folder, options, robot.roots)

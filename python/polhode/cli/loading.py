@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode.cli.components import components_of, has_names, weighed
 from polhode.cli.progress import reading_progress
 from polhode.cli.quantities import amount, has_unit, quantity
 from polhode.cli.source import as_file
@@ -82,15 +83,20 @@ class LoadedBody:
         return float(np.linalg.norm(self.body.center_of_mass) + self.body.radii_of_gyration.max())
 
 
-def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
-    """Read the body in a file; ``-`` is standard input. A shape is kept where it is to be drawn."""
+def load_body(
+    file: Path, options: BodyOptions, *, with_shape: bool = False, with_components: bool = False
+) -> LoadedBody:
+    """Read the body in a file; ``-`` is standard input.
+
+    A shape is kept where it is to be drawn, and components are told apart where they are to be listed.
+    """
     with as_file(file) as path:
         if path.suffix.lower() == MOLECULE_SUFFIX:
             return _load_molecule(path, options)
-        return _load_mesh(path, options, with_shape)
+        return _load_mesh(path, options, with_shape, with_components)
 
 
-def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody:
+def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_components: bool) -> LoadedBody:
     for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
         if is_given:
             raise PolhodeError(f"{option}: {file} is a mesh, not a molecule; leave it out")
@@ -106,6 +112,10 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody
     weld = _weld(options)
     loaded = load(file, index_base=options.index_base)
     solid = _solid(loaded, options, density, mass, scale, weld)
+    if has_names(options.density):
+        solid = weighed(loaded, solid, options, scale, weld)
+    elif with_components:
+        solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
     notes = _taken(options, unit)
     if weld != 0.0:
@@ -121,7 +131,9 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody
         source=solid,
         mass_unit="kg" if unit is not None else "mass",
         length="m" if unit is not None else "unit",
-        density=float(solid.body.mass) / solid.volume if density is None else _value(density),
+        density=float(solid.body.mass) / solid.volume
+        if density is None or has_names(options.density)
+        else _value(density),
         volume=solid.volume,
         assumed=assumed,
         notes=tuple(notes),
@@ -152,6 +164,7 @@ def _solid(
             weld=weld,
             closure=options.closure,
             orient=options.orient,
+            union=options.union,
             progress=tell,
         )
 
@@ -173,7 +186,7 @@ def _taken(options: BodyOptions, unit: str | None) -> list[str]:
     return [
         f"{option} {text.strip()} has no unit: {si} was taken"
         for option, text, si in (("--density", options.density, "kg/m^3"), ("--mass", options.mass, "kg"))
-        if text is not None and not has_unit(text)
+        if text is not None and not has_unit(text) and not has_names(text)
     ]
 
 
@@ -195,6 +208,8 @@ def _value(number: float | Uncertain) -> float:
 def _amount(text: str | None, si: str, option: str, unit: str | None) -> float | Uncertain | None:
     if text is None:
         return None
+    if option == "--density" and has_names(text):  # each component has its own, which are put in later
+        return 1.0
     if unit is None and has_unit(text):
         raise PolhodeError(
             f"{option}: {text!r} has a unit, but the file's coordinates have none; state --length-unit too"
@@ -214,6 +229,7 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         weld=options.weld is not None,
         closure=options.closure is not None,
         orient=options.orient,
+        union=options.union,
         index_base=options.index_base != 1,
     )
     molecule = load(file).molecule

@@ -49,7 +49,8 @@ class BodyOptions:
     ----------
     density
         Density, as in "2.7 g/cm^3"; a bare number is kg/m^3 where --length-unit is given, which the report
-        says, else per the file's own unit of volume. It may have a sigma, as in "2.70 ± 0.02 g/cm^3".
+        says, else per the file's own unit of volume. It may have a sigma, as in "2.70 ± 0.02 g/cm^3". Each
+        component its own: "body=2700, insert=7.8 g/cm^3", by the names of OBJ groups or by numbers.
     mass
         Mass instead of density, as in "0.3 lb"; a bare number is kg where --length-unit is given. It may have
         a sigma: "5.0 ± 0.1 kg", with +- as well, "5.0(1) kg" or "5.0 kg ± 2 %".
@@ -64,6 +65,8 @@ class BodyOptions:
         report says by how much that changes the volume; without it an open mesh is an error.
     orient
         Turn triangles that face inward; without it they are an error.
+    union
+        Join components of a mesh that overlap, so that what they share counts once (by manifold3d).
     index_base
         What the faces of an OBJ or plate file count vertices from: 1 (OBJ) or 0.
     bond_sigma
@@ -79,6 +82,7 @@ class BodyOptions:
     weld: Annotated[str | None, Parameter(name="--weld")] = None
     closure: Annotated[Literal["caps", "hull"] | None, Parameter(name="--closure")] = None
     orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
+    union: Annotated[bool, Parameter(name="--union", negative="")] = False
     index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
     bond_sigma: Annotated[str | None, Parameter(name="--bond-sigma")] = None
     mass_sigmas: Annotated[bool, Parameter(name="--mass-sigmas", negative="")] = False
@@ -124,12 +128,19 @@ class CheckOptions:
         Let links that are only suspect fail as well.
     fix
         Write the file to this one with right values where links fail, everything else as it stands.
+    density
+        Of links for which the file says no mass, such as 1000 kg/m^3: --fix then writes what their shapes
+        have.
+    mass
+        Of all links for which the file says no mass, together; shared by the volumes of their shapes.
     """
 
     packages: Annotated[tuple[Path, ...], Parameter(name="--packages", negative="", show_default=False)] = ()
     allow_outside: Annotated[bool, Parameter(name="--allow-outside", negative="")] = False
     strict: Annotated[bool, Parameter(name="--strict", negative="")] = False
     fix: Annotated[Path | None, Parameter(name="--fix")] = None
+    density: Annotated[str | None, Parameter(name="--density")] = None
+    mass: Annotated[str | None, Parameter(name="--mass")] = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polhode.cli.components import add_components
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import in_file_unit, load_body
 from polhode.cli.options import ReportOptions
@@ -33,7 +34,7 @@ def file_report(file: Path, options: BodyOptions, extra: ReportOptions = PLAIN) 
         if options.length_unit is None:
             raise PolhodeError("--mass-unit: the length of the file has no unit; state --length-unit too")
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
-    loaded = load_body(file, options)
+    loaded = load_body(file, options, with_components=True)
     units = FileUnits(options.length_unit, extra.mass_unit)
     about = _point(loaded, options, extra)
     if isinstance(loaded.source, MeshSolid):
@@ -108,6 +109,7 @@ def _mesh_report(
     report.section("principal axes", *body_fields(loaded, units))
     report.section("trust", *trust_fields(loaded))
     report.notes += loaded.notes
+    add_components(report, mesh.components, volume, f"{loaded.mass_unit}/{volume}")
     note_linear(report)
     if loaded.assumed:
         report.notes.append(

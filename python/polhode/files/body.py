@@ -36,6 +36,7 @@ def body_from_file(
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
+    union: bool = False,
     index_base: int = 1,
     masses: Masses = "most_common",
     progress: Callable[[float], object] | None = None,
@@ -54,6 +55,9 @@ def body_from_file(
         masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
     weld, closure, orient, index_base
         Of a mesh; see :func:`solid_from_file`.
+    union : bool
+        Of a mesh: join components that overlap, so that what they share counts once; by manifold3d (extra
+        ``union``). How far it moves corners, a part in 1e12 or so of the size, is in no bound.
     masses : {"most_common", "average"}
         Of a molecule; see :func:`polhode.molecules.isotopes`.
     progress : callable, optional
@@ -86,6 +90,7 @@ def body_from_file(
             weld=weld,
             closure=closure,
             orient=orient,
+            union=union,
             progress=progress,
         ).body
     check_molecule_options(
@@ -95,6 +100,7 @@ def body_from_file(
         weld=weld != 0.0,
         closure=closure is not None,
         orient=orient,
+        union=union,
         index_base=index_base != 1,
     )
     molecule = load(path).molecule

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Final, Literal, NamedTuple
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,8 @@ class MeshSolid(NamedTuple):
         In units of the result; the area is that of the file's triangles, without what closed them.
     welded : int
         Corners that were joined to others within the length asked for.
+    components : object
+        What a report tells of them; None where there is one.
     """
 
     body: _core.RigidBody
@@ -53,6 +56,7 @@ class MeshSolid(NamedTuple):
     volume: float
     area: float
     welded: int
+    components: Any = None
 
 
 def solid_from_file(
@@ -126,10 +130,16 @@ def solid_of(
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
+    union: bool = False,
     progress: Callable[[float], object] | None = None,
 ) -> MeshSolid:
-    """Make the solid that the mesh of a loaded file bounds; see :func:`solid_from_file`."""
+    """Make the solid that the mesh of a loaded file bounds; see :func:`solid_from_file`.
+
+    With `union` components that overlap are joined first, see :mod:`polhode.files.union`.
+    """
     file = loaded.path
+    if union:
+        loaded, weld = _joined(loaded, weld), 0.0
     if loaded.is_stream and weld == 0.0 and closure is None:
         try:
             with naming_file(file):
@@ -164,6 +174,18 @@ def solid_of(
     welded = corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
+
+
+def _joined(loaded: Loaded, weld: float) -> Loaded:
+    """Give the file with its components joined to one solid."""
+    from polhode.files.components import parts_of
+    from polhode.files.union import united
+
+    mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
+    parts = parts_of(mesh.vertices, mesh.faces)
+    with naming_file(loaded.path):
+        joined = united([(part.vertices, part.faces) for part in parts], mesh.format)
+    return replace(loaded, is_stream=False, _mesh=joined)
 
 
 def _value(number: Number) -> float:

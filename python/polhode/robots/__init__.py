@@ -12,13 +12,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from polhode.errors import FileFormatError
 from polhode.files.content import content_format
 from polhode.files.xml_source import Edit, Element, edited, parse_xml
 from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.addresses import Addresses, own_root
 from polhode.robots.geometry import GeometryReader
-from polhode.robots.model import Inertial, Link, Place, Robot, Shape
+from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape
 from polhode.robots.sources import Sources, read_source
 from polhode.robots.verdict import FAILURES, Verdict, judge
 from polhode.robots.words import shortened
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = [
     "FAILURES",
     "Inertial",
+    "Joint",
     "Link",
     "Place",
     "Robot",
@@ -151,11 +154,16 @@ def parse_robot(
     notes = (*([read] if sources.names else []), *sources.notes)
     model = root if format_name != "SDF" else next(root.descendants("model"), root)
     title = sources.prefix(model.attributes.get("name", model.attributes.get("model", "")))
-    return Robot(format_name, title, links, home, source, notes)
+    return Robot(format_name, title, links, home, source, notes, joints=tuple(sources.joints))
 
 
 def check(
-    robot: Robot, packages: Sequence[str | os.PathLike[str]] = (), *, allow_outside: bool = False
+    robot: Robot,
+    packages: Sequence[str | os.PathLike[str]] = (),
+    *,
+    allow_outside: bool = False,
+    density: float | None = None,
+    mass: float | None = None,
 ) -> list[Verdict]:
     """Judge the inertia of every link.
 
@@ -173,6 +181,10 @@ def check(
         folder, or the one that holds that, if it is named ``urdf``, ``sdf``, ``mjcf``, ``xml``, ``robots``
         or ``worlds``; another package above or beside it is read where it is marked as one. Links to files
         elsewhere are not followed. What is not read is told in the notes of the link.
+    density : float, optional
+        In kg/m^3, of links for which the file says no mass: what :func:`fixed` then writes for them.
+    mass : float, optional
+        In kg, of all these links together, shared by volume; instead of `density`.
 
     Returns
     -------
@@ -190,7 +202,12 @@ def check(
     """
     declared = [Path(package) for package in (*packages, *robot.roots)]
     addresses = Addresses(robot.folder, declared, allow_outside=allow_outside)
-    return judge(robot.links, GeometryReader(robot.folder, addresses))
+    if density is not None and mass is not None:
+        raise ValueError("density and mass: give one of them, not both")
+    for name, value in (("density", density), ("mass", mass)):
+        if value is not None and not 0.0 < value < np.inf:
+            raise ValueError(f"{name}: expected a finite number above 0, got {value!r}")
+    return judge(robot, GeometryReader(robot.folder, addresses), density, mass)
 
 
 def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
@@ -217,7 +234,7 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
     ... <visual><geometry><sphere radius="0.1"/></geometry></visual></link></robot>'''
     >>> robot = robots.parse_robot(text, name="one.urdf", folder=".")
     >>> print(robots.fixed(robot, robots.check(robot)).decode().splitlines()[1])
-    <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0.0" ixz="0.0" iyz="0.0"/></inertial>
+    <inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
     """
     edits: list[Edit] = []
     for link, verdict in zip(robot.links, verdicts, strict=True):

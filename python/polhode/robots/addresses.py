@@ -8,7 +8,9 @@ nothing outside is opened.
 from __future__ import annotations
 
 import os
+import re
 import stat
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -17,11 +19,23 @@ if TYPE_CHECKING:
 
 __all__ = ["Addresses", "Found", "own_root"]
 
-_SEARCH_PATHS: Final = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH")
+_SEARCH_PATHS: Final = (
+    *(
+        "ROS_PACKAGE_PATH",
+        "GZ_SIM_RESOURCE_PATH",
+        "IGN_GAZEBO_RESOURCE_PATH",
+        "GAZEBO_MODEL_PATH",
+        "SDF_PATH",
+    ),
+)
 _PACKAGES: Final = ("package.xml", "manifest.xml", "model.config")
 _CHECKOUTS: Final = (".git", ".hg")
 _PYTHON: Final = ("__init__.py",)
 _BESIDE_MESHES: Final = frozenset({"urdf", "sdf", "mjcf", "xml", "robots", "worlds"})
+_NAME: Final = re.compile(rb"<name>\s*([^<>\s]{1,200})\s*</name>")
+# Packages are looked for by the names that they give themselves, so deep and among so many folders.
+_DEEPEST: Final = 4
+_MOST_FOLDERS: Final = 5000
 # Beyond this no system opens a file; it also bounds the work on a name.
 _LONGEST: Final = 4096
 
@@ -49,8 +63,9 @@ class Addresses:
     folder : pathlib.Path
         Of the robot's file.
     packages : sequence of pathlib.Path
-        Folders that hold the packages of ``package://`` and ``model://`` addresses; folders above the file,
-        ``ROS_PACKAGE_PATH``, ``GZ_SIM_RESOURCE_PATH`` and ``AMENT_PREFIX_PATH`` are searched too.
+        Folders that hold the packages of ``package://`` and ``model://`` addresses, by the names of their
+        folders or by those in their ``package.xml``; folders above the file, ``ROS_PACKAGE_PATH``,
+        ``GZ_SIM_RESOURCE_PATH``, ``SDF_PATH`` and ``AMENT_PREFIX_PATH`` are searched too.
     allow_outside : bool
         Whether addresses may lead anywhere.
     """
@@ -61,6 +76,7 @@ class Addresses:
         self._above = [above, *above.parents]
         self._allow_outside = allow_outside
         self._roots: dict[Path, tuple[Path, ...]] = {}
+        self._named: dict[Path, dict[str, Path]] = {}
 
     def find(self, address: str, folder: Path) -> Found:
         """Find a file or a folder.
@@ -109,6 +125,23 @@ class Addresses:
             homes = [root / name for root in searched] + [root for root in searched if root.name == name]
             for home in (each for each in homes if _kind(each)[0]):
                 yield home / inside.lstrip("/"), self._of_package(home, folder)
+            called = self._by_own_name(folder).get(name)
+            if called is not None:
+                yield called / inside.lstrip("/"), self._of_package(called, folder)
+
+    def _by_own_name(self, folder: Path) -> dict[str, Path]:
+        """Give the packages above a model, and those within its roots, by what ``package.xml`` calls them."""
+        if folder not in self._named:
+            names: dict[str, Path] = {}
+            wide = _wide(folder)
+            for home in [each for each in self._above if each not in wide] + _folders_within(
+                self._own(folder)
+            ):
+                name = _own_name(home / "package.xml")
+                if name:
+                    names.setdefault(name, home)
+            self._named[folder] = names
+        return self._named[folder]
 
     def _own(self, folder: Path) -> tuple[Path, ...]:
         """Give the folders that a model in this folder may name files in: its own and the declared ones."""
@@ -142,11 +175,7 @@ def own_root(folder: Path) -> Path:
     folder : pathlib.Path
         Of the file, absolute.
     """
-    try:
-        home = Path(os.path.realpath(Path.home()))
-    except RuntimeError:  # of a user without one
-        home = Path(folder.anchor)
-    wide = {Path(folder.anchor), home, *home.parents}
+    wide = _wide(folder)
     above = [each for each in (folder, *folder.parents) if each not in wide]
     for marks, which in ((_PACKAGES, -1), (_CHECKOUTS, 0), (_PYTHON, 0)):
         marked = [each for each in above if any(os.path.lexists(each / mark) for mark in marks)]
@@ -154,6 +183,46 @@ def own_root(folder: Path) -> Path:
             return marked[which]
     is_beside = folder.name.lower() in _BESIDE_MESHES and folder.parent in above
     return folder.parent if is_beside else folder
+
+
+def _wide(folder: Path) -> set[Path]:
+    """Give the folders that hold everything: the user's home and those above it."""
+    try:
+        home = Path(os.path.realpath(Path.home()))
+    except RuntimeError:  # of a user without one
+        home = Path(folder.anchor)
+    return {Path(folder.anchor), home, *home.parents}
+
+
+def _folders_within(roots: Sequence[Path]) -> list[Path]:
+    """Give the folders in these, level by level; those within a package, and links, are not entered."""
+    level, found = list(dict.fromkeys(roots)), []
+    for depth in range(_DEEPEST + 1):
+        found += level
+        inner: list[Path] = []
+        for folder in level if depth < _DEEPEST else ():
+            if depth and os.path.lexists(folder / "package.xml"):
+                continue
+            with suppress(OSError), os.scandir(folder) as entries:
+                names = [
+                    e.name for e in entries if not e.name.startswith(".") and e.is_dir(follow_symlinks=False)
+                ]
+                inner += [folder / name for name in sorted(names)]
+            if len(found) + len(inner) > _MOST_FOLDERS:
+                break
+        level = inner
+    return found
+
+
+def _own_name(mark: Path) -> str:
+    """Give the name that a ``package.xml`` states; "" where there is none."""
+    # A link to something else is not opened; that of an installed package leads to the source's own.
+    if not _kind(mark)[0] or Path(os.path.realpath(mark)).name != mark.name:
+        return ""
+    with suppress(OSError), mark.open("rb") as stream:
+        match = _NAME.search(stream.read(1 << 16))
+        return match[1].decode("utf-8", "replace") if match else ""
+    return ""
 
 
 def _absolute(folder: Path) -> Path:

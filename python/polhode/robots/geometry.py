@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
+from polhode.files.components import overlaps, parts_of, told
 from polhode.files.loaded import read_mesh
+from polhode.robots.facets import sagitta
 from polhode.robots.words import quoted, shortened
 
 if TYPE_CHECKING:
@@ -33,6 +35,12 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
     "capsule": lambda size: solids.capsule(size[0], size[1], density=1.0),
     "ellipsoid": lambda size: solids.ellipsoid(size, density=1.0),
 }
+# How well a box or a cylinder is taken to stand for the true part, of its diagonal.
+_OF_PRIMITIVES: Final = 0.02
+# What components share is told from this part of their volume on.
+_LITTLE: Final = 1e-3
+# Meshes of more triangles are not searched for components that overlap.
+_MOST_FACES: Final = 50_000
 
 
 @dataclass(frozen=True)
@@ -42,20 +50,27 @@ class Geometry:
     Attributes
     ----------
     body : RigidBody or None
-        Of density 1, in the axes of the link; None where a shape has no volume that could be told.
+        With the densities and masses that the file gives them, else of density 1, in the axes of the link;
+        None where a shape has no volume that could be told.
+    volume : float
+        Of those shapes.
     role : str
         Which shapes it is made of: ``"collision"`` or, where they do not serve, ``"visual"``.
     low, high : numpy.ndarray, shape (3,), or None
-        Opposite corners of the box along the axes of the link around all shapes of both roles; None where one
-        of them could not be told.
+        Opposite corners of the box along the axes of the link around all shapes of both roles that could be
+        read; None where there is none.
+    unread : int
+        How many shapes could not be read, so that the box is a part of what it should be.
     notes : tuple of str
         What could not be told, and how a mesh was read.
     """
 
     body: RigidBody | None
+    volume: float
     role: str
     low: Floats | None
     high: Floats | None
+    unread: int
     notes: tuple[str, ...]
 
 
@@ -87,32 +102,62 @@ class GeometryReader:
         notes: dict[str, str] = {}  # where each was found first
         folder = link.folder or self._folder
         boxes = [self._box(shape, folder, notes) for shape in link.shapes]
-        body, role = self._whole(link, folder, notes)
+        body, volume, role = self._whole(link, folder, notes)
         told = tuple(f"{where}: {note}" if where else note for note, where in notes.items())
         known = [box for box in boxes if box is not None]
-        if not known or len(known) < len(boxes):
-            return Geometry(body, role, None, None, told)
+        if not known:
+            return Geometry(body, volume, role, None, None, len(boxes), told)
         low = np.min([box[0] for box in known], axis=0)
         high = np.max([box[1] for box in known], axis=0)
         if not (np.isfinite(low).all() and np.isfinite(high).all()):
-            return Geometry(body, role, None, None, (*told, "its shapes are larger than numbers reach"))
-        return Geometry(body, role, low, high, told)
+            told = (*told, "its shapes are larger than numbers reach")
+            return Geometry(body, volume, role, None, None, len(boxes), told)
+        return Geometry(body, volume, role, low, high, len(boxes) - len(known), told)
 
-    def _whole(self, link: Link, folder: Path, notes: dict[str, str]) -> tuple[RigidBody | None, str]:
+    def filled(self, link: Link) -> RigidBody | None:
+        """Give the shapes filled with density 1, whatever the file says of their masses."""
+        plain = replace(link, shapes=tuple(replace(s, density=1.0, mass=None) for s in link.shapes))
+        return self._whole(plain, link.folder or self._folder, {})[0]
+
+    def coarseness(self, link: Link) -> float:
+        """Give how far the shapes may miss the surface they stand for, in metres.
+
+        A mesh misses a round surface by the sagitta of its facets; a box, a cylinder and the like only stand
+        for the true part, which is taken to be within 2 % of their diagonal.
+        """
+        largest = 0.0
+        for shape in link.shapes:
+            if shape.kind == "mesh":
+                mesh = self._mesh(shape.mesh, link.folder or self._folder)
+                if not isinstance(mesh, str):
+                    factors = np.array(shape.size)
+                    largest = max(largest, sagitta(mesh.mesh.vertices * factors, mesh.mesh.faces))
+            else:
+                box = self._box(shape, self._folder, {})
+                if box is not None:
+                    largest = max(largest, _OF_PRIMITIVES * float(np.linalg.norm(box[1] - box[0])))
+        return largest
+
+    def _whole(self, link: Link, folder: Path, notes: dict[str, str]) -> tuple[RigidBody | None, float, str]:
         """Add the shapes of one role: those of collisions if they have volumes, else the visual ones."""
         role = ""
         for role in ("collision", "visual"):
-            shapes = [shape for shape in link.shapes if shape.role == role]
+            # What the file itself gives no mass is none of the matter.
+            shapes = [s for s in link.shapes if s.role == role and (s.density if s.mass is None else s.mass)]
             try:
                 bodies = [self._body(shape, folder, notes) for shape in shapes]
                 parts = [part for part in bodies if part is not None]
                 if parts and len(parts) == len(bodies):
-                    return sum(parts[1:], start=parts[0]), role
+                    whole = sum((part for part, _ in parts[1:]), start=parts[0][0])
+                    return whole, sum(volume for _, volume in parts), role
             except PolhodeError as error:
                 notes.setdefault(f"the {role} shapes make no body: {error}", shapes[0].where)
-        return None, role
+        return None, 0.0, role
 
-    def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> RigidBody | None:
+    def _body(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[RigidBody, float] | None:
+        """Give the body of a shape where it stands, and its volume."""
+        if shape.problem:
+            return None
         key = (folder, shape.kind, shape.mesh, shape.size)
         if key not in self._solids:
             is_mesh = shape.kind == "mesh"
@@ -126,7 +171,7 @@ class GeometryReader:
         if not weight > 0.0:
             return None
         placed = solid.rotated(_quaternion(shape.place.rotation)).translated(shape.place.position)
-        return placed.scaled(mass=weight)
+        return placed.scaled(mass=weight), float(solid.mass)
 
     def _mesh_solid(self, shape: Shape, folder: Path) -> tuple[RigidBody | None, str]:
         """Give the solid that a mesh bounds, or its convex hull, and what has to be said of it."""
@@ -136,7 +181,8 @@ class GeometryReader:
         mesh = read.mesh
         vertices = mesh.vertices * np.array(shape.size)
         try:
-            return RigidBody.from_mesh(vertices, mesh.faces, density=1.0, orient=True), ""
+            solid = RigidBody.from_mesh(vertices, mesh.faces, density=1.0, orient=True)
+            return solid, _overlapping(f"mesh {name}", vertices, mesh.faces)
         except ValueError as error:
             first = str(error)
         try:
@@ -176,6 +222,9 @@ class GeometryReader:
     def _box(self, shape: Shape, folder: Path, notes: dict[str, str]) -> tuple[Floats, Floats] | None:
         """Opposite corners of the box along the axes of the link around a shape."""
         rotation, position = shape.place
+        if shape.problem:
+            notes.setdefault(f"{shape.problem}; this visual shape is left out", "")
+            return None
         if shape.kind == "mesh":
             mesh = self._mesh(shape.mesh, folder)
             if isinstance(mesh, str):
@@ -200,6 +249,19 @@ class GeometryReader:
         else:
             return None
         return position - reach, position + reach
+
+
+def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
+    """Say which components of a mesh overlap; "" where none do, or where there are too many faces."""
+    if len(faces) > _MOST_FACES:
+        return ""
+    parts = parts_of(vertices, faces)
+    if len(parts) < 2:
+        return ""
+    total = sum(part.volume for part in parts)
+    found = [each for each in overlaps(parts) if not each.volume < _LITTLE * total]  # or it is not known
+    lines = told(found, total, " m^3")
+    return f"{name}: {'; '.join(lines)}" if lines else ""
 
 
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:

@@ -6,6 +6,7 @@ axes of the turning frame in lower case, fixed ones in upper case, the other way
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -16,8 +17,9 @@ from polhode import euler_angles
 from polhode._core import rotate
 from polhode.errors import FileFormatError
 from polhode.files.xml_source import Edit, Element, remove_attribute, set_attribute
+from polhode.robots.edits import attribute, first_child, number_text
 from polhode.robots.mjcf_parts import copies, expand_includes
-from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
+from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale, unit
 from polhode.robots.sources import LimitError
 from polhode.robots.words import quoted
 
@@ -32,7 +34,9 @@ __all__ = ["links"]
 _ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 _HALF_LENGTHS = {"sphere": 1, "ellipsoid": 3, "box": 3, "cylinder": 2, "capsule": 2}
 _WATER = "1000"
-_OF_GEOMS = frozenset({"type", "size", "pos", "fromto", "mesh", "mass", "density", *_ORIENTATIONS})
+_OF_GEOMS = frozenset({"type", "size", "pos", "fromto", "mesh", "mass", "density", "group", *_ORIENTATIONS})
+# What the compiler does to masses after it has read them; none of it is done here.
+_AFTERWARDS = ("boundmass", "boundinertia", "settotalmass", "balanceinertia")
 
 
 def links(root: Element, sources: Sources) -> Iterator[Link]:
@@ -42,7 +46,7 @@ def links(root: Element, sources: Sources) -> Iterator[Link]:
     if made:
         sources.notes[f"{made} composite or flexcomp parts make bodies that are not judged"] = None
     for world in root.all("worldbody"):
-        yield from reader.below(world, None)
+        yield from reader.below(world, None, WORLD)
 
 
 class Member(NamedTuple):
@@ -65,6 +69,12 @@ class _Reader:
         self.in_radians = settings.get("angle", "degree") == "radian"
         self.sequence = settings.get("eulerseq", "xyz").swapcase()
         self.infers_always = settings.get("inertiafromgeom", "auto") == "true"
+        self.groups = [int(x) for x in settings.get("inertiagrouprange", "").split() if x.isdecimal()]
+        done = [name for name in _AFTERWARDS if settings.get(name, "0") not in ("0", "-1", "false")]
+        if done:
+            sources.notes[
+                f"{' and '.join(done)} of the compiler changes masses later, which is not judged"
+            ] = None
         self.geoms: dict[str, dict[str, str]] = {"main": {}}
         for default in root.all("default"):
             self._add_class(default, {}, default.attributes.get("class", "main"))
@@ -79,16 +89,17 @@ class _Reader:
             for model in asset.all("model"):
                 self._add_model(model)
 
-    def below(self, parent: Element, inherited: str | None) -> Iterator[Link]:
-        """Read the bodies and the attached models that hang on a body or the world."""
+    def below(self, parent: Element, inherited: str | None, above: str) -> Iterator[Link]:
+        """Read the bodies and the attached models that hang on a body or the world, by its key."""
         for body in self.members(parent, "body", Place.here(), inherited):
-            yield from self.bodies(body.element, body.inherited, body.problem)
+            yield from self.bodies(body, above)
         for attach in self.members(parent, "attach", Place.here(), inherited):
-            for link in self._attached(attach.element):
+            for link in self._attached(attach.element, above):
                 yield replace(link, problem=attach.problem or link.problem)
 
-    def bodies(self, body: Element, inherited: str | None, problem: str = "") -> Iterator[Link]:
-        """Read a body, which stands in a frame with that problem, and those that hang on it."""
+    def bodies(self, member: Member, above: str) -> Iterator[Link]:
+        """Read a body, with the problem of the frame that it stands in, and those that hang on it."""
+        body, _, inherited, problem = member
         inherited = body.attributes.get("childclass", inherited)
         inertial: Inertial | None = None
         shapes: tuple[Shape, ...] = ()
@@ -101,19 +112,36 @@ class _Reader:
             raise
         except FileFormatError as error:
             problem = problem or str(error)
+        reach = 0.0
+        with suppress(FileFormatError):
+            reach = float(np.linalg.norm(numbers(body, body.attributes.get("pos", "0 0 0"), 3, "pos")))
         own_name = body.attributes.get("name", f"(body of {body.where})")
+        name = self.sources.name(self.prefix, own_name, body)
+        key = f"body {len(self.sources.joints)}"
+        self.sources.joints.append(self._joint(body, name, above, key))
         yield Link(
-            name=self.sources.name(self.prefix, own_name, body),
+            name=name,
             line=body.line,
             inertial=inertial,
             problem=problem,
             shapes=shapes,
             inferred=declared is None or self.infers_always,
-            rewrite=partial(_rewrite, declared) if declared is not None and not declared.file else None,
+            rewrite=None if body.file or self.infers_always else partial(_rewrite, body, declared),
             file=body.file,
             folder=self.folder,
+            key=key,
+            reach=reach,
         )
-        yield from self.below(body, inherited)
+        yield from self.below(body, inherited, key)
+
+    def _joint(self, body: Element, name: str, above: str, key: str) -> Joint:
+        """Tell what moves a body: its joints, else nothing."""
+        free = [*self.members(body, "freejoint", Place.here(), None)]
+        joints = [*free, *self.members(body, "joint", Place.here(), None)]
+        if not joints:
+            return Joint("", "fixed", above, key)
+        kind = "free" if free else joints[0].element.attributes.get("type", "hinge")
+        return Joint(joints[0].element.attributes.get("name", f"of {name}"), kind, above, key)
 
     def members(
         self, parent: Element, tag: str, place: Place, inherited: str | None, problem: str = ""
@@ -164,8 +192,13 @@ class _Reader:
             name = self.sources.read(path, file, model).attributes.get("model", "")
         self.models[name] = file
 
-    def _attached(self, attach: Element) -> Iterator[Link]:
-        """Read what an ``<attach>`` brings: a body of another model with all below it, or all its bodies."""
+    def _attached(self, attach: Element, above: str) -> Iterator[Link]:
+        """Read what an ``<attach>`` brings: a body or a frame of another model, or all its bodies."""
+        tag = next((tag for tag in ("body", "frame") if tag in attach.attributes), "")
+        wanted = attach.attributes.get(tag, "")
+        if "model" not in attach.attributes and tag:
+            self.sources.notes["what <attach> repeats of the model itself is judged once"] = None
+            return
         name = attach.attributes.get("model", "")
         if name not in self.models:
             raise FileFormatError(
@@ -178,31 +211,35 @@ class _Reader:
         root = self.sources.read(path, file, attach)
         with self.sources.inside(path, file, attach):
             model = _Reader(root, path.parent, self.sources, prefix)
-            wanted = attach.attributes.get("body")
             for world in root.all("worldbody"):
-                if wanted is None:
-                    yield from model.below(world, None)
+                if not tag:
+                    yield from model.below(world, None, above)
                     continue
-                found = [
-                    each
-                    for each in model.everything(world, None)
-                    if each.element.attributes.get("name") == wanted
-                ]
-                for body in found:
-                    yield from model.bodies(body.element, body.inherited, body.problem)
+                everything = model.everything(world, tag, None)
+                found = [each for each in everything if each.element.attributes.get("name") == wanted]
+                for member in found:
+                    read = model.bodies(member, above) if tag == "body" else model.framed(member, above)
+                    yield from read
                 if found:
                     return
-            if wanted is not None:
+            if tag:
                 raise FileFormatError(
-                    f"{attach.where}: {file} has no body {quoted(wanted)}; correct the name"
+                    f"{attach.where}: {file} has no {tag} {quoted(wanted)}; correct the name"
                 )
 
-    def everything(self, parent: Element, inherited: str | None) -> Iterator[Member]:
-        """Give every body below a body or the world."""
-        for body in self.members(parent, "body", Place.here(), inherited):
-            yield body
-            name = body.element.attributes.get("childclass", body.inherited)
-            yield from self.everything(body.element, name)
+    def framed(self, frame: Member, above: str) -> Iterator[Link]:
+        """Read the bodies of a frame."""
+        inherited = frame.element.attributes.get("childclass", frame.inherited)
+        yield from self.below(frame.element, inherited, above)
+
+    def everything(self, parent: Element, tag: str, inherited: str | None) -> Iterator[Member]:
+        """Give every body, or every frame, below a body or the world."""
+        for child in parent.children:
+            if child.tag not in ("body", "frame", "replicate"):
+                continue
+            if child.tag == tag:
+                yield Member(child, Place.here(), inherited, "")
+            yield from self.everything(child, tag, child.attributes.get("childclass", inherited))
 
     def _add_class(self, default: Element, inherited: dict[str, str], name: str) -> None:
         own = dict(inherited)
@@ -265,14 +302,20 @@ class _Reader:
         kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
         density = float(numbers(geom, attributes.get("density", _WATER), 1, "density")[0])
         mass = float(numbers(geom, attributes["mass"], 1, "mass")[0]) if "mass" in attributes else None
+        if kind in ("plane", "hfield"):  # which bound no matter
+            mass = 0.0
+        group = attributes.get("group", "0")
+        if len(self.groups) == 2 and group.isdecimal() and len(group) < 10:
+            low, high = self.groups
+            mass = mass if low <= int(group) <= high else 0.0
         if kind == "mesh":
             place = frame.then(self._place(geom, attributes))
             name = attributes.get("mesh", "")
             if name not in self.meshes:
                 return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass, geom.where)
             mesh, address = self.meshes[name]
-            scale = tuple(numbers(mesh, mesh.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
-            return Shape("mesh", scale, place, "collision", address, density, mass, geom.where)
+            factors = scale(mesh, mesh.attributes.get("scale", "1"))
+            return Shape("mesh", factors, place, "collision", address, density, mass, geom.where)
         place, size = self._sized(geom, attributes, kind)
         return Shape(kind, size, frame.then(place), "collision", "", density, mass, geom.where)
 
@@ -312,15 +355,20 @@ def _turning_z_to(axis: Any) -> Any:
     return _matrix(np.array([-axis[1], axis[0], 0.0, 1.0 + axis[2]]) / np.sqrt(2.0 * (1.0 + axis[2])))
 
 
-def _rewrite(declared: Element, source: bytes, new: Inertial) -> list[Edit]:
+def _rewrite(body: Element, declared: Element | None, source: bytes, new: Inertial) -> list[Edit]:
     """Write mass properties with the axes of the body."""
     tensor = new.inertia
     elements = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
     is_diagonal = not any(elements[3:])
     name, values = ("diaginertia", elements[:3]) if is_diagonal else ("fullinertia", elements)
+    position = number_text(new.center_of_mass)
+    if declared is None:
+        text = f'<inertial pos="{position}" mass="{new.mass!r}" {name}="{number_text(values)}"/>'
+        return [first_child(source, body, text)]
     gone = {"diaginertia", "fullinertia", *_ORIENTATIONS} - {name}
-    edits = [remove_attribute(source, declared, attribute) for attribute in sorted(gone)]
-    edits.append(set_attribute(source, declared, name, " ".join(repr(float(x) + 0.0) for x in values)))
-    position = " ".join(repr(float(x) + 0.0) for x in new.center_of_mass)
-    edits.append(set_attribute(source, declared, "pos", position))
-    return [edit for edit in edits if edit is not None]
+    removed = [remove_attribute(source, declared, each) for each in sorted(gone)]
+    edits = [edit for edit in removed if edit is not None]
+    edits.append(set_attribute(source, declared, name, number_text(values)))
+    edits += attribute(source, declared, "pos", position)
+    edits += attribute(source, declared, "mass", repr(new.mass))
+    return edits

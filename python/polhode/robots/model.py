@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Inertial", "Link", "Place", "Robot", "Shape", "numbers", "unit"]
+__all__ = ["WORLD", "Inertial", "Joint", "Link", "Place", "Robot", "Shape", "numbers", "scale", "unit"]
+
+WORLD: Final = "world"
+"""Stands for what never moves, where a joint names it."""
 
 
 class Place(NamedTuple):
@@ -77,6 +80,9 @@ class Shape:
         Its own mass, where the file gives one.
     where : str
         Line, and file where that is included by another one.
+    problem : str
+        Why the numbers of a visual shape cannot be read; "" if they can. Those of a collision shape end the
+        verdict of the link.
     """
 
     kind: str
@@ -87,6 +93,25 @@ class Shape:
     density: float = 1.0
     mass: float | None = None
     where: str = ""
+    problem: str = ""
+
+
+class Joint(NamedTuple):
+    """What ties two links.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+        As the file has it; ``"fixed"`` where it allows no motion.
+    parent, child : str
+        Keys of links; ``"world"`` for what never moves.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
 
 
 @dataclass(frozen=True)
@@ -107,11 +132,19 @@ class Link:
         Whether a simulator takes the inertia from the geometry (MJCF without any, SDF where it says so).
     rewrite : callable, optional
         Given the source and other mass properties, the edits that write them; None where another file
-        declares them.
+        holds the link.
     file : str
         The file that it stands in, where that is included by the robot's own.
     folder : pathlib.Path, optional
         Where the relative addresses of its meshes start; that of the robot by default.
+    key : str
+        What joints call it: its name with those of the models that it stands in.
+    defaults : str
+        What the file leaves out and the format sets instead (SDF: 1 kg, the unit tensor); "" for nothing.
+    is_static : bool
+        Whether it belongs to a model that never moves.
+    reach : float
+        How far it stands from what the file places it in, in metres.
     """
 
     name: str
@@ -123,6 +156,10 @@ class Link:
     rewrite: Callable[[bytes, Inertial], list[Edit]] | None = field(default=None, compare=False)
     file: str = ""
     folder: Path | None = None
+    key: str = ""
+    defaults: str = ""
+    is_static: bool = False
+    reach: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -143,6 +180,7 @@ class Robot:
         What of the file is not judged.
     roots : tuple of pathlib.Path
         Where else its files may lie: where the file is in truth, if it was read through a link.
+    joints : tuple of Joint
     """
 
     format: str
@@ -152,6 +190,7 @@ class Robot:
     source: bytes
     notes: tuple[str, ...] = ()
     roots: tuple[Path, ...] = ()
+    joints: tuple[Joint, ...] = ()
 
 
 # Longer texts hold no few numbers; the file may say them of many elements.
@@ -187,6 +226,13 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
             "room in numbers; correct it"
         )
     return values
+
+
+def scale(element: Element, text: str) -> tuple[float, ...]:
+    """Read the scale of a mesh; one number stands for all three axes."""
+    count = 1 if len(text[:_LONGEST].split()) == 1 else 3
+    values: tuple[float, ...] = tuple(numbers(element, text, count, "scale").tolist())
+    return values * (3 // count)
 
 
 def unit(element: Element, vector: Floats) -> Floats:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
 from polhode._core import rotate
 from polhode.errors import FileFormatError
-from polhode.files.xml_source import Edit, Element, blanks_of, set_text
-from polhode.robots.model import Inertial, Link, Place, Shape, numbers, unit
-from polhode.robots.sdf_include import included
+from polhode.files.xml_source import Edit, Element
+from polhode.robots.edits import first_child, indented, number_text, text_of
+from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale, unit
+from polhode.robots.sdf_include import included, is_true
+from polhode.robots.sdf_include import text_of as _text
 from polhode.robots.urdf import LinkReader, forms, roll_pitch_yaw, tensor_text
 from polhode.robots.words import quoted
 
@@ -22,6 +26,11 @@ if TYPE_CHECKING:
 
 __all__ = ["links"]
 
+_WATER = "1000"
+_SETS = {
+    "mass": "without <mass> the format sets 1 kg",
+    "inertia": "without <inertia> the format sets the unit tensor",
+}
 _DEFAULT = {"ixx": "1", "iyy": "1", "izz": "1", "ixy": "0", "ixz": "0", "iyz": "0"}
 _SIZES = {
     "box": (("size", 3),),
@@ -32,23 +41,102 @@ _SIZES = {
 }
 
 
+class Scope(NamedTuple):
+    """Where elements stand: in which folder, with which names before theirs, in a model that moves or not.
+
+    Attributes
+    ----------
+    folder : pathlib.Path
+    prefix : str
+        Of the names of links as they are shown.
+    path : str
+        The models around, as joints name them: ``"arm::hand::"``.
+    is_static : bool
+    is_named : bool
+        Whether the path names the model already that comes next, as an ``<include>`` does.
+    """
+
+    folder: Path
+    prefix: str = ""
+    path: str = ""
+    is_static: bool = False
+    is_named: bool = False
+
+
 def links(root: Element, sources: Sources) -> Iterator[Link]:
-    """Read the links of every model, those of included files too."""
-    return _below(root, sources, sources.folder, "")
+    """Read the links of every model, those of included files too, and their joints."""
+    found = list(below(root, sources, Scope(sources.folder)))
+    keys = dict.fromkeys(link.key for link in found)
+    sources.joints[:] = [
+        joint._replace(
+            parent=_resolved(joint.parent, keys, sources.frames),
+            child=_resolved(joint.child, keys, sources.frames),
+        )
+        for joint in sources.joints
+    ]
+    yield from found
 
 
-def _below(parent: Element, sources: Sources, folder: Path, prefix: str) -> Iterator[Link]:
+def below(parent: Element, sources: Sources, scope: Scope) -> Iterator[Link]:
+    """Read the links below an element."""
     for element in parent.children:
-        if element.tag == "include" and element.find("uri") is not None:
-            yield from included(element, sources, folder, prefix, _below)
-            continue
-        if element.tag != "link":
-            yield from _below(element, sources, folder, prefix)
-            continue
-        declared = element.find("inertial")
-        inferred = declared is not None and declared.attributes.get("auto", "false").lower() in ("true", "1")
-        reader = LinkReader(_inertial, _shapes, _rewrite)
-        yield reader.read(element, sources, folder, prefix, inferred=inferred)
+        tag = element.tag
+        if tag == "include" and element.find("uri") is not None:
+            yield from included(element, sources, scope, below)
+        elif tag == "link":
+            yield _link(element, sources, scope)
+        elif tag == "joint":
+            sources.joints.append(_joint(element, scope))
+        elif tag == "frame":
+            name, target = (element.attributes.get(which, "") for which in ("name", "attached_to"))
+            sources.frames[scope.path + name] = scope.path + target
+        elif tag == "model":
+            own = "" if scope.is_named else f"{element.attributes.get('name', '')}::"
+            is_static = scope.is_static or is_true(element, "static")
+            inner = scope._replace(path=scope.path + own, is_static=is_static, is_named=False)
+            yield from below(element, sources, inner)
+        else:
+            yield from below(element, sources, scope)
+
+
+def _link(element: Element, sources: Sources, scope: Scope) -> Link:
+    declared = element.find("inertial")
+    inferred = declared is not None and is_true(declared, "auto", declared.attributes)
+    link = LinkReader(_inertial, _shapes, _rewrite).read(
+        element, sources, scope.folder, scope.prefix, inferred=inferred
+    )
+    defaults, inertial = "", link.inertial
+    if declared is None:
+        defaults = "without <inertial> the format sets 1 kg and the unit tensor"
+        inertial = Inertial(1.0, np.zeros(3), np.eye(3))
+    elif inertial is not None:
+        absent = [tag for tag in ("mass", "inertia") if declared.find(tag) is None]
+        defaults = " and ".join(_SETS[tag] for tag in absent)
+    reach = 0.0
+    with suppress(FileFormatError):
+        reach = float(np.linalg.norm(_pose(element.find("pose")).position))
+    key = scope.path + element.attributes.get("name", "")
+    return replace(
+        link, inertial=inertial, key=key, defaults=defaults, is_static=scope.is_static, reach=reach
+    )
+
+
+def _joint(element: Element, scope: Scope) -> Joint:
+    parent, child = (_text(element, tag) for tag in ("parent", "child"))
+    ends = (name if name == WORLD else scope.path + name for name in (parent, child))
+    return Joint(element.attributes.get("name", ""), element.attributes.get("type", ""), *ends)
+
+
+def _resolved(name: str, keys: dict[str, None], frames: dict[str, str]) -> str:
+    """Find the link that a joint means: by its name, that of a frame on it, or that of its model."""
+    for _ in range(len(frames) + 1):
+        if name in keys or name == WORLD or name not in frames:
+            break
+        name = frames[name]
+    if name in keys or name == WORLD:
+        return name
+    inside = name.removesuffix("__model__").removesuffix("::") + "::"
+    return next((key for key in keys if key.startswith(inside)), name)
 
 
 def _pose(element: Element | None) -> Place:
@@ -97,55 +185,70 @@ def _inertial(element: Element) -> Inertial:
 
 
 def _shapes(link: Element) -> Iterator[Shape]:
+    declared = link.find("inertial")
+    is_inferred = declared is not None and is_true(declared, "auto", declared.attributes)
+    (of_link,) = _value(declared or link, "density", 1, _WATER) if is_inferred else (1.0,)
     for role, element, form in forms(link):
-        pose = element.find("pose")
-        if pose is not None and pose.attributes.get("relative_to"):
-            yield Shape("pose in another frame", (), Place.here(), role, where=element.where)
-            continue
-        place = _pose(pose)
-        if form.tag in _SIZES:
-            size = tuple(x for name, count in _SIZES[form.tag] for x in _value(form, name, count))
-            yield Shape(form.tag, size, place, role, where=form.where)
-        elif form.tag == "mesh" and form.find("submesh") is None:
-            uri = form.find("uri")
-            address = uri.text.strip() if uri is not None else ""
-            scale = _value(form, "scale", 3, "1 1 1")
-            yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
-        else:
-            kind = form.tag if form.tag != "mesh" else "part of a mesh"
-            yield Shape(kind, (), place, role, where=form.where)
+        try:
+            shape = _shape(element, form, role)
+            if is_inferred and role == "collision":
+                shape = replace(shape, density=_value(element, "density", 1, repr(of_link))[0])
+            yield shape
+        except FileFormatError as error:
+            if role == "collision":
+                raise
+            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=str(error))
 
 
-def _rewrite(declared: Element, source: bytes, new: Inertial) -> list[Edit]:
+def _shape(element: Element, form: Element, role: Literal["collision", "visual"]) -> Shape:
+    pose = element.find("pose")
+    if pose is not None and pose.attributes.get("relative_to"):
+        return Shape("pose in another frame", (), Place.here(), role, where=element.where)
+    place = _pose(pose)
+    if form.tag in _SIZES:
+        size = tuple(x for name, count in _SIZES[form.tag] for x in _value(form, name, count))
+        return Shape(form.tag, size, place, role, where=form.where)
+    if form.tag == "mesh" and form.find("submesh") is None:
+        factors = scale(form.find("scale") or form, _text(form, "scale") or "1")
+        return Shape("mesh", factors, place, role, mesh=_text(form, "uri"), where=form.where)
+    kind = form.tag if form.tag != "mesh" else "part of a mesh"
+    return Shape(kind, (), place, role, where=form.where)
+
+
+def _rewrite(link: Element, declared: Element | None, source: bytes, new: Inertial) -> list[Edit]:
     """Write mass properties with the axes of the link."""
-    pose_text = " ".join(repr(float(x) + 0.0) for x in (*new.center_of_mass, 0.0, 0.0, 0.0))
+    pose_text = number_text((*new.center_of_mass, 0.0, 0.0, 0.0))
     texts = tensor_text(new.inertia)
+    if declared is None:
+        parts = [f"<pose>{pose_text}</pose>"] if np.any(new.center_of_mass) else []
+        parts += [f"<mass>{new.mass!r}</mass>", _inertia(texts)]
+        return [first_child(source, link, indented(source, link, "<inertial>", parts, "</inertial>"))]
     edits, additions = [], ""
-    pose, inertia = declared.find("pose"), declared.find("inertia")
+    pose, mass, inertia = (declared.find(tag) for tag in ("pose", "mass", "inertia"))
     if pose is not None:
         edits.append(Edit(pose.start, pose.end, f"<pose>{pose_text}</pose>"))
     elif np.any(new.center_of_mass):
         additions += f"<pose>{pose_text}</pose>"
+    if mass is not None:
+        edits += text_of(mass, repr(new.mass))
+    elif new.mass != 1.0:
+        additions += f"<mass>{new.mass!r}</mass>"
     if inertia is None:
-        additions += "<inertia>" + "".join(f"<{n}>{t}</{n}>" for n, t in texts.items()) + "</inertia>"
+        additions += _inertia(texts)
     else:
         absent = ""
         for name, text in texts.items():
             element = inertia.find(name)
             if element is not None:
-                edits.append(set_text(element, text))
-            elif text != _DEFAULT[name]:
+                edits += text_of(element, text)
+            elif float(text) != float(_DEFAULT[name]):
                 absent += f"<{name}>{text}</{name}>"
         if absent:
-            edits.append(_inserted(source, inertia, absent))
+            edits.append(first_child(source, inertia, absent))
     if additions:
-        edits.append(_inserted(source, declared, additions))
+        edits.append(first_child(source, declared, additions))
     return edits
 
 
-def _inserted(source: bytes, parent: Element, text: str) -> Edit:
-    """Put elements before the first child, behind the same blanks."""
-    if parent.inside == parent.end:
-        return Edit(parent.start, parent.end, f"<{parent.tag}>{text}</{parent.tag}>")
-    first = parent.children[0].start if parent.children else parent.outside
-    return Edit(first, first, text + blanks_of(source[parent.inside : first]))
+def _inertia(texts: dict[str, str]) -> str:
+    return "<inertia>" + "".join(f"<{n}>{t}</{n}>" for n, t in texts.items()) + "</inertia>"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from polhode.errors import FileFormatError
@@ -14,37 +15,34 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from polhode.files.xml_source import Element
+    from polhode.robots.sdf import Scope
     from polhode.robots.sources import Sources
 
-    Reader = Callable[[Element, Sources, Path, str], Iterator[Link]]
+    Reader = Callable[[Element, Sources, Scope], Iterator[Link]]
 
-__all__ = ["included"]
+__all__ = ["included", "is_true", "text_of"]
 
 _ROOTS: Final = frozenset({"sdf", "robot", "gazebo", "world", "model"})
 
 
-def included(
-    include: Element, sources: Sources, folder: Path, prefix: str, read_links: Reader
-) -> Iterator[Link]:
+def included(include: Element, sources: Sources, scope: Scope, read_links: Reader) -> Iterator[Link]:
     """Read the links of an included model; one that is not found is a link that cannot be read.
 
     Parameters
     ----------
     include : Element
     sources : Sources
-    folder : pathlib.Path
-        Where a relative address starts.
-    prefix : str
-        Of the names of the links.
+    scope : Scope
+        Where it stands.
     read_links : callable
         Reads those below an element.
     """
-    uri = _text(include, "uri")
+    uri = text_of(include, "uri")
     if uri.startswith(("http://", "https://")):
         sources.notes[f"{shortened(uri)} is not judged: nothing is fetched from a network"] = None
         return
     try:
-        path = _located(include, uri, sources, folder)
+        path = _located(include, uri, sources, scope.folder)
         root = sources.read(path, uri, include)
         if root.tag == "mujoco":
             sources.notes[f"{shortened(uri)} is not judged: it is MJCF, to be checked for itself"] = None
@@ -53,21 +51,32 @@ def included(
             found = f"the root of {shortened(uri)} is <{shortened(root.tag)}>"
             raise FileFormatError(f"{include.where}: {found}, not <sdf> or <robot>; check the file")
     except FileFormatError as error:
-        name = sources.name(prefix, f"(include of {include.where})", include)
+        name = sources.name(scope.prefix, f"(include of {include.where})", include)
         yield Link(name, include.line, None, str(error), file=include.file)
         return
     with sources.inside(path, uri, include):
         model = next(root.descendants("model"), root)
-        name = _text(include, "name") or model.attributes.get("name", "")
-        is_merged = include.attributes.get("merge", "false").lower() in ("true", "1")
-        inner = sources.prefix(prefix if is_merged or not name else f"{prefix}{name}::")
-        read = urdf.links if root.tag == "robot" else read_links
-        yield from read(root, sources, path.parent, inner)
+        name = text_of(include, "name") or model.attributes.get("name", "")
+        own = "" if is_true(include, "merge", include.attributes) or not name else f"{name}::"
+        inner = scope._replace(
+            folder=path.parent,
+            prefix=sources.prefix(scope.prefix + own),
+            path=scope.path + own,
+            is_static=scope.is_static or is_true(include, "static"),
+            is_named=True,
+        )
+        if root.tag == "robot":
+            for link in urdf.links(root, sources, path.parent, inner.prefix, inner.path):
+                yield replace(link, is_static=inner.is_static)
+        else:
+            yield from read_links(root, sources, inner)
 
 
 def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path:
     """Find the file that an address means: itself, or the newest that a model's folder offers."""
     path, fault = sources.addresses.find(uri, folder)
+    if path is None and not fault and "://" not in uri:  # the bare name of a model in a folder of models
+        path, fault = sources.addresses.find(f"model://{uri}", folder)
     if path is not None and path.is_dir():
         home = path
         path, fault = sources.addresses.find("model.config", home)
@@ -81,9 +90,16 @@ def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path
     return path
 
 
-def _text(parent: Element, tag: str) -> str:
+def text_of(parent: Element, tag: str) -> str:
+    """Give the text of a child; "" where there is none."""
     element = parent.find(tag)
     return element.text.strip() if element is not None else ""
+
+
+def is_true(parent: Element, tag: str, attributes: dict[str, str] | None = None) -> bool:
+    """Tell whether a child, or an attribute, says yes."""
+    text = text_of(parent, tag) if attributes is None else attributes.get(tag, "")
+    return text.lower() in ("true", "1")
 
 
 def _newest(root: Element, config: Path) -> str:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
     from polhode.robots.addresses import Addresses
+    from polhode.robots.model import Joint
 
 __all__ = ["LimitError", "Sources", "read_source", "read_stream"]
 
@@ -54,6 +55,10 @@ class Sources:
         """Of the files that were read, as they were asked for."""
         self.notes: dict[str, None] = {}
         """What of them is not judged."""
+        self.joints: list[Joint] = []
+        """What ties the links that were read."""
+        self.frames: dict[str, str] = {}
+        """Of SDF: what each frame is attached to."""
         self._files = self._bytes = self._copies = self._copied = self._links = 0
         self._open: set[Path] = set()
 

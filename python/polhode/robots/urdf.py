@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -10,8 +12,9 @@ import numpy as np
 from polhode import euler_angles
 from polhode._core import rotate
 from polhode.errors import FileFormatError
-from polhode.files.xml_source import Edit, Element, blanks_of, set_attribute
-from polhode.robots.model import Inertial, Link, Place, Shape, numbers
+from polhode.files.xml_source import Edit, Element, blanks_of
+from polhode.robots.edits import attribute, first_child, indented, number_text
+from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -35,12 +38,12 @@ class LinkReader(NamedTuple):
     inertial, shapes : callable
         Read ``<inertial>``, and the shapes of a link.
     rewrite : callable
-        Of ``<inertial>``, the source and other mass properties: the edits that write them.
+        Of the link, its ``<inertial>``, the source and other mass properties: the edits that write them.
     """
 
     inertial: Callable[[Element], Inertial]
     shapes: Callable[[Element], Iterator[Shape]]
-    rewrite: Callable[[Element, bytes, Inertial], list[Edit]]
+    rewrite: Callable[[Element, Element | None, bytes, Inertial], list[Edit]]
 
     def read(
         self, element: Element, sources: Sources, folder: Path, prefix: str, *, inferred: bool = False
@@ -62,17 +65,35 @@ class LinkReader(NamedTuple):
             problem=problem,
             shapes=shapes,
             inferred=inferred,
-            rewrite=partial(self.rewrite, declared) if declared is not None and not declared.file else None,
+            rewrite=None if element.file else partial(self.rewrite, element, declared),
             file=element.file,
             folder=folder,
         )
 
 
-def links(root: Element, sources: Sources, folder: Path | None = None, prefix: str = "") -> Iterator[Link]:
-    """Read the links of a robot, in the folder of its file if that is another one's."""
+def links(
+    root: Element, sources: Sources, folder: Path | None = None, prefix: str = "", scope: str = ""
+) -> Iterator[Link]:
+    """Read the links of a robot, in the folder of its file if that is another one's, and its joints."""
     reader = LinkReader(_inertial, _shapes, _rewrite)
+    reaches: dict[str, float] = {}
+    for element in root.all("joint"):
+        parent, child = (_end(element, tag) for tag in ("parent", "child"))
+        kind = element.attributes.get("type", "")
+        ends = (name if name == WORLD else scope + name for name in (parent, child))
+        sources.joints.append(Joint(element.attributes.get("name", ""), kind, *ends))
+        with suppress(FileFormatError):
+            reaches[child] = float(np.linalg.norm(_place(element.find("origin")).position))
     for element in root.all("link"):
-        yield reader.read(element, sources, folder or sources.folder, prefix)
+        link = reader.read(element, sources, folder or sources.folder, prefix)
+        name = element.attributes.get("name", "(without a name)")
+        key = name if name == WORLD else scope + name
+        yield replace(link, key=key, reach=reaches.get(name, 0.0))
+
+
+def _end(joint: Element, tag: str) -> str:
+    end = joint.find(tag)
+    return end.attributes.get("link", "") if end is not None else ""
 
 
 def forms(link: Element) -> Iterator[tuple[Literal["collision", "visual"], Element, Element]]:
@@ -121,21 +142,29 @@ def _inertial(element: Element) -> Inertial:
 
 def _shapes(link: Element) -> Iterator[Shape]:
     for role, element, form in forms(link):
-        place = _place(element.find("origin"))
-        read = partial(_size, form)
-        if form.tag == "box":
-            yield Shape("box", read("size", 3), place, role, where=form.where)
-        elif form.tag == "sphere":
-            yield Shape("sphere", read("radius"), place, role, where=form.where)
-        elif form.tag in ("cylinder", "capsule"):
-            size = (*read("radius"), *read("length"))
-            yield Shape(form.tag, size, place, role, where=form.where)
-        elif form.tag == "mesh":
-            scale = tuple(numbers(form, form.attributes.get("scale", "1 1 1"), 3, "scale").tolist())
-            address = form.attributes.get("filename", "")
-            yield Shape("mesh", scale, place, role, mesh=address, where=form.where)
-        else:
-            yield Shape(form.tag, (), place, role, where=form.where)
+        try:
+            yield _shape(element, form, role)
+        except FileFormatError as error:
+            if role == "collision":
+                raise
+            yield Shape(form.tag, (), Place.here(), role, where=form.where, problem=str(error))
+
+
+def _shape(element: Element, form: Element, role: Literal["collision", "visual"]) -> Shape:
+    place = _place(element.find("origin"))
+    read = partial(_size, form)
+    if form.tag == "box":
+        return Shape("box", read("size", 3), place, role, where=form.where)
+    if form.tag == "sphere":
+        return Shape("sphere", read("radius"), place, role, where=form.where)
+    if form.tag in ("cylinder", "capsule"):
+        size = (*read("radius"), *read("length"))
+        return Shape(form.tag, size, place, role, where=form.where)
+    if form.tag == "mesh":
+        factors = scale(form, form.attributes.get("scale", "1"))
+        address = form.attributes.get("filename", "")
+        return Shape("mesh", factors, place, role, mesh=address, where=form.where)
+    return Shape(form.tag, (), place, role, where=form.where)
 
 
 def _size(form: Element, name: str, count: int = 1) -> tuple[float, ...]:
@@ -145,22 +174,28 @@ def _size(form: Element, name: str, count: int = 1) -> tuple[float, ...]:
     return size
 
 
-def _rewrite(declared: Element, source: bytes, new: Inertial) -> list[Edit]:
+def _rewrite(link: Element, declared: Element | None, source: bytes, new: Inertial) -> list[Edit]:
     """Write mass properties with the axes of the link."""
-    position = " ".join(repr(float(x) + 0.0) for x in new.center_of_mass)
+    position = number_text(new.center_of_mass)
+    if declared is None:
+        tensor = " ".join(f'{name}="{text}"' for name, text in tensor_text(new.inertia).items())
+        parts = [f'<origin xyz="{position}" rpy="0 0 0"/>'] if np.any(new.center_of_mass) else []
+        parts += [f'<mass value="{new.mass!r}"/>', f"<inertia {tensor}/>"]
+        return [first_child(source, link, indented(source, link, "<inertial>", parts, "</inertial>"))]
     edits = []
     origin = declared.find("origin")
     if origin is not None:
-        edits.append(set_attribute(source, origin, "xyz", position))
+        edits += attribute(source, origin, "xyz", position)
         if "rpy" in origin.attributes:
-            edits.append(set_attribute(source, origin, "rpy", "0 0 0"))
+            edits += attribute(source, origin, "rpy", "0 0 0")
     elif np.any(new.center_of_mass):
         # Before the first child, behind the same indentation.
         first = declared.children[0].start if declared.children else declared.inside
         blanks = blanks_of(source[declared.inside : first])
         edits.append(Edit(first, first, f'<origin xyz="{position}" rpy="0 0 0"/>{blanks}'))
+    for mass in declared.all("mass"):
+        edits += attribute(source, mass, "value", repr(new.mass))
     for inertia in declared.all("inertia"):
-        edits += [
-            set_attribute(source, inertia, name, text) for name, text in tensor_text(new.inertia).items()
-        ]
+        for name, text in tensor_text(new.inertia).items():
+            edits += attribute(source, inertia, name, text)
     return edits

@@ -10,7 +10,9 @@ import numpy as np
 from polhode import RigidBody, principal_moments
 from polhode.errors import PolhodeError
 from polhode.robots.model import Inertial
-from polhode.validity import fit_in_box, nearest_valid
+from polhode.robots.room import LEAST, MOST, beyond_room, beyond_size, density_needed, times, too_dense
+from polhode.robots.structure import standings, without_mass
+from polhode.validity import nearest_valid
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,19 +20,26 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode.robots.geometry import Geometry, GeometryReader
-    from polhode.robots.model import Link
+    from polhode.robots.model import Link, Robot
+    from polhode.robots.structure import Standing
 
     Floats = NDArray[np.float64]
 
-__all__ = ["FAILURES", "Verdict", "judge"]
+__all__ = ["FAILURES", "Verdict", "has_own_tensor", "is_without_mass", "judge"]
 
-Word = Literal["good", "suspect", "placeholder", "impossible", "unreadable", "none", "inferred"]
-FAILURES: Final = frozenset({"placeholder", "impossible", "unreadable"})
+Word = Literal[
+    "good",
+    "suspect",
+    "coarse",
+    "placeholder",
+    "impossible",
+    "missing",
+    "unreadable",
+    "none",
+    "inferred",
+]
+FAILURES: Final = frozenset({"placeholder", "impossible", "missing", "unreadable"})
 
-# Matter on the surface of a box has at most 3 times the moments of the box filled; ten times less than the
-# shape's own is a heavy core, or another unit.
-_MOST: Final = 3.0
-_LEAST: Final = 0.1
 # A table printed to few digits breaks a law by no more than this, and can be put right without guessing.
 _NEAR: Final = 0.1
 
@@ -44,13 +53,16 @@ class Verdict(NamedTuple):
     line : int
         Of the link in the file.
     verdict : str
-        ``"good"``; ``"suspect"``: possible, but far from what its shape has; ``"placeholder"``: the unit
-        tensor, or the same multiple of it in links of different masses; ``"impossible"``: no body has it, or
-        no body of that size; ``"unreadable"``: a number is missing or is not a number; ``"none"``: nothing is
-        declared; ``"inferred"``: nothing is declared, and a simulator computes it from the geometry.
+        ``"good"``; ``"suspect"``: possible, but far from what its shape has; ``"coarse"``: beyond the room of
+        its shape, but by no more than that may be off; ``"placeholder"``: the unit tensor, the same multiple
+        of it in links of different masses, or zero; ``"impossible"``: no body has it, or no body of that
+        size; ``"missing"``: no mass where a joint moves; ``"unreadable"``: a number is missing or is not a
+        number; ``"none"``: nothing is declared, nor needed; ``"inferred"``: nothing is declared, and a
+        simulator computes it from the geometry.
     reason : str
         Which law fails and by how much.
     mass : float or None
+        Declared, or as the simulator computes it where it is inferred; so the moments.
     moments : numpy.ndarray, shape (3,), or None
         Declared principal moments about the centre of mass, ascending.
     shape_moments : numpy.ndarray, shape (3,), or None
@@ -81,32 +93,94 @@ class Verdict(NamedTuple):
     file: str = ""
 
 
-def judge(links: Sequence[Link], geometry: GeometryReader) -> list[Verdict]:
+def judge(
+    robot: Robot, geometry: GeometryReader, density: float | None = None, mass: float | None = None
+) -> list[Verdict]:
     """Judge every link.
 
     Parameters
     ----------
-    links : sequence of Link
+    robot : Robot
     geometry : GeometryReader
+    density, mass : float, optional
+        What links have whose file says no mass: each of that density, or all together of that mass.
 
     Returns
     -------
     list of Verdict
         In the order of the links.
     """
-    copied = _placeholders(links)
     # Ratios of numbers that lie far apart leave their range: infinity and zero are right there.
     with np.errstate(all="ignore"):
-        return [_judge(link, geometry.read(link), copied)._replace(file=link.file) for link in links]
+        read = [geometry.read(link) for link in robot.links]
+        stand = standings(
+            robot, [_has_mass(link, each) for link, each in zip(robot.links, read, strict=True)]
+        )
+        judging = _Judging(
+            geometry,
+            robot.format,
+            _placeholders(robot.links),
+            _reach(robot, read),
+            not any(each.unread for each in read),
+        )
+        found = [
+            judging.link(link, each, standing)._replace(file=link.file)
+            for link, each, standing in zip(robot.links, read, stand, strict=True)
+        ]
+        return _filled(robot, found, geometry, density, mass)
+
+
+def has_own_tensor(link: Link) -> bool:
+    """Tell whether a tensor may have been measured or identified: a body has it, and it is no placeholder."""
+    declared = link.inertial
+    if declared is None or link.defaults or _isotropic(declared.inertia) is not None:
+        return False
+    try:
+        RigidBody(declared.mass, declared.inertia, declared.center_of_mass)
+    except PolhodeError:
+        return False
+    return True
+
+
+def is_without_mass(link: Link, verdict: Verdict) -> bool:
+    """Tell whether a link fails and its file says no mass, so that a density or a mass is needed."""
+    return verdict.verdict == "missing" or ("1 kg" in link.defaults and verdict.verdict in FAILURES)
+
+
+def _is_empty(declared: Inertial) -> bool:
+    return declared.mass == 0.0 and not declared.inertia.any()
+
+
+def _has_mass(link: Link, geometry: Geometry) -> bool:
+    if link.problem:
+        return True
+    if link.inertial is None:
+        solid = [shape for shape in link.shapes if shape.role == "collision"]
+        unread = any((shape.density if shape.mass is None else shape.mass) != 0.0 for shape in solid)
+        return link.inferred and (geometry.body is not None or (unread and geometry.unread > 0))
+    return not _is_empty(link.inertial)
+
+
+def _reach(robot: Robot, geometry: Sequence[Geometry]) -> float:
+    """Give how far the robot reaches at most, end to end, by its joints and the shapes that were read."""
+    joints = sum(link.reach for link in robot.links)
+    shapes = (
+        float(np.linalg.norm(each.high - each.low))
+        for each in geometry
+        if each.low is not None and each.high is not None
+    )
+    return joints + sum(shapes)
 
 
 def _placeholders(links: Sequence[Link]) -> dict[float, int]:
-    """Count the links of each isotropic moment that stands for nothing: 1, or the same at unlike masses."""
+    """Count the links of each isotropic moment of nothing: 0, 1, or the same at unlike masses."""
     masses = defaultdict(list)
     for link in links:
-        if link.inertial is not None and (moment := _isotropic(link.inertial.inertia)) is not None:
+        if link.inertial is None or _is_empty(link.inertial) or link.is_static:
+            continue
+        if (moment := _isotropic(link.inertial.inertia)) is not None:
             masses[moment].append(link.inertial.mass)
-    return {m: len(held) for m, held in masses.items() if m == 1.0 or len(set(held)) > 1}
+    return {m: len(held) for m, held in masses.items() if m in (0.0, 1.0) or len(set(held)) > 1}
 
 
 def _isotropic(tensor: Floats) -> float | None:
@@ -114,90 +188,132 @@ def _isotropic(tensor: Floats) -> float | None:
     return moment if np.allclose(tensor, moment * np.eye(3), rtol=0.0, atol=1e-9 * abs(moment)) else None
 
 
-def _judge(link: Link, geometry: Geometry, placeholders: dict[float, int]) -> Verdict:
-    if link.problem:
-        return Verdict(link.name, link.line, "unreadable", link.problem)
-    declared = link.inertial
-    if declared is None:
-        word: Word = "inferred" if link.inferred and link.shapes else "none"
-        return Verdict(link.name, link.line, word, "", notes=geometry.notes if link.inferred else ())
-    own, factor, notes = None, None, geometry.notes
-    if geometry.body is not None and declared.mass > 0.0:
+class _Judging(NamedTuple):
+    """What the verdict of a link depends on besides the link."""
+
+    geometry: GeometryReader
+    format: str
+    placeholders: dict[float, int]
+    reach: float
+    is_all: bool
+
+    def link(self, link: Link, geometry: Geometry, standing: Standing) -> Verdict:
+        """Judge a link."""
+        notes, declared = geometry.notes, link.inertial
+        if link.is_static:
+            told = (*notes, link.problem) if link.problem else notes
+            return Verdict(link.name, link.line, "none", "nothing moves it: its model is static", notes=told)
+        if link.problem:
+            return Verdict(link.name, link.line, "unreadable", link.problem)
+        if link.defaults and not standing.moves:
+            return Verdict(
+                link.name, link.line, "none", "nothing moves it: it is tied to the world", notes=notes
+            )
+        if not _has_mass(link, geometry):
+            empty = without_mass(self.format, link, standing)
+            told = (*notes, empty.note) if empty.note else notes
+            return Verdict(link.name, link.line, empty.word, empty.reason, notes=told if link.shapes else ())
+        if declared is None:
+            body = geometry.body
+            if body is None:
+                return Verdict(link.name, link.line, "inferred", "", notes=notes)
+            values = float(body.mass), np.asarray(body.principal_moments)
+            return Verdict(link.name, link.line, "inferred", "from its shapes", *values, notes=notes)
+        own, factor = None, None
+        if geometry.body is not None and declared.mass > 0.0:
+            try:
+                own = geometry.body.scaled(mass=declared.mass / float(geometry.body.mass))
+            except PolhodeError as error:
+                notes = (*notes, f"line {link.line}: its shape at the declared mass is no body: {error}")
+        moments = np.asarray(principal_moments(declared.inertia))
+        if own is not None:
+            factor = _farthest(moments, own.principal_moments)
+        word, reason = self._law(link, declared, geometry, own, factor)
+        return Verdict(
+            link.name,
+            link.line,
+            word,
+            "; ".join(part for part in (link.defaults, reason) if part),
+            declared.mass,
+            moments,
+            None if own is None else own.principal_moments,
+            factor,
+            geometry.role if own is not None else "",
+            notes,
+            None if word in ("good", "coarse") else _better(declared, own, word),
+        )
+
+    def _law(
+        self,
+        link: Link,
+        declared: Inertial,
+        geometry: Geometry,
+        own: RigidBody | None,
+        factor: float | None,
+    ) -> tuple[Word, str]:
+        """Say which law fails, the plainest first."""
         try:
-            own = geometry.body.scaled(mass=declared.mass / float(geometry.body.mass))
+            body = RigidBody(declared.mass, declared.inertia, declared.center_of_mass)
         except PolhodeError as error:
-            notes = (*notes, f"line {link.line}: its shape at the declared mass is no body: {error}")
-    moments = np.asarray(principal_moments(declared.inertia))
-    if own is not None:
-        factor = _farthest(moments, own.principal_moments)
-    word, reason = _law(declared, geometry, own, factor, placeholders)
-    return Verdict(
-        link.name,
-        link.line,
-        word,
-        reason,
-        declared.mass,
-        moments,
-        None if own is None else own.principal_moments,
-        factor,
-        geometry.role if own is not None else "",
-        notes,
-        None if word == "good" else _better(declared, own, word),
-    )
+            return "impossible", str(error)
+        if geometry.unread or geometry.low is None:
+            size = beyond_size(body, geometry, own, self.reach, is_all=self.is_all)
+        else:
+            size = beyond_room(body, geometry, lambda: self.geometry.coarseness(link))
+        compared = _compared(factor, geometry) if own is not None else ""
+        needed = density_needed(declared.mass, geometry.volume, factor or 0.0)
+        moment = _isotropic(declared.inertia)
+        if moment is not None and moment in self.placeholders:
+            count = self.placeholders[moment]
+            where = f"in {count} links" if count > 1 else "only here"
+            told = f"{moment:g} {moment:g} {moment:g} stands {where}"
+            told = f"{told}, where mass has no spread at all" if moment == 0.0 else told
+            is_true = (
+                own is not None and size is None and np.allclose(own.inertia, declared.inertia, rtol=1e-2)
+            )
+            if not is_true:
+                return "placeholder", _joined(told, compared, size.reason if size else "")
+        if size is not None and size.word == "impossible":
+            return size.word, _joined(compared, size.reason, needed)
+        if factor is not None and not LEAST <= factor <= MOST:
+            return "suspect", _joined(compared, size.reason if size else "", needed)
+        if size is not None and size.word == "coarse":
+            return size.word, _joined(compared, size.reason)
+        if size is None and own is None:
+            size = too_dense(body)
+        return (size.word, size.reason) if size is not None else ("good", compared)
 
 
-def _law(
-    declared: Inertial,
-    geometry: Geometry,
-    own: RigidBody | None,
-    factor: float | None,
-    placeholders: dict[float, int],
-) -> tuple[Word, str]:
-    """Say which law fails, the plainest first."""
-    try:
-        body = RigidBody(declared.mass, declared.inertia, declared.center_of_mass)
-    except PolhodeError as error:
-        return "impossible", str(error)
-    size = _beyond_size(body, geometry)
-    compared = _compared(factor, geometry) if own is not None else ""
-    moment = _isotropic(declared.inertia)
-    if moment is not None and moment in placeholders:
-        count = placeholders[moment]
-        where = f"in {count} links" if count > 1 else "only here"
-        reasons = [f"{moment:g} {moment:g} {moment:g} stands {where}", compared, size]
-        is_true = own is not None and not size and np.allclose(own.inertia, declared.inertia, rtol=1e-2)
-        if not is_true:
-            return "placeholder", "; ".join(reason for reason in reasons if reason)
-    if size:
-        return "impossible", "; ".join(reason for reason in (compared, size) if reason)
-    if factor is not None and not _LEAST <= factor <= _MOST:
-        return "suspect", compared
-    return "good", compared
+def _joined(*reasons: str) -> str:
+    return "; ".join(reason for reason in reasons if reason)
 
 
-def _beyond_size(body: RigidBody, geometry: Geometry) -> str:
-    """Say how matter within the link's shapes could not be spread as the tensor says; "" if it could."""
-    if geometry.low is None or geometry.high is None:
-        return ""
-    fit = fit_in_box(body, geometry.low, geometry.high)
-    if fit.possible:
-        return ""
-    center = body.center_of_mass
-    room = (center - geometry.low) * (geometry.high - center)
-    if (room < 0.0).any():
-        axis = int(np.argmin(room))
-        return (
-            f"the centre of mass, {'xyz'[axis]} = {center[axis]:.4g} m, lies outside the shape, "
-            f"{geometry.low[axis]:.4g} to {geometry.high[axis]:.4g} m"
+def _filled(
+    robot: Robot,
+    verdicts: list[Verdict],
+    geometry: GeometryReader,
+    density: float | None,
+    mass: float | None,
+) -> list[Verdict]:
+    """Give links whose file says no mass what their shapes have, of that density or that mass together."""
+    if density is None and mass is None:
+        return verdicts
+    without = {
+        i: body
+        for i, (link, verdict) in enumerate(zip(robot.links, verdicts, strict=True))
+        if is_without_mass(link, verdict)
+        if (body := geometry.filled(link)) is not None
+    }
+    volume = sum(float(body.mass) for body in without.values())
+    for i, body in without.items():
+        weighed = body.scaled(mass=density if density is not None else (mass or 0.0) / volume)
+        better = _rounded(
+            Inertial(float(f"{float(weighed.mass):.9g}"), weighed.center_of_mass, weighed.inertia)
         )
-    spread = np.maximum(np.trace(body.inertia) / 2.0 - np.diag(body.inertia), 0.0) / float(body.mass)
-    axis = int(np.argmax(spread - room))
-    if spread[axis] > room[axis]:
-        return (
-            f"spread {np.sqrt(spread[axis]):.3g} m along {'xyz'[axis]} (root mean square) where its shape "
-            f"has room for {np.sqrt(room[axis]):.3g} m"
+        verdicts[i] = verdicts[i]._replace(
+            shape_moments=weighed.principal_moments, shapes=geometry.read(robot.links[i]).role, better=better
         )
-    return f"the product of inertia of {' and '.join(fit.axes)} is beyond what its shape has room for"
+    return verdicts
 
 
 def _farthest(declared: Floats, own: Floats) -> float | None:
@@ -210,24 +326,24 @@ def _farthest(declared: Floats, own: Floats) -> float | None:
 def _compared(factor: float | None, geometry: Geometry) -> str:
     if factor is None or 0.99 <= factor <= 1.01:
         return "" if factor is None else f"as its {geometry.role} shape"
-    times = f"{factor:.0f}" if 100.0 <= factor < 1e15 else f"{factor:.3g}"
-    return f"{times} times its {geometry.role} shape's"
+    return f"{times(factor)} its {geometry.role} shape's"
 
 
 def _better(declared: Inertial, own: RigidBody | None, word: Word) -> Inertial | None:
     """Give what to declare instead, in nine digits where those are still a body's."""
     if own is not None:
-        found = Inertial(declared.mass, own.center_of_mass, own.inertia)
-    elif word == "impossible" and declared.mass > 0.0:
+        return _rounded(Inertial(declared.mass, own.center_of_mass, own.inertia))
+    if word == "impossible" and declared.mass > 0.0:
         try:
             nearest, distance = nearest_valid(declared.inertia)
         except PolhodeError:
             return None
-        if not 0.0 < distance <= _NEAR * float(np.linalg.norm(declared.inertia)):
-            return None
-        found = Inertial(declared.mass, declared.center_of_mass, nearest)
-    else:
-        return None
+        if 0.0 < distance <= _NEAR * float(np.linalg.norm(declared.inertia)):
+            return _rounded(Inertial(declared.mass, declared.center_of_mass, nearest))
+    return None
+
+
+def _rounded(found: Inertial) -> Inertial:
     rounded = Inertial(found.mass, _nine(found.center_of_mass), _nine(found.inertia))
     try:
         RigidBody(rounded.mass, rounded.inertia, rounded.center_of_mass)

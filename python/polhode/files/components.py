@@ -1,0 +1,250 @@
+"""The components of a mesh: their volumes, and where those wound alike overlap, so that matter counts twice.
+
+A surface wound inward is a cavity of the component around it. Two that are wound outward are both full: what
+they share is counted twice, unless they are joined, which :mod:`polhode.files.union` does.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from polhode.files.union import has_union, shared_volume
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Integers = NDArray[np.int64]
+
+__all__ = ["Overlap", "Part", "groups_of", "labels", "overlaps", "parts_of", "told", "winding"]
+
+# Winding numbers are taken at so many corners at most: each looks at every face.
+_SAMPLES: Final = 12
+_MOST_PARTS: Final = 200
+# What is shared by less than this, of the smaller one, is contact.
+_CONTACT: Final = 1e-9
+_MOST_TOLD: Final = 8
+
+
+class Part(NamedTuple):
+    """A component with its cavities.
+
+    Attributes
+    ----------
+    name : str
+        Of its group in the file, else its number from 1.
+    vertices : numpy.ndarray, shape (n, 3)
+        Of the whole mesh.
+    faces : numpy.ndarray, shape (m, 3)
+        Its own and those of its cavities, outward.
+    volume : float
+        Without the cavities.
+    cavities : int
+    """
+
+    name: str
+    vertices: Floats
+    faces: Integers
+    volume: float
+    cavities: int
+
+
+class Overlap(NamedTuple):
+    """Two parts that share matter.
+
+    Attributes
+    ----------
+    one, other : str
+        Their names, the larger one first.
+    volume : float
+        What they share; not a number where that was not computed.
+    is_inside : bool
+        Whether the other lies within the one.
+    """
+
+    one: str
+    other: str
+    volume: float
+    is_inside: bool
+
+
+def labels(faces: Integers, count: int) -> NDArray[np.intp]:
+    """Give each face the number of its component: those that share vertices, in the order of the faces."""
+    label = np.arange(count)
+    corners = np.ascontiguousarray(faces.T)
+    while True:
+        own = label[corners]
+        least = own.min(axis=0)
+        if (own == least).all():
+            break
+        # What a vertex is joined to by its label goes along with it, and then paths are cut short.
+        for labels_of_corner in own:
+            np.minimum.at(label, labels_of_corner, least)
+        while not np.array_equal(shorter := label[label], label):
+            label = shorter
+    _, first, found = np.unique(label[corners[0]], return_index=True, return_inverse=True)
+    rank = np.empty(len(first), dtype=np.intp)
+    rank[np.argsort(first)] = np.arange(len(first))
+    numbered: NDArray[np.intp] = rank[found.reshape(-1)]
+    return numbered
+
+
+def parts_of(vertices: Floats, faces: Integers, groups: Sequence[str] | None = None) -> list[Part]:
+    """Take a closed mesh apart.
+
+    Parameters
+    ----------
+    vertices : numpy.ndarray, shape (n, 3)
+    faces : numpy.ndarray, shape (m, 3)
+    groups : sequence of str, optional
+        The name of the group of each face.
+
+    Returns
+    -------
+    list of Part
+        One for each component wound outward, in the order of the faces; of one component where there are
+        too many to be told apart.
+    """
+    label = labels(faces, len(vertices))
+    count = int(label.max(initial=-1)) + 1
+    middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0 if len(vertices) else 0.0
+    corners = vertices[faces] - middle
+    six = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    volumes = np.bincount(label, weights=six, minlength=count) / 6.0
+    if volumes.sum() < 0.0:
+        faces, volumes = faces[:, ::-1], -volumes
+    if not 1 < count <= _MOST_PARTS:
+        return [Part("1", vertices, faces, float(volumes.sum()), 0)]
+    of = [np.flatnonzero(label == k) for k in range(count)]
+    outer = [k for k in range(count) if volumes[k] > 0.0]
+    holes: dict[int, list[int]] = {k: [] for k in outer}
+    for k in (k for k in range(count) if volumes[k] <= 0.0):
+        point = vertices[faces[of[k][0], 0]]
+        around = [o for o in outer if _is_within(vertices[faces[of[k]]], vertices[faces[of[o]]])]
+        around = [o for o in around if winding(point[None], vertices[faces[of[o]]])[0] > 0.5]
+        if around:
+            holes[min(around, key=lambda o: volumes[o])].append(k)
+    names = _names([groups[of[k][0]] if groups else "" for k in outer])
+    return [
+        Part(
+            name,
+            vertices,
+            faces[np.concatenate([of[k], *(of[hole] for hole in holes[k])])],
+            float(volumes[k] + sum(volumes[hole] for hole in holes[k])),
+            len(holes[k]),
+        )
+        for k, name in zip(outer, names, strict=True)
+    ]
+
+
+def overlaps(parts: Sequence[Part]) -> list[Overlap]:
+    """Find the parts that share matter.
+
+    With manifold3d the shared volumes are computed. Without it parts are told that hold corners of one
+    another, of which up to 12 are tried, and the volume only of one that lies within another.
+    """
+    found: list[Overlap] = []
+    used = [part.vertices[part.faces] for part in parts]
+    low = np.array([corners.min(axis=(0, 1)) for corners in used])
+    high = np.array([corners.max(axis=(0, 1)) for corners in used])
+    volumes = np.array([part.volume for part in parts])
+    for i in np.argsort(-volumes, kind="stable").tolist():
+        meet = (np.maximum(low, low[i]) < np.minimum(high, high[i])).all(axis=1)
+        later = (volumes < volumes[i]) | ((volumes == volumes[i]) & (np.arange(len(parts)) > i))
+        for k in np.flatnonzero(meet & later).tolist():
+            shared = _shared(parts[i], parts[k], used[i], used[k])
+            if shared is not None:
+                found.append(shared)
+    return found
+
+
+def _shared(large: Part, small: Part, of_large: Floats, of_small: Floats) -> Overlap | None:
+    if has_union():
+        volume = shared_volume((large.vertices, large.faces), (small.vertices, small.faces))
+        if np.isnan(volume):
+            return Overlap(large.name, small.name, volume, False)
+        if volume <= _CONTACT * small.volume:
+            return None
+        return Overlap(large.name, small.name, volume, volume >= (1.0 - _CONTACT) * small.volume)
+    inside = _share_inside(of_small, of_large)
+    if 0.0 < inside < 1.0:
+        return Overlap(large.name, small.name, float("nan"), False)
+    around = _share_inside(of_large, of_small)
+    if inside == 1.0 and around == 0.0:
+        return Overlap(large.name, small.name, small.volume, True)
+    return Overlap(large.name, small.name, float("nan"), False) if inside > 0.0 or around > 0.0 else None
+
+
+def winding(points: Floats, triangles: Floats) -> Floats:
+    """Give how often a surface winds around points: 1 within, 0 without, by the solid angles of its faces."""
+    totals = []
+    for point in points:
+        a, b, c = np.moveaxis(triangles - point, 1, 0)
+        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+        top = np.einsum("ij,ij->i", a, np.cross(b, c))
+        ab, bc, ca = (np.einsum("ij,ij->i", x, y) for x, y in ((a, b), (b, c), (c, a)))
+        totals.append(np.arctan2(top, la * lb * lc + ab * lc + bc * la + ca * lb).sum() / (2.0 * np.pi))
+    return np.array(totals)
+
+
+def _share_inside(of: Floats, triangles: Floats) -> float:
+    """Give the share of the corners of one, or of up to 12 of them, that lie within the other."""
+    corners = np.unique(of.reshape(-1, 3), axis=0)
+    low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
+    near = corners[((corners > low) & (corners < high)).all(axis=1)]
+    if not len(near):
+        return 0.0
+    tried = near[np.linspace(0, len(near) - 1, min(len(near), _SAMPLES)).astype(int)]
+    inside = (winding(tried, triangles) > 0.75).mean()  # on a face it is 0.5, on an edge less
+    return float(inside) if len(near) == len(corners) else float(inside) * 0.5
+
+
+def _is_within(inner: Floats, outer: Floats) -> bool:
+    low, high = outer.min(axis=(0, 1)), outer.max(axis=(0, 1))
+    return bool((inner.min(axis=(0, 1)) >= low).all() and (inner.max(axis=(0, 1)) <= high).all())
+
+
+def told(found: Sequence[Overlap], total: float, unit: str = "") -> list[str]:
+    """Say which parts overlap and by how much of the total volume, the largest first."""
+    lines = []
+    for one, other, volume, is_inside in sorted(
+        (each for each in found if np.isfinite(each.volume)), key=lambda each: -each.volume
+    ):
+        how = f"component {other} lies within {one}" if is_inside else f"components {one} and {other} overlap"
+        lines.append(f"{how}: {volume:.4g}{unit} ({100.0 * volume / total:.3g} % of the volume) counts twice")
+    left = len(lines) - _MOST_TOLD
+    if left > 0:
+        lines[_MOST_TOLD:] = [f"{left} more pairs of components overlap"]
+    unknown = [f"{each.one} and {each.other}" for each in found if not np.isfinite(each.volume)]
+    if unknown:
+        more = f" and {len(unknown) - _MOST_TOLD} pairs more" if len(unknown) > _MOST_TOLD else ""
+        pairs = ", ".join(unknown[:_MOST_TOLD]) + more
+        way = "how much is not known" if has_union() else 'pip install "polhode[union]" tells how much'
+        lines.append(f"components {pairs} overlap: what they share counts twice; {way}")
+    return lines
+
+
+def groups_of(path: Path) -> list[str]:
+    """Give the name of the group (``o``, else ``g``) of each triangle of an OBJ file."""
+    found: list[str] = []
+    names = {"o": "", "g": ""}
+    with path.open(encoding="utf-8", errors="replace") as lines:
+        for line in lines:
+            words = line.split()
+            if words and words[0] in names:
+                names[words[0]] = " ".join(words[1:])
+            elif words and words[0] == "f":
+                found += [names["o"] or names["g"]] * (len(words) - 3)
+    return found
+
+
+def _names(found: list[str]) -> list[str]:
+    """Give each part the name of its group, if that is its own, else its number."""
+    return [
+        name if name and found.count(name) == 1 else str(number) for number, name in enumerate(found, start=1)
+    ]
