@@ -27,6 +27,13 @@ _SUFFIXES: Final = {
     "OFF": ".off",
     "GLB": ".glb",
     "v/f text": ".obj",
+    "numbered plates": ".tab",
+    "glTF": ".gltf",
+    "COLLADA": ".dae",
+    "STEP": ".step",
+    "IGES": ".igs",
+    "PDB": ".pdb",
+    "MOL": ".mol",
     "XYZ": ".xyz",
 }
 

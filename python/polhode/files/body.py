@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.files.mesh_solid import naming_file, solid_of
 from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, body_of_atoms, isotopes
@@ -75,14 +75,16 @@ def body_from_file(
     for name, value in (("density", density), ("mass", mass)):
         _check_amount(name, value, path)
     scale = 1.0 if length_unit is None else metres_per(length_unit)
-    if Path(path).suffix.lower() != MOLECULE_SUFFIX:
+    if not is_molecule(Path(path)):
         if masses != "most_common":
             raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
+        loaded = load(path, index_base=index_base)
+        unit = loaded.length(length_unit)
         return solid_of(
-            load(path, index_base=index_base),
+            loaded,
             density=density,
             mass=mass,
-            scale=scale,
+            scale=1.0 if unit is None else metres_per(unit),
             weld=weld,
             closure=closure,
             orient=orient,
@@ -98,8 +100,8 @@ def body_from_file(
         index_base=index_base != 1,
     )
     molecule = load(path).molecule
-    unit = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
-    found = [isotope.mass * unit for isotope in molecule_isotopes(path, molecule, masses)]
+    one = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
+    found = [isotope.mass * one for isotope in molecule_isotopes(path, molecule, masses)]
     with naming_file(path), np.errstate(over="ignore"):
         rounding = molecule.rounding * scale
         return body_of_atoms(found, molecule.positions * scale, source=masses, rounding=rounding)

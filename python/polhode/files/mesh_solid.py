@@ -12,11 +12,14 @@ from polhode import _core
 from polhode.errors import MeshError, PolhodeError
 from polhode.files.loaded import Loaded, load
 from polhode.files.mesh import weld_within
+from polhode.units import metres_per
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from polhode._typing import SupportsSigma
+    from polhode.files.cad_file import CadFile
+    from polhode.files.cad_solid import SolidPart
     from polhode.files.mesh import Mesh
 
     Number = float | _core.Uncertain | SupportsSigma
@@ -44,6 +47,8 @@ class MeshSolid(NamedTuple):
         In units of the result; the area is that of the file's triangles, without what closed them.
     welded : int
         Corners that were joined to others within the length asked for.
+    parts : tuple of SolidPart
+        Of a CAD file: its solids, each at its place.
     """
 
     body: _core.RigidBody
@@ -53,6 +58,7 @@ class MeshSolid(NamedTuple):
     volume: float
     area: float
     welded: int
+    parts: tuple[SolidPart, ...] = ()
 
 
 def solid_from_file(
@@ -60,7 +66,7 @@ def solid_from_file(
     *,
     density: Number | None = None,
     mass: Number | None = None,
-    scale: float = 1.0,
+    scale: float | None = None,
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
@@ -81,8 +87,9 @@ def solid_from_file(
         See :func:`read_mesh`.
     density, mass : float or Uncertain, optional
         Exactly one of them.
-    scale : float
-        Unit of the coordinates, in the unit of the result.
+    scale : float, optional
+        Unit of the coordinates, in the unit of the result. By default the metres in the unit that the file or
+        its format states, and 1 for those that state none.
     weld, index_base
         See :func:`read_mesh`.
     closure : {"caps", "hull"}, optional
@@ -105,11 +112,17 @@ def solid_from_file(
     OSError
         If the file cannot be read.
     """
+    loaded = load(path, index_base=index_base)
+    own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
+    if scale is not None and scale != own and loaded.states_unit:
+        raise PolhodeError(
+            f"scale: {os.fspath(path)} says itself that its unit is {loaded.unit!r}; leave it out"
+        )
     return solid_of(
-        load(path, index_base=index_base),
+        loaded,
         density=density,
         mass=mass,
-        scale=scale,
+        scale=own if scale is None else scale,
         weld=weld,
         closure=closure,
         orient=orient,
@@ -130,6 +143,14 @@ def solid_of(
 ) -> MeshSolid:
     """Make the solid that the mesh of a loaded file bounds; see :func:`solid_from_file`."""
     file = loaded.path
+    if loaded.cad is not None:
+        return _cad_solid(
+            loaded,
+            loaded.cad,
+            density,
+            mass,
+            asked={"weld": weld != 0.0, "closure": closure, "orient": orient},
+        )
     if loaded.is_stream and weld == 0.0 and closure is None:
         try:
             with naming_file(file):
@@ -164,6 +185,22 @@ def solid_of(
     welded = corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
+
+
+def _cad_solid(
+    loaded: Loaded, cad: CadFile, density: Number | None, mass: Number | None, asked: dict[str, object]
+) -> MeshSolid:
+    """Give the body of the solids in a CAD file, which need no mending that a mesh may need."""
+    from polhode.files.cad_solid import solids_of
+
+    name = next((name for name, value in asked.items() if value), None)
+    if name is not None:
+        raise PolhodeError(f"{name}: {loaded.path} holds solids, not a mesh; leave it out")
+    with naming_file(loaded.path):
+        body, parts = solids_of(cad, density, mass)
+    area = sum(part.moments.area for part in cad.parts) * 1e-6
+    faces, volume = sum(part.faces for part in cad.parts), sum(part.volume for part in parts)
+    return MeshSolid(body, loaded.format, None, faces, volume, area, 0, parts)
 
 
 def _value(number: Number) -> float:

@@ -1,0 +1,16 @@
+"""OCCT, the geometry kernel that reads CAD files: the module OCP of the extra ``cad``."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from polhode._extras import require
+
+__all__ = ["occt"]
+
+
+@cache
+def occt(module: str, purpose: str = "reading CAD files (STEP, IGES)") -> Any:
+    """Import a module of OCP by its short name, as in ``occt("TopoDS")``."""
+    return require(f"OCP.{module}", extra="cad", purpose=purpose)
