@@ -35,8 +35,8 @@ class _FaultError(ValueError):
     """What is wrong, without the name of the file."""
 
 
-def read_collada(source: bytes, file: Path) -> tuple[Mesh, float]:
-    """Read the triangles of a COLLADA file and the metres in one of its units.
+def read_collada(source: bytes, file: Path) -> tuple[Mesh, float | None, str]:
+    """Read the triangles of a COLLADA file and its unit.
 
     Parameters
     ----------
@@ -48,14 +48,17 @@ def read_collada(source: bytes, file: Path) -> tuple[Mesh, float]:
     -------
     mesh : Mesh
         In the unit of the file.
-    metres : float
+    metres : float or None
+        In one of its units; None where the file does not say, which in COLLADA means metres.
+    up : str
+        What it calls the axis that points up: ``"X"``, ``"Y"`` or ``"Z"``.
     """
     root = parse_xml(source, str(file))
     try:
         if _tag(root) != "COLLADA":
             raise _FaultError(f"its root is <{root.tag}>, not <COLLADA>; rename the file")
         metres = _metres(root)
-        return _Scene(root).mesh(), metres
+        return _Scene(root).mesh(), metres, _up(root)
     except _FaultError as fault:
         raise FileFormatError(f"{file}: {fault}") from None
 
@@ -72,11 +75,17 @@ def _one(element: Element, tag: str) -> Element | None:
     return next(_all(element, tag), None)
 
 
-def _metres(root: Element) -> float:
+def _up(root: Element) -> str:
+    asset = _one(root, "asset")
+    up = _one(asset, "up_axis") if asset is not None else None
+    return up.text.strip()[:1].upper() if up is not None else "Y"
+
+
+def _metres(root: Element) -> float | None:
     asset = _one(root, "asset")
     unit = _one(asset, "unit") if asset is not None else None
     if unit is None or "meter" not in unit.attributes:
-        return 1.0
+        return None
     text = unit.attributes["meter"].strip()
     try:
         metres = float(text.replace(",", ".")) if text.count(",") == 1 and "." not in text else float(text)

@@ -23,6 +23,7 @@ __all__ = [
     "content_format",
     "is_molecule",
     "opened",
+    "unread",
 ]
 
 MOLECULE_SUFFIX: Final = ".xyz"
@@ -84,6 +85,12 @@ def is_molecule(path: Path) -> bool:
     """Whether a file is a molecule, by its name; packed or not."""
     suffix = path.suffix.lower()
     return (Path(path.stem).suffix.lower() if suffix == _PACKED else suffix) in MOLECULE_SUFFIXES
+
+
+def unread(file: Path, suffix: str, readable: tuple[str, ...]) -> FileFormatError:
+    """Give the error of a file whose suffix is none that is read."""
+    name = f"files named {suffix}" if suffix else "files without a suffix"
+    return FileFormatError(f"{file}: {name} are not read; use one of {', '.join(readable)}")
 
 
 def content_format(head: bytes, size: int) -> tuple[str | None, bool]:

@@ -18,10 +18,10 @@ import numpy as np
 from polhode import _core
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.cad_kernel import occt
-from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened
+from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
 from polhode.files.mesh import Mesh, check_faces, weld, weld_within
 from polhode.files.plates import read_numbered_plates
-from polhode.files.reading import naming, whole_of
+from polhode.files.reading import check_ordinary, naming, whole_of
 from polhode.files.unpacked import inner_suffix, unpacked
 from polhode.units import METRES, metres_per
 
@@ -31,8 +31,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Loaded", "load", "read_mesh"]
 
-_MESH_SUFFIXES: Final = tuple(suffix for suffix in EXPECTED_CONTENT if suffix not in MOLECULE_SUFFIXES)
 _CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
+_OF_EXTRAS: Final = (*_CAD_SUFFIXES, ".vtk", ".vtu", ".vtp")
+_MESH_SUFFIXES: Final = tuple(
+    suffix for suffix in EXPECTED_CONTENT if suffix not in (*MOLECULE_SUFFIXES, *_OF_EXTRAS)
+)
 _TEXT_SUFFIXES: Final = tuple(suffix for suffix, known in EXPECTED_CONTENT.items() if "v/f text" in known)
 
 
@@ -178,6 +181,9 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
         raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
     if suffix in _CAD_SUFFIXES:
         occt("BRep", f"{file}: reading CAD files (STEP, IGES)")  # what installs it is told of any such name
+    if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:
+        check_ordinary(file)
+        raise unread(file, suffix, _MESH_SUFFIXES)
     with unpacked(file) as inside:
         loaded = _load(inside, suffix, index_base)
         if inside is file:
@@ -215,8 +221,8 @@ def _load(file: Path, suffix: str, index_base: int) -> Loaded:
         if suffix == ".3mf":
             from polhode.files.three_mf import read_three_mf
 
-            mesh, unit = read_three_mf(stream, file)
-            return Loaded(file, mesh.format, unit=unit, states_unit=True, _mesh=mesh)
+            mesh, unit, is_stated = read_three_mf(stream, file)
+            return Loaded(file, mesh.format, unit=unit, states_unit=is_stated, _mesh=mesh)
         if suffix in (".vtk", ".vtu", ".vtp"):
             from polhode.files.vtk import read_vtk
 
@@ -257,13 +263,20 @@ def _load_cad(file: Path) -> Loaded:
 def _load_collada(stream: BinaryIO, file: Path) -> Loaded:
     from polhode.files.collada import read_collada
 
-    mesh, metres = read_collada(whole_of(stream, file), file)
+    mesh, metres, up = read_collada(whole_of(stream, file), file)
+    notes = []
+    if up != "Z":
+        notes.append(
+            f"up is {up} by the file: its axes are told as they are (RViz does so; Gazebo turns them)"
+        )
+    if metres is None:
+        return Loaded(file, "COLLADA", unit="m", notes=tuple(notes), _mesh=mesh)
     unit = next((name for name, known in METRES.items() if abs(metres - known) <= 1e-9 * known), None)
     if unit is not None:
-        return Loaded(file, "COLLADA", unit=unit, states_unit=True, _mesh=mesh)
+        return Loaded(file, "COLLADA", unit=unit, states_unit=True, notes=tuple(notes), _mesh=mesh)
     note = f"the file's unit is {metres:.9g} m, which has no name here: lengths are told in m"
     mesh = mesh._replace(vertices=mesh.vertices * metres)
-    return Loaded(file, "COLLADA", unit="m", states_unit=True, notes=(note,), _mesh=mesh)
+    return Loaded(file, "COLLADA", unit="m", states_unit=True, notes=(*notes, note), _mesh=mesh)
 
 
 def _by_trimesh(stream: BinaryIO, path: Path) -> Mesh:

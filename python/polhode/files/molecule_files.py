@@ -72,6 +72,8 @@ def _element(line: str) -> str:
         return stated.capitalize()
     name = line[12:16]
     letters = name[:2].strip().lstrip("0123456789")
+    if name[:1].upper() == "H" and len(name.strip()) == 4:  # a hydrogen whose name takes all four columns
+        return "H"
     if name[:1].isalpha() and name[:2].upper() in _TWO_LETTERS and not name[2:].strip().isalpha():
         return name[:2].capitalize()
     first = (letters or name.strip().lstrip("0123456789"))[:1]

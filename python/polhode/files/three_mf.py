@@ -44,7 +44,7 @@ class _FaultError(ValueError):
     """What is wrong, without the name of the file."""
 
 
-def read_three_mf(stream: BinaryIO, file: Path) -> tuple[Mesh, str]:
+def read_three_mf(stream: BinaryIO, file: Path) -> tuple[Mesh, str, bool]:
     """Read the triangles of a 3MF file and its unit.
 
     Parameters
@@ -59,11 +59,13 @@ def read_three_mf(stream: BinaryIO, file: Path) -> tuple[Mesh, str]:
         In the unit of the file.
     unit : str
         Of :data:`polhode.units.METRES`.
+    is_stated : bool
+        Whether the file says it; else it is the format's, millimetres.
     """
     try:
         with zipfile.ZipFile(stream) as package:
             build = _Build(package)
-            return build.mesh(), build.unit
+            return build.mesh(), build.unit, build.states_unit
     except (
         _FaultError,
         zipfile.BadZipFile,
@@ -94,7 +96,7 @@ class _Model:
     """One model of a package."""
 
     def __init__(self) -> None:
-        self.unit = "millimeter"
+        self.unit, self.states_unit = "millimeter", False
         self.objects: dict[str, _Object] = {}
         self.items: list[tuple[str, str, Floats]] = []
 
@@ -105,7 +107,8 @@ class _Build:
         self._models: dict[str, _Model] = {}
         self._left, self._placed, self._triangles = _MOST_BYTES, 0, 0
         self._root = self._start()
-        self.unit = _UNITS[self._model(self._root).unit]
+        root = self._model(self._root)
+        self.unit, self.states_unit = _UNITS[root.unit], root.states_unit
 
     def mesh(self) -> Mesh:
         found: list[tuple[Floats, Integers]] = []
@@ -176,7 +179,7 @@ class _Build:
                 placed = (way, attributes["objectid"], _transform(attributes.get("transform")))
                 (current[0].components if kind == "component" else model.items).append(placed)
             elif kind == "model":
-                model.unit = attributes.get("unit", "millimeter")
+                model.unit, model.states_unit = attributes.get("unit", "millimeter"), "unit" in attributes
                 if model.unit not in _UNITS:
                     raise _FaultError(f"its unit is {model.unit[:40]!r}, none of {', '.join(_UNITS)}")
                 needed = attributes.get("requiredextensions", "").split()
