@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 
 __all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body", "loaded_molecule"]
 
+_LEAST, _MOST = 1e-13, 1e4
+"""Between these volumes, in m^3, nothing is remarked of a part."""
+
 
 @dataclass(frozen=True)
 class LoadedBody:
@@ -116,9 +119,15 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody
     solid = _solid(loaded, options, density, mass, scale, weld)
     provenance = solid.body.provenance
     notes = [*_taken(options, unit), *_of_unit(loaded, asked), *loaded.notes]
-    if weld != 0.0:
+    notes += _unusual(solid.volume, unit, loaded)
+    if weld != 0.0 and not options.repair:
         notes.append(f"{solid.welded} corners were joined to others within {weld:g} (--weld)")
-    if provenance.closure:
+    if options.repair and not solid.steps:
+        notes.append("nothing had to be repaired (--repair)")
+    if options.repair and solid.steps:
+        total = sum(step.change for step in solid.steps)
+        notes.append(f"the mesh was repaired (--repair), which changed its volume by {total:.3g} % in all")
+    elif provenance.closure:
         share = 100.0 * float(provenance.volume_change) / solid.volume
         notes.append(
             f"the mesh is open; --closure {provenance.closure} closed it, which changed its volume by "
@@ -137,6 +146,25 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool) -> LoadedBody
         length_unit=unit,
         states_unit=loaded.unit is not None and asked in (None, loaded.unit),
     )
+
+
+def _unusual(volume: float, unit: str | None, loaded: Loaded) -> list[str]:
+    """Remark on a part as large as a house, or too small to see, with the unit that is more likely."""
+    if unit not in ("m", "mm", "cm", "in", "ft") or _LEAST < volume < _MOST:
+        return []
+    stored = volume / metres_per(unit) ** 3
+    likely = [
+        name for name in ("mm", "m", "in") if name != unit and _LEAST < stored * metres_per(name) ** 3 < 1.0
+    ]
+    if not likely:
+        return [f"a volume of {volume:.4g} m^3 is unusual for a part; check the unit of length"]
+    way_out = f"state --length-unit {likely[0]}"
+    if loaded.states_unit:
+        way_out = "check what exported the file, which says its unit itself"
+    return [
+        f"a volume of {volume:.4g} m^3 is unusual for a part: in {likely[0]} it would be "
+        f"{stored * metres_per(likely[0]) ** 3:.4g} m^3; {way_out}"
+    ]
 
 
 def _of_unit(loaded: Loaded, asked: str | None) -> list[str]:
@@ -171,6 +199,7 @@ def _solid(
             weld=weld,
             closure=options.closure,
             orient=options.orient,
+            repair=options.repair,
             progress=tell,
         )
 
@@ -233,6 +262,7 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         weld=options.weld is not None,
         closure=options.closure is not None,
         orient=options.orient,
+        repair=options.repair,
         index_base=options.index_base != 1,
     )
     loaded = load(file)

@@ -64,6 +64,9 @@ class BodyOptions:
         report says by how much that changes the volume; without it an open mesh is an error.
     orient
         Turn triangles that face inward; without it they are an error.
+    repair
+        Mend the mesh: weld corners, drop faces that stand twice, wind the others alike, fill loops. The
+        report lists each step with the change of volume; without it such meshes are an error.
     index_base
         What the faces of an OBJ or plate file count vertices from: 1 (OBJ) or 0.
     bond_sigma
@@ -79,6 +82,7 @@ class BodyOptions:
     weld: Annotated[str | None, Parameter(name="--weld")] = None
     closure: Annotated[Literal["caps", "hull"] | None, Parameter(name="--closure")] = None
     orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
+    repair: Annotated[bool, Parameter(name="--repair", negative="")] = False
     index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
     bond_sigma: Annotated[str | None, Parameter(name="--bond-sigma")] = None
     mass_sigmas: Annotated[bool, Parameter(name="--mass-sigmas", negative="")] = False

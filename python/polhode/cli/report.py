@@ -107,6 +107,14 @@ def _mesh_report(
         *units.fields("volume", "volume", loaded.volume, volume, length=3),
         *units.fields("area", "surface area", mesh.area, area, length=2),
     )
+    if mesh.steps:
+        columns = (
+            Column("step", "step"),
+            Column("volume_change_percent", "change of volume", "%"),
+            Column("what", "what"),
+        )
+        rows = [{"step": s.name, "volume_change_percent": s.change, "what": s.what} for s in mesh.steps]
+        report.section("repaired", Table("repaired", columns, rows))
     if len(mesh.parts) > 1 or any(part.material for part in mesh.parts):
         report.section("parts", _parts(mesh))
     center, extent = body.center_of_mass, loaded.extent

@@ -36,6 +36,7 @@ def body_from_file(
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
+    repair: bool = False,
     index_base: int = 1,
     masses: Masses = "most_common",
     progress: Callable[[float], object] | None = None,
@@ -52,7 +53,7 @@ def body_from_file(
     length_unit : str, optional
         Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's
         masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
-    weld, closure, orient, index_base
+    weld, closure, orient, repair, index_base
         Of a mesh; see :func:`solid_from_file`.
     masses : {"most_common", "average"}
         Of a molecule; see :func:`polhode.molecules.isotopes`.
@@ -88,6 +89,7 @@ def body_from_file(
             weld=weld,
             closure=closure,
             orient=orient,
+            repair=repair,
             progress=progress,
         ).body
     check_molecule_options(
@@ -97,6 +99,7 @@ def body_from_file(
         weld=weld != 0.0,
         closure=closure is not None,
         orient=orient,
+        repair=repair,
         index_base=index_base != 1,
     )
     molecule = load(path).molecule
