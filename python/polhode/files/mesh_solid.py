@@ -176,9 +176,9 @@ def solid_of(
                 )
         except MeshError as error:
             if file.stat().st_size <= _SMALL_FILE:
-                _offer_repair(error, loaded.mesh, scale)
                 if error.law == "closed" and loaded.format == "binary STL":
                     _offer_weld(error, loaded.mesh)
+                _offer_repair(error, loaded.mesh, scale)
             raise
         return MeshSolid(body, loaded.format, None, faces, volume, area, 0)
     mesh = loaded.mesh
@@ -199,9 +199,9 @@ def solid_of(
             volume = float(body.mass) / _value(density) if density is not None else float(solid(1.0).mass)
             area = _core.surface_area(vertices, mesh.faces)
     except MeshError as error:
+        _offer_weld(error, mesh)
         if closure is None:
             _offer_repair(error, mesh, scale)
-        _offer_weld(error, mesh)
         raise
     welded = corners - len(mesh.vertices)
     count = len(mesh.vertices)
@@ -283,6 +283,8 @@ def _offer_repair(error: MeshError, mesh: Mesh, scale: float) -> None:
                 error.offer('closure="hull" takes the convex hull instead')
         return
     change = sum(step.change for step in steps)
+    if [step.name for step in steps] == ["weld"] and "weld=" in str(error):
+        return  # which is offered by itself
     if steps:
         names = ", ".join(dict.fromkeys(step.name for step in steps))
         error.offer(f"repair=True mends it ({names}; volume changed by {change:.2g} %)")
