@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,19 @@ from cad_files import SOLIDS, occt, primitive, write_assembly, write_step
 from command_line import one_line, run
 from polhode import RigidBody, Uncertain, solids
 from polhode.errors import FileFormatError, MeshError, PolhodeError
-from polhode.files import load, read_mesh, solid_from_file
+from polhode.files import cad_apart, load, read_mesh, solid_from_file
+from polhode.files.cad_file import read_cad
+from polhode.files.cad_solid import solids_of
 
 pytest.importorskip("OCP.BRep", reason="CAD files need polhode[cad]")
 MM = 1e-3
+
+
+@pytest.fixture(autouse=True)
+def _in_this_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read in this process, which is sooner, but in the tests of the other one."""
+    if request.cls is not TestApart:
+        monkeypatch.setattr(cad_apart, "read_cad_apart", read_cad)
 
 
 class TestClosedForms:
@@ -212,6 +222,31 @@ class TestRefusals:
         packed = tmp_path / "part.step.gz"
         packed.write_bytes(gzip.compress(path.read_bytes()))
         assert RigidBody.from_file(packed, density=1.0).mass == pytest.approx(6e-6)
+
+
+class TestApart:
+    """OCCT ends the process on some damaged files: it has one of its own."""
+
+    def test_it_is_read_and_refused_alike(self, tmp_path: Path) -> None:
+        path = write_assembly(tmp_path / "thing.step", {"block": 7.85, "ball": 2.7})
+        whole = solid_from_file(path)
+        assert whole.body == solids_of(read_cad(path))[0]
+        assert [part.material for part in whole.parts][:2] == ["stuff of block", "stuff of ball"]
+        path.write_bytes(path.read_bytes()[:2000])
+        with pytest.raises(FileFormatError, match=r"thing\.step: .* cut short"):
+            load(path)
+
+    def test_a_break_down_is_an_error(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        path = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step")
+        monkeypatch.setattr(cad_apart, "_COMMAND", ["-c", "import os; os.kill(os.getpid(), 11)"])
+        with pytest.raises(FileFormatError, match=r"part\.step: OCCT broke down on it \(exit code -11\)"):
+            load(path)
+
+    def test_within_another_program(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        path = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step")
+        monkeypatch.setattr(cad_apart, "_COMMAND", ["-c", "raise SystemExit(1)"])
+        monkeypatch.setattr(sys, "executable", "")
+        assert load(path).format == "STEP"
 
 
 class TestIges:

@@ -16,7 +16,7 @@ from mesh_files import ascii_stl, binary_stl, dae, glb, gltf, numbered_plates, t
 from oracles.meshes import cube
 from polhode import RigidBody, robots
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files import cad_kernel, load, read_mesh, solid_from_file, unpacked
+from polhode.files import load, read_mesh, solid_from_file, unpacked
 
 CUBE = cube(2.0)
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048, "um": 1e-6}
@@ -285,7 +285,6 @@ class TestWithoutCad:
         for module in [module for module in sys.modules if module.partition(".")[0] == "OCP"]:
             monkeypatch.delitem(sys.modules, module)
         monkeypatch.setitem(sys.modules, "OCP", None)
-        cad_kernel.occt.cache_clear()
         path = tmp_path / name
         if exists:
             path.write_bytes(b"ISO-10303-21;\n")

@@ -229,7 +229,7 @@ class TestLimits:
         pytest.importorskip("scipy")
         torn = VERTICES, FACES[3:]
         for mesh, first in (
-            (frayed(), ["--weld", "--repair"]),
+            (frayed(), ["--weld"]),
             (torn, ["--repair", "--closure", "--closure"]),
         ):
             path = written(tmp_path / "part.obj", mesh)

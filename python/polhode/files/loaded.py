@@ -17,7 +17,7 @@ import numpy as np
 
 from polhode import _core
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.cad_kernel import occt
+from polhode.files.cad_kernel import check_occt
 from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
 from polhode.files.mesh import Mesh, check_faces, weld, weld_within
 from polhode.files.plates import read_numbered_plates
@@ -180,7 +180,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     if index_base != 1 and suffix not in _TEXT_SUFFIXES:
         raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
     if suffix in _CAD_SUFFIXES:
-        occt("BRep", f"{file}: reading CAD files (STEP, IGES)")  # what installs it is told of any such name
+        check_occt(f"{file}: reading CAD files (STEP, IGES)")  # told of any such name
     if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:
         check_ordinary(file)
         raise unread(file, suffix, _MESH_SUFFIXES)
@@ -249,9 +249,9 @@ def _load_molecule(content: Content, file: Path, suffix: str) -> Loaded:
 
 
 def _load_cad(file: Path) -> Loaded:
-    from polhode.files.cad_file import read_cad
+    from polhode.files.cad_apart import read_cad_apart
 
-    cad = read_cad(file)
+    cad = read_cad_apart(file)
     notes = []
     if cad.left_out:
         notes.append(f"{cad.left_out} faces of the file bound no solid and count nothing")

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import math
+import struct
 import zipfile
+import zlib
 from array import array
 from typing import TYPE_CHECKING, BinaryIO, Final
 from xml.parsers import expat
@@ -77,10 +80,14 @@ def read_three_mf(stream: BinaryIO, file: Path) -> tuple[Mesh, str, bool]:
         raise FileFormatError(f"{file}: not a readable 3MF file: {error}; export it again") from None
     except (KeyError, ValueError, OverflowError) as error:
         raise FileFormatError(f"{file}: not a whole 3MF file: {error}; export it again") from None
-    except Exception as error:
-        if type(error).__module__ == "zlib":
-            raise FileFormatError(f"{file}: not a whole 3MF file: {error}; export it again") from None
-        raise
+    except (zlib.error, struct.error) as error:
+        raise FileFormatError(f"{file}: not a whole 3MF file: {error}; export it again") from None
+    except OSError as error:
+        if error.errno != errno.EINVAL:
+            raise
+        raise FileFormatError(
+            f"{file}: not a whole 3MF file: a member is said to begin outside of it; export it again"
+        ) from None
 
 
 class _Object:
