@@ -115,6 +115,20 @@ def revolved() -> Any:
     return occt("BRepPrimAPI").BRepPrimAPI_MakeRevol(face, line).Shape()
 
 
+def shelled() -> Any:
+    """A box of 6, 5, 4 with walls of 0.25, open on top."""
+    box = primitive("Box", 6.0, 5.0, 4.0)()
+    faces = occt("TopExp").TopExp_Explorer(box, occt("TopAbs").TopAbs_ShapeEnum.TopAbs_FACE)
+    removed = occt("collections").List_TopoDS_Shape()
+    while faces.More():
+        top = faces.Current()
+        faces.Next()
+    removed.Append(top)
+    maker = occt("BRepOffsetAPI").BRepOffsetAPI_MakeThickSolid()
+    maker.MakeThickSolidByJoin(box, removed, -0.25, 1e-6)
+    return maker.Shape()
+
+
 def _box(a: float, b: float, c: float) -> tuple[float, float, float]:
     v = a * b * c
     return v * (b * b + c * c) / 12, v * (c * c + a * a) / 12, v * (a * a + b * b) / 12
@@ -137,6 +151,18 @@ def _rounded(index: int) -> float:
 
 def _of_spread(x: float, y: float, z: float) -> tuple[float, float, float]:
     return y + z, z + x, x + y
+
+
+def _without(a: float, b: float, c: float, t: float) -> tuple[float, float, float]:
+    """Moments of a box without a lid, with walls of thickness t, about its centre of mass."""
+    x, y, z = a - 2 * t, b - 2 * t, c - t
+    outer, inner, above = a * b * c, x * y * z, t + z / 2
+    volume = outer - inner
+    height = (outer * c / 2 - inner * above) / volume
+    along_x = (outer * a * a - inner * x * x) / 12
+    along_y = (outer * b * b - inner * y * y) / 12
+    along_z = outer * (c * c / 12 + (c / 2) ** 2) - inner * (z * z / 12 + above**2) - volume * height**2
+    return _of_spread(along_x, along_y, along_z)
 
 
 _CYLINDER = (2 * pi, (0.0, 0.0, 1.0), (2 * pi * (3 + 4) / 12, 2 * pi * (3 + 4) / 12, pi))
@@ -179,6 +205,12 @@ SOLIDS = {
     ),
     "paraboloid": Known(
         revolved, 8 * pi, (0.0, 0.0, 8 / 3), (8 * pi * (4 / 6 + 16 / 18),) * 2 + (8 * pi * 4 / 3,)
+    ),
+    "box without a lid": Known(
+        shelled,
+        120.0 - 5.5 * 4.5 * 3.75,
+        (3.0, 2.5, (240.0 - 5.5 * 4.5 * 3.75 * (0.25 + 1.875)) / (120.0 - 5.5 * 4.5 * 3.75)),
+        _without(6.0, 5.0, 4.0, 0.25),
     ),
     "tube": Known(boolean("Cut", primitive("Cylinder", 2.0, 2.0), primitive("Cylinder", 1.0, 2.0)), *_TUBE),
     "plate with a hole": Known(

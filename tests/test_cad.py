@@ -15,8 +15,9 @@ from cad_files import SOLIDS, occt, primitive, write_assembly, write_step
 from command_line import one_line, run
 from polhode import RigidBody, Uncertain, solids
 from polhode.errors import FileFormatError, MeshError, PolhodeError
-from polhode.files import cad_apart, load, read_mesh, solid_from_file
+from polhode.files import cad_apart, cad_file, load, read_mesh, solid_from_file
 from polhode.files.cad_file import read_cad
+from polhode.files.cad_moments import moments_of_faces
 from polhode.files.cad_solid import solids_of
 
 pytest.importorskip("OCP.BRep", reason="CAD files need polhode[cad]")
@@ -207,6 +208,21 @@ class TestRefusals:
         path = write_step(solid, tmp_path / "part.step")
         with pytest.raises((MeshError, FileFormatError), match=r"is open: 4 edges|holds no solid"):
             RigidBody.from_file(path, density=1.0)
+
+    @pytest.mark.parametrize(("error", "is_taken"), [(0.9e-3, True), (1.1e-3, False)])
+    def test_a_volume_that_is_hardly_known(
+        self, error: float, is_taken: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        path = write_step(primitive("Box", 1.0, 1.0, 1.0)(), tmp_path / "part.step")
+
+        def worse(*given: Any) -> Any:
+            return moments_of_faces(*given)._replace(error=error)
+
+        monkeypatch.setattr(cad_file, "moments_of_faces", worse)
+        if is_taken:
+            assert RigidBody.from_file(path, density=1.0).error_bound.mass == pytest.approx(error * MM**3)
+        else:
+            self.refused(path, "is known to 0.11 % alone; heal it in CAD", error=MeshError)
 
     def test_what_only_a_mesh_has(self, tmp_path: Path) -> None:
         path = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step")

@@ -30,6 +30,7 @@ _SUFFIXES: Final = {
     "numbered plates": ".tab",
     "glTF": ".gltf",
     "COLLADA": ".dae",
+    "a ZIP archive": ".3mf",
     "STEP": ".step",
     "IGES": ".igs",
     "PDB": ".pdb",

@@ -27,6 +27,8 @@ __all__ = ["CAD_SUFFIXES", "CadFile", "CadPart", "read_cad"]
 
 CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _IGES: Final = (".igs", ".iges")
+_WORST: Final = 1e-3
+"""Bound of a volume, as a part of it, with which a solid is still taken."""
 _MOST_PARTS: Final = 100_000
 _UNITS: Final = {
     "millimetre": "mm", "millimeter": "mm", "mm": "mm",
@@ -241,6 +243,12 @@ class _Walk:
         if moments.loose or moments.openness > 1e-6 * moments.area:
             raise MeshError(
                 f"{what} is open: {moments.loose} edges do not belong to two faces; heal it in CAD"
+            )
+        if moments.error > _WORST * abs(moments.volume) > 0.0:
+            share = 100.0 * moments.error / abs(moments.volume)
+            raise MeshError(
+                f"{what} has faces that do not meet, or bend too sharply: its volume is known to {share:.2g} "
+                "% alone; heal it in CAD and export it again"
             )
         if not moments.volume > moments.error:
             sign = "is inside out" if moments.volume < -moments.error else "has no volume"
