@@ -61,8 +61,8 @@ def _main(path: Path) -> None:
         found = read_cad(path)
     except PolhodeError as error:
         found = type(error).__name__, str(error)
-    with os.fdopen(out, "wb") as stream:
-        stream.write(pickle.dumps(found))
+    os.dup2(out, 1)
+    sys.stdout.buffer.write(pickle.dumps(found))
 
 
 if __name__ == "__main__":
