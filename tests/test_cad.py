@@ -91,6 +91,14 @@ class TestUnits:
         assert RigidBody.from_file(path, density=2.0, length_unit=name).mass == pytest.approx(12e-6)
         assert solid_from_file(path, density=2.0).body.mass == pytest.approx(12e-6)
 
+    def test_one_without_a_name_here(self, tmp_path: Path) -> None:
+        path = write_step(primitive("Box", 10.0, 20.0, 30.0)(), tmp_path / "part.stp", "MIL")
+        loaded = load(path)
+        assert loaded.unit == "m"
+        (note,) = loaded.notes
+        assert "lengths are in: mil; each was read in its own unit, and all are told in m" in note
+        assert RigidBody.from_file(path, density=2.0).mass == pytest.approx(12e-6, rel=1e-9)
+
     def test_another_one_is_refused(self, tmp_path: Path) -> None:
         path = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step", "INCH")
         with pytest.raises(

@@ -43,6 +43,12 @@ _UNITS: Final = {
 """As files spell them."""
 
 
+_IGES_UNITS: Final = {
+    1: "in", 2: "mm", 4: "ft", 5: "mile", 6: "m", 7: "km", 8: "mil", 9: "um", 10: "cm", 11: "microinch"
+}  # fmt: skip
+"""By the flag of the global section; 3 says that the name beside it tells."""
+
+
 @dataclass(frozen=True)
 class CadPart:
     """One solid at its place.
@@ -86,6 +92,8 @@ class CadFile:
         Faces that bound no solid.
     unread_densities : bool
         Whether materials have densities whose units could not be told.
+    names_of_units : tuple of str
+        As the file has them; mostly one.
     """
 
     format: str
@@ -93,6 +101,7 @@ class CadFile:
     parts: tuple[CadPart, ...]
     left_out: int
     unread_densities: bool = False
+    names_of_units: tuple[str, ...] = ()
 
 
 def read_cad(path: Path) -> CadFile:
@@ -125,7 +134,9 @@ def read_cad(path: Path) -> CadFile:
     done = occt("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone
     if reader.ReadFile(str(path)) != done:
         raise FileFormatError(f"{path}: not a readable {kind} file; export it again")
-    unit = _iges_unit(reader) if is_iges else _step_unit(reader, path)
+    names = _iges_units(reader) if is_iges else _step_units(reader, path)
+    units = {_UNITS.get(name, "m") for name in names}
+    unit = units.pop() if len(units) == 1 else "m"
     if not reader.Transfer(document):
         raise FileFormatError(f"{path}: its {kind} shapes could not be read; export it again")
     walk = _Walk(path, kind, document)
@@ -137,26 +148,27 @@ def read_cad(path: Path) -> CadFile:
     stated = densities_of(read_bytes(path).decode("latin-1")) if raw else []
     if stated is None or len(stated) != len(raw):
         parts = tuple(replace(part, density=None) for part in parts)
-        return CadFile(kind, unit, parts, walk.left_out, unread_densities=True)
+        return CadFile(kind, unit, parts, walk.left_out, unread_densities=True, names_of_units=names)
     known: dict[float | None, float | None] = {None: None, **dict(zip(raw, stated, strict=True))}
     parts = tuple(replace(part, density=known[part.density]) for part in parts)
-    return CadFile(kind, unit, parts, walk.left_out)
+    return CadFile(kind, unit, parts, walk.left_out, names_of_units=names)
 
 
-def _step_unit(reader: Any, path: Path) -> str:
+def _step_units(reader: Any, path: Path) -> tuple[str, ...]:
     sequence = occt("collections").Sequence_TCollection_AsciiString
     lengths, angles, solid_angles = sequence(), sequence(), sequence()
     reader.ChangeReader().FileUnits(lengths, angles, solid_angles)
     names = {lengths.Value(i).ToCString().lower() for i in range(1, lengths.Length() + 1)}
     if not names:
         raise FileFormatError(f"{path}: says no unit of length; export it again with one")
-    units = {_UNITS.get(name, "m") for name in names}
-    return units.pop() if len(units) == 1 else "m"
+    return tuple(sorted(names))
 
 
-def _iges_unit(reader: Any) -> str:
-    name = reader.IGESModel().GlobalSection().UnitName()
-    return _UNITS.get(name.ToCString().lower() if name is not None else "", "m")
+def _iges_units(reader: Any) -> tuple[str, ...]:
+    section = reader.IGESModel().GlobalSection()
+    name = section.UnitName()
+    stated = name.ToCString().lower() if name is not None else ""
+    return (_IGES_UNITS.get(section.UnitFlag(), stated or "none"),)
 
 
 class _Walk:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["Loaded", "load", "read_mesh"]
 
 _CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
+_METRE: Final = ("m", "metre", "meter")
 _OF_EXTRAS: Final = (*_CAD_SUFFIXES, ".vtk", ".vtu", ".vtp")
 _MESH_SUFFIXES: Final = tuple(
     suffix for suffix in EXPECTED_CONTENT if suffix not in (*MOLECULE_SUFFIXES, *_OF_EXTRAS)
@@ -255,6 +256,11 @@ def _load_cad(file: Path) -> Loaded:
     notes = []
     if cad.left_out:
         notes.append(f"{cad.left_out} faces of the file bound no solid and count nothing")
+    if len(cad.names_of_units) > 1 or (cad.unit == "m" and cad.names_of_units[0] not in _METRE):
+        names = ", ".join(cad.names_of_units)
+        notes.append(
+            f"the file's lengths are in: {names}; each was read in its own unit, and all are told in m"
+        )
     if cad.unread_densities:
         notes.append("the densities of its materials have units that are not understood and are not used")
     return Loaded(file, cad.format, unit=cad.unit, states_unit=True, notes=tuple(notes), cad=cad)
