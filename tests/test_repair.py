@@ -217,6 +217,39 @@ class TestLimits:
         assert "--closure hull" in err
         assert run("report", str(path), "--density", "1", "--closure", "hull")[0] == 0
 
+    def test_a_surface_with_one_side(self, tmp_path: Path) -> None:
+        """Klein's bottle is closed, but no winding of its triangles is consistent."""
+        pytest.importorskip("scipy")
+        n, m = 16, 12
+        u, v = (grid.ravel() for grid in np.meshgrid(np.arange(n), np.arange(m), indexing="ij"))
+        u, v = 2 * np.pi * u / n, 2 * np.pi * (v + 0.5) / m  # no corner where it passes itself
+        r = 3.0 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
+        height = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
+        vertices = np.stack([r * np.cos(u), r * np.sin(u), height], axis=-1)
+
+        def at(i: int, j: int) -> int:
+            return (i * m + j % m) if i < n else (-j - 1) % m
+
+        faces = [
+            face
+            for i in range(n)
+            for j in range(m)
+            for face in (
+                [at(i, j), at(i + 1, j), at(i, j + 1)],
+                [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)],
+            )
+        ]
+        path = written(tmp_path / "bottle.obj", (vertices, np.array(faces)))
+        code, _, err = run("report", str(path), "--density", "1")
+        assert code == 2
+        assert "--repair" not in err
+        assert "not consistently wound" in err
+        assert "--closure hull takes the convex hull instead" in err
+        assert run("report", str(path), "--density", "1", "--closure", "hull")[0] == 0
+        code, _, err = run("report", str(path), "--density", "1", "--repair")
+        assert code == 2
+        assert "--repair" not in err.partition("bottle.obj")[2]
+
     def test_what_nothing_mends(self, tmp_path: Path) -> None:
         sheet = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
         path = written(tmp_path / "sheet.obj", sheet)

@@ -130,6 +130,8 @@ def moments_of_faces(faces: list[Any], about: Floats, reach: float) -> Moments:
 def _over_face(face: Any, about: Floats, reach: float, gaps: _Gaps) -> tuple[Floats, float]:
     """Integrals over one face, in units of `reach`, and how well they are known."""
     abs_ = occt("TopAbs").TopAbs_Orientation
+    if occt("BRep").BRep_Tool.Surface_s(face) is None:
+        raise ValueError("a face is a mesh of triangles without a surface")
     surface = surface_of(face)
     sign = -1.0 if face.Orientation() == abs_.TopAbs_REVERSED else 1.0
     pieces = list(_pieces(face, surface, gaps))
