@@ -221,8 +221,8 @@ class TestLimits:
         """Klein's bottle is closed, but no winding of its triangles is consistent."""
         pytest.importorskip("scipy")
         n, m = 16, 12
-        u, v = (grid.ravel() for grid in np.meshgrid(np.arange(n), np.arange(m), indexing="ij"))
-        u, v = 2 * np.pi * u / n, 2 * np.pi * (v + 0.5) / m  # no corner where it passes itself
+        rows, columns = (grid.ravel() for grid in np.meshgrid(np.arange(n), np.arange(m), indexing="ij"))
+        u, v = 2 * np.pi * rows / n, 2 * np.pi * (columns + 0.5) / m  # no corner where it passes itself
         r = 3.0 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
         height = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
         vertices = np.stack([r * np.cos(u), r * np.sin(u), height], axis=-1)

@@ -42,9 +42,7 @@ def read_vtk(path: Path) -> Mesh:
             f"{path}: holds {type(held).__name__}, no surface or cells; RigidBody.from_voxels takes voxels"
         )
     promised = held.n_cells
-    surface = (
-        held if isinstance(held, pyvista.PolyData) else held.extract_surface(algorithm="dataset_surface")
-    )
+    surface = held if isinstance(held, pyvista.PolyData) else _around(held, pyvista)
     if surface.n_lines or surface.n_verts:
         raise FileFormatError(f"{path}: holds points or lines where triangles are needed")
     triangles = surface.triangulate()
@@ -52,3 +50,12 @@ def read_vtk(path: Path) -> Mesh:
     if not promised or not len(faces):
         raise FileFormatError(f"{path}: holds no triangles and no cells; is it cut short?")
     return weld(np.asarray(triangles.points, dtype=np.float64), faces, "VTK")
+
+
+def _around(cells: Any, pyvista: Any) -> Any:
+    """Give the surface around cells in space."""
+    filters: Any = require("vtkmodules.vtkFiltersGeometry", extra="view", purpose="reading VTK's files")
+    surface = filters.vtkDataSetSurfaceFilter()
+    surface.SetInputData(cells)
+    surface.Update()
+    return pyvista.wrap(surface.GetOutput())
