@@ -6,6 +6,7 @@ not raise anything else, take long, or read another body from a file that is cut
 
 from __future__ import annotations
 
+import gzip
 import re
 import time
 from collections import Counter
@@ -16,7 +17,19 @@ from typing import Any
 
 import numpy as np
 from command_line import one_line, run
-from mesh_files import ascii_ply, ascii_stl, binary_ply, binary_stl, glb, obj, off
+from mesh_files import (
+    ascii_ply,
+    ascii_stl,
+    binary_ply,
+    binary_stl,
+    dae,
+    glb,
+    gltf,
+    numbered_plates,
+    obj,
+    off,
+    three_mf,
+)
 from oracles.meshes import icosphere
 from polhode import RigidBody, Trajectory, loads, robots, solids
 from polhode.errors import PolhodeError
@@ -179,6 +192,23 @@ _MJCF = """<mujoco model="m"><compiler angle="degree"/><default><geom density="9
 <replicate count="3" offset="1 0 0"><body name="c"><geom type="box" size="1 1 1" mass="2"/></body></replicate>
 </body></worldbody></mujoco>
 """
+_PDB = """HEADER    WATER
+HETATM    1  O   HOH A   1       0.000   0.000   0.119  1.00  0.00           O
+HETATM    2  H1  HOH A   1       0.000   0.763  -0.477  1.00  0.00           H
+HETATM    3  H2  HOH A   1       0.000  -0.763  -0.477  1.00  0.00           H
+END
+"""
+_MOL = """water
+  test
+
+  3  2  0  0  0  0  0  0  0  0999 V2000
+    0.0000    0.0000    0.1193 O   0  0
+    0.0000    0.7632   -0.4770 H   0  0
+    0.0000   -0.7632   -0.4770 H   0  0
+  1  2  1  0
+  1  3  1  0
+M  END
+"""
 _WATER = "3\nwater, 96.4 kJ\nO 0 0 0.119262\nH 0 0.763239 -0.477047\nH 0 -0.763239 -0.477047\n"
 
 KINDS: dict[str, Kind] = {
@@ -201,6 +231,15 @@ KINDS: dict[str, Kind] = {
     "binary PLY, whole": Kind(".ply", _mesh(binary_ply), _triangles),
     "OFF": Kind(".off", _mesh(off), _solid),
     "GLB": Kind(".glb", _mesh(glb), _solid),
+    "glTF": Kind(".gltf", _mesh(gltf), _solid),
+    "DAE": Kind(".dae", _mesh(dae), _solid),
+    "3MF": Kind(".3mf", _mesh(three_mf), _solid, has_checksum=True),
+    "numbered plates": Kind(
+        ".tab", _mesh(numbered_plates), _solid, is_self_ending=False
+    ),  # of its last number
+    "packed STL": Kind(".stl.gz", lambda path: gzip.compress(_mesh(ascii_stl)(path)), _solid),
+    "PDB": Kind(".pdb", _text(_PDB), _molecule, is_self_ending=False),
+    "MOL": Kind(".mol", _text(_MOL), _molecule),
     "XYZ": Kind(".xyz", _text(_WATER), _molecule, is_self_ending=False),  # its last number may lose digits
     "URDF": Kind(".urdf", _text(_URDF), _robot),
     "SDF": Kind(".sdf", _text(_SDF), _robot),

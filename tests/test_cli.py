@@ -204,7 +204,7 @@ BAD_STL = bytes(80) + struct.pack("<I", 4_000_000_000) + bytes(50)
         ("huge.stl", BAD_STL, "4000000000"),
         ("open.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not closed"),
         ("zero.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "--index-base 0"),
-        ("part.step", b"ISO-10303-21;\n", "not read"),
+        ("part.blend", b"BLENDER", "not read"),
         ("odd.xyz", b"1\na\nXx 0 0 0\n", "'Xx' is not an element"),
     ],
 )

@@ -327,11 +327,6 @@ def test_cad_parts_once_their_corners_are_welded(
         _agrees(computed, known)
 
 
-def test_a_step_file_is_refused(shared_data: Path) -> None:
-    with pytest.raises(FileFormatError, match=r"\.step are not read"):
-        read_mesh(shared_data / "cad" / "featuretype.STEP")
-
-
 def _agrees(computed: float, printed: str) -> None:
     """To half a unit of the last digit printed."""
     decimals = len(printed.partition(".")[2])

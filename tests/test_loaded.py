@@ -132,7 +132,7 @@ class TestKinds:
         atoms, _ = seen("neon.xyz", NEON.encode())
         with pytest.raises(FileFormatError, match=r"part\.obj: v/f text holds a mesh, not atoms"):
             _ = load(mesh).molecule
-        with pytest.raises(FileFormatError, match=r"neon\.xyz: an XYZ file holds atoms, not a mesh"):
+        with pytest.raises(FileFormatError, match=r"neon\.xyz: XYZ holds atoms, not a mesh"):
             _ = load(atoms).mesh
         assert load(atoms).molecule.labels == read_xyz(atoms).labels
         assert np.array_equal(load(mesh).mesh.vertices, read_mesh(mesh).vertices)

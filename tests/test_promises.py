@@ -35,7 +35,7 @@ def test_the_versions_are_those_that_the_build_asks_for() -> None:
     assert f'rust-version = "{stated[2]}"' in rust.read_text("utf-8")
 
 
-def test_the_extra_all_is_every_extra_but_view_and_cluster_and_scipy() -> None:
+def test_the_extra_all_is_every_extra_but_view_cluster_and_cad_and_scipy() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
 
@@ -50,7 +50,7 @@ def test_the_extra_all_is_every_extra_but_view_and_cluster_and_scipy() -> None:
 
     shown = set(re.findall(r"^\| `(\w+)` \|", README[README.index("| extra |") :], re.MULTILINE))
     assert shown == set(extras)
-    assert names("all") & set(extras) == set(extras) - {"view", "cluster"}
+    assert names("all") & set(extras) == set(extras) - {"view", "cluster", "cad"}
     assert "scipy" in names("all")
 
 

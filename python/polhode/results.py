@@ -192,7 +192,7 @@ class Provenance:
         How many of them: particles, triangles, segments, cells, bodies; 1 for one tensor or solid.
     checked : str
         What the input has passed, separated by commas; ``"unchecked"`` among them says that checks were left
-        out on request.
+        out on request, ``"repaired"`` that a mesh was mended on request before it passed them.
     welded : int
         Corners joined to others within a length that was asked for. Equal corners are one, and not counted.
     closure : str

@@ -81,7 +81,8 @@ def report(
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file), a molecule (XYZ), or - for standard input.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), or - for
+        standard input.
     """
     from polhode.cli.outputs import check_outputs
     from polhode.cli.report import file_report
@@ -137,7 +138,7 @@ def molecule(
     Parameters
     ----------
     file
-        A molecule (XYZ), or - for standard input.
+        A molecule (XYZ, PDB, MOL, SDF), or - for standard input.
     """
     from polhode.cli.molecule import molecule_report
     from polhode.cli.outputs import check_outputs
@@ -161,7 +162,8 @@ def spin(
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file), a molecule (XYZ), or - for standard input.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), or - for
+        standard input.
     """
     from polhode.cli.outputs import check_outputs
     from polhode.cli.spin import spin_report
@@ -185,7 +187,7 @@ def flyby(
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, OFF, GLB, v/f plate file), or - for standard input.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), or - for standard input.
     """
     from polhode.cli.flyby import draw_flyby, flyby_report
     from polhode.cli.outputs import check_outputs

@@ -11,6 +11,7 @@ from polhode.cli.quantities import has_unit, quantity
 from polhode.errors import PolhodeError
 from polhode.files.components import Part, groups_of, overlaps, parts_of, told
 from polhode.files.mesh import weld_within
+from polhode.files.repair import repaired
 
 if TYPE_CHECKING:
     from polhode.cli.layout import Report
@@ -54,9 +55,9 @@ def components_of(
         return Components(
             [], [], ["components were joined (--union): how far that moves corners is in no bound"]
         )
-    if solid.faces > _MOST_FACES or options.closure is not None:
+    if loaded.cad is not None or solid.faces > _MOST_FACES or options.closure is not None:
         return None
-    parts = _parts(loaded, scale, weld)
+    parts = _parts(loaded, scale, weld, mended=options.repair)
     if len(parts) < 2:
         return None
     notes = told(overlaps(parts), sum(part.volume for part in parts), _unit(options))
@@ -67,7 +68,13 @@ def components_of(
 
 def weighed(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float) -> MeshSolid:
     """Give each component its own density."""
-    for name, is_given in (("union", options.union), ("closure", options.closure is not None)):
+    if loaded.cad is not None:
+        raise PolhodeError("--density: the solids of a CAD file take one density, or those of its materials")
+    for name, is_given in (
+        ("union", options.union),
+        ("closure", options.closure is not None),
+        ("repair", options.repair),
+    ):
         if is_given:
             raise PolhodeError(f"--{name}: components of several densities are not joined; leave it out")
     parts = _parts(loaded, scale, weld)
@@ -102,7 +109,10 @@ def add_components(report: Report, found: Components | None, volume: str, densit
     report.notes += found.notes
 
 
-def _parts(loaded: Loaded, scale: float, weld: float) -> list[Part]:
+def _parts(loaded: Loaded, scale: float, weld: float, *, mended: bool = False) -> list[Part]:
+    if mended:
+        mesh, _, _, _ = repaired(loaded.mesh, weld)
+        return parts_of(mesh.vertices * scale, mesh.faces)
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
     vertices = mesh.vertices * scale
     parts = parts_of(vertices, mesh.faces)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from polhode.cli.progress import reading_progress
 from polhode.cli.quantities import amount, has_unit, quantity
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
-from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.files.mesh import weld_within
 from polhode.files.mesh_solid import MeshSolid, solid_of
@@ -24,12 +24,15 @@ if TYPE_CHECKING:
     from polhode import RigidBody, Uncertain
     from polhode._nuclides import Masses
     from polhode.cli.atoms import Atoms
-    from polhode.cli.options import BodyOptions
+    from polhode.cli.options import BodyOptions, LengthUnit
     from polhode.files.loaded import Loaded
     from polhode.files.mesh import Mesh
     from polhode.molecules import Isotope
 
 __all__ = ["LoadedBody", "bond_sigma", "in_file_unit", "load_body", "loaded_molecule"]
+
+_LEAST, _MOST = 1e-13, 1e4
+"""Between these volumes, in m^3, nothing is remarked of a part."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,10 @@ class LoadedBody:
         The mesh in the unit of `body`, where it was asked for.
     has_mass_sigmas : bool
         Whether the masses of a molecule's isotopes have sigmas.
+    length_unit : str or None
+        Unit of the coordinates in the file of a mesh, where it is known.
+    states_unit : bool
+        Whether the file or its format says so.
     """
 
     body: RigidBody
@@ -71,6 +78,8 @@ class LoadedBody:
     notes: tuple[str, ...] = ()
     shape: Mesh | None = None
     has_mass_sigmas: bool = False
+    length_unit: str | None = None
+    states_unit: bool = False
 
     @property
     def moment_unit(self) -> str:
@@ -91,7 +100,7 @@ def load_body(
     A shape is kept where it is to be drawn, and components are told apart where they are to be listed.
     """
     with as_file(file) as path:
-        if path.suffix.lower() == MOLECULE_SUFFIX:
+        if is_molecule(path):
             return _load_molecule(path, options)
         return _load_mesh(path, options, with_shape, with_components)
 
@@ -104,23 +113,31 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
         raise PolhodeError(
             "--density and --mass: give one of the two, since the other follows from the volume"
         )
-    unit = options.length_unit
+    loaded = load(file, index_base=options.index_base)
+    asked, unit = options.length_unit, loaded.length(options.length_unit)
+    options = replace(options, length_unit=cast("LengthUnit | None", unit))
     scale = 1.0 if unit is None else metres_per(unit)
-    assumed = options.density is None and options.mass is None
+    has_densities = loaded.cad is not None and all(part.density is not None for part in loaded.cad.parts)
+    assumed = options.density is None and options.mass is None and not has_densities
     density = 1.0 if assumed else _amount(options.density, "kg/m^3", "--density", unit)
     mass = _amount(options.mass, "kg", "--mass", unit)
     weld = _weld(options)
-    loaded = load(file, index_base=options.index_base)
     solid = _solid(loaded, options, density, mass, scale, weld)
     if has_names(options.density):
         solid = weighed(loaded, solid, options, scale, weld)
     elif with_components:
         solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
-    notes = _taken(options, unit)
-    if weld != 0.0:
+    notes = [*_taken(options, unit), *_of_unit(loaded, asked), *loaded.notes]
+    notes += _unusual(solid.volume, unit, loaded)
+    if weld != 0.0 and not options.repair:
         notes.append(f"{solid.welded} corners were joined to others within {weld:g} (--weld)")
-    if provenance.closure:
+    if options.repair and not solid.steps:
+        notes.append("nothing had to be repaired (--repair)")
+    if options.repair and solid.steps:
+        total = sum(step.change for step in solid.steps)
+        notes.append(f"the mesh was repaired (--repair), which changed its volume by {total:.3g} % in all")
+    elif provenance.closure:
         share = 100.0 * float(provenance.volume_change) / solid.volume
         notes.append(
             f"the mesh is open; --closure {provenance.closure} closed it, which changed its volume by "
@@ -138,11 +155,41 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
         assumed=assumed,
         notes=tuple(notes),
         shape=_shape(loaded, weld, scale) if with_shape else None,
+        length_unit=unit,
+        states_unit=loaded.unit is not None and asked in (None, loaded.unit),
     )
 
 
-def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh:
-    """Give the mesh as it is drawn, in the unit of the body."""
+def _unusual(volume: float, unit: str | None, loaded: Loaded) -> list[str]:
+    """Remark on a part as large as a house, or too small to see, with the unit that is more likely."""
+    if unit not in ("m", "mm", "cm", "in", "ft") or _LEAST < volume < _MOST:
+        return []
+    stored = volume / metres_per(unit) ** 3
+    likely = [
+        name for name in ("mm", "m", "in") if name != unit and _LEAST < stored * metres_per(name) ** 3 < 1.0
+    ]
+    if not likely:
+        return [f"a volume of {volume:.4g} m^3 is unusual for a part; check the unit of length"]
+    way_out = f"state --length-unit {likely[0]}"
+    if loaded.states_unit:
+        way_out = "check what exported the file, which says its unit itself"
+    return [
+        f"a volume of {volume:.4g} m^3 is unusual for a part: in {likely[0]} it would be "
+        f"{stored * metres_per(likely[0]) ** 3:.4g} m^3; {way_out}"
+    ]
+
+
+def _of_unit(loaded: Loaded, asked: str | None) -> list[str]:
+    """Say that a unit was stated that is not the format's own."""
+    if loaded.unit is None or asked in (None, loaded.unit):
+        return []
+    return [f"{loaded.format} is in {loaded.unit} by its standard; --length-unit {asked} was taken instead"]
+
+
+def _shape(loaded: Loaded, weld: float, scale: float) -> Mesh | None:
+    """Give the mesh as it is drawn, in the unit of the body; solids of CAD have none."""
+    if loaded.cad is not None:
+        return None
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
     return mesh._replace(vertices=mesh.vertices * scale)
 
@@ -165,6 +212,7 @@ def _solid(
             closure=options.closure,
             orient=options.orient,
             union=options.union,
+            repair=options.repair,
             progress=tell,
         )
 
@@ -230,9 +278,11 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         closure=options.closure is not None,
         orient=options.orient,
         union=options.union,
+        repair=options.repair,
         index_base=options.index_base != 1,
     )
-    molecule = load(file).molecule
+    loaded = load(file)
+    molecule = loaded.molecule
     atoms = molecule_isotopes(file, molecule)
     unit = options.length_unit or "angstrom"
     in_angstrom = metres_per(unit) / METRES["angstrom"]
@@ -246,11 +296,15 @@ def _load_molecule(file: Path, options: BodyOptions) -> LoadedBody:
         bond_sigma=bond_sigma(options.bond_sigma, unit),
         mass_sigmas=options.mass_sigmas,
     )
-    return loaded_molecule(at, atoms, molecule.comment)
+    return loaded_molecule(at, atoms, molecule.comment, notes=(*molecule.notes, *loaded.notes))
 
 
 def loaded_molecule(
-    at: Atoms, atoms: list[Isotope], comment: str, masses: Masses = "most_common"
+    at: Atoms,
+    atoms: list[Isotope],
+    comment: str,
+    masses: Masses = "most_common",
+    notes: tuple[str, ...] = (),
 ) -> LoadedBody:
     """Make the body of a molecule's nuclides at their places."""
     return LoadedBody(
@@ -259,7 +313,7 @@ def loaded_molecule(
         mass_unit="u",
         length="angstrom",
         comment=comment,
-        notes=at.notes,
+        notes=(*at.notes, *notes),
         has_mass_sigmas=at.with_mass_sigmas,
     )
 

@@ -15,7 +15,7 @@ from polhode.cli.source import as_file, shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
 from polhode.errors import PolhodeError
 from polhode.files.body import molecule_isotopes
-from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.molecules import Isotope, isotopes
 from polhode.units import METRES, metres_per
@@ -33,9 +33,12 @@ _BY_NUMBER = re.compile(r"(?P<atom>\d+)=(?P<label>\w+)")
 def molecule_report(file: Path, options: MoleculeOptions) -> Report:
     """Report on the rotation of the molecule in a file, and of isotopologues of it."""
     with as_file(file) as path:
-        if path.suffix.lower() != MOLECULE_SUFFIX:
-            raise PolhodeError(f"{shown(file)}: a molecule is an XYZ file; polhode report reads meshes")
-        molecule = load(path).molecule
+        if not is_molecule(path):
+            raise PolhodeError(
+                f"{shown(file)}: a molecule is an XYZ, PDB, MOL or SDF file; polhode report reads meshes"
+            )
+        read = load(path)
+        molecule = read.molecule
         atoms = molecule_isotopes(path, molecule, options.masses)
     to_angstrom = metres_per(options.length_unit) / METRES["angstrom"]
     molecule = molecule._replace(
@@ -43,7 +46,7 @@ def molecule_report(file: Path, options: MoleculeOptions) -> Report:
     )
     sigma = bond_sigma(options.bond_sigma, options.length_unit)
     at = atoms_of(file, atoms, molecule, bond_sigma=sigma, mass_sigmas=options.mass_sigmas)
-    loaded = loaded_molecule(at, atoms, molecule.comment, options.masses)
+    loaded = loaded_molecule(at, atoms, molecule.comment, options.masses, (*molecule.notes, *read.notes))
     report = Report()
     _head(report, file, atoms, loaded)
     report.section("rotation", *rotation_fields(loaded, options.rtol))

@@ -67,6 +67,9 @@ class BodyOptions:
         Turn triangles that face inward; without it they are an error.
     union
         Join components of a mesh that overlap, so that what they share counts once (by manifold3d).
+    repair
+        Mend the mesh: weld corners, drop faces that stand twice, wind the others alike, fill loops. The
+        report lists each step with the change of volume; without it such meshes are an error.
     index_base
         What the faces of an OBJ or plate file count vertices from: 1 (OBJ) or 0.
     bond_sigma
@@ -83,6 +86,7 @@ class BodyOptions:
     closure: Annotated[Literal["caps", "hull"] | None, Parameter(name="--closure")] = None
     orient: Annotated[bool, Parameter(name="--orient", negative="")] = False
     union: Annotated[bool, Parameter(name="--union", negative="")] = False
+    repair: Annotated[bool, Parameter(name="--repair", negative="")] = False
     index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
     bond_sigma: Annotated[str | None, Parameter(name="--bond-sigma")] = None
     mass_sigmas: Annotated[bool, Parameter(name="--mass-sigmas", negative="")] = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polhode.cli.components import add_components
-from polhode.cli.layout import Field, Report
+from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.loading import in_file_unit, load_body
 from polhode.cli.options import ReportOptions
 from polhode.cli.quantities import quantity, split_vector
@@ -31,11 +31,11 @@ PLAIN = ReportOptions()
 def file_report(file: Path, options: BodyOptions, extra: ReportOptions = PLAIN) -> Report:
     """Report on the body in a file."""
     if extra.mass_unit is not None:
-        if options.length_unit is None:
-            raise PolhodeError("--mass-unit: the length of the file has no unit; state --length-unit too")
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
     loaded = load_body(file, options, with_components=True)
-    units = FileUnits(options.length_unit, extra.mass_unit)
+    units = FileUnits(loaded.length_unit, extra.mass_unit)
+    if extra.mass_unit is not None and isinstance(loaded.source, MeshSolid) and loaded.length_unit is None:
+        raise PolhodeError("--mass-unit: the length of the file has no unit; state --length-unit too")
     about = _point(loaded, options, extra)
     if isinstance(loaded.source, MeshSolid):
         return _mesh_report(file, loaded, loaded.source, units, about)
@@ -53,12 +53,36 @@ def _point(
     if not extra.about:
         return None
     is_molecule = loaded.length == "angstrom"
-    unit = options.length_unit or ("angstrom" if is_molecule else None)
+    unit = loaded.length_unit or options.length_unit or ("angstrom" if is_molecule else None)
     of_body = 1.0 if unit is None else metres_per(unit) / (metres_per("angstrom") if is_molecule else 1.0)
     x, y, z = (
         in_file_unit(part, "--about", unit) * of_body for part in split_vector(extra.about, "m", "--about")
     )
     return x, y, z
+
+
+def _parts(mesh: MeshSolid) -> Table:
+    """List the solids of a CAD file."""
+    columns = (
+        Column("name", "solid"),
+        Column("mass", "mass", "kg"),
+        Column("volume", "volume", "m^3"),
+        Column("density", "density", "kg/m^3"),
+        Column("center_of_mass", "centre of mass", "m"),
+        Column("material", "material"),
+    )
+    rows = [
+        {
+            "name": part.name,
+            "mass": part.body.mass,
+            "volume": part.volume,
+            "density": part.body.mass / part.volume,
+            "center_of_mass": part.body.center_of_mass,
+            "material": part.material or None,
+        }
+        for part in mesh.parts
+    ]
+    return Table("parts", columns, rows)
 
 
 def _mesh_report(
@@ -69,7 +93,7 @@ def _mesh_report(
     about: tuple[float, float, float] | None,
 ) -> Report:
     report, body, unit = Report(), loaded.body, units.length
-    hint = "" if unit else "(state it with --length-unit)"
+    hint = "(the file's own)" if loaded.states_unit else "" if unit else "(state it with --length-unit)"
     report.section(
         "",
         Field("file", "file", shown(file)),
@@ -84,6 +108,16 @@ def _mesh_report(
         *units.fields("volume", "volume", loaded.volume, volume, length=3),
         *units.fields("area", "surface area", mesh.area, area, length=2),
     )
+    if mesh.steps:
+        columns = (
+            Column("step", "step"),
+            Column("volume_change_percent", "change of volume", "%"),
+            Column("what", "what"),
+        )
+        rows = [{"step": s.name, "volume_change_percent": s.change, "what": s.what} for s in mesh.steps]
+        report.section("repaired", Table("repaired", columns, rows))
+    if len(mesh.parts) > 1 or any(part.material for part in mesh.parts):
+        report.section("parts", _parts(mesh))
     center, extent = body.center_of_mass, loaded.extent
     report.section(
         "mass",

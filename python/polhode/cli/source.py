@@ -27,6 +27,14 @@ _SUFFIXES: Final = {
     "OFF": ".off",
     "GLB": ".glb",
     "v/f text": ".obj",
+    "numbered plates": ".tab",
+    "glTF": ".gltf",
+    "COLLADA": ".dae",
+    "a ZIP archive": ".3mf",
+    "STEP": ".step",
+    "IGES": ".igs",
+    "PDB": ".pdb",
+    "MOL": ".mol",
     "XYZ": ".xyz",
 }
 

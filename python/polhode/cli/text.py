@@ -13,6 +13,10 @@ __all__ = ["in_options", "printable", "write"]
 _WAYS_OUT: Final = (
     ('closure="caps" or "hull"', "--closure caps or --closure hull"),
     ("pass orient=True", "pass --orient"),
+    ("repair=True mends it", "--repair mends it"),
+    ('closure="hull" takes', "--closure hull takes"),
+    ("repair closes and orients by itself", "--repair closes and orients by itself"),
+    ("leave length_unit out", "leave --length-unit out"),
     ("pass allow_outside=True", "pass --allow-outside"),
     ("pass rtol= if the table was printed to few digits", "give more digits"),
     ("pass rtol= for a table printed to few digits", "give more digits"),

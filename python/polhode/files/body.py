@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.files.mesh_solid import naming_file, solid_of
 from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, body_of_atoms, isotopes
@@ -37,6 +37,7 @@ def body_from_file(
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
     union: bool = False,
+    repair: bool = False,
     index_base: int = 1,
     masses: Masses = "most_common",
     progress: Callable[[float], object] | None = None,
@@ -53,7 +54,7 @@ def body_from_file(
     length_unit : str, optional
         Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's
         masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
-    weld, closure, orient, index_base
+    weld, closure, orient, repair, index_base
         Of a mesh; see :func:`solid_from_file`.
     union : bool
         Of a mesh: join components that overlap, so that what they share counts once; by manifold3d (extra
@@ -79,18 +80,21 @@ def body_from_file(
     for name, value in (("density", density), ("mass", mass)):
         _check_amount(name, value, path)
     scale = 1.0 if length_unit is None else metres_per(length_unit)
-    if Path(path).suffix.lower() != MOLECULE_SUFFIX:
+    if not is_molecule(Path(path)):
         if masses != "most_common":
             raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
+        loaded = load(path, index_base=index_base)
+        unit = loaded.length(length_unit)
         return solid_of(
-            load(path, index_base=index_base),
+            loaded,
             density=density,
             mass=mass,
-            scale=scale,
+            scale=1.0 if unit is None else metres_per(unit),
             weld=weld,
             closure=closure,
             orient=orient,
             union=union,
+            repair=repair,
             progress=progress,
         ).body
     check_molecule_options(
@@ -101,11 +105,12 @@ def body_from_file(
         closure=closure is not None,
         orient=orient,
         union=union,
+        repair=repair,
         index_base=index_base != 1,
     )
     molecule = load(path).molecule
-    unit = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
-    found = [isotope.mass * unit for isotope in molecule_isotopes(path, molecule, masses)]
+    one = 1.0 if length_unit is None else ATOMIC_MASS_CONSTANT
+    found = [isotope.mass * one for isotope in molecule_isotopes(path, molecule, masses)]
     with naming_file(path), np.errstate(over="ignore"):
         rounding = molecule.rounding * scale
         return body_of_atoms(found, molecule.positions * scale, source=masses, rounding=rounding)

@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode._extras import require
 from polhode.errors import FileFormatError
+from polhode.files.content import unread
 from polhode.files.glb import check_glb
 from polhode.files.mesh import Mesh, weld
 from polhode.files.promises import check_off, check_ply, check_ply_lists, check_ply_size
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["read_by_trimesh"]
 
-_READ: Final = (".ply", ".off", ".glb")
+_READ: Final = (".ply", ".off", ".glb", ".gltf")
 _PROMISING: Final = {"ply": check_ply, "off": check_off}
 _MOST_TRIANGLES: Final = 100_000_000
 """Placed by the nodes of a scene: a small file can name one mesh again and again."""
@@ -50,10 +51,9 @@ def read_by_trimesh(stream: BinaryIO, file: Path, readable: tuple[str, ...]) -> 
     """
     suffix = file.suffix.lower()
     if suffix not in _READ:  # trimesh knows more: archives that unpack without end, drawings, voxels
-        name = f"files named {suffix}" if suffix else "files without a suffix"
-        raise FileFormatError(f"{file}: {name} are not read; use one of {', '.join(readable)}")
+        raise unread(file, suffix, readable)
     trimesh: Any = require("trimesh", extra="mesh", purpose=f"{file}: reading {suffix} files")
-    kind = suffix.removeprefix(".")
+    kind = "glb" if suffix == ".gltf" else suffix.removeprefix(".")
     try:
         # Its own processing would merge, drop and reorder; only the stored triangles are wanted.
         scene = _loaded(trimesh, stream, kind)

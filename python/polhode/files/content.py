@@ -6,33 +6,60 @@ import codecs
 import os
 import struct
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
 from polhode.errors import FileFormatError
+from polhode.files.plates import is_numbered_plates
 from polhode.files.reading import check_ordinary, naming
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
-
-__all__ = ["EXPECTED_CONTENT", "MOLECULE_SUFFIX", "Content", "content_format", "opened"]
+__all__ = [
+    "EXPECTED_CONTENT",
+    "MOLECULE_SUFFIX",
+    "MOLECULE_SUFFIXES",
+    "Content",
+    "content_format",
+    "is_molecule",
+    "opened",
+    "unread",
+]
 
 MOLECULE_SUFFIX: Final = ".xyz"
+MOLECULE_SUFFIXES: Final = (MOLECULE_SUFFIX, ".extxyz", ".pdb", ".ent", ".mol", ".sdf")
 EXPECTED_CONTENT: Final = {
     ".stl": ("binary STL", "ASCII STL"),
     ".obj": ("v/f text",),
-    ".tab": ("v/f text",),
-    ".txt": ("v/f text",),
+    ".tab": ("v/f text", "numbered plates"),
+    ".txt": ("v/f text", "numbered plates"),
     ".ply": ("PLY",),
     ".off": ("OFF",),
     ".glb": ("GLB",),
-    MOLECULE_SUFFIX: ("XYZ",),
+    ".gltf": ("glTF",),
+    ".dae": ("COLLADA",),
+    ".3mf": ("a ZIP archive",),
+    ".vtk": ("VTK",),
+    ".vtu": ("VTK",),
+    ".vtp": ("VTK",),
+    ".xyz": ("XYZ",),
+    ".extxyz": ("XYZ",),
+    ".pdb": ("PDB",),
+    ".ent": ("PDB",),
+    ".mol": ("MOL",),
+    ".sdf": ("MOL",),
+    ".step": ("STEP",),
+    ".stp": ("STEP",),
+    ".igs": ("IGES",),
+    ".iges": ("IGES",),
 }
+_PACKED = ".gz"
 
 _STL_HEADER = 84
 _STL_TRIANGLE = 50
 _PLATE_KEYWORDS = frozenset({"v", "vn", "vt", "vp", "f", "o", "g", "s", "l", "mtllib", "usemtl"})
 _ROBOT_ROOTS = ((b"<robot", "URDF"), (b"<sdf", "SDF"), (b"<mujoco", "MJCF"))
+_PDB_RECORDS = ("ATOM  ", "HETATM", "HEADER", "TITLE ", "COMPND", "REMARK", "CRYST1", "MODEL ")
 _CONTROL = bytes(set(range(32)) - set(b"\t\n\v\f\r\x1a"))
 
 
@@ -54,6 +81,18 @@ class Content(NamedTuple):
     head: bytes
 
 
+def is_molecule(path: Path) -> bool:
+    """Whether a file is a molecule, by its name; packed or not."""
+    suffix = path.suffix.lower()
+    return (Path(path.stem).suffix.lower() if suffix == _PACKED else suffix) in MOLECULE_SUFFIXES
+
+
+def unread(file: Path, suffix: str, readable: tuple[str, ...]) -> FileFormatError:
+    """Give the error of a file whose suffix is none that is read."""
+    name = f"files named {suffix}" if suffix else "files without a suffix"
+    return FileFormatError(f"{file}: {name} are not read; use one of {', '.join(readable)}")
+
+
 def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
     """Tell the format of a file's content.
 
@@ -68,7 +107,8 @@ def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
     -------
     format : str or None
         ``"binary STL"``, ``"ASCII STL"``, ``"PLY"``, ``"OFF"``, ``"GLB"``, ``"a ZIP archive"``,
-        ``"v/f text"``, ``"XYZ"``; None where none of these is certain.
+        ``"v/f text"``, ``"numbered plates"``, ``"XYZ"``, ``"COLLADA"``, ``"glTF"``, ``"VTK"``, ``"STEP"``,
+        ``"IGES"``, ``"PDB"``, ``"MOL"``; None where none of these is certain.
     is_text : bool
         Whether it reads as text.
     """
@@ -78,6 +118,10 @@ def content_format(head: bytes, size: int) -> tuple[str | None, bool]:
         return "PLY", False
     if head.startswith(b"PK\x03\x04"):
         return "a ZIP archive", False
+    if head.startswith(b"\x1f\x8b"):
+        return "packed with gzip", False
+    if head.startswith((b"# vtk DataFile", b"<VTKFile")) or b"<VTKFile" in head[:500]:
+        return "VTK", False
     # Before ASCII STL, since binary files may also begin with the word "solid".
     if len(head) >= _STL_HEADER:
         (triangles,) = struct.unpack_from("<I", head, _STL_HEADER - 4)
@@ -145,6 +189,12 @@ def _text_format(text: str) -> str | None:
     if not rows:
         return None
     first = rows[0][0]
+    if first.startswith("ISO-10303-21"):
+        return "STEP"
+    if "<COLLADA" in text:
+        return "COLLADA"
+    if first.startswith("{") and '"asset"' in text:
+        return "glTF"
     if first.lower() == "solid":
         return "ASCII STL" if "facet" in text.lower() else None
     if first in ("OFF", "COFF", "NOFF"):
@@ -152,6 +202,14 @@ def _text_format(text: str) -> str | None:
     if first in _PLATE_KEYWORDS:
         return "v/f text"
     lines = text.splitlines()
+    if len(lines[0]) >= 80 and lines[0][72] == "S" and lines[0][73:80].strip() == "1":
+        return "IGES"
+    if lines[0][:6] in _PDB_RECORDS:
+        return "PDB"
+    if len(lines) > 3 and lines[3].rstrip().endswith(("V2000", "V3000")):
+        return "MOL"
+    if is_numbered_plates(lines):
+        return "numbered plates"
     if lines[0].strip().isdecimal() and len(lines) > 2 and _is_atom(lines[2]):
         return "XYZ"
     return None

@@ -41,7 +41,8 @@ def check_glb(stream: BinaryIO) -> None:
     ValueError
         Or whatever the damaged description of a scene can raise, from KeyError to TypeError.
     """
-    size = os.fstat(stream.fileno()).st_size
+    size = stream.seek(0, os.SEEK_END)
+    stream.seek(0)
     _, _, length, json_length, kind = struct.unpack("<5I", stream.read(_HEAD))
     if length != size:
         raise ValueError(f"it says that it is {length} bytes long, and is {size}")

@@ -8,24 +8,35 @@ triangle's corners anew.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final
 
 import numpy as np
 
 from polhode import _core
-from polhode.errors import FileFormatError
-from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIX, Content, opened
+from polhode.errors import FileFormatError, PolhodeError
+from polhode.files.cad_kernel import check_occt
+from polhode.files.content import EXPECTED_CONTENT, MOLECULE_SUFFIXES, Content, is_molecule, opened, unread
 from polhode.files.mesh import Mesh, check_faces, weld, weld_within
-from polhode.files.reading import naming
+from polhode.files.plates import read_numbered_plates
+from polhode.files.reading import check_ordinary, naming, whole_of
+from polhode.files.unpacked import inner_suffix, unpacked
+from polhode.units import METRES, metres_per
 
 if TYPE_CHECKING:
+    from polhode.files.cad_file import CadFile
     from polhode.files.xyz import Molecule
 
 __all__ = ["Loaded", "load", "read_mesh"]
 
-_MESH_SUFFIXES: Final = tuple(suffix for suffix in EXPECTED_CONTENT if suffix != MOLECULE_SUFFIX)
+_CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
+_METRE: Final = ("m", "metre", "meter")
+_OF_EXTRAS: Final = (*_CAD_SUFFIXES, ".vtk", ".vtu", ".vtp")
+_MESH_SUFFIXES: Final = tuple(
+    suffix for suffix in EXPECTED_CONTENT if suffix not in (*MOLECULE_SUFFIXES, *_OF_EXTRAS)
+)
 _TEXT_SUFFIXES: Final = tuple(suffix for suffix, known in EXPECTED_CONTENT.items() if "v/f text" in known)
 
 
@@ -41,18 +52,31 @@ class Loaded:
     path : pathlib.Path
         Of the file.
     format : str
-        ``"binary STL"``, ``"ASCII STL"``, ``"v/f text"`` (OBJ and plate files), ``"PLY"``, ``"OFF"``,
-        ``"GLB"`` or ``"XYZ"``.
+        ``"binary STL"``, ``"ASCII STL"``, ``"v/f text"`` (OBJ and plate files), ``"numbered plates"``,
+        ``"PLY"``, ``"OFF"``, ``"GLB"``, ``"glTF"``, ``"COLLADA"``, ``"3MF"``, ``"VTK"``; of solids ``"STEP"``
+        or ``"IGES"``; of a molecule ``"XYZ"``, ``"PDB"`` or ``"MOL"``.
     is_stream : bool
         Whether its triangles can be gone through one after the other, without all of them in memory.
     index_base : {1, 0}
         What ``v``/``f`` text counts its vertices from.
+    unit : str or None
+        Of the coordinates, of :data:`polhode.units.METRES`, where the file or its format says it.
+    states_unit : bool
+        Whether the file itself does, so that another unit contradicts it.
+    notes : tuple of str
+        What was done to read it, and what of it was not read.
+    cad : CadFile or None
+        The solids of a STEP or IGES file.
     """
 
     path: Path
     format: str
     is_stream: bool = False
     index_base: int = 1
+    unit: str | None = None
+    states_unit: bool = False
+    notes: tuple[str, ...] = ()
+    cad: CadFile | None = None
     _molecule: Molecule | None = None
     _mesh: Mesh | None = None
 
@@ -63,7 +87,12 @@ class Loaded:
     def mesh(self) -> Mesh:
         """The triangles; those that the compiled reader reads are read when they are first asked for."""
         if self._molecule is not None:
-            raise FileFormatError(f"{self.path}: an XYZ file holds atoms, not a mesh; ask for its molecule")
+            raise FileFormatError(f"{self.path}: {self.format} holds atoms, not a mesh; ask for its molecule")
+        if self.cad is not None:
+            raise FileFormatError(
+                f"{self.path}: {self.format} holds solids with curved faces, not triangles; polhode report "
+                "tells their mass properties; export a mesh from CAD where one is needed"
+            )
         if self._mesh is None:
             self._mesh = self._read_mesh()
         return self._mesh
@@ -72,8 +101,32 @@ class Loaded:
     def molecule(self) -> Molecule:
         """The atoms."""
         if self._molecule is None:
-            raise FileFormatError(f"{self.path}: {self.format} holds a mesh, not atoms; ask for its mesh")
+            held = "solids" if self.cad is not None else "a mesh"
+            raise FileFormatError(f"{self.path}: {self.format} holds {held}, not atoms; ask for its mesh")
         return self._molecule
+
+    def length(self, length_unit: str | None) -> str | None:
+        """Give the unit of the coordinates: the file's own, or the one that is stated.
+
+        Parameters
+        ----------
+        length_unit : str or None
+            What is stated.
+
+        Raises
+        ------
+        PolhodeError
+            Where that contradicts the file.
+        """
+        if length_unit is None or self.unit is None:
+            return self.unit if length_unit is None else length_unit
+        metres_per(length_unit)
+        if self.states_unit and length_unit != self.unit:
+            raise PolhodeError(
+                f"length_unit: {self.path} says itself that its unit is {self.unit!r}, not {length_unit!r}; "
+                "leave length_unit out, or export the file in the right unit"
+            )
+        return length_unit
 
     def _read_mesh(self) -> Mesh:
         if self.format == "binary STL":
@@ -92,7 +145,8 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     Parameters
     ----------
     path : str or os.PathLike
-        A mesh (see :func:`read_mesh`) or a molecule (see :func:`read_xyz`); the suffix tells which.
+        A mesh (see :func:`read_mesh`), a molecule (XYZ, see :func:`read_xyz`; PDB, MOL and SDF) or solids of
+        CAD (STEP, IGES; extra ``cad``); the suffix tells which, and it may be packed (``.gz``).
     index_base : {1, 0}
         What ``v``/``f`` text counts its vertices from: 1 in OBJ and in most plate files, 0 in some.
 
@@ -121,31 +175,114 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     ('v/f text', (4, 3))
     """
     file = Path(path)
-    suffix = file.suffix.lower()
+    suffix = inner_suffix(file)
     if index_base not in (0, 1):
         raise ValueError(f"index_base: expected 0 or 1, got {index_base!r}")
     if index_base != 1 and suffix not in _TEXT_SUFFIXES:
         raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
-    with opened(file) as content:
-        if suffix == MOLECULE_SUFFIX:
-            from polhode.files.xyz import molecule_of
+    if suffix in _CAD_SUFFIXES:
+        check_occt(f"{file}: reading CAD files (STEP, IGES)")  # told of any such name
+    if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:
+        check_ordinary(file)
+        raise unread(file, suffix, _MESH_SUFFIXES)
+    with unpacked(file) as inside:
+        loaded = _load(inside, suffix, index_base)
+        if inside is file:
+            return loaded
+        held = None if loaded.cad is not None or loaded._molecule is not None else loaded.mesh
+    note = f"unpacked with gunzip from {file.name}"
+    return replace(loaded, path=file, is_stream=False, notes=(*loaded.notes, note), _mesh=held)
 
-            return Loaded(file, "XYZ", _molecule=molecule_of(content.stream, file))
+
+def _load(file: Path, suffix: str, index_base: int) -> Loaded:
+    """Open and read a file that is not packed."""
+    with opened(file) as content:
+        stream = content.stream
+        if suffix in MOLECULE_SUFFIXES:
+            return _load_molecule(content, file, suffix)
+        if suffix in _CAD_SUFFIXES:
+            return _load_cad(file)
         if content.format == "ASCII STL":
             from polhode.files.ascii_stl import read_ascii_stl
 
-            corners = read_ascii_stl(content.stream, file)
+            corners = read_ascii_stl(stream, file)
             faces = np.arange(corners.size // 3).reshape(-1, 3)
             return Loaded(file, "ASCII STL", _mesh=weld(corners.reshape(-1, 3), faces, "ASCII STL"))
         if suffix == ".stl":
             # Whatever is neither text nor another known format is the compiled reader's to read or refuse.
             return Loaded(file, "binary STL", is_stream=True)
+        if content.format == "numbered plates":
+            mesh = read_numbered_plates(stream, file)
+            check_faces(mesh, str(file))
+            return Loaded(file, mesh.format, _mesh=mesh)
         if suffix in _TEXT_SUFFIXES:
             return Loaded(file, "v/f text", index_base=index_base)
+        if suffix == ".dae":
+            return _load_collada(stream, file)
+        if suffix == ".3mf":
+            from polhode.files.three_mf import read_three_mf
+
+            mesh, unit, is_stated = read_three_mf(stream, file)
+            return Loaded(file, mesh.format, unit=unit, states_unit=is_stated, _mesh=mesh)
+        if suffix in (".vtk", ".vtu", ".vtp"):
+            from polhode.files.vtk import read_vtk
+
+            return Loaded(file, "VTK", _mesh=read_vtk(file))
+        if suffix == ".gltf":
+            from polhode.files.gltf import as_glb
+
+            mesh = _by_trimesh(BytesIO(as_glb(stream, file)), file)
+            return Loaded(file, "glTF", unit="m", _mesh=mesh._replace(format="glTF"))
         if _is_binary_ply(content, suffix):
             return Loaded(file, "PLY", is_stream=True)
-        mesh = _by_trimesh(content.stream, file)
-    return Loaded(file, mesh.format, _mesh=mesh)
+        mesh = _by_trimesh(stream, file)
+    return Loaded(file, mesh.format, unit="m" if suffix == ".glb" else None, _mesh=mesh)
+
+
+def _load_molecule(content: Content, file: Path, suffix: str) -> Loaded:
+    from polhode.files import molecule_files, xyz
+
+    if suffix in (".pdb", ".ent"):
+        return Loaded(file, "PDB", _molecule=molecule_files.read_pdb(content.stream, file))
+    if suffix in (".mol", ".sdf"):
+        return Loaded(file, "MOL", _molecule=molecule_files.read_mol(content.stream, file))
+    return Loaded(file, "XYZ", _molecule=xyz.molecule_of(content.stream, file))
+
+
+def _load_cad(file: Path) -> Loaded:
+    from polhode.files.cad_apart import read_cad_apart
+
+    cad = read_cad_apart(file)
+    notes = []
+    if cad.left_out:
+        notes.append(f"{cad.left_out} faces of the file bound no solid and count nothing")
+    if len(cad.names_of_units) > 1 or (cad.unit == "m" and cad.names_of_units[0] not in _METRE):
+        names = ", ".join(cad.names_of_units)
+        notes.append(
+            f"the file's lengths are in: {names}; each was read in its own unit, and all are told in m"
+        )
+    if cad.unread_densities:
+        notes.append("the densities of its materials have units that are not understood and are not used")
+    return Loaded(file, cad.format, unit=cad.unit, states_unit=True, notes=tuple(notes), cad=cad)
+
+
+def _load_collada(stream: BinaryIO, file: Path) -> Loaded:
+    from polhode.files.collada import read_collada
+
+    mesh, metres, up = read_collada(whole_of(stream, file), file)
+    notes = []
+    if up != "Z":
+        notes.append(
+            f"up is {up} by the file: its axes are told as they are (RViz does so; Gazebo turns them)"
+        )
+    if metres is None:
+        return Loaded(file, "COLLADA", unit="m", notes=tuple(notes), _mesh=mesh)
+    unit = next((name for name, known in METRES.items() if abs(metres - known) <= 1e-9 * known), None)
+    if unit is not None:
+        return Loaded(file, "COLLADA", unit=unit, states_unit=True, notes=tuple(notes), _mesh=mesh)
+    note = f"the file's unit is {metres:.9g} m, which has no name here: lengths are told in m"
+    mesh = mesh._replace(vertices=mesh.vertices * metres)
+    return Loaded(file, "COLLADA", unit="m", states_unit=True, notes=(*notes, note), _mesh=mesh)
 
 
 def _by_trimesh(stream: BinaryIO, path: Path) -> Mesh:
@@ -162,8 +299,10 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
     ----------
     path : str or os.PathLike
         Binary and ASCII STL, and ``v``/``f`` text (``.obj``, ``.tab``, ``.txt``) are read without any
-        further library; PLY, OFF and GLB by trimesh (extra ``mesh``), and no other format. Nodes of a scene
-        are placed by their transforms and taken together.
+        further library, as are DAE and 3MF; PLY, OFF, GLB and glTF by trimesh (extra ``mesh``), VTK, VTU and
+        VTP by PyVista (extra ``view``), and no other format. Each may be packed with gzip (``.gz``). Nodes of
+        a scene are placed by their transforms and taken together. Coordinates are as stored: see
+        :func:`load` for the unit of those that state one.
     index_base : {1, 0}
         What ``v``/``f`` text counts its vertices from: 1 in OBJ and in most plate files, 0 in some.
     weld : float
@@ -182,8 +321,8 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
     OSError
         If the file cannot be read.
     """
-    if Path(path).suffix.lower() == MOLECULE_SUFFIX:
-        raise FileFormatError(f"{Path(path)}: an XYZ file holds atoms, not a mesh; read it with read_xyz")
+    if is_molecule(Path(path)):
+        raise FileFormatError(f"{Path(path)}: holds atoms, not a mesh; read it with load(path).molecule")
     mesh = load(path, index_base=index_base).mesh
     return weld_within(mesh, weld) if weld != 0.0 else mesh
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
@@ -13,11 +13,15 @@ from polhode import _core
 from polhode.errors import MeshError, PolhodeError
 from polhode.files.loaded import Loaded, load
 from polhode.files.mesh import weld_within
+from polhode.files.repair import RepairStep, repaired, resolution_of, spanned_volume
+from polhode.units import metres_per
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
     from polhode._typing import SupportsSigma
+    from polhode.files.cad_file import CadFile
+    from polhode.files.cad_solid import SolidPart
     from polhode.files.mesh import Mesh
 
     Number = float | _core.Uncertain | SupportsSigma
@@ -26,6 +30,12 @@ __all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of"]
 
 _SMALL_FILE: Final = 1 << 28
 """Bytes of a file that is read whole for a hint in an error."""
+_MOST_TRIED: Final = 300_000
+"""Faces of a mesh that is repaired for a hint in an error."""
+_CHECKS, _WELDED, _CLOSURE, _CHANGE = 27, 28, 29, 30
+"""Places among the numbers of a body."""
+_REPAIRED: Final = 1 << 11
+_CAPS: Final = 1
 
 
 class MeshSolid(NamedTuple):
@@ -47,6 +57,10 @@ class MeshSolid(NamedTuple):
         Corners that were joined to others within the length asked for.
     components : object
         What a report tells of them; None where there is one.
+    parts : tuple of SolidPart
+        Of a CAD file: its solids, each at its place.
+    steps : tuple of RepairStep
+        Of a mesh that was repaired on request: what was done to it.
     """
 
     body: _core.RigidBody
@@ -57,6 +71,8 @@ class MeshSolid(NamedTuple):
     area: float
     welded: int
     components: Any = None
+    parts: tuple[SolidPart, ...] = ()
+    steps: tuple[RepairStep, ...] = ()
 
 
 def solid_from_file(
@@ -64,10 +80,11 @@ def solid_from_file(
     *,
     density: Number | None = None,
     mass: Number | None = None,
-    scale: float = 1.0,
+    scale: float | None = None,
     weld: float = 0.0,
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
+    repair: bool = False,
     index_base: int = 1,
     progress: Callable[[float], object] | None = None,
 ) -> MeshSolid:
@@ -85,14 +102,18 @@ def solid_from_file(
         See :func:`read_mesh`.
     density, mass : float or Uncertain, optional
         Exactly one of them.
-    scale : float
-        Unit of the coordinates, in the unit of the result.
+    scale : float, optional
+        Unit of the coordinates, in the unit of the result. By default the metres in the unit that the file or
+        its format states, and 1 for those that state none.
     weld, index_base
         See :func:`read_mesh`.
     closure : {"caps", "hull"}, optional
         How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`; without it, it is an error.
     orient : bool
         Turn triangles that face inward; without it they are an error.
+    repair : bool
+        Weld corners, drop faces that stand twice, wind the others alike and fill loops, each where there is
+        need; `MeshSolid.steps` tells what was done. It takes the place of `closure` and `orient`.
     progress : callable, optional
         Is told the fraction of the file done, now and then.
 
@@ -109,14 +130,21 @@ def solid_from_file(
     OSError
         If the file cannot be read.
     """
+    loaded = load(path, index_base=index_base)
+    own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
+    if scale is not None and scale != own and loaded.states_unit:
+        raise PolhodeError(
+            f"scale: {os.fspath(path)} says itself that its unit is {loaded.unit!r}; leave it out"
+        )
     return solid_of(
-        load(path, index_base=index_base),
+        loaded,
         density=density,
         mass=mass,
-        scale=scale,
+        scale=own if scale is None else scale,
         weld=weld,
         closure=closure,
         orient=orient,
+        repair=repair,
         progress=progress,
     )
 
@@ -131,6 +159,7 @@ def solid_of(
     closure: Literal["caps", "hull"] | None = None,
     orient: bool = False,
     union: bool = False,
+    repair: bool = False,
     progress: Callable[[float], object] | None = None,
 ) -> MeshSolid:
     """Make the solid that the mesh of a loaded file bounds; see :func:`solid_from_file`.
@@ -138,6 +167,17 @@ def solid_of(
     With `union` components that overlap are joined first, see :mod:`polhode.files.union`.
     """
     file = loaded.path
+    asked = {"weld": weld != 0.0, "closure": closure, "orient": orient, "repair": repair}
+    if loaded.cad is not None:
+        return _cad_solid(loaded, loaded.cad, density, mass, {**asked, "union": union})
+    if repair:
+        for name in ("closure", "orient"):
+            if asked[name]:
+                raise PolhodeError(f"{name}: repair closes and orients by itself; leave one of the two out")
+        if union:
+            raise PolhodeError("union: it joins components that are whole; repair the mesh in a file of its own first")
+        with naming_file(file):
+            return _repaired_solid(loaded.mesh, density, mass, scale, weld)
     if union:
         loaded, weld = _joined(loaded, weld), 0.0
     if loaded.is_stream and weld == 0.0 and closure is None:
@@ -147,8 +187,10 @@ def solid_of(
                     str(file), scale=scale, density=density, mass=mass, orient=orient, progress=progress
                 )
         except MeshError as error:
-            if error.law == "closed" and loaded.format == "binary STL" and file.stat().st_size <= _SMALL_FILE:
-                _offer_weld(error, loaded.mesh)
+            if file.stat().st_size <= _SMALL_FILE:
+                if error.law == "closed" and loaded.format == "binary STL":
+                    _offer_weld(error, loaded.mesh)
+                _offer_repair(error, loaded.mesh, scale)
             raise
         return MeshSolid(body, loaded.format, None, faces, volume, area, 0)
     mesh = loaded.mesh
@@ -170,6 +212,8 @@ def solid_of(
             area = _core.surface_area(vertices, mesh.faces)
     except MeshError as error:
         _offer_weld(error, mesh)
+        if closure is None:
+            _offer_repair(error, mesh, scale)
         raise
     welded = corners - len(mesh.vertices)
     count = len(mesh.vertices)
@@ -186,6 +230,20 @@ def _joined(loaded: Loaded, weld: float) -> Loaded:
     with naming_file(loaded.path):
         joined = united([(part.vertices, part.faces) for part in parts], mesh.format)
     return replace(loaded, is_stream=False, _mesh=joined)
+def _cad_solid(
+    loaded: Loaded, cad: CadFile, density: Number | None, mass: Number | None, asked: Mapping[str, object]
+) -> MeshSolid:
+    """Give the body of the solids in a CAD file, which need no mending that a mesh may need."""
+    from polhode.files.cad_solid import solids_of
+
+    name = next((name for name, value in asked.items() if value), None)
+    if name is not None:
+        raise PolhodeError(f"{name}: {loaded.path} holds solids, not a mesh; leave it out")
+    with naming_file(loaded.path):
+        body, parts = solids_of(cad, density, mass)
+    area = sum(part.moments.area for part in cad.parts) * 1e-6
+    faces, volume = sum(part.faces for part in cad.parts), sum(part.volume for part in parts)
+    return MeshSolid(body, loaded.format, None, faces, volume, area, 0, parts)
 
 
 def _value(number: Number) -> float:
@@ -205,13 +263,61 @@ def naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
         raise
 
 
+def _repaired_solid(
+    mesh: Mesh, density: Number | None, mass: Number | None, scale: float, weld: float
+) -> MeshSolid:
+    """Make the solid of a mesh that is repaired first; what nests in what is for the core to see."""
+    corners, area = len(mesh.vertices), _core.surface_area(mesh.vertices * scale, mesh.faces)
+    before, faces = spanned_volume(mesh), len(mesh.faces)
+    mended, done, welded, filled = repaired(mesh, weld)
+    vertices = mended.vertices * scale
+    body = _core.RigidBody.from_mesh(vertices, mended.faces, density=density, mass=mass, orient=True)
+    volume = float(_core.RigidBody.from_mesh(vertices, mended.faces, density=1.0, orient=True).mass)
+    last, steps = before, []
+    for name, what, after in done:
+        steps.append(RepairStep(name, what, 100.0 * (after - last) * scale**3 / volume))
+        last = after
+    if abs(volume - last * scale**3) > 1e-9 * volume:
+        change = 100.0 * (volume - last * scale**3) / volume
+        steps.append(
+            RepairStep("orient", "components that faced inward, and are no cavities, turned", change)
+        )
+    if steps:
+        numbers = np.array(body.__reduce__()[1][0], dtype=np.float64)
+        numbers[_CHECKS] = int(numbers[_CHECKS]) | _REPAIRED
+        numbers[_WELDED] = welded
+        if any(step.name == "fill" for step in steps):
+            numbers[_CLOSURE], numbers[_CHANGE] = _CAPS, abs(filled) * np.sign(filled * last) * scale**3
+        body = _core.RigidBody._from_numbers(numbers, body._doubts())
+    return MeshSolid(body, mesh.format, corners - welded, faces, volume, area, welded, steps=tuple(steps))
+
+
+def _offer_repair(error: MeshError, mesh: Mesh, scale: float) -> None:
+    """Offer what mends a mesh, where it does: repair, else the convex hull."""
+    if len(mesh.faces) > _MOST_TRIED:
+        return
+    try:
+        steps = _repaired_solid(mesh, 1.0, None, scale, 0.0).steps
+    except (MeshError, ValueError):
+        with suppress(MeshError, ValueError, ModuleNotFoundError):
+            _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, closure="hull")
+            if error.law != "closed":  # of an open mesh the message offers it
+                error.offer('closure="hull" takes the convex hull instead')
+        return
+    change = sum(step.change for step in steps)
+    if [step.name for step in steps] == ["weld"] and "weld=" in str(error):
+        return  # which is offered by itself
+    if steps:
+        names = ", ".join(dict.fromkeys(step.name for step in steps))
+        error.offer(f"repair=True mends it ({names}; volume changed by {change:.2g} %)")
+
+
 def _offer_weld(error: MeshError, mesh: Mesh) -> None:
     """Offer to weld, as the first way out, where corners are closer than 32-bit coordinates resolve."""
-    size = float(np.abs(mesh.vertices).max(initial=0.0))
     in_range = not mesh.faces.size or (mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices))
-    if not (np.isfinite(size) and size > 0.0 and in_range):
+    resolution = resolution_of(mesh)
+    if not (resolution > 0.0 and in_range):
         return
-    resolution = float(f"{size * 2.0**-23:.0e}")
     try:
         near = len(mesh.vertices) - len(weld_within(mesh, resolution).vertices)
     except ValueError:

@@ -23,6 +23,7 @@ __all__ = [
     "read_bytes",
     "read_text",
     "text_of",
+    "whole_of",
 ]
 
 MOST_TEXT: Final = 1 << 30
@@ -126,6 +127,11 @@ def read_text(path: str | os.PathLike[str], kind: str, most: int = MOST_TEXT) ->
 def text_of(stream: BinaryIO, path: str | os.PathLike[str], kind: str, most: int = MOST_TEXT) -> str:
     """Read a whole text in UTF-8 from a file that is open; see :func:`read_text`."""
     return _decoded(_whole(stream, path, most), path, kind)
+
+
+def whole_of(stream: BinaryIO, path: str | os.PathLike[str], most: int = MOST_TEXT) -> bytes:
+    """Read a whole file that is open; see :func:`read_bytes`."""
+    return _whole(stream, path, most)
 
 
 def _whole(stream: BinaryIO, path: str | os.PathLike[str], most: int) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
@@ -18,9 +19,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Molecule", "molecule_of", "read_xyz"]
+__all__ = ["Molecule", "molecule_from", "molecule_of", "read_xyz"]
 
 _MOST_DIGITS: Final = 4000
+_PROPERTIES: Final = re.compile(r"""(?:^|\s)Properties=(?:"([^"]*)"|(\S*))""", re.IGNORECASE)
+_LATTICE: Final = re.compile(r"(?:^|\s)Lattice=", re.IGNORECASE)
 
 
 class Molecule(NamedTuple):
@@ -37,12 +40,15 @@ class Molecule(NamedTuple):
     rounding : float
         By how much each coordinate was rounded at most, in the unit of the file: half a unit of the last
         digit that the file prints. 0 where no coordinate has a digit behind the point, which tells nothing.
+    notes : tuple of str
+        What the file holds besides, or lacks.
     """
 
     labels: tuple[str, ...]
     positions: NDArray[np.float64]
     comment: str
     rounding: float = 0.0
+    notes: tuple[str, ...] = ()
 
 
 def read_xyz(path: str | os.PathLike[str]) -> Molecule:
@@ -51,7 +57,8 @@ def read_xyz(path: str | os.PathLike[str]) -> Molecule:
     Parameters
     ----------
     path : str or os.PathLike
-        One frame. Columns after the fourth (charges, velocities) are not read.
+        One frame. Columns other than the symbol and x, y, z (charges, velocities) are not read; an extended
+        XYZ file says in its second line where these stand.
 
     Returns
     -------
@@ -79,9 +86,7 @@ def molecule_of(stream: BinaryIO, file: Path) -> Molecule:
         )
     count = int(count_text)
     comment = lines[1].strip() if len(lines) > 1 else ""
-    columns = comment.partition("Properties=")[2]
-    if columns and not columns.startswith(("species:S:1:pos:R:3", '"species:S:1:pos:R:3')):
-        raise FileFormatError(f"{file}: line 2 declares other columns than symbol x y z first; reorder them")
+    columns = _columns(comment, file)
     rows = lines[2 : 2 + count]
     if len(rows) < count:
         raise FileFormatError(
@@ -92,23 +97,63 @@ def molecule_of(stream: BinaryIO, file: Path) -> Molecule:
         raise FileFormatError(
             f"{file}: text after atom {count}, the last by line 1; correct the count or keep one frame a file"
         )
-    atoms = [_atom(file, number, row) for number, row in enumerate(rows, start=3)]
+    atoms = [_atom(file, number, row, columns) for number, row in enumerate(rows, start=3)]
     labels, coordinates = zip(*atoms, strict=True)
+    notes = []
+    if _LATTICE.search(comment):
+        notes.append(
+            "the lattice of the file is not used: the atoms are taken as they stand, as one molecule"
+        )
+    return molecule_from(labels, coordinates, comment, tuple(notes))
+
+
+def molecule_from(
+    labels: Sequence[str],
+    coordinates: Sequence[Sequence[Decimal]],
+    comment: str,
+    notes: tuple[str, ...] = (),
+) -> Molecule:
+    """Make a molecule of what a file prints, digit by digit."""
     positions = np.array(coordinates, dtype=np.float64)
-    return Molecule(labels, positions, comment, _rounding([x for row in coordinates for x in row]))
+    rounding = _rounding([x for row in coordinates for x in row])
+    return Molecule(tuple(labels), positions, comment, rounding, notes)
 
 
-def _atom(file: Path, number: int, row: str) -> tuple[str, list[Decimal]]:
+def _columns(comment: str, file: Path) -> tuple[int, int]:
+    """Find the columns of the symbol and of x, which extended XYZ files name in the second line."""
+    found = _PROPERTIES.search(comment)
+    if found is None:
+        return 0, 1
+    words = (found[1] or found[2]).split(":")
+    starts: dict[str, tuple[str, int, int]] = {}
+    at = 0
+    for name, kind, size in zip(words[::3], words[1::3], words[2::3], strict=False):
+        if not size.isdecimal() or len(size) > 6:
+            break
+        starts.setdefault(name, (kind, at, int(size)))
+        at += int(size)
+    kind, label, _ = starts.get("species", starts.get("element", ("", -1, 0)))
+    letter, first, size = starts.get("pos", ("", -1, 0))
+    if kind != "S" or letter != "R" or size != 3:
+        raise FileFormatError(
+            f"{file}: line 2 declares no columns species:S:1 and pos:R:3 "
+            f"(Properties={':'.join(words)[:60]}); write them"
+        )
+    return label, first
+
+
+def _atom(file: Path, number: int, row: str, columns: tuple[int, int]) -> tuple[str, list[Decimal]]:
     """Split a row into the atom's label and its coordinates, digit by digit."""
+    label, first = columns
     words = row.split()
     try:
-        coordinates = [Decimal(word) for word in words[1:4]]
+        coordinates = [Decimal(word) for word in words[first : first + 3]]
         position = [float(x) for x in coordinates]
     except (InvalidOperation, ValueError):  # the latter of a signalling NaN
         position = []
-    if len(position) != 3 or not np.isfinite(position).all():
+    if len(position) != 3 or not np.isfinite(position).all() or len(words) <= label:
         raise FileFormatError(f"{file}: line {number}: expected 'symbol x y z', got {row.strip()[:60]!r}")
-    return words[0], coordinates
+    return words[label], coordinates
 
 
 def _rounding(numbers: Sequence[Decimal]) -> float:

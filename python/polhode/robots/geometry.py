@@ -10,9 +10,10 @@ import numpy as np
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
 from polhode.files.components import overlaps, parts_of, told
-from polhode.files.loaded import read_mesh
+from polhode.files.loaded import load
 from polhode.robots.facets import sagitta
 from polhode.robots.words import quoted, shortened
+from polhode.units import metres_per
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -207,7 +208,10 @@ class GeometryReader:
         if path.is_dir():
             return f"mesh {name} is a directory; name a file in it"
         try:
-            mesh = read_mesh(path)
+            loaded = load(path)
+            mesh = loaded.mesh
+            if loaded.unit not in (None, "m"):  # robots are in metres, as is what states no unit
+                mesh = mesh._replace(vertices=mesh.vertices * metres_per(loaded.unit))
         except (ValueError, OSError, ModuleNotFoundError, MemoryError) as error:
             return f"mesh {name}: {error}"
         used = np.unique(mesh.faces)

@@ -165,8 +165,10 @@ impl Checks {
     pub const TENSOR: Self = Self(1 << 9);
     /// Components of a mesh that are wound inward lie in others.
     pub const CAVITIES: Self = Self(1 << 10);
+    /// The mesh was mended on request before it passed them.
+    pub const REPAIRED: Self = Self(1 << 11);
 
-    const NAMES: [&'static str; 11] = [
+    const NAMES: [&'static str; 12] = [
         "unchecked",
         "indices",
         "finite",
@@ -178,6 +180,7 @@ impl Checks {
         "masses",
         "tensor",
         "cavities",
+        "repaired",
     ];
 
     /// Both sets together.
@@ -370,6 +373,10 @@ mod tests {
     fn checks_are_listed_in_order() {
         let checks = Checks::VOLUME.and(Checks::INDICES).and(Checks::CLOSED);
         assert_eq!(checks.to_string(), "indices, closed, volume");
+        assert_eq!(
+            checks.and(Checks::REPAIRED).to_string(),
+            "indices, closed, volume, repaired"
+        );
         assert!(checks.contains(Checks::CLOSED) && !checks.contains(Checks::WINDING));
     }
 }

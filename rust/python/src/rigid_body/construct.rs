@@ -163,21 +163,27 @@ impl PyRigidBody {
         Self::doubtful(bodies, doubts).possible(py)
     }
 
-    /// Body from a file: a mesh (STL, OBJ, PLY, plate models, …) or a molecule (XYZ).
+    /// Body from a file: a mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plate models, …), solids of CAD (STEP, IGES) or a molecule
+    /// (XYZ, PDB, MOL, SDF); each may be packed with gzip.
     ///
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
     /// density, mass : float
-    ///     Exactly one of the two for a mesh; neither for a molecule, whose atoms have their masses.
+    ///     Exactly one of the two for a mesh; neither for a molecule, whose atoms have their masses. Solids of CAD whose
+    ///     materials have densities need none.
     /// length_unit : str, optional
     ///     Unit of the coordinates, such as ``"mm"``: they are converted to metres. Without it the
-    ///     numbers stay as they are stored.
+    ///     numbers stay as they are stored, but those of files that state their unit (STEP, IGES, DAE, 3MF, glTF) are
+    ///     converted to metres; another one than the file states is an error.
     /// weld : float, optional
     ///     Corners at most this far from each other, in the unit of the file, are one; by default equal ones
     ///     alone. Some exporters leave a mesh open by the last digits of its corners.
     /// closure, orient
     ///     As of `from_mesh`, for a mesh that is open or wound inward.
+    /// repair : bool, optional
+    ///     Mend a mesh: weld corners, drop faces that stand twice, wind the others alike, fill loops, each where there is
+    ///     need. `provenance` says "repaired", and :func:`polhode.files.solid_from_file` what was done.
     /// index_base : {1, 0}, optional
     ///     What the faces of an OBJ or plate file count vertices from.
     /// masses : {"most_common", "average"}, optional
@@ -201,7 +207,7 @@ impl PyRigidBody {
     /// --------
     /// polhode.files : the readers, which also return vertices and faces.
     #[staticmethod]
-    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, index_base=1, masses="most_common", progress=None))]
+    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, repair=false, index_base=1, masses="most_common", progress=None))]
     #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
     fn from_file<'py>(
         py: Python<'py>,
@@ -212,6 +218,7 @@ impl PyRigidBody {
         weld: f64,
         closure: Option<&str>,
         orient: bool,
+        repair: bool,
         index_base: i64,
         masses: &str,
         progress: Option<Bound<'py, PyAny>>,
@@ -223,6 +230,7 @@ impl PyRigidBody {
         options.set_item("weld", weld)?;
         options.set_item("closure", closure)?;
         options.set_item("orient", orient)?;
+        options.set_item("repair", repair)?;
         options.set_item("index_base", index_base)?;
         options.set_item("masses", masses)?;
         options.set_item("progress", progress)?;

@@ -1,0 +1,311 @@
+"""STEP and IGES files, read by OCCT: solids with their names, places, materials and the file's own unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from polhode.errors import FileFormatError, MeshError
+from polhode.files.cad_kernel import occt
+from polhode.files.cad_moments import moments_of_faces
+from polhode.files.reading import read_bytes
+from polhode.files.step_density import densities_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from polhode.files.cad_moments import Moments
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["CAD_SUFFIXES", "CadFile", "CadPart", "read_cad"]
+
+CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
+_IGES: Final = (".igs", ".iges")
+_WORST: Final = 1e-3
+"""Bound of a volume, as a part of it, with which a solid is still taken."""
+_MOST_PARTS: Final = 100_000
+_UNITS: Final = {
+    "millimetre": "mm", "millimeter": "mm", "mm": "mm",
+    "metre": "m", "meter": "m", "m": "m",
+    "centimetre": "cm", "centimeter": "cm", "cm": "cm",
+    "micrometre": "um", "micrometer": "um", "micron": "um", "um": "um",
+    "nanometre": "nm", "nanometer": "nm", "nm": "nm",
+    "kilometre": "km", "kilometer": "km", "km": "km",
+    "inch": "in", "inches": "in", "in": "in",
+    "foot": "ft", "feet": "ft", "ft": "ft",
+}  # fmt: skip
+"""As files spell them."""
+
+
+_IGES_UNITS: Final = {
+    1: "in", 2: "mm", 4: "ft", 5: "mile", 6: "m", 7: "km", 8: "mil", 9: "um", 10: "cm", 11: "microinch"
+}  # fmt: skip
+"""By the flag of the global section; 3 says that the name beside it tells."""
+
+
+@dataclass(frozen=True)
+class CadPart:
+    """One solid at its place.
+
+    Attributes
+    ----------
+    name : str
+        As the file has it, the assemblies that it is in before it: ``"pump/rotor"``.
+    moments : Moments
+        Of the solid before it is placed, in millimetres.
+    rotation, position : numpy.ndarray
+        Its place, in millimetres.
+    material : str
+        ``""`` where the file names none.
+    density : float or None
+        In kg/m^3, where the file has one.
+    faces : int
+    """
+
+    name: str
+    moments: Moments
+    rotation: Floats
+    position: Floats
+    material: str
+    density: float | None
+    faces: int
+
+
+@dataclass(frozen=True)
+class CadFile:
+    """What a CAD file holds.
+
+    Attributes
+    ----------
+    format : str
+        ``"STEP"`` or ``"IGES"``.
+    unit : str
+        The file's own, of :data:`polhode.units.METRES`; ``"m"`` where that has no name for it.
+    parts : tuple of CadPart
+    left_out : int
+        Faces that bound no solid.
+    unread_densities : bool
+        Whether materials have densities whose units could not be told.
+    names_of_units : tuple of str
+        As the file has them; mostly one.
+    """
+
+    format: str
+    unit: str
+    parts: tuple[CadPart, ...]
+    left_out: int
+    unread_densities: bool = False
+    names_of_units: tuple[str, ...] = ()
+
+
+def read_cad(path: Path) -> CadFile:
+    """Read the solids of a STEP or IGES file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+
+    Raises
+    ------
+    FileFormatError
+        If the file is not what its name says, is damaged, or holds no solid.
+    MeshError
+        If a solid is open or inside out.
+    """
+    messenger = occt("Message").Message.DefaultMessenger_s()
+    messenger.ChangePrinters().Clear()  # it would speak on standard output
+    is_iges = path.suffix.lower() in _IGES
+    kind = "IGES" if is_iges else "STEP"
+    if not is_iges and b"END-ISO-10303-21" not in read_bytes(path)[-2000:]:
+        raise FileFormatError(f"{path}: does not end with END-ISO-10303-21; is it cut short?")
+    document = occt("TDocStd").TDocStd_Document(occt("TCollection").TCollection_ExtendedString("polhode"))
+    if is_iges:
+        reader = occt("IGESCAFControl").IGESCAFControl_Reader()
+    else:
+        reader = occt("STEPCAFControl").STEPCAFControl_Reader()
+        reader.SetMatMode(True)
+    reader.SetNameMode(True)
+    done = occt("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone
+    if reader.ReadFile(str(path)) != done:
+        raise FileFormatError(f"{path}: not a readable {kind} file; export it again")
+    names = _iges_units(reader) if is_iges else _step_units(reader, path)
+    units = {_UNITS.get(name, "m") for name in names}
+    unit = units.pop() if len(units) == 1 else "m"
+    if not reader.Transfer(document):
+        raise FileFormatError(f"{path}: its {kind} shapes could not be read; export it again")
+    walk = _Walk(path, kind, document)
+    parts = tuple(walk.parts())
+    if not parts:
+        way_out = "export STEP" if is_iges else "export solids, not surfaces or meshes"
+        raise FileFormatError(f"{path}: holds no solid ({walk.left_out} faces bound none); {way_out}")
+    raw = sorted({part.density for part in parts if part.density is not None})
+    stated = densities_of(read_bytes(path).decode("latin-1")) if raw else []
+    if stated is None or len(stated) != len(raw):
+        parts = tuple(replace(part, density=None) for part in parts)
+        return CadFile(kind, unit, parts, walk.left_out, unread_densities=True, names_of_units=names)
+    known: dict[float | None, float | None] = {None: None, **dict(zip(raw, stated, strict=True))}
+    parts = tuple(replace(part, density=known[part.density]) for part in parts)
+    return CadFile(kind, unit, parts, walk.left_out, names_of_units=names)
+
+
+def _step_units(reader: Any, path: Path) -> tuple[str, ...]:
+    sequence = occt("collections").Sequence_TCollection_AsciiString
+    lengths, angles, solid_angles = sequence(), sequence(), sequence()
+    reader.ChangeReader().FileUnits(lengths, angles, solid_angles)
+    names = {lengths.Value(i).ToCString().lower() for i in range(1, lengths.Length() + 1)}
+    if not names:
+        raise FileFormatError(f"{path}: says no unit of length; export it again with one")
+    return tuple(sorted(names))
+
+
+def _iges_units(reader: Any) -> tuple[str, ...]:
+    section = reader.IGESModel().GlobalSection()
+    name = section.UnitName()
+    stated = name.ToCString().lower() if name is not None else ""
+    return (_IGES_UNITS.get(section.UnitFlag(), stated or "none"),)
+
+
+class _Walk:
+    """Goes through the assemblies of a document."""
+
+    def __init__(self, path: Path, kind: str, document: Any) -> None:
+        self._path, self._kind = path, kind
+        self._tools = occt("XCAFDoc")
+        self._shapes = self._tools.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+        self._known: dict[int, tuple[Moments, int]] = {}
+        self._count = 0
+        self.left_out = 0
+
+    def parts(self) -> Iterator[CadPart]:
+        labels = occt("collections").Sequence_TDF_Label()
+        self._shapes.GetFreeShapes(labels)
+        for i in range(1, labels.Length() + 1):
+            yield from self._below(labels.Value(i), occt("gp").gp_Trsf(), "", 0)
+
+    def _below(self, label: Any, place: Any, above: str, depth: int) -> Iterator[CadPart]:
+        tool = self._tools.XCAFDoc_ShapeTool
+        if depth > 100:
+            raise FileFormatError(f"{self._path}: assemblies are nested more than 100 deep; check the file")
+        if not tool.IsAssembly_s(label):
+            yield from self._solids(label, place, above)
+            return
+        components = occt("collections").Sequence_TDF_Label()
+        tool.GetComponents_s(label, components, False)
+        for i in range(1, components.Length() + 1):
+            component = components.Value(i)
+            of = occt("TDF").TDF_Label()
+            if not tool.GetReferredShape_s(component, of):
+                continue
+            moved = place.Multiplied(tool.GetLocation_s(component).Transformation())
+            name = _name(component)
+            if not name or name.startswith(("=>", "NAUO")):  # what programs put where no name was given
+                name = _name(of)
+            yield from self._below(of, moved, f"{above}/{name}" if above else name, depth + 1)
+
+    def _solids(self, label: Any, place: Any, name: str) -> Iterator[CadPart]:
+        shape = self._tools.XCAFDoc_ShapeTool.GetShape_s(label)
+        kinds = occt("TopAbs").TopAbs_ShapeEnum
+        solids = list(_within(shape, kinds.TopAbs_SOLID))
+        self.left_out += sum(1 for _ in _within(shape, kinds.TopAbs_FACE, kinds.TopAbs_SOLID))
+        name = name or _name(label)
+        material, density = _material(label)
+        for number, solid in enumerate(solids):
+            self._count += 1
+            if self._count > _MOST_PARTS:
+                raise FileFormatError(f"{self._path}: places more than {_MOST_PARTS} solids; place fewer")
+            own = f"{name}[{number + 1}]" if len(solids) > 1 else name
+            whole = place.Multiplied(solid.Location().Transformation())
+            if whole.IsNegative() or abs(whole.ScaleFactor() - 1.0) > 1e-12:
+                raise FileFormatError(
+                    f"{self._path}: {own} is placed by a reflection or a scale; export it as its own part"
+                )
+            moments, faces = self._moments(solid, own)
+            rotation, position = _numbers(whole)
+            yield CadPart(own, moments, rotation, position, material, density, faces)
+
+    def _moments(self, solid: Any, name: str) -> tuple[Moments, int]:
+        """Moments of a solid before it is placed: one that is placed again and again is computed once."""
+        unplaced = solid.Located(occt("TopLoc").TopLoc_Location())
+        key = hash(unplaced)
+        if key not in self._known:
+            faces = [
+                occt("TopoDS").TopoDS.Face(face)
+                for face in _within(unplaced, occt("TopAbs").TopAbs_ShapeEnum.TopAbs_FACE)
+            ]
+            about, reach = _box(unplaced)
+            try:
+                moments = moments_of_faces(faces, about, reach)
+            except ValueError as error:
+                raise FileFormatError(f"{self._path}: {name}: {error}; export it again") from None
+            self._check(moments, name)
+            self._known[key] = moments, len(faces)
+        return self._known[key]
+
+    def _check(self, moments: Moments, name: str) -> None:
+        numbers = [moments.volume, moments.area, moments.error, *moments.second.ravel()]
+        what = f"{self._path}: the solid {name!r}"
+        if not np.isfinite(numbers).all():
+            raise FileFormatError(f"{what} has faces that are not finite; export it again")
+        if moments.loose or moments.openness > 1e-6 * moments.area:
+            raise MeshError(
+                f"{what} is open: {moments.loose} edges do not belong to two faces; heal it in CAD"
+            )
+        if moments.error > _WORST * abs(moments.volume) > 0.0:
+            share = 100.0 * moments.error / abs(moments.volume)
+            raise MeshError(
+                f"{what} has faces that do not meet, or bend too sharply: its volume is known to {share:.2g} "
+                "% alone; heal it in CAD and export it again"
+            )
+        if not moments.volume > moments.error:
+            sign = "is inside out" if moments.volume < -moments.error else "has no volume"
+            raise MeshError(f"{what} {sign} ({moments.volume:.4g} mm^3); heal it in CAD and export it again")
+
+
+def _within(shape: Any, kind: Any, but_in: Any = None) -> Iterator[Any]:
+    explorer = occt("TopExp").TopExp_Explorer
+    found = explorer(shape, kind) if but_in is None else explorer(shape, kind, but_in)
+    while found.More():
+        yield found.Current()
+        found.Next()
+
+
+def _box(shape: Any) -> tuple[Floats, float]:
+    box = occt("Bnd").Bnd_Box()
+    occt("BRepBndLib").BRepBndLib.Add_s(shape, box)
+    if box.IsVoid():
+        return np.zeros(3), 1.0
+    low, high = (np.array([p.X(), p.Y(), p.Z()]) for p in (box.CornerMin(), box.CornerMax()))
+    return (low + high) / 2.0, float(np.linalg.norm(high - low) / 2.0) or 1.0
+
+
+def _numbers(place: Any) -> tuple[Floats, Floats]:
+    rows = np.array([[place.Value(i, j) for j in range(1, 5)] for i in range(1, 4)])
+    return rows[:, :3], rows[:, 3]
+
+
+def _name(label: Any) -> str:
+    attribute = occt("TDataStd").TDataStd_Name()
+    if not label.IsAttribute(attribute.GetID_s()) or not label.FindAttribute(attribute.GetID_s(), attribute):
+        return ""
+    return " ".join(str(attribute.Get().ToExtString()).split())[:200]
+
+
+def _material(label: Any) -> tuple[str, float | None]:
+    """Name and density of the material of a part, the density in a unit that OCCT does not tell."""
+    tools = occt("XCAFDoc")
+    link, node = tools.XCAFDoc.MaterialRefGUID_s(), occt("TDataStd").TDataStd_TreeNode()
+    # A search for what is not there ends the process.
+    if not label.IsAttribute(link) or not label.FindAttribute(link, node) or not node.HasFather():
+        return "", None
+    material, owner = tools.XCAFDoc_Material(), node.Father().Label()
+    if not owner.IsAttribute(material.GetID_s()) or not owner.FindAttribute(material.GetID_s(), material):
+        return "", None
+    name, density = material.GetName(), float(material.GetDensity())
+    is_known = np.isfinite(density) and density > 0.0
+    return "" if name is None else name.ToCString(), density if is_known else None
