@@ -8,9 +8,9 @@ import numpy as np
 
 from polhode import RigidBody, orbits, plot
 from polhode._extras import require
+from polhode._quantities import quantities, quantity, vector
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.loading import load_body
-from polhode.cli.quantities import quantities, quantity, vector
 from polhode.cli.source import shown
 from polhode.errors import PolhodeError
 from polhode.files.picture import save_picture

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._quantities import amount, has_unit, quantity
 from polhode.cli.progress import reading_progress
-from polhode.cli.quantities import amount, has_unit, quantity
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
 from polhode.files.content import MOLECULE_SUFFIX

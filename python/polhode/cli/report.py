@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polhode._quantities import quantity, split_vector
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import in_file_unit, load_body
 from polhode.cli.options import ReportOptions
-from polhode.cli.quantities import quantity, split_vector
 from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields

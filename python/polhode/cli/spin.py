@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import RigidBody, Uncertain
+from polhode._quantities import amount, amounts, quantities, quantity, vector
 from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
-from polhode.cli.quantities import amount, amounts, quantities, quantity, vector
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.spin_gyrostat import GyrostatKind, momentum_inside

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._quantities import quantity
 from polhode.cli.layout import Field
-from polhode.cli.quantities import quantity
 from polhode.cli.sigmas import about_point, angle_field, squared, told
 from polhode.files.mesh_solid import MeshSolid
 from polhode.results import TOP_RTOL

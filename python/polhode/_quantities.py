@@ -35,7 +35,19 @@ _LAST_PLACES: Final = re.compile(
 _SIGMA_EXAMPLE: Final = "1.00 ± 0.01"
 _FACTOR: Final = r"[A-Za-zµμ°Å_]+(?:(?:\^|\*\*)?-?\d)?"
 _BARE_POWER: Final = re.compile(r"(?<=[A-Za-zµμ°Å])(?=-?\d)")
-_UNIT: Final = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/· ]\s*{_FACTOR})*")
+_UNIT: Final = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR})*")
+_SIGNS: Final = str.maketrans({"·": "*", "²": "^2", "³": "^3"})
+_HYPHEN: Final = re.compile(r"(?<=[A-Za-z0-9])-(?=[A-Za-z])")
+"""As in ``lbf-in-s^2``: a product."""
+_WEIGHTS: Final = re.compile(r"\b(lb|oz)\b")
+_OWN_UNITS: Final = (
+    "rev = turn",
+    "lbm = pound",
+    "ozm = ounce",
+    "pcf = pound / foot ** 3",
+    "pci = pound / inch ** 3",
+)
+"""What drawings and printouts of the desk say, beside what pint knows."""
 _FREQUENCIES: Final = re.compile(r"[kMG]?Hz|hertz|1\s*/.*|cps")
 _EXAMPLES: Final = {
     "kg": "0.3 lb",
@@ -281,17 +293,20 @@ def _factor(text: str, unit: str, option: str) -> Decimal:
             f"{option}: {text!r} does not say what is counted; write turn/s, rad/s, deg/s or rpm"
         )
     pint = require("pint", extra="units", purpose=f"{option}: a unit ({text})")
-    if _UNIT.fullmatch(text) is None:
+    plain = _HYPHEN.sub("*", text.translate(_SIGNS))
+    if _UNIT.fullmatch(plain) is None:
         raise PolhodeError(f"{option}: {text!r} is not a unit; write {_example(unit)}")
     registry = _registry()
     try:
-        given = registry.parse_units(_BARE_POWER.sub("^", text))
+        given = registry.parse_units(_BARE_POWER.sub("^", plain))
         factor = registry.Quantity(Decimal(1), given).to(registry.parse_units(unit))
     except pint.UndefinedUnitError:
         raise PolhodeError(f"{option}: {text!r} is not a known unit; write {_example(unit)}") from None
     except pint.DimensionalityError:
-        message = f"{option}: {text!r} cannot be converted to {unit}; write {_example(unit)}"
-        raise PolhodeError(message) from None
+        as_force = _WEIGHTS.sub(r"\1f", plain)
+        is_force = as_force != plain and registry.parse_units(as_force).is_compatible_with(unit)
+        way_out = "lb and oz are masses here; write lbf or ozf" if is_force else f"write {_example(unit)}"
+        raise PolhodeError(f"{option}: {text!r} cannot be converted to {unit}; {way_out}") from None
     return Decimal(factor.magnitude)
 
 
@@ -300,5 +315,6 @@ def _registry() -> Any:
     import pint
 
     registry: Any = pint.UnitRegistry(non_int_type=Decimal)
-    registry.define("rev = turn")
+    for unit in _OWN_UNITS:
+        registry.define(unit)
     return registry
