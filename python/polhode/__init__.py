@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from polhode import (
+        assembly,
         distributions,
         equimomental,
         errors,
@@ -127,6 +128,7 @@ __all__ = [
     "Uncertain",
     "Wheel",
     "__version__",
+    "assembly",
     "distributions",
     "ensemble",
     "equimomental",

@@ -20,7 +20,7 @@ from polhode.errors import PolhodeError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["amount", "amounts", "has_unit", "quantities", "quantity", "split_vector", "vector"]
+__all__ = ["amount", "amounts", "has_unit", "quantities", "quantity", "split", "split_vector", "vector"]
 
 _NUMBER: Final = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>\S.*?)?\s*")
@@ -196,7 +196,7 @@ def quantities(texts: Sequence[str], count: int, unit: str, option: str) -> tupl
     -------
     tuple of float
     """
-    return tuple(quantity(part, unit, option) for part in _split(texts, count, unit, option))
+    return tuple(quantity(part, unit, option) for part in split(texts, count, unit, option))
 
 
 def vector(texts: Sequence[str], unit: str, option: str) -> tuple[float, float, float]:
@@ -207,7 +207,40 @@ def vector(texts: Sequence[str], unit: str, option: str) -> tuple[float, float, 
 
 def split_vector(texts: Sequence[str], unit: str, option: str) -> list[str]:
     """Split three numbers, each with its unit, without converting them; see `quantities`."""
-    return _split(texts, 3, unit, option)
+    return split(texts, 3, unit, option)
+
+
+def split(texts: Sequence[str], count: int | None, unit: str, option: str) -> list[str]:
+    """Split several numbers, each with its unit, without converting them; see `quantities`.
+
+    Parameters
+    ----------
+    texts, unit, option
+        See `quantities`.
+    count : int, optional
+        How many there have to be; any number of them without it.
+    """
+    text = " ".join(texts)
+    if _has_sigma(text):
+        raise PolhodeError(
+            f"{option}: {text!r} has a sigma, which {option} does not take; write the numbers alone"
+        )
+    if "," in text:
+        parts = [part.strip() for part in text.strip().strip(",").split(",")]
+        last = _QUANTITY.fullmatch(parts[-1])
+        if last is not None and last["unit"] and not any(has_unit(part) for part in parts[:-1]):
+            parts = [f"{part} {last['unit']}" for part in parts[:-1]] + [parts[-1]]
+    else:
+        words = text.split()
+        numbers = [word for word in words if re.fullmatch(_NUMBER, word)]
+        behind = " ".join(words[len(numbers) :])
+        parts = [f"{number} {behind}" for number in numbers] if numbers else [text]
+    if count is not None and len(parts) != count:
+        raise PolhodeError(
+            f"{option}: expected {count} numbers, got {len(parts)} in {text!r}; for example "
+            f"{', '.join([_example(unit).strip(chr(34))] * count)!r}"
+        )
+    return parts
 
 
 def _typed(text: str) -> _Typed | None:
@@ -252,30 +285,6 @@ def _converted(text: str, typed: _Typed, unit: str, option: str) -> float:
     if not math.isfinite(value):
         raise PolhodeError(f"{option}: {text!r} is beyond the range of numbers; check the exponent")
     return value
-
-
-def _split(texts: Sequence[str], count: int, unit: str, option: str) -> list[str]:
-    text = " ".join(texts)
-    if _has_sigma(text):
-        raise PolhodeError(
-            f"{option}: {text!r} has a sigma, which {option} does not take; write the numbers alone"
-        )
-    if "," in text:
-        parts = [part.strip() for part in text.strip().strip(",").split(",")]
-        last = _QUANTITY.fullmatch(parts[-1])
-        if last is not None and last["unit"] and not any(has_unit(part) for part in parts[:-1]):
-            parts = [f"{part} {last['unit']}" for part in parts[:-1]] + [parts[-1]]
-    else:
-        words = text.split()
-        numbers = [word for word in words if re.fullmatch(_NUMBER, word)]
-        behind = " ".join(words[len(numbers) :])
-        parts = [f"{number} {behind}" for number in numbers] if numbers else [text]
-    if len(parts) != count:
-        raise PolhodeError(
-            f"{option}: expected {count} numbers, got {len(parts)} in {text!r}; for example "
-            f"{', '.join([_example(unit).strip(chr(34))] * count)!r}"
-        )
-    return parts
 
 
 def _example(unit: str) -> str:

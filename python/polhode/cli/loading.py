@@ -57,6 +57,8 @@ class LoadedBody:
         The mesh in the unit of `body`, where it was asked for.
     has_mass_sigmas : bool
         Whether the masses of a molecule's isotopes have sigmas.
+    kind : str
+        What was read where it is neither a mesh nor a molecule: "saved body", "assembly" or "printout".
     """
 
     body: RigidBody
@@ -70,6 +72,7 @@ class LoadedBody:
     notes: tuple[str, ...] = ()
     shape: Mesh | None = None
     has_mass_sigmas: bool = False
+    kind: str = ""
 
     @property
     def moment_unit(self) -> str:
@@ -82,8 +85,17 @@ class LoadedBody:
         return float(np.linalg.norm(self.body.center_of_mass) + self.body.radii_of_gyration.max())
 
 
-def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
-    """Read the body in a file; ``-`` is standard input. A shape is kept where it is to be drawn."""
+def load_body(file: Path | None, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
+    """Read the body in a file; ``-`` is standard input. A shape is kept where it is to be drawn.
+
+    Without a file it is that of the numbers of a CAD program.
+    """
+    from polhode.cli.whole import WHOLE, printed, whole_body
+
+    if file is None or options.inertia or options.com or options.products is not None:
+        return printed(file, options)
+    if file.suffix.lower() in WHOLE:
+        return whole_body(file, options)
     with as_file(file) as path:
         if path.suffix.lower() == MOLECULE_SUFFIX:
             return _load_molecule(path, options)

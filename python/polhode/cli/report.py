@@ -11,6 +11,7 @@ from polhode.cli.options import ReportOptions
 from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
+from polhode.cli.whole import is_whole, whole_report
 from polhode.errors import PolhodeError
 from polhode.files.mesh_solid import MeshSolid
 from polhode.units import metres_per
@@ -27,15 +28,18 @@ UNKNOWN = "unit unknown"
 PLAIN = ReportOptions()
 
 
-def file_report(file: Path, options: BodyOptions, extra: ReportOptions = PLAIN) -> Report:
+def file_report(file: Path | None, options: BodyOptions, extra: ReportOptions = PLAIN) -> Report:
     """Report on the body in a file."""
     if extra.mass_unit is not None:
-        if options.length_unit is None:
+        if options.length_unit is None and not is_whole(file):
             raise PolhodeError("--mass-unit: the length of the file has no unit; state --length-unit too")
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
     loaded = load_body(file, options)
-    units = FileUnits(options.length_unit, extra.mass_unit)
     about = _point(loaded, options, extra)
+    if loaded.kind:
+        return whole_report(file, loaded, extra.mass_unit, about)
+    assert file is not None
+    units = FileUnits(options.length_unit, extra.mass_unit)
     if isinstance(loaded.source, MeshSolid):
         return _mesh_report(file, loaded, loaded.source, units, about)
     if extra.mass_unit is not None:
@@ -52,7 +56,7 @@ def _point(
     if not extra.about:
         return None
     is_molecule = loaded.length == "angstrom"
-    unit = options.length_unit or ("angstrom" if is_molecule else None)
+    unit = options.length_unit or ("angstrom" if is_molecule else "m" if loaded.length == "m" else None)
     of_body = 1.0 if unit is None else metres_per(unit) / (metres_per("angstrom") if is_molecule else 1.0)
     x, y, z = (
         in_file_unit(part, "--about", unit) * of_body for part in split_vector(extra.about, "m", "--about")
