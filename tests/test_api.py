@@ -24,6 +24,7 @@ from polhode import RigidBody, loads, solids
 ROOT = Path(__file__).resolve().parents[1]
 MODULES = [
     "polhode",
+    "polhode.assembly",
     "polhode.distributions",
     "polhode.forms",
     "polhode.laminae",

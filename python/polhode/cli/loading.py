@@ -85,17 +85,8 @@ class LoadedBody:
         return float(np.linalg.norm(self.body.center_of_mass) + self.body.radii_of_gyration.max())
 
 
-def load_body(file: Path | None, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
-    """Read the body in a file; ``-`` is standard input. A shape is kept where it is to be drawn.
-
-    Without a file it is that of the numbers of a CAD program.
-    """
-    from polhode.cli.whole import WHOLE, printed, whole_body
-
-    if file is None or options.inertia or options.com or options.products is not None:
-        return printed(file, options)
-    if file.suffix.lower() in WHOLE:
-        return whole_body(file, options)
+def load_body(file: Path, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
+    """Read the body in a file; ``-`` is standard input. A shape is kept where it is to be drawn."""
     with as_file(file) as path:
         if path.suffix.lower() == MOLECULE_SUFFIX:
             return _load_molecule(path, options)

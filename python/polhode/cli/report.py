@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from polhode._quantities import quantity, split_vector
 from polhode.cli.layout import Field, Report
-from polhode.cli.loading import in_file_unit, load_body
+from polhode.cli.loading import in_file_unit
 from polhode.cli.options import ReportOptions
 from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
-from polhode.cli.whole import is_whole, whole_report
+from polhode.cli.whole import any_body, is_whole, whole_report
 from polhode.errors import PolhodeError
 from polhode.files.mesh_solid import MeshSolid
 from polhode.units import metres_per
@@ -34,7 +34,7 @@ def file_report(file: Path | None, options: BodyOptions, extra: ReportOptions = 
         if options.length_unit is None and not is_whole(file):
             raise PolhodeError("--mass-unit: the length of the file has no unit; state --length-unit too")
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
-    loaded = load_body(file, options)
+    loaded = any_body(file, options)
     about = _point(loaded, options, extra)
     if loaded.kind:
         return whole_report(file, loaded, extra.mass_unit, about)

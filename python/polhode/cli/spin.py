@@ -11,7 +11,7 @@ from polhode import RigidBody, Uncertain
 from polhode._quantities import amount, amounts, quantities, quantity, vector
 from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
-from polhode.cli.loading import LoadedBody, load_body
+from polhode.cli.loading import LoadedBody
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.spin_gyrostat import GyrostatKind, momentum_inside
@@ -19,6 +19,7 @@ from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
 from polhode.cli.spin_sigmas import attitude_field, of_end, of_start
 from polhode.cli.tables import top_fields
+from polhode.cli.whole import any_body
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
 
@@ -171,7 +172,7 @@ def _check_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> 
 def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedBody:
     """Read the body, or make it from the moments that were typed."""
     if not spin.moments:
-        return load_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
+        return any_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
     for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
         if is_given:
             raise PolhodeError(f"{option}: --moments are of no molecule; leave it out")

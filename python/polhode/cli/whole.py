@@ -1,4 +1,7 @@
-"""Bodies that come whole, without a shape: saved ones, assemblies, and the numbers of a CAD program."""
+"""Bodies from wherever they come: a file with a shape, or whole without one.
+
+Whole are saved bodies, assemblies, and the numbers that a CAD program printed.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from polhode import RigidBody
 from polhode._quantities import amount, has_unit, quantities, split, vector
 from polhode.cli.layout import Field, Report
+from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
@@ -16,25 +20,31 @@ from polhode.units import metres_per
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from polhode.cli.loading import LoadedBody
     from polhode.cli.options import BodyOptions
 
-__all__ = ["WHOLE", "body_sections", "is_whole", "printed", "whole_body", "whole_report"]
+__all__ = ["any_body", "body_sections", "is_whole", "whole_report"]
 
-WHOLE: Final = (".json", ".npz", ".toml")
+_WHOLE: Final = (".json", ".npz", ".toml")
 """Endings of such files."""
 _OF_SHAPES: Final = ("density", "mass", "weld", "closure", "orient", "bond_sigma", "mass_sigmas")
 
 
 def is_whole(file: Path | None) -> bool:
     """Whether this is no file with a shape."""
-    return file is None or file.suffix.lower() in WHOLE
+    return file is None or file.suffix.lower() in _WHOLE
 
 
-def whole_body(file: Path, options: BodyOptions) -> LoadedBody:
+def any_body(file: Path | None, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
+    """Read the body in a file, or without one that of the numbers of a CAD program; see `load_body`."""
+    if file is None or options.inertia or options.com or options.products is not None:
+        return _printed(file, options)
+    if is_whole(file):
+        return _whole_body(file, options)
+    return load_body(file, options, with_shape=with_shape)
+
+
+def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
     """Read a saved body or an assembly."""
-    from polhode.cli.loading import LoadedBody
-
     is_assembly = file.suffix.lower() == ".toml"
     kind = "assembly" if is_assembly else "saved body"
     for name in (*_OF_SHAPES, *(("length_unit",) if is_assembly else ())):
@@ -59,10 +69,9 @@ def whole_body(file: Path, options: BodyOptions) -> LoadedBody:
     return LoadedBody(body.scaled(length=metres_per(unit)), [], "kg", "m", kind=kind)
 
 
-def printed(file: Path | None, options: BodyOptions) -> LoadedBody:
+def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
     """Make the body of --mass, --com and --inertia."""
     from polhode.assembly.printed import printed_body
-    from polhode.cli.loading import LoadedBody
 
     if file is not None:
         name = "--inertia" if options.inertia else "--com" if options.com else "--products"
