@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from polhode import laminae, rods, solids
 from polhode._core import RigidBody
+from polhode._printed import from_printout
 from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
-from polhode.assembly.printed import printed_body
 from polhode.errors import PolhodeError
 from polhode.files.content import MOLECULE_SUFFIX
 
@@ -121,7 +121,7 @@ def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
     com = inner.lengths("com", given["com"], 3) if "com" in given else (0.0, 0.0, 0.0)
     rtol = inner.numbers("rtol", given["rtol"], "1") if "rtol" in given else None
     try:
-        return printed_body(
+        return from_printout(
             inner.amount("mass", given["mass"], "kg"),
             com,
             tensor if isinstance(tensor, list) else [tensor],

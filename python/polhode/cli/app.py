@@ -86,13 +86,19 @@ def report(
         assembly (TOML), or - for standard input; without one, the numbers of --inertia.
     """
     from polhode.cli.outputs import check_outputs
-    from polhode.cli.report import file_report
+    from polhode.cli.report import file_report, for_program
     from polhode.files.reading import files_read
 
     check_outputs([("--output", output.output)], [file, extra.expect])
     with files_read() as read:
-        told = file_report(file, body, extra)
+        if extra.program is not None:
+            text = for_program(file, body, extra, output.form)
+        else:
+            told = file_report(file, body, extra)
     check_outputs([("--output", output.output)], read)
+    if extra.program is not None:
+        _write_text(text, output)
+        return GOOD
     differing = []
     if extra.expect is not None:
         from polhode.cli.compare import held_against
@@ -344,6 +350,16 @@ def _fail(message: str, code: int = BAD_INPUT) -> int:
         with suppress(OSError):  # nobody reads it: the exit code remains
             print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
     return code
+
+
+def _write_text(text: str, options: OutputOptions) -> None:
+    """Write lines as they are to where a report goes."""
+    from polhode.files.writing import DASH, write_bytes
+
+    if options.output is None or options.output == DASH:
+        print(text)
+    else:
+        write_bytes(options.output, f"{text}\n".encode())
 
 
 def _show(report: Report, options: OutputOptions) -> None:

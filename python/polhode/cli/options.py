@@ -22,6 +22,9 @@ __all__ = [
 ]
 
 LengthUnit: TypeAlias = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]
+Program: TypeAlias = Literal[
+    "urdf", "sdf", "mjcf", "mujoco", "drake", "pinocchio", "pybullet", "simulink", "adams", "solidworks"
+]
 Words: TypeAlias = tuple[str, ...]
 
 
@@ -121,6 +124,9 @@ class ReportOptions:
         A report saved with --format json, or any of its fields: numbers that differ end with exit code 1.
     rtol
         How far they may differ, relative to the largest component.
+    program
+        Print the numbers for another program instead of the report, in its own signs, axes and order, with
+        all their digits.
     """
 
     about: Annotated[
@@ -129,6 +135,7 @@ class ReportOptions:
     mass_unit: Annotated[str | None, Parameter(name="--mass-unit")] = None
     expect: Annotated[Path | None, Parameter(name="--expect")] = None
     rtol: Annotated[float, Parameter(name="--rtol")] = 1e-6
+    program: Annotated[Program | None, Parameter(name="--as")] = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polhode._quantities import quantity, split_vector
+from polhode._snippets import to_text
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import in_file_unit
 from polhode.cli.options import ReportOptions
 from polhode.cli.sigmas import Told, note_linear, told
-from polhode.cli.source import shown
+from polhode.cli.source import STDIN, shown
 from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
 from polhode.cli.whole import any_body, is_whole, whole_report
 from polhode.errors import PolhodeError
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from polhode.cli.loading import LoadedBody
     from polhode.cli.options import BodyOptions
 
-__all__ = ["file_report"]
+__all__ = ["file_report", "for_program"]
 
 UNKNOWN = "unit unknown"
 PLAIN = ReportOptions()
@@ -47,6 +48,28 @@ def file_report(file: Path | None, options: BodyOptions, extra: ReportOptions = 
     from polhode.cli.molecule import atoms_report
 
     return atoms_report(file, loaded, loaded.source, about)
+
+
+def for_program(file: Path | None, options: BodyOptions, extra: ReportOptions, form: str | None) -> str:
+    """Write the mass properties of the body in a file for the program of --as."""
+    for option, is_given in (
+        ("--format", form is not None),
+        ("--expect", extra.expect is not None),
+        ("--about", extra.about),
+        ("--mass-unit", extra.mass_unit is not None),
+    ):
+        if is_given:
+            raise PolhodeError(f"{option}: --as prints the numbers that {extra.program} takes; leave it out")
+    loaded = any_body(file, options)
+    if loaded.mass_unit != "kg" or loaded.length != "m":
+        reason = "is a molecule, in u and angstrom" if loaded.mass_unit == "u" else "does not say its unit"
+        way_out = "" if loaded.mass_unit == "u" else "; state --length-unit"
+        raise PolhodeError(
+            f"--as: other programs take kg and m, and {shown(file or STDIN)} {reason}{way_out}"
+        )
+    if loaded.assumed:
+        raise PolhodeError("--as: neither density nor mass is given; state --density or --mass")
+    return to_text(loaded.body, str(extra.program))
 
 
 def _point(

@@ -71,7 +71,7 @@ def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
 
 def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
     """Make the body of --mass, --com and --inertia."""
-    from polhode.assembly.printed import printed_body
+    from polhode._printed import from_printout
 
     if file is not None:
         name = "--inertia" if options.inertia else "--com" if options.com else "--products"
@@ -92,7 +92,7 @@ def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
             f"--inertia: expected 3, 6 or 9 numbers, got {count}: the moments, Ixx Iyy Izz Ixy Ixz Iyz, or "
             "the rows of the tensor"
         )
-    body = printed_body(
+    body = from_printout(
         amount(options.mass, "kg", "--mass"),
         vector(options.com, "m", "--com") if options.com else (0.0, 0.0, 0.0),
         quantities(options.inertia, count, "kg m^2", "--inertia"),

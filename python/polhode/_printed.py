@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from polhode._core import RigidBody
+from polhode._core import RigidBody, real_numbers
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from numpy.typing import ArrayLike, NDArray
 
     from polhode import _core
 
-__all__ = ["ABOUT", "PRODUCTS", "printed_body", "tensor_of"]
+__all__ = ["from_printout"]
 
-PRODUCTS: Final = ("positive", "negative")
-ABOUT: Final = ("center_of_mass", "origin")
+_PRODUCTS: Final = ("positive", "negative")
+_ABOUT: Final = ("center_of_mass", "origin")
 _NAMES: Final = ("Ixy", "Ixz", "Iyz")
 
 
-def printed_body(
+def from_printout(
     mass: float | _core.Uncertain,
-    com: Sequence[float],
-    tensor: Sequence[float],
+    com: ArrayLike,
+    tensor: ArrayLike,
     *,
     products: str | None = None,
     about: str = "center_of_mass",
@@ -36,9 +36,9 @@ def printed_body(
     Parameters
     ----------
     mass : float or Uncertain
-    com : sequence of float
-        Centre of mass, three numbers.
-    tensor : sequence of float
+    com : array_like, shape (3,)
+        Centre of mass.
+    tensor : array_like
         Three moments, six numbers Ixx Iyy Izz Ixy Ixz Iyz, or nine, row by row.
     products : {"positive", "negative"}, optional
         Whether the off-diagonal numbers are ∫ x y dm or minus that, the elements of the tensor. It has to be
@@ -49,12 +49,30 @@ def printed_body(
         See `RigidBody`.
     name : str
         Of the tensor, in errors.
+
+    Returns
+    -------
+    RigidBody
+
+    Examples
+    --------
+    A printout of SolidWorks, in pounds and feet, that says "(Using positive tensor notation.)":
+
+    >>> from polhode import forms
+    >>> wing = forms.from_printout(
+    ...     1.51653435,
+    ...     (-0.45582142, 0.92780847, 0),
+    ...     [0.50358715, 0.17140362, 0.66303218, -0.05932693, 0, 0],
+    ...     products="positive",
+    ... )
+    >>> wing.principal_moments.round(6)
+    array([0.161126, 0.513865, 0.663032])
     """
-    if products is not None and products not in PRODUCTS:
-        raise PolhodeError(f"products: {products!r} is neither {' nor '.join(PRODUCTS)}")
-    if about not in ABOUT:
-        raise PolhodeError(f"about: {about!r} is neither {' nor '.join(ABOUT)}")
-    matrix = tensor_of(tensor, name)
+    if products is not None and products not in _PRODUCTS:
+        raise PolhodeError(f"products: {products!r} is neither {' nor '.join(_PRODUCTS)}")
+    if about not in _ABOUT:
+        raise PolhodeError(f"about: {about!r} is neither {' nor '.join(_ABOUT)}")
+    matrix = _matrix(tensor, name)
     off = ~np.eye(3, dtype=np.bool_)
     if products is None and matrix[off].any():
         k = int(np.flatnonzero(matrix[(0, 0, 1), (1, 2, 2)])[0])
@@ -71,9 +89,9 @@ def printed_body(
     return RigidBody(mass, matrix, com, rtol=rtol)
 
 
-def tensor_of(numbers: Sequence[float], name: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _matrix(numbers: ArrayLike, name: str) -> NDArray[np.float64]:
     """Give the matrix of three, six or nine numbers, signs as they are."""
-    given = np.array(numbers, dtype=np.float64).ravel()
+    given = real_numbers(numbers, name).ravel()
     if len(given) == 3:
         return np.diag(given)
     if len(given) == 6:
@@ -84,4 +102,4 @@ def tensor_of(numbers: Sequence[float], name: str) -> np.ndarray[Any, np.dtype[n
             f"{name}: expected 3, 6 or 9 numbers, got {len(given)}: the moments, Ixx Iyy Izz Ixy Ixz Iyz, or "
             "the rows of the tensor"
         )
-    return given.reshape(3, 3)
+    return given.reshape(3, 3).copy()
