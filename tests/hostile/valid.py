@@ -18,7 +18,10 @@ from polhode import RigidBody, _core, loads, molecules, orbits, solids, validity
 NO_TEST = {
     # Files and pictures have tests of their own; a compiled load is a machine address, to be trusted or not.
     *(f"RigidBody.{name}" for name in ("from_file", "load", "save", "plot", "view")),
-    *(f"Trajectory.{name}" for name in ("from_file", "save", "plot", "view", "animate", "to_xarray")),
+    *(
+        f"Trajectory.{name}"
+        for name in ("from_file", "save", "plot", "view", "animate", "to_pandas", "to_xarray")
+    ),
     *("read_stl", "read_plates", "stream_solid", "compiled"),
     # Objects of other libraries, which have to be there.
     *("RigidBody.from_mesh_object", "RigidBody.from_atoms"),

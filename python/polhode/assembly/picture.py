@@ -41,11 +41,12 @@ def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | Non
     A mesh is drawn as it is, or coarser where it has many triangles; a part without one as the box of the
     same inertia.
     """
-    tops: dict[str, int] = {}
+    branches = sorted(assembly.ledger[assembly.ledger.root].children, key=lambda node: -node.mass)
+    tops = {node.id: k for k, node in enumerate(branches)}
     vertices, faces, colors = [], [], []
     corners = 0
     for part in assembly.parts:
-        color = tops.setdefault(part.id.partition("/")[0], len(tops))
+        color = tops[part.id.partition("/")[0]]
         points, triangles = _surface(part, max(_MOST // len(assembly.parts), 12))
         vertices.append(points)
         faces.append(triangles + corners)
