@@ -27,6 +27,7 @@ MODULES = [
     "polhode.assembly",
     "polhode.distributions",
     "polhode.forms",
+    "polhode.labelled",
     "polhode.laminae",
     "polhode.reductions",
     "polhode.regions",

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
         flybys,
         forms,
         kinematics,
+        labelled,
         laminae,
         loads,
         orbits,
@@ -38,10 +39,11 @@ if TYPE_CHECKING:
     )
     from polhode.ensembles.call import Ensemble, ensemble
     from polhode.events import Event, Events
-    from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
+    from polhode.free_motion import Cones, ErrorBar, LightCurve, Periods, Poinsot, Sensitivity
     from polhode.gyrostat import Bifurcations, Equilibria, Wheel, wheel
     from polhode.results import (
         AngularMomentum,
+        ContinuousAxes,
         ErrorBound,
         FreePrecession,
         Invariants,
@@ -96,6 +98,7 @@ __all__ = [
     "AngularMomentum",
     "Bifurcations",
     "Cones",
+    "ContinuousAxes",
     "Ensemble",
     "Equilibria",
     "ErrorBar",
@@ -109,6 +112,7 @@ __all__ = [
     "HeavyTop",
     "Invariants",
     "KineticEnergy",
+    "LightCurve",
     "Linear",
     "MassAccumulator",
     "MotionSensitivity",
@@ -137,6 +141,7 @@ __all__ = [
     "flybys",
     "forms",
     "kinematics",
+    "labelled",
     "laminae",
     "loads",
     "orbits",

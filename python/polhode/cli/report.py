@@ -11,7 +11,7 @@ from polhode.cli.loading import in_file_unit
 from polhode.cli.options import ReportOptions
 from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import STDIN, shown
-from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
+from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
 from polhode.cli.whole import any_body, is_whole, whole_report
 from polhode.errors import PolhodeError
 from polhode.files.mesh_solid import MeshSolid
@@ -133,6 +133,7 @@ def _mesh_report(
     )
     report.section("inertia, file axes", *tensor_fields(loaded, units, about))
     report.section("principal axes", *body_fields(loaded, units))
+    report.section("equivalent ellipsoid, along e1 e2 e3", *ellipsoid_fields(loaded, units))
     report.section("trust", *trust_fields(loaded))
     report.notes += loaded.notes
     note_linear(report)

@@ -81,6 +81,8 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         ),
         *kind.fields(rate, rate_unit),
     )
+    if spin.periods and isinstance(kind, FreeKind):
+        report.section("light curve, short-axis convention and frequencies", *kind.light_curve())
     report.section("conserved", *kind.constants(loaded.moment_unit))
     report.section("stability", *kind.stability())
     report.notes += _notes(loaded)

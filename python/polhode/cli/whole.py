@@ -13,7 +13,7 @@ from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
-from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
+from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
 from polhode.errors import PolhodeError
 from polhode.units import metres_per
 
@@ -150,6 +150,7 @@ def body_sections(
     )
     report.section("inertia, its axes", *tensor_fields(loaded, units, about))
     report.section("principal axes", *body_fields(loaded, units))
+    report.section("equivalent ellipsoid, along e1 e2 e3", *ellipsoid_fields(loaded, units))
     report.section("trust", *trust_fields(loaded))
     report.notes += loaded.notes
     if loaded.length == "unit":
