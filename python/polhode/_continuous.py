@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from itertools import permutations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -82,11 +83,11 @@ def continuous(self: PrincipalAxes, axis: int = 0, rtol: float | None = None) ->
     >>> followed.overlap
     array([1., 1., 1., 1.])
     """
-    shape = self.moments.shape[:-1]
+    shape, axis = self.moments.shape[:-1], operator.index(axis)
     if not -len(shape) <= axis < len(shape):
         raise ValueError(f"axis: {axis} is no axis of a stack of shape {shape}")
-    if rtol is not None and not rtol >= 0.0:
-        raise ValueError(f"rtol: {rtol:g} is not a tolerance; give a number such as 1e-6")
+    if rtol is not None and not 0.0 <= float(rtol) < math.inf:
+        raise ValueError(f"rtol: {rtol} is not a tolerance; give a number such as 1e-6")
     axis %= len(shape)
     moments, axes = np.moveaxis(self.moments, axis, 0), np.moveaxis(self.axes, axis, 0)
     count, rest = len(moments), moments.shape[1:-1]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from polhode._core import RigidBody
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
-
-    from polhode._core import RigidBody
 
     Floats = NDArray[np.float64]
 
@@ -66,7 +65,9 @@ def to_text(body: RigidBody, program: str) -> str:
     PART/1, MASS=2.0, CM=2, IP=3.0, 4.0, 5.0, 0.5, 0.0, 0.0
     MARKER/2, PART=1, QP=0.0, 0.0, 0.1
     """
-    if program not in _WRITERS:
+    if not isinstance(body, RigidBody):
+        raise TypeError(f"body: expected a RigidBody, got {type(body).__name__}")
+    if not isinstance(program, str) or program not in _WRITERS:
         raise PolhodeError(f"program: there is no form for {program!r}; there are {', '.join(PROGRAMS)}")
     if body.shape:
         raise PolhodeError(f"body: expected one body, got a stack of shape {body.shape}; index it")
