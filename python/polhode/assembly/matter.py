@@ -47,11 +47,12 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
     """Make the body of a part that is a solid, a file or numbers."""
     try:
         if kind == "solid":
-            return _solid(table, scope)
-        if kind == "inertia":
-            return _printed(table, scope)
-        return _file(table, scope, folder)
-    except (ValueError, OSError) as error:
+            body = _solid(table, scope)
+        elif kind == "inertia":
+            body = _printed(table, scope)
+        else:
+            body = _file(table, scope, folder)
+    except (ValueError, TypeError, OSError) as error:
         if str(error).startswith(scope.where):
             raise
         what = (
@@ -61,6 +62,9 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
         )
         kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
         raise kind_of_error(f"{scope.where}: {what}") from error
+    if body.shape:
+        raise PolhodeError(f"{scope.where}: its numbers are of {body.shape[0]} bodies, not of one")
+    return body
 
 
 def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]:
@@ -159,7 +163,7 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> RigidBody:
         raise PolhodeError(f"{scope.where}: {path.name} does not say its unit of length; state length_unit")
     options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
     if "weld" in table:
-        options["weld"] = scope.lengths("weld", table["weld"]) / scope.metres
+        options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / scope.metres
     if suffix != MOLECULE_SUFFIX:
         options |= _weight(table, scope, path.name)
     else:

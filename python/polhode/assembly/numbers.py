@@ -51,9 +51,9 @@ class Scope:
         return Scope(where, length_unit)
 
     def lengths(self, key: str, value: Any, count: int | None = None) -> Any:
-        """Read a length, a row of them or rows of rows, in metres; `count` says how many a row has."""
-        if isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple):
-            return [self.lengths(key, row, count) for row in value]
+        """Read a length, a row of them (of `count`) or rows of rows, in metres."""
+        if count is None and isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple):
+            return [self.lengths(key, row) for row in value]
         return self.numbers(key, value, "m", self.metres, count)
 
     def numbers(self, key: str, value: Any, unit: str, bare: float = 1.0, count: int | None = None) -> Any:

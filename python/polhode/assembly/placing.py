@@ -101,10 +101,11 @@ def _rotation(given: Any, key: str, scope: Scope) -> Floats:
         )
     if form == "axis":
         axis = np.array(inner.numbers("axis", given["axis"], "1", count=3))
-        size = float(np.linalg.norm(axis))
-        if not size > 0.0:
+        largest = float(np.abs(axis).max())
+        if not largest > 0.0:
             raise PolhodeError(f"{where}: axis: a rotation about 0 0 0 has no direction; name an axis")
-        return _turn(axis / size, _angles(given, units[0], 1, inner)[0])
+        axis /= largest
+        return _turn(axis / np.linalg.norm(axis), _angles(given, units[0], 1, inner)[0])
     sequence = given["sequence"]
     letters = sequence if isinstance(sequence, str) else ""
     if len(letters) != 3 or letters.upper().strip("XYZ") or letters not in (letters.upper(), letters.lower()):
@@ -146,7 +147,7 @@ def _turn(axis: Floats, angle: tuple[float, float]) -> Floats:
 
 def _quaternion(given: Any, scope: Scope) -> Floats:
     q = np.array(scope.numbers("quaternion_xyzw", given, "1", count=4))
-    size = float(np.linalg.norm(q))
+    size = float(np.linalg.norm(q)) if np.abs(q).max() < 2.0 else np.inf
     if not abs(size - 1.0) <= _OFF_UNITY:
         raise PolhodeError(f"{scope.where}: quaternion_xyzw: its length is {size:.9g}, expected 1")
     return _core.rotate(q / size, np.eye(3)).T
@@ -160,7 +161,7 @@ def _matrix(given: Any, scope: Scope) -> Floats:
     )
     if rows is None or rows.shape != (3, 3):
         raise PolhodeError(f"{scope.where}: matrix: expected three rows of three numbers")
-    off = float(np.abs(rows @ rows.T - np.eye(3)).max())
+    off = float(np.abs(rows @ rows.T - np.eye(3)).max()) if np.abs(rows).max() < 2.0 else np.inf
     if not off <= _OFF_UNITY or np.linalg.det(rows) < 0.0:
         what = (
             f"its rows are off from unit vectors at right angles by {off:.2g}"
