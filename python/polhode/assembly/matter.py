@@ -43,11 +43,14 @@ def kind_of(table: Mapping[str, Any], where: str) -> str:
     raise PolhodeError(f"{where}: a part is one of {', '.join(KINDS)}; {found}")
 
 
-def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path) -> RigidBody:
-    """Make the body of a part that is a solid, a file or numbers."""
+def body_of_part(
+    kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
+) -> tuple[RigidBody, dict[str, Any]]:
+    """Make the body of a part that is a solid, a file or numbers; give the arguments of a solid too."""
+    arguments: dict[str, Any] = {}
     try:
         if kind == "solid":
-            body = _solid(table, scope)
+            body, arguments = _solid(table, scope)
         elif kind == "inertia":
             body = _printed(table, scope)
         else:
@@ -64,7 +67,7 @@ def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
         raise kind_of_error(f"{scope.where}: {what}") from error
     if body.shape:
         raise PolhodeError(f"{scope.where}: its numbers are of {body.shape[0]} bodies, not of one")
-    return body
+    return body, arguments
 
 
 def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]:
@@ -75,7 +78,7 @@ def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]
     return {"density": scope.amount("density", table["density"], "kg/m^3")}
 
 
-def _solid(table: Mapping[str, Any], scope: Scope) -> RigidBody:
+def _solid(table: Mapping[str, Any], scope: Scope) -> tuple[RigidBody, dict[str, Any]]:
     name = text_of(table, "solid", scope.where)
     if name not in _SHAPES:
         raise PolhodeError(
@@ -97,7 +100,7 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> RigidBody:
     if "sides" in options:
         options["sides"] = table["sides"]
     try:
-        return shape(**options, **_weight(table, scope, f"a {name}"))
+        return shape(**options, **_weight(table, scope, f"a {name}")), options
     except TypeError as error:
         raise PolhodeError(f"{scope.where}: {name}: {error}") from None
 

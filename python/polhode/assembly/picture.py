@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from polhode._scene.shape import equivalent_box
+from polhode._scene.solids import solid_surface
 from polhode._scene.triangles import joined
 from polhode.assembly.matter import SAVED
 from polhode.files.content import MOLECULE_SUFFIX
@@ -38,8 +39,8 @@ _MOST: Final = 20_000
 def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | None = None) -> Axes3D:
     """Draw the parts where they stand; see :meth:`Assembly.plot`.
 
-    A mesh is drawn as it is, or coarser where it has many triangles; a part without one as the box of the
-    same inertia.
+    A mesh is drawn as it is, or coarser where it has many triangles; a solid as it is; another part as the
+    box of the same inertia.
     """
     branches = sorted(assembly.ledger[assembly.ledger.root].children, key=lambda node: -node.mass)
     tops = {node.id: k for k, node in enumerate(branches)}
@@ -47,7 +48,7 @@ def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | Non
     corners = 0
     for part in assembly.parts:
         color = tops[part.id.partition("/")[0]]
-        points, triangles = _surface(part, max(_MOST // len(assembly.parts), 12))
+        points, triangles = _surface(part, max(_MOST // len(assembly.parts), 400))
         vertices.append(points)
         faces.append(triangles + corners)
         colors.append(np.tile(_COLORS[color % len(_COLORS)], (len(triangles), 1)))
@@ -62,10 +63,12 @@ def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | Non
 
 def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
     """Give the triangles of a part where it stands."""
-    is_mesh = part.file is not None and part.file.suffix.lower() not in (*SAVED, MOLECULE_SUFFIX)
-    if not is_mesh or part.file is None:
+    surface = solid_surface(part.solid, part.arguments)
+    if part.file is not None and part.file.suffix.lower() not in (*SAVED, MOLECULE_SUFFIX):
+        mesh = load(part.file).mesh
+        surface = mesh.vertices * part.metres, mesh.faces
+    if surface is None:
         box = equivalent_box(part.body, np.zeros(3))
         return box.vertices, box.faces
-    mesh = load(part.file).mesh
-    vertices, faces, _ = joined(mesh.vertices * part.metres, mesh.faces, most)
+    vertices, faces, _ = joined(*surface, most)
     return vertices @ part.rotation.T + part.displacement, faces

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -38,6 +38,7 @@ class _Unit:
     file: Path | None = None
     metres: float = 1.0
     shape: str = ""
+    arguments: dict[str, Any] = field(default_factory=dict)
     children: tuple[tuple[Place, _Unit], ...] = ()
     members: int = 1
     notes: tuple[str, ...] = ()
@@ -189,8 +190,9 @@ def _part(
             name, comment or inner.comment, children=inner.children, members=inner.members, notes=inner.notes
         )
     else:
-        body = body_of_part(kind, row, scope, folder)
-        one = _Unit(name, comment, body, file, scope.metres, text_of(row, "solid", scope.where))
+        body, arguments = body_of_part(kind, row, scope, folder)
+        shape = text_of(row, "solid", scope.where)
+        one = _Unit(name, comment, body, file, scope.metres, shape, arguments)
     place, moves = place_of(row, scope), copies(row, scope)
     if len(moves) == 1:
         return place, one
@@ -203,11 +205,7 @@ def _part(
     if members > MOST_MEMBERS:
         raise PolhodeError(f"{scope.where}: more than {MOST_MEMBERS} parts, copies counted; lower count")
     group = tuple(
-        (
-            move.of(place),
-            _Unit(f"{k}", one.comment, one.body, one.file, one.metres, one.shape, one.children, one.members),
-        )
-        for k, move in enumerate(moves, start=1)
+        (move.of(place), replace(one, name=f"{k}", notes=())) for k, move in enumerate(moves, start=1)
     )
     return HERE, _Unit(name, comment, children=group, members=members, notes=notes)
 
@@ -231,9 +229,7 @@ def _assembled(whole: _Unit) -> Assembly:
         body = None if unit.body is None else place.placed(unit.body)
         bodies.append(body)
         if body is not None:
-            members[name] = Member(
-                name, body, unit.shape, unit.file, unit.metres, place.rotation, place.displacement
-            )
+            members[name] = Member(name, body, unit.shape, unit.arguments, unit.file, unit.metres, *place)
     return Assembly(
         name=whole.name,
         parts=tuple(members.values()),

@@ -33,6 +33,8 @@ class Member(NamedTuple):
         In the axes of the whole, in kg and m.
     solid : str
         The name of its shape; "" where it is of a file or of numbers.
+    arguments : dict
+        Of that shape, lengths in metres.
     file : pathlib.Path or None
         What it was read from.
     metres : float
@@ -44,6 +46,7 @@ class Member(NamedTuple):
     id: str
     body: RigidBody
     solid: str
+    arguments: dict[str, Any]
     file: Path | None
     metres: float
     rotation: Floats

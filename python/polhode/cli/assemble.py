@@ -86,8 +86,11 @@ def save_assembly(made: Assembly, path: Path) -> list[str]:
     made.ledger.plot(figure.add_subplot(1, 2, 2), of="mass")
     save_picture(figure, path)
     notes = [f"saved {path}"]
-    if any(part.file is None and part.solid not in ("box", "cube") for part in made.parts):
-        notes.append(f"{path.name}: parts without a mesh are drawn as the box of the same inertia")
+    boxes = sum(part.file is None and not part.solid for part in made.parts)
+    if boxes:
+        notes.append(
+            f"{path.name}: parts of which the inertia alone is known are drawn as the box that has it"
+        )
     return notes
 
 
