@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from command_line import write_obj
 from oracles.meshes import box as box_mesh
-from polhode import RigidBody
+
+if TYPE_CHECKING:
+    from polhode import RigidBody
 
 __all__ = ["Random", "ours", "ten", "toml"]
 
