@@ -76,7 +76,12 @@ def save_assembly(made: Assembly, path: Path) -> list[str]:
     suffix = path.suffix.lower()
     if suffix == ".csv":
         made.ledger.to_csv(path)
-        return [f"saved {path}"]
+        if made.ledger.sigma is None:
+            return [f"saved {path}"]
+        return [
+            f"saved {path}; a table states the ten sigmas of a part as independent, the whole in .json keeps "
+            "what they share"
+        ]
     if suffix not in _PICTURES:
         made.body.save(path)
         return [f"saved {path}"]
