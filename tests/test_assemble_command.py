@@ -81,6 +81,39 @@ class TestCommand:
         assert run("assemble", cart, "--expect", expected)[0] == 1
         assert run("assemble", cart, "--expect", expected, "--rtol", "0.01")[0] == 0
 
+    def test_a_report_is_a_body_too(self, tmp_path: Path) -> None:
+        words = ("--mass", "2", "--com", "0 0 0.1", "--inertia", "3 4 5 0.5 0 0", "--products", "positive")
+        path = tmp_path / "part.json"
+        assert run("report", *words, "--output", path)[0] == 0
+        code, out, err = run("report", path, "--format", "json", "--expect", path)
+        assert (code, err) == (0, "")
+        assert json.loads(out)["format"] == "report"
+        assert run("report", path, "--as", "urdf") == run("report", *words, "--as", "urdf")
+        part = {"name": "a", "file": "part.json", "position": [1, 0, 0]}
+        body = assembly.read({"part": [part]}, folder=tmp_path).body
+        assert body.center_of_mass.tolist() == [1.0, 0.0, 0.1]
+        assert run("report", path, "--length-unit", "mm")[0] == 2
+        fields = json.loads(path.read_text())
+        for change, says in (
+            ({"sigma": {"mass": 0.1}}, "which of its sigmas go together"),
+            ({"units": fields["units"] | {"mass": "u"}}, "a report in u and m"),
+            ({"inertia_about_center_of_mass": [[1, 0, 0], [0, 1, 0], [0, 0, 9]]}, "I1 + I2"),
+            ({"inertia_about_center_of_mass": [1, 2]}, "not the numbers of a body"),
+        ):
+            path.write_text(json.dumps(fields | change))
+            code, _, err = run("report", path)
+            assert code == 2
+            assert says in err
+
+    def test_a_saved_body_without_a_unit(self, tmp_path: Path) -> None:
+        solids.box((10.0, 20.0, 30.0), mass=2.0).save(tmp_path / "b.npz")
+        code, out, _ = run("report", tmp_path / "b.npz", "--length-unit", "mm", "--format", "json")
+        assert code == 0
+        assert json.loads(out)["principal_moments"][0] == pytest.approx(2.0 / 12 * 5e-4, rel=1e-14)
+        code, out, _ = run("report", tmp_path / "b.npz")
+        assert code == 0
+        assert "unit unknown" in out
+
     def test_a_part_is_not_written_over(self, cart: Path, tmp_path: Path) -> None:
         outer = tmp_path / "outer.toml"
         outer.write_text('[[part]]\nname = "x"\nassembly = "cart.toml"\n')

@@ -12,6 +12,7 @@ from polhode._printed import from_printout
 from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
 from polhode.errors import PolhodeError
 from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.saved_body import read_report
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["SAVED", "body_of_part", "kind_of"]
 
 SAVED: Final = (".json", ".npz")
-"""Of bodies that ``RigidBody.save`` wrote."""
+"""Of bodies that ``RigidBody.save`` wrote, and of reports."""
 _SHAPES: Final = {name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__}
 _NO_LENGTHS: Final = {"angle": "rad", "sides": "1"}
 """Arguments of shapes that are no lengths, with their units."""
@@ -156,7 +157,8 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> RigidBody:
             raise PolhodeError(
                 f"{scope.where}: {surplus}: {path.name} is a saved body, whole as it is; leave it out"
             )
-        body = RigidBody.load(path)
+        reported = read_report(path)
+        body = RigidBody.load(path) if reported is None else reported
         if body.shape:
             raise PolhodeError(
                 f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one"

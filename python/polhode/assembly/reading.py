@@ -75,7 +75,7 @@ def read(
     - ``solid``: a shape of :mod:`polhode.solids`, :mod:`polhode.laminae` or :mod:`polhode.rods`, with its
       arguments as keys, and ``mass`` or ``density``;
     - ``file``: a mesh, with ``mass`` or ``density`` (also ``weld``, ``closure``, ``orient``, ``index_base``),
-      a molecule, or a body that was saved;
+      a molecule, a body that was saved, or a report of one (JSON);
     - ``assembly``: another such file;
     - ``inertia``: a table with ``mass``, ``com`` and ``tensor`` as a CAD program prints them, ``products``
       (``"positive"`` or ``"negative"``), ``about``, and ``rtol`` for a table of few digits.

@@ -15,6 +15,7 @@ from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
 from polhode.errors import PolhodeError
+from polhode.files.saved_body import read_report
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -58,12 +59,17 @@ def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
 
         made = read(file)
         return LoadedBody(made.body, [], "kg", "m", notes=made.notes, kind=kind)
-    body = RigidBody.load(file)
+    reported = read_report(file)
+    body = RigidBody.load(file) if reported is None else reported
     if body.shape:
         raise PolhodeError(
             f"{file}: it holds a stack of bodies, of shape {body.shape}, not one; save one of them alone"
         )
     unit = options.length_unit
+    if reported is not None:
+        if unit is not None:
+            raise PolhodeError(f"--length-unit: {file} is a report, in kg and m; leave it out")
+        return LoadedBody(body, [], "kg", "m", kind="report")
     if unit is None:
         return LoadedBody(body, [], "mass", "unit", kind=kind)
     return LoadedBody(body.scaled(length=metres_per(unit)), [], "kg", "m", kind=kind)
