@@ -124,7 +124,7 @@ def read_report(path: str | PathLike[str]) -> RigidBody | None:
         )
     if "sigma" in fields:
         raise FileFormatError(
-            f'{file}: a report does not tell which of its sigmas go together; take "sigma" out of it to leave '
+            f'{file}: a report does not tell which of its sigmas go together; take "sigma" out to leave '
             "them out, or save the body, which keeps them"
         )
     mass, center, tensor = (numbers(fields[name], name, file) for name in _REPORTED)
