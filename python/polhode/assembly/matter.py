@@ -56,7 +56,7 @@ def body_of_part(
             body = _printed(table, scope)
         else:
             body = _file(table, scope, folder)
-    except (ValueError, TypeError, OSError) as error:
+    except (ValueError, TypeError, OverflowError, OSError) as error:
         if str(error).startswith(scope.where):
             raise
         what = (
