@@ -35,13 +35,13 @@ def is_whole(file: Path | None) -> bool:
     return file is None or file.suffix.lower() in _WHOLE
 
 
-def any_body(file: Path | None, options: BodyOptions, *, with_shape: bool = False) -> LoadedBody:
-    """Read the body in a file, or without one that of the numbers of a CAD program; see `load_body`."""
+def any_body(file: Path | None, options: BodyOptions, **how: bool) -> LoadedBody:
+    """Read the body in a file, or without one that of a CAD program's numbers; `how` is of `load_body`."""
     if file is None or options.inertia or options.com or options.products is not None:
         return _printed(file, options)
     if is_whole(file):
         return _whole_body(file, options)
-    return load_body(file, options, with_shape=with_shape)
+    return load_body(file, options, **how)
 
 
 def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
