@@ -11,7 +11,8 @@ import pytest
 from command_line import run, write_obj
 from oracles.meshes import box
 from polhode import Uncertain
-from polhode.cli.quantities import amount, has_unit, quantity
+from polhode._quantities import amount, has_unit, quantity
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -158,3 +159,42 @@ def test_what_is_expected_may_have_a_sigma_too(slab: Path, tmp_path: Path) -> No
     assert "0.50 ± 0.50" in table
     assert "as independent" in table
     assert run("report", slab, "--mass", "12 ± 0.1", "--expect", saved)[0] == 0  # sigmas are not compared
+
+
+# Exact by definition: pound 0.45359237 kg, inch 0.0254 m, g 9.80665 m/s^2; slug = lbf s^2/ft.
+POUND, INCH, G = LB, Fraction("0.0254"), Fraction("9.80665")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "exact"),
+    [
+        ("1 lbm", "kg", POUND),
+        ("1 lb", "kg", POUND),
+        ("1 oz", "kg", POUND / 16),
+        ("1 ozm", "kg", POUND / 16),
+        ("1 slug", "kg", POUND * G / (12 * INCH)),
+        ("1 slinch", "kg", POUND * G / INCH),
+        ("1 lbf", "N", POUND * G),
+        ("1 lbm in^2", "kg m^2", POUND * INCH**2),
+        ("1 lbm-in^2", "kg m^2", POUND * INCH**2),
+        ("1 lbm·ft²", "kg m^2", POUND * (12 * INCH) ** 2),
+        ("1 slug ft^2", "kg m^2", POUND * G * 12 * INCH),
+        ("1 lbf in s^2", "kg m^2", POUND * G * INCH),
+        ("1 lbf-in-s^2", "kg m^2", POUND * G * INCH),
+        ("1 lbf ft s^2", "kg m^2", POUND * G * 12 * INCH),
+        ("1 ozf in s^2", "kg m^2", POUND * G * INCH / 16),
+        ("1 lbm/in^3", "kg/m^3", POUND / INCH**3),
+        ("1 pcf", "kg/m^3", POUND / (12 * INCH) ** 3),
+        ("1 ft", "m", 12 * INCH),
+        ("1 in", "m", INCH),
+        ("1 t mm^2", "kg m^2", Fraction(1, 1000)),
+    ],
+)
+def test_units_of_the_desk(text: str, unit: str, exact: Fraction) -> None:
+    assert quantity(text, unit, "x") == pytest.approx(float(exact), rel=4e-16)
+
+
+@pytest.mark.parametrize("text", ["1 lb in s^2", "1 oz in s^2"])
+def test_a_pound_is_a_mass(text: str) -> None:
+    with pytest.raises(PolhodeError, match="lb and oz are masses here; write lbf or ozf"):
+        quantity(text, "kg m^2", "x")

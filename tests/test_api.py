@@ -24,8 +24,10 @@ from polhode import RigidBody, loads, solids
 ROOT = Path(__file__).resolve().parents[1]
 MODULES = [
     "polhode",
+    "polhode.assembly",
     "polhode.distributions",
     "polhode.forms",
+    "polhode.labelled",
     "polhode.laminae",
     "polhode.reductions",
     "polhode.regions",

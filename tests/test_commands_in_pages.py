@@ -36,7 +36,8 @@ def test_commands_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     write_stl(tmp_path / "polhode-demo" / "t-handle.stl", *t_handle())  # as `make demo` leaves it
     (tmp_path / "robot.urdf").write_text(ROBOT.format(1))
     (tmp_path / "water.xyz").write_text("3\nwater\nO 0 0 0\nH 0.757 0 0.587\nH -0.757 0 0.587\n")
-    shutil.copy(ROOT / "examples" / "craft.csv", tmp_path)
+    for name in ("craft.csv", "rover.toml", "wheel.toml"):
+        shutil.copy(ROOT / "examples" / name, tmp_path)
     monkeypatch.chdir(tmp_path)
     targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     for command in commands(page):

@@ -46,7 +46,8 @@ class TestCode:
     def test_blocks_print_what_is_shown(
         self, page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        shutil.copy(ROOT / "examples" / "craft.csv", tmp_path)
+        for name in ("craft.csv", "rover.toml", "wheel.toml"):
+            shutil.copy(ROOT / "examples" / name, tmp_path)
         monkeypatch.chdir(tmp_path)
         run_page(page)
 

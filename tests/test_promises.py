@@ -91,7 +91,7 @@ def test_commands_print_json_and_end_with_0_1_or_2(tmp_path: Path) -> None:
     assert run("check", robot)[0] == 1
 
 
-@pytest.mark.parametrize("command", ["report", "check", "molecule", "spin", "ledger", "demo"])
+@pytest.mark.parametrize("command", ["report", "check", "molecule", "spin", "assemble", "ledger", "demo"])
 def test_the_help_of_each_command_lists_its_options(command: str) -> None:
     code, out, _ = run(command, "--help")
     assert code == 0

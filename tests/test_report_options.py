@@ -14,8 +14,8 @@ from command_line import run, write_obj
 from mesh_files import WRITERS
 from oracles.meshes import box
 from polhode import RigidBody
+from polhode._quantities import quantities, quantity, vector
 from polhode.cli.progress import progress
-from polhode.cli.quantities import quantities, quantity, vector
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:

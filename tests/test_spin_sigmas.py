@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from command_line import run
 from polhode import Uncertain
-from polhode.cli.quantities import amounts
+from polhode._quantities import amounts
 from polhode.errors import PolhodeError
 from uncertain_bodies import RigidBody
 

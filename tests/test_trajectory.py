@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from polhode import RigidBody, Trajectory, euler_angles
+from polhode import RigidBody, Trajectory, euler_angles, loads
 from polhode.errors import SingularAttitudeError
 from scipy.spatial.transform import Rotation
 
@@ -204,6 +204,63 @@ def test_csv_holds_every_bit(shape: tuple[int, ...], rng: np.random.Generator, t
         }.items():
             values = [float(record[f"{name}_{component}"]) for component in components]
             assert values == getattr(trajectory, name)[(*place, row)].tolist()
+
+
+def columns_of(path: Path) -> dict[str, np.ndarray[Any, Any]]:
+    with path.open(newline="") as file:
+        names, *rows = csv.reader(file)
+    return dict(zip(names, np.array(rows, float).T, strict=True))
+
+
+def test_tables_have_euler_angles_and_torques(tmp_path: Path) -> None:
+    # A spin about z under a constant torque along it: ψ = ω t + N t²/2I, and the torque is what was put in.
+    body, path = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5)), tmp_path / "motion.csv"
+    t = np.linspace(0.0, 1.0, 5)
+    tilt = euler_angles.to_quaternion((0.2, 0.5, 0.0))
+    run = body.simulate(t, (0.0, 0.0, 0.3), tilt, load=loads.constant_torque((0.0, 0.0, 0.1)))
+    run.save(path)
+    held = columns_of(path)
+    assert np.allclose(held["euler_phi"], 0.2, atol=1e-12)
+    assert np.allclose(held["euler_theta"], 0.5, atol=1e-12)
+    assert np.allclose(held["euler_psi"], 0.3 * t + 0.05 * t * t / 2.5, atol=1e-10)
+    assert np.array_equal([held[f"torque_{x}"] for x in "xyz"], run.torque().T)
+    assert np.allclose(held["torque_z"], 0.1, rtol=1e-15)
+    assert not held["torque_x"].any()
+
+
+def test_what_a_table_cannot_tell_is_left_out(tmp_path: Path) -> None:
+    body, path = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5)), tmp_path / "motion.csv"
+    load = loads.wheel(axis=(0, 0, 1), inertia=0.1, rate=2.0)
+    run = body.simulate([0.0, 1.0], (0.1, 0.2, 0.3), load=load)
+    run.save(path)
+    held = columns_of(path)
+    assert {"torque_x", "states_wheel_0"} <= held.keys()
+    assert np.array_equal(held["states_wheel_0"], run.states["wheel"][:, 0])
+    run.save(tmp_path / "motion.json")
+    Trajectory.from_file(tmp_path / "motion.json").save(path)  # the file does not hold the load
+    assert "torque_x" not in columns_of(path)
+    assert np.isnan(columns_of(path)["euler_phi"][0])  # upright at first: theta is 0
+    free = body.free_motion((0.1, 0.2, 0.3)).at([0.0, 1.0])
+    free.save(path)
+    assert not columns_of(path)["torque_x"].any()
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_pandas_holds_the_same_columns(
+    shape: tuple[int, ...], rng: np.random.Generator, tmp_path: Path
+) -> None:
+    pytest.importorskip("pandas")
+    trajectory = Swarm(rng, shape).trajectory
+    table = trajectory.to_pandas()
+    trajectory.save(tmp_path / "motion.csv")
+    held = columns_of(tmp_path / "motion.csv")
+    index = {0: ["t"], 1: ["body", "t"], 2: ["body_0", "body_1", "t"]}[len(shape)]
+    assert list(table.index.names) == index
+    assert [*index, *table.columns] == list(held)
+    for name in table.columns:
+        assert np.array_equal(table[name], held[name], equal_nan=True)
+    for name in index:
+        assert np.array_equal(table.index.get_level_values(name), held[name])
 
 
 def test_save_refuses_other_suffixes(rng: np.random.Generator, tmp_path: Path) -> None:

@@ -34,6 +34,12 @@ _READ = {
 <visual><geometry><box size="1 2 3"/></geometry></visual></link></robot>
 """,
     "craft.csv": "id,parent,mass,Cx,Cy,Cz,Ipoint,sigma_mass\na,,,,,,,\nb,a,1,0,0,0,TRUE,0.1\n",
+    "pair.toml": """[[part]]
+name = "b"
+solid = "cube"
+side = 1
+mass = 1
+""",
     "n2.xyz": "2\nnitrogen\nN 0 0 0\nN 0 0 1.1\n",
 }
 """What the commands read."""
@@ -91,6 +97,8 @@ WRITERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "ledger, JSON": ("all.json", lambda path: _ledger().to_json(path)),
     "ledger, report": ("told.txt", _command("ledger", "craft.csv", "--output", "OUT")),
     "ledger, rows": ("rows.csv", _command("ledger", "craft.csv", "--output", "OUT")),
+    "assembly, report": ("told.txt", _command("assemble", "pair.toml", "--output", "OUT")),
+    "snippet": ("told.urdf", _command("report", "pair.toml", "--as", "solidworks", "--output", "OUT")),
     "ledger, PNG": ("craft.png", _command("ledger", "craft.csv", "--picture", "OUT")),
     "demo, STL": ("handle.stl", lambda path: write_stl(path, *t_handle())),
 }

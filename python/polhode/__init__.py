@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from polhode import (
+        assembly,
         distributions,
         equimomental,
         errors,
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
         flybys,
         forms,
         kinematics,
+        labelled,
         laminae,
         loads,
         orbits,
@@ -37,10 +39,11 @@ if TYPE_CHECKING:
     )
     from polhode.ensembles.call import Ensemble, ensemble
     from polhode.events import Event, Events
-    from polhode.free_motion import Cones, ErrorBar, Periods, Poinsot, Sensitivity
+    from polhode.free_motion import Cones, ErrorBar, LightCurve, Periods, Poinsot, Sensitivity
     from polhode.gyrostat import Bifurcations, Equilibria, Wheel, wheel
     from polhode.results import (
         AngularMomentum,
+        ContinuousAxes,
         ErrorBound,
         FreePrecession,
         Invariants,
@@ -95,6 +98,7 @@ __all__ = [
     "AngularMomentum",
     "Bifurcations",
     "Cones",
+    "ContinuousAxes",
     "Ensemble",
     "Equilibria",
     "ErrorBar",
@@ -108,6 +112,7 @@ __all__ = [
     "HeavyTop",
     "Invariants",
     "KineticEnergy",
+    "LightCurve",
     "Linear",
     "MassAccumulator",
     "MotionSensitivity",
@@ -127,6 +132,7 @@ __all__ = [
     "Uncertain",
     "Wheel",
     "__version__",
+    "assembly",
     "distributions",
     "ensemble",
     "equimomental",
@@ -135,6 +141,7 @@ __all__ = [
     "flybys",
     "forms",
     "kinematics",
+    "labelled",
     "laminae",
     "loads",
     "orbits",

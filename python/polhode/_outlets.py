@@ -9,12 +9,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.axes import Axes
+    from pandas import DataFrame
     from pyvista import Plotter
     from xarray import Dataset
 
     from polhode.trajectory import Trajectory
 
-__all__ = ["animate", "plot", "save", "to_xarray", "view"]
+__all__ = ["animate", "plot", "save", "to_pandas", "to_xarray", "view"]
 
 
 def save(self: Trajectory, path: str | PathLike[str]) -> None:
@@ -24,9 +25,11 @@ def save(self: Trajectory, path: str | PathLike[str]) -> None:
     ----------
     path : str or os.PathLike
         ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
-        (space); a stack's lines begin with the indices of the body. ``.npz``: the arrays under the names
-        of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``. ``.json``:
-        readable, after the schema in :mod:`polhode.files`. The load and the events are not kept.
+        (space), ``euler_phi, euler_theta, euler_psi`` (ZXZ, in radians; nan where not defined), ``torque_*``
+        (of the load, about the point `about`, body; where the load is known and no state is nan), and the
+        load's own states; a stack's lines begin with the indices of the body. ``.npz``: the arrays under
+        the names of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``.
+        ``.json``: readable, after the schema in :mod:`polhode.files`. The load and the events are not kept.
     """
     from polhode.files.saved_motion import save_trajectory
 
@@ -65,6 +68,30 @@ def to_xarray(self: Trajectory) -> Dataset:
     coordinates = {"time": self.t, "component": list("xyz"), "quaternion_component": list("xyzw")}
     dataset: Dataset = xarray.Dataset(variables, coordinates, {"title": repr(self)})
     return dataset
+
+
+def to_pandas(self: Trajectory) -> DataFrame:
+    """Give the motion as a :class:`pandas.DataFrame`; needs pandas.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each time, indexed by ``t``, after ``body`` (or ``body_0``, ``body_1``, …) of a stack; its
+        columns are those of the ``.csv`` that `save` writes.
+    """
+    from polhode._extras import require
+    from polhode.files.saved_motion import table_of
+
+    pandas = require("pandas", extra=None, purpose="Trajectory.to_pandas")
+    self._check_series("to_pandas")
+    index, columns = table_of(self)
+    rows = pandas.MultiIndex.from_arrays([values.ravel() for values in index.values()], names=list(index))
+    if len(index) == 1:
+        rows = pandas.Index(index["t"], name="t")
+    table: DataFrame = pandas.DataFrame(
+        {name: values.ravel() for name, values in columns.items()}, index=rows
+    )
+    return table
 
 
 def plot(self: Trajectory, ax: Axes | None = None) -> Axes:

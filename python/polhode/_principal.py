@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from polhode import _core
+from polhode._continuous import ContinuousAxes, continuous
 from polhode._repr import one_line, short
 
 if TYPE_CHECKING:
@@ -15,7 +16,14 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["TOP_RTOL", "PrincipalAxes", "PrincipalDerivative", "PrincipalLinear", "PrincipalSigma"]
+__all__ = [
+    "TOP_RTOL",
+    "ContinuousAxes",
+    "PrincipalAxes",
+    "PrincipalDerivative",
+    "PrincipalLinear",
+    "PrincipalSigma",
+]
 
 TOP_RTOL: Final = 1e-6
 """Moments closer than this, relative to the largest, count as equal unless more is known of them."""
@@ -86,6 +94,9 @@ class PrincipalAxes:
         if shape:
             return f"<PrincipalAxes stack of shape {shape}>"
         return one_line(self, {"moments": self.moments, "axes": self.axes, "top": self.top})
+
+    # A method that stands in a file of its own.
+    continuous = continuous
 
     @cached_property
     def quaternion(self) -> Floats:

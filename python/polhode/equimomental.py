@@ -1,8 +1,9 @@
-"""Equimomental systems: particles with the mass, centre of mass and moments of a body.
+"""Equimomental systems: other bodies with the mass, centre of mass and moments of a body.
 
-For the smallest set that any body has see `RigidBody.equimomental_particles`.
+For the smallest set of particles that any body has see `RigidBody.equimomental_particles`.
 """
 
 from polhode._core import stick
+from polhode._ellipsoid import EquivalentEllipsoid, ellipsoid
 
-__all__ = ["stick"]
+__all__ = ["EquivalentEllipsoid", "ellipsoid", "stick"]

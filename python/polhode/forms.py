@@ -4,7 +4,8 @@ Each function says about which point its numbers are, and in which order.
 
 Positive products and log-Cholesky parameters are about the centre of mass, the others about the origin of
 the body frame, where a body that stands many of its own lengths away loses digits. Positive products come
-in by :meth:`polhode.RigidBody.from_positive_products`.
+in by :meth:`polhode.RigidBody.from_positive_products`, and printouts of CAD programs by `from_printout`.
+`to_text` writes the numbers for other programs, each in its own conventions.
 """
 
 from polhode._core import (
@@ -18,10 +19,13 @@ from polhode._core import (
     to_pseudo_inertia,
     to_spatial_inertia,
 )
+from polhode._printed import from_printout
+from polhode._snippets import to_text
 
 __all__ = [
     "from_log_cholesky",
     "from_parameters",
+    "from_printout",
     "from_pseudo_inertia",
     "from_spatial_inertia",
     "to_log_cholesky",
@@ -29,4 +33,5 @@ __all__ = [
     "to_positive_products",
     "to_pseudo_inertia",
     "to_spatial_inertia",
+    "to_text",
 ]

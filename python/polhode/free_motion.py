@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
 
 from polhode._repr import short
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from polhode import _core
@@ -16,7 +17,28 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Cones", "ErrorBar", "Periods", "Poinsot", "Sensitivity"]
+__all__ = ["Cones", "ErrorBar", "LightCurve", "Periods", "Poinsot", "Sensitivity"]
+
+
+_MOST_ORDER: Final = 100
+
+
+class LightCurve(NamedTuple):
+    """Frequencies of the light curve of a tumbling body, ``|j f_φ + m f_ψ|``, in turns a unit of time.
+
+    Attributes
+    ----------
+    j, m : numpy.ndarray of int, shape (k,)
+        Multiples of ``f_φ = 1/P_φ`` and of ``f_ψ = 1/P_ψ``.
+    frequency : numpy.ndarray, shape (..., k)
+    """
+
+    j: NDArray[np.int64]
+    m: NDArray[np.int64]
+    frequency: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
 
 
 class _Periods(NamedTuple):
@@ -64,6 +86,51 @@ class Periods(_Periods):
         (10.884, 0.012)
         """
         return None if self._motion is None else self._motion._periods_sigma()
+
+    @property
+    def precession_short_axis(self) -> Any:
+        """P_φ in the short-axis convention: the mean period of axis 3, of the greatest moment, about L.
+
+        In that convention P_ψ is of the rotation about axis 3 in short-axis mode and of its swinging to and
+        fro in long-axis mode, and has the same value; ``1/P_φ(short) = 1/P_φ(long) + 1/P_ψ``.
+        """
+        return (2.0 * np.pi / self.rates[..., 2])[()]
+
+    def light_curve(self, order: int = 2) -> LightCurve:
+        """Tell at which frequencies the brightness of the body can vary, seen from a direction that stays.
+
+        Parameters
+        ----------
+        order : int
+            The greatest |j| and |m|.
+
+        Returns
+        -------
+        LightCurve
+            All pairs but (0, 0), of two opposite ones the one with j > 0, or j = 0 and m > 0.
+
+        Notes
+        -----
+        The brightness is a function of the attitude, so periodic in φ and in ψ, but for what swings with
+        P_ψ: a Fourier series in ``j f_φ + m f_ψ`` (M. Kaasalainen, Astron. Astrophys. 376 (2001) 302).
+        The other convention has the same frequencies, with m - j in place of m.
+
+        Examples
+        --------
+        >>> from polhode import RigidBody
+        >>> toutatis = RigidBody.from_principal(1.0, (1.0, 3.01307, 3.18992))
+        >>> periods = toutatis.free_motion_from_periods(5.41, 7.35).periods
+        >>> found = periods.light_curve(order=1)
+        >>> dict(zip(zip(found.j.tolist(), found.m.tolist()), found.frequency.round(4).tolist()))
+        {(0, 1): 0.1848, (1, -1): 0.0488, (1, 0): 0.1361, (1, 1): 0.3209}
+        """
+        if isinstance(order, bool) or not isinstance(order, int) or not 1 <= order <= _MOST_ORDER:
+            raise ValueError(f"order: {order!r} is not a whole number from 1 to {_MOST_ORDER}")
+        pairs = [(0, m) for m in range(1, order + 1)]
+        pairs += [(j, m) for j in range(1, order + 1) for m in range(-order, order + 1)]
+        j, m = np.array(pairs).T
+        precession, rotation = (np.asarray(x)[..., np.newaxis] for x in (self.precession, self.rotation))
+        return LightCurve(j, m, np.abs(j / precession + m / rotation))
 
     def __repr__(self) -> str:
         return short(self)

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from polhode._principal import TOP_RTOL, PrincipalAxes, PrincipalDerivative, PrincipalLinear, PrincipalSigma
+from polhode._principal import (
+    TOP_RTOL,
+    ContinuousAxes,
+    PrincipalAxes,
+    PrincipalDerivative,
+    PrincipalLinear,
+    PrincipalSigma,
+)
 from polhode._repr import one_line, short
 from polhode._tops import FreePrecession, NutationDamping
 
@@ -20,6 +27,7 @@ __all__ = [
     "TOP_RTOL",
     "AngularMomentum",
     "BoxFit",
+    "ContinuousAxes",
     "ErrorBound",
     "FreePrecession",
     "Invariants",

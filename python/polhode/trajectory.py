@@ -104,6 +104,7 @@ class Trajectory:
     _spin_covariance = _doubts.spin_covariance
     resume = _going_on.resume
     save = _outlets.save
+    to_pandas = _outlets.to_pandas
     to_xarray = _outlets.to_xarray
     plot = _outlets.plot
     view = _outlets.view

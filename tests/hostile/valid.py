@@ -13,12 +13,26 @@ from typing import Any
 
 import numpy as np
 import polhode
-from polhode import RigidBody, _core, loads, molecules, orbits, solids, validity
+from polhode import (
+    RigidBody,
+    _core,
+    equimomental,
+    forms,
+    labelled,
+    loads,
+    molecules,
+    orbits,
+    solids,
+    validity,
+)
 
 NO_TEST = {
     # Files and pictures have tests of their own; a compiled load is a machine address, to be trusted or not.
     *(f"RigidBody.{name}" for name in ("from_file", "load", "save", "plot", "view")),
-    *(f"Trajectory.{name}" for name in ("from_file", "save", "plot", "view", "animate", "to_xarray")),
+    *(
+        f"Trajectory.{name}"
+        for name in ("from_file", "save", "plot", "view", "animate", "to_pandas", "to_xarray")
+    ),
     *("read_stl", "read_plates", "stream_solid", "compiled"),
     # Objects of other libraries, which have to be there.
     *("RigidBody.from_mesh_object", "RigidBody.from_atoms"),
@@ -184,6 +198,15 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     },
     "RigidBody.from_tetrahedra": {"density": 1.5, "at": None},
     "PrincipalAxes.classify": {"rtol": 1e-6},
+    "PrincipalAxes.continuous": {"self": [STACK.principal], "axis": 0, "rtol": 1e-6},
+    "equimomental.ellipsoid": {"volume": 0.5},
+    "forms.to_text": {"program": "urdf"},
+    "forms.from_printout": {
+        "com": [0.25, 0.0, 0.5],
+        "tensor": [2.0, 3.0, 4.0, 0.25, 0.0, -0.5],
+        "products": "positive",
+        "name": "tensor",
+    },
     "Trajectory.point": {"r": [1.0, 0.0, 0.5]},
     "Trajectory.resume": {"t": [0.5, 0.75, 1.0]},
     "Trajectory.invariants": {},
@@ -314,6 +337,12 @@ def _from_python() -> list[Call]:
     """The callables that are written in Python: of results, of validity, of molecules."""
     functions: list[tuple[str, Any, str | None]] = [
         (f"validity.{name}", getattr(validity, name), None) for name in ("nearest_valid", "fit_in_box")
+    ]
+    functions += [
+        ("equimomental.ellipsoid", equimomental.ellipsoid, None),
+        ("forms.to_text", forms.to_text, None),
+        ("forms.from_printout", forms.from_printout, None),
+        ("labelled.bodies", labelled.bodies, None),
     ]
     functions += [
         (f"molecules.{name}", getattr(molecules, name), None)

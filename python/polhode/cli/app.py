@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 from cyclopts import App, CycloptsError, Parameter
 
 from polhode.cli.options import (
+    AssembleOptions,
     BodyOptions,
     CheckOptions,
     FlybyOptions,
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 __all__ = ["app", "run"]
 
-COMMANDS: Final = ("report", "check", "molecule", "spin", "flyby", "ledger", "demo")
+COMMANDS: Final = ("report", "check", "molecule", "spin", "flyby", "assemble", "ledger", "demo")
 GOOD: Final = 0
 BAD_VERDICT: Final = 1
 BAD_INPUT: Final = 2
@@ -69,7 +70,7 @@ SHOWN = OutputOptions()
 
 @app.command
 def report(
-    file: File,
+    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
     /,
     *,
     body: Body = AS_STORED,
@@ -81,14 +82,23 @@ def report(
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), or - for
-        standard input.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved body
+        (JSON, NPZ), an assembly (TOML), or - for standard input; without one, the numbers of --inertia.
     """
     from polhode.cli.outputs import check_outputs
-    from polhode.cli.report import file_report
+    from polhode.cli.report import file_report, for_program
+    from polhode.files.reading import files_read
 
     check_outputs([("--output", output.output)], [file, extra.expect])
-    told = file_report(file, body, extra)
+    with files_read() as read:
+        if extra.program is not None:
+            text = for_program(file, body, extra, output.form)
+        else:
+            told = file_report(file, body, extra)
+    check_outputs([("--output", output.output)], read)
+    if extra.program is not None:
+        _write_text(text, output)
+        return GOOD
     differing = []
     if extra.expect is not None:
         from polhode.cli.compare import held_against
@@ -162,8 +172,8 @@ def spin(
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), or - for
-        standard input.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved body
+        (JSON, NPZ), an assembly (TOML), or - for standard input; without one, --moments or --inertia.
     """
     from polhode.cli.outputs import check_outputs
     from polhode.cli.spin import spin_report
@@ -199,6 +209,42 @@ def flyby(
         told.notes.append(f"saved {path}")
     _show(told, output)
     return GOOD
+
+
+@app.command
+def assemble(
+    file: File,
+    /,
+    *,
+    assemble: Annotated[AssembleOptions, Parameter(name="*")] = AssembleOptions(),  # noqa: B008
+    extra: Annotated[ReportOptions, Parameter(name="*")] = ReportOptions(),  # noqa: B008
+    output: Output = SHOWN,
+) -> int:
+    """Put parts together, each with its shape, place and matter, and report on the whole.
+
+    Parameters
+    ----------
+    file
+        An assembly (TOML).
+    """
+    from polhode.cli.assemble import assembly_report, save_assembly
+    from polhode.cli.outputs import check_outputs
+    from polhode.files.reading import files_read
+
+    places = [*(("--save", path) for path in assemble.save), ("--output", output.output)]
+    check_outputs(places, [file, extra.expect])
+    with files_read() as read:
+        told, made = assembly_report(file, assemble, extra)
+    check_outputs(places, read)
+    differing = []
+    if extra.expect is not None:
+        from polhode.cli.compare import held_against
+
+        differing = held_against(told, extra.expect, extra.rtol)
+    for path in assemble.save:
+        told.notes += save_assembly(made, path)
+    _show(told, output)
+    return BAD_VERDICT if differing else GOOD
 
 
 @app.command
@@ -304,6 +350,16 @@ def _fail(message: str, code: int = BAD_INPUT) -> int:
         with suppress(OSError):  # nobody reads it: the exit code remains
             print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
     return code
+
+
+def _write_text(text: str, options: OutputOptions) -> None:
+    """Write lines as they are to where a report goes."""
+    from polhode.files.writing import DASH, write_bytes
+
+    if options.output is None or options.output == DASH:
+        print(text)
+    else:
+        write_bytes(options.output, f"{text}\n".encode())
 
 
 def _show(report: Report, options: OutputOptions) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from polhode import robots
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.outputs import check_outputs
-from polhode.cli.quantities import quantity
+from polhode._quantities import quantity
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from polhode import RigidBody
 from polhode.cli.layout import Column, Table
-from polhode.cli.quantities import has_unit, quantity
+from polhode._quantities import has_unit, quantity
 from polhode.errors import PolhodeError
 from polhode.files.components import Part, groups_of, overlaps, parts_of, told
 from polhode.files.mesh import weld_within

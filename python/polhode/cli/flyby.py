@@ -8,10 +8,10 @@ import numpy as np
 
 from polhode import RigidBody, orbits, plot
 from polhode._extras import require
+from polhode._quantities import quantities, quantity, vector
 from polhode.cli.layout import Cell, Column, Field, Report, Table
-from polhode.cli.loading import load_body
-from polhode.cli.quantities import quantities, quantity, vector
 from polhode.cli.source import shown
+from polhode.cli.whole import any_body
 from polhode.errors import PolhodeError
 from polhode.files.picture import save_picture
 from polhode.flybys import Flyby, flyby
@@ -100,7 +100,7 @@ def _run(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[F
     if not options.periods:
         raise PolhodeError('--periods: state the two periods, as in "264.178 h, 27.38547 h"')
     if file is not None:
-        asteroid = load_body(file, body).body
+        asteroid = any_body(file, body).body
     else:
         asteroid = RigidBody.from_principal(1.0, quantities(options.moments, 3, "kg m^2", "--moments"))
     rotation, precession = quantities(options.periods, 2, "s", "--periods")

@@ -18,12 +18,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from rich.console import Console
 
-__all__ = ["NOT_LINEAR", "Cell", "Column", "Field", "Report", "Table", "number"]
+__all__ = ["NOT_LINEAR", "ROUNDING", "Cell", "Column", "Field", "Report", "Table", "number"]
 
 DIGITS: Final = 7
 LABEL_WIDTH: Final = 20
 CELL_WIDTH: Final = 14
 ROUNDING: Final = 1e-15
+"""Of the size of what numbers are components of: less is printed as 0 in tables."""
 NOT_LINEAR: Final = "*"
 """Behind a number for which the first order is not enough."""
 

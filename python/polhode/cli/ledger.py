@@ -10,7 +10,7 @@ import numpy as np
 
 from polhode._extras import require
 from polhode._rounding import with_sigma
-from polhode.cli.layout import Cell, Column, Field, Report, Table
+from polhode.cli.layout import ROUNDING, Cell, Column, Field, Report, Table
 from polhode.cli.source import STDIN, shown
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.picture import save_picture
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from polhode.cli.options import LedgerOptions
     from polhode.uncertainty.ledger import Ledger, Part, Shares
 
-__all__ = ["draw_ledger", "ledger_report"]
+__all__ = ["draw_ledger", "ledger_report", "node_row", "tensor_row"]
 
 _CONTRIBUTORS: Final = 10
 
@@ -48,12 +48,12 @@ def ledger_report(file: Path, options: LedgerOptions) -> tuple[Report, Ledger]:
     columns = [Column("id", "part"), Column("mass", "mass")]
     columns += [Column("growth", "growth"), Column("predicted_mass", "with growth")] if grows else []
     columns += [Column(name, name) for name in NUMBERS[1:4]]
-    rows = [_row(node, top) for node in nodes]
+    rows = [node_row(node, top) for node in nodes]
     report.section("mass and centre", Table("nodes", columns, rows))
     tensors = [Column("id", "part"), *(Column(name, name) for name in NUMBERS[4:])]
     report.section(
         "tensor about the own centre, elements",
-        Table("tensors", tensors, [_tensor(node, top) for node in nodes]),
+        Table("tensors", tensors, [tensor_row(node, top) for node in nodes]),
     )
     if made.sigma is None:
         report.notes.append("no part states a standard deviation: all numbers count as exact")
@@ -99,7 +99,8 @@ def _top(made: Ledger, options: LedgerOptions) -> Part:
     return made[name]
 
 
-def _row(node: Part, top: Part) -> dict[str, Any]:
+def node_row(node: Part, top: Part) -> dict[str, Any]:
+    """Tell mass and centre of a node."""
     row = {
         "id": _named(node, top),
         "parent": node.parent.id if node.parent is not None else None,
@@ -114,7 +115,8 @@ def _row(node: Part, top: Part) -> dict[str, Any]:
     return row | {"covariance": node.covariance}
 
 
-def _tensor(node: Part, top: Part) -> dict[str, Any]:
+def tensor_row(node: Part, top: Part) -> dict[str, Any]:
+    """Tell the tensor of a node."""
     return {"id": _named(node, top)} | {name: _cell(node, name) for name in NUMBERS[4:]}
 
 
@@ -124,7 +126,9 @@ def _named(node: Part, top: Part) -> Cell:
 
 def _cell(node: Part, name: str) -> Cell:
     value, sigma = node.with_sigma(name)
-    return Cell(with_sigma(value, sigma), {"value": value, "sigma": sigma})
+    size = node.inertia if name[0] == "I" else node.ledger.center_of_mass if name[0] == "C" else 0.0
+    is_rounding = abs(value) < ROUNDING * float(np.abs(size).max())
+    return Cell(with_sigma(0.0 if is_rounding else value, sigma), {"value": value, "sigma": sigma})
 
 
 def _found_shares(made: Ledger, top: Part, options: LedgerOptions) -> Shares | None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from polhode._quantities import amount, has_unit, quantity
 from polhode.cli.components import components_of, has_names, weighed
 from polhode.cli.progress import reading_progress
-from polhode.cli.quantities import amount, has_unit, quantity
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
 from polhode.files.content import is_molecule
@@ -65,6 +65,8 @@ class LoadedBody:
         Unit of the coordinates in the file of a mesh, where it is known.
     states_unit : bool
         Whether the file or its format says so.
+    kind : str
+        What was read where it is neither a mesh nor a molecule: "saved body", "assembly" or "printout".
     """
 
     body: RigidBody
@@ -80,6 +82,7 @@ class LoadedBody:
     has_mass_sigmas: bool = False
     length_unit: str | None = None
     states_unit: bool = False
+    kind: str = ""
 
     @property
     def moment_unit(self) -> str:

@@ -9,6 +9,7 @@ from typing import Annotated, Literal, TypeAlias
 from cyclopts import Parameter
 
 __all__ = [
+    "AssembleOptions",
     "BodyOptions",
     "CheckOptions",
     "FlybyOptions",
@@ -21,6 +22,9 @@ __all__ = [
 ]
 
 LengthUnit: TypeAlias = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]
+Program: TypeAlias = Literal[
+    "urdf", "sdf", "mjcf", "mujoco", "drake", "pinocchio", "pybullet", "simulink", "adams", "solidworks"
+]
 Words: TypeAlias = tuple[str, ...]
 
 
@@ -77,6 +81,18 @@ class BodyOptions:
         of the file. Bonds are found by covalent radii; one in a ring cannot be stretched alone: an error.
     mass_sigmas
         Of a molecule: the masses of its isotopes have the sigmas that are on record.
+    inertia
+        Instead of a file, the tensor that a CAD program printed, with --mass and --com: Ixx Iyy Izz, with
+        Ixy Ixz Iyz after them, or nine numbers row by row, as in "3 4 5 0.1 0 0 lbm in^2"; a bare number is
+        kg m^2.
+    com
+        Position of the centre of mass, of --inertia, or of --moments from the fixed point; a bare number is
+        in m.
+    products
+        Of --inertia, where a product is not zero: positive for the integral of x y dm, negative for minus
+        that, the element of the tensor.
+    inertia_about
+        The point of --inertia.
     """
 
     density: Annotated[str | None, Parameter(name="--density")] = None
@@ -90,6 +106,16 @@ class BodyOptions:
     index_base: Annotated[Literal[0, 1], Parameter(name="--index-base")] = 1
     bond_sigma: Annotated[str | None, Parameter(name="--bond-sigma")] = None
     mass_sigmas: Annotated[bool, Parameter(name="--mass-sigmas", negative="")] = False
+    inertia: Annotated[
+        Words, Parameter(name="--inertia", negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    com: Annotated[
+        Words, Parameter(name=("--com", "--center"), negative="", consume_multiple=True, show_default=False)
+    ] = ()
+    products: Annotated[Literal["positive", "negative"] | None, Parameter(name="--products")] = None
+    inertia_about: Annotated[Literal["center_of_mass", "origin"], Parameter(name="--inertia-about")] = (
+        "center_of_mass"
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,6 +132,9 @@ class ReportOptions:
         A report saved with --format json, or any of its fields: numbers that differ end with exit code 1.
     rtol
         How far they may differ, relative to the largest component.
+    program
+        Print the numbers for another program instead of the report, in its own signs, axes and order, with
+        all their digits.
     """
 
     about: Annotated[
@@ -114,6 +143,24 @@ class ReportOptions:
     mass_unit: Annotated[str | None, Parameter(name="--mass-unit")] = None
     expect: Annotated[Path | None, Parameter(name="--expect")] = None
     rtol: Annotated[float, Parameter(name="--rtol")] = 1e-6
+    program: Annotated[Program | None, Parameter(name="--as")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class AssembleOptions:
+    """What is told of an assembly.
+
+    Attributes
+    ----------
+    depth
+        How many levels below the whole are shown.
+    save
+        Where to draw the parts and their masses (.png, .pdf, .svg), or write the whole as one body (.json,
+        .npz), or its tree as a ledger (.csv). May be repeated.
+    """
+
+    depth: Annotated[int, Parameter(name="--depth")] = 2
+    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -286,8 +333,6 @@ class SpinOptions:
     moments
         Three principal moments instead of a file, as in "1 3 3.2" or "2 4 5 g cm^2"; a bare number is kg m^2.
         With sigmas: "1.00 ± 0.01, 3.00(2), 3.2".
-    center
-        Position of the centre of mass, from the fixed point, along those axes; a bare number is in m.
     omega
         Angular velocity at the start, its components in the body, as in 0 6 0.01 or "10 20 30 deg/s"; a bare
         number is rad/s. With sigmas: "0, 6.00 ± 0.05, 0.010(2)".
@@ -323,9 +368,6 @@ class SpinOptions:
 
     moments: Annotated[
         Words, Parameter(name="--moments", negative="", consume_multiple=True, show_default=False)
-    ] = ()
-    center: Annotated[
-        Words, Parameter(name="--center", negative="", consume_multiple=True, show_default=False)
     ] = ()
     omega: Annotated[
         Words, Parameter(name="--omega", negative="", consume_multiple=True, show_default=False)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polhode._quantities import quantity, split_vector
+from polhode._snippets import to_text
 from polhode.cli.components import add_components
 from polhode.cli.layout import Column, Field, Report, Table
-from polhode.cli.loading import in_file_unit, load_body
+from polhode.cli.loading import in_file_unit
 from polhode.cli.options import ReportOptions
-from polhode.cli.quantities import quantity, split_vector
 from polhode.cli.sigmas import Told, note_linear, told
-from polhode.cli.source import shown
-from polhode.cli.tables import FileUnits, body_fields, tensor_fields, trust_fields
+from polhode.cli.source import STDIN, shown
+from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
+from polhode.cli.whole import any_body, is_whole, whole_report
 from polhode.errors import PolhodeError
 from polhode.files.mesh_solid import MeshSolid
 from polhode.units import metres_per
@@ -22,21 +24,24 @@ if TYPE_CHECKING:
     from polhode.cli.loading import LoadedBody
     from polhode.cli.options import BodyOptions
 
-__all__ = ["file_report"]
+__all__ = ["file_report", "for_program"]
 
 UNKNOWN = "unit unknown"
 PLAIN = ReportOptions()
 
 
-def file_report(file: Path, options: BodyOptions, extra: ReportOptions = PLAIN) -> Report:
+def file_report(file: Path | None, options: BodyOptions, extra: ReportOptions = PLAIN) -> Report:
     """Report on the body in a file."""
     if extra.mass_unit is not None:
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
-    loaded = load_body(file, options, with_components=True)
-    units = FileUnits(loaded.length_unit, extra.mass_unit)
+    loaded = any_body(file, options, with_components=True)
     if extra.mass_unit is not None and isinstance(loaded.source, MeshSolid) and loaded.length_unit is None:
         raise PolhodeError("--mass-unit: the length of the file has no unit; state --length-unit too")
     about = _point(loaded, options, extra)
+    if loaded.kind:
+        return whole_report(file, loaded, extra.mass_unit, about)
+    assert file is not None
+    units = FileUnits(loaded.length_unit, extra.mass_unit)
     if isinstance(loaded.source, MeshSolid):
         return _mesh_report(file, loaded, loaded.source, units, about)
     if extra.mass_unit is not None:
@@ -46,6 +51,28 @@ def file_report(file: Path, options: BodyOptions, extra: ReportOptions = PLAIN) 
     return atoms_report(file, loaded, loaded.source, about)
 
 
+def for_program(file: Path | None, options: BodyOptions, extra: ReportOptions, form: str | None) -> str:
+    """Write the mass properties of the body in a file for the program of --as."""
+    for option, is_given in (
+        ("--format", form is not None),
+        ("--expect", extra.expect is not None),
+        ("--about", extra.about),
+        ("--mass-unit", extra.mass_unit is not None),
+    ):
+        if is_given:
+            raise PolhodeError(f"{option}: --as prints the numbers that {extra.program} takes; leave it out")
+    loaded = any_body(file, options)
+    if loaded.mass_unit != "kg" or loaded.length != "m":
+        reason = "is a molecule, in u and angstrom" if loaded.mass_unit == "u" else "does not say its unit"
+        way_out = "" if loaded.mass_unit == "u" else "; state --length-unit"
+        raise PolhodeError(
+            f"--as: other programs take kg and m, and {shown(file or STDIN)} {reason}{way_out}"
+        )
+    if loaded.assumed:
+        raise PolhodeError("--as: neither density nor mass is given; state --density or --mass")
+    return to_text(loaded.body, str(extra.program))
+
+
 def _point(
     loaded: LoadedBody, options: BodyOptions, extra: ReportOptions
 ) -> tuple[float, float, float] | None:
@@ -53,7 +80,8 @@ def _point(
     if not extra.about:
         return None
     is_molecule = loaded.length == "angstrom"
-    unit = loaded.length_unit or options.length_unit or ("angstrom" if is_molecule else None)
+    known = "angstrom" if is_molecule else "m" if loaded.length == "m" else None
+    unit = loaded.length_unit or options.length_unit or known
     of_body = 1.0 if unit is None else metres_per(unit) / (metres_per("angstrom") if is_molecule else 1.0)
     x, y, z = (
         in_file_unit(part, "--about", unit) * of_body for part in split_vector(extra.about, "m", "--about")
@@ -141,6 +169,7 @@ def _mesh_report(
     )
     report.section("inertia, file axes", *tensor_fields(loaded, units, about))
     report.section("principal axes", *body_fields(loaded, units))
+    report.section("equivalent ellipsoid, along e1 e2 e3", *ellipsoid_fields(loaded, units))
     report.section("trust", *trust_fields(loaded))
     report.notes += loaded.notes
     add_components(report, mesh.components, volume, f"{loaded.mass_unit}/{volume}")

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polhode import RigidBody, Uncertain
+from polhode._quantities import amount, amounts, quantities, quantity, vector
 from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
-from polhode.cli.loading import LoadedBody, load_body
-from polhode.cli.quantities import amount, amounts, quantities, quantity, vector
+from polhode.cli.loading import LoadedBody
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.spin_gyrostat import GyrostatKind, momentum_inside
@@ -19,6 +19,7 @@ from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
 from polhode.cli.spin_sigmas import attitude_field, of_end, of_start
 from polhode.cli.tables import top_fields
+from polhode.cli.whole import any_body
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
 
@@ -35,7 +36,7 @@ __all__ = ["spin_report"]
 
 def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> Report:
     """Compute the motion of a body, save it as asked for and report on it."""
-    until = _checked(file, spin)
+    until = _checked(file, spin, options)
     loaded = _body(file, spin, options)
     body = loaded.body
     axes = body.principal.axes if spin.axes == "principal" else np.eye(3)
@@ -53,7 +54,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     report = Report()
     report.section(
         "",
-        Field("file", "file", "(moments)" if file is None else shown(file)),
+        Field("file", "file", _source(file, spin)),
         Field("axes", "components", _axes_text(spin)),
     )
     rate, rate_unit = (180.0 / np.pi, "deg/s") if spin.degrees else (1.0, "rad/s")
@@ -80,6 +81,8 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         ),
         *kind.fields(rate, rate_unit),
     )
+    if spin.periods and isinstance(kind, FreeKind):
+        report.section("light curve, short-axis convention and frequencies", *kind.light_curve())
     report.section("conserved", *kind.constants(loaded.moment_unit))
     report.section("stability", *kind.stability())
     report.notes += _notes(loaded)
@@ -117,10 +120,14 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
     return report
 
 
-def _checked(file: Path | None, spin: SpinOptions) -> float | None:
+def _checked(file: Path | None, spin: SpinOptions, options: BodyOptions) -> float | None:
     """Refuse wrong options before anything is computed; give the time of the end."""
-    if file is None and not spin.moments:
-        raise PolhodeError("spin: give a file, or principal moments with --moments")
+    if file is None and not (spin.moments or options.inertia):
+        raise PolhodeError(
+            "spin: give a file, or principal moments with --moments, or a tensor with --inertia"
+        )
+    if spin.moments and options.inertia:
+        raise PolhodeError("--moments and --inertia: both say what the body is; give one of the two")
     if file is not None and spin.moments:
         raise PolhodeError(f"--moments: the body is that of {shown(file)}; give one of the two")
     if bool(spin.omega) == bool(spin.periods):
@@ -166,18 +173,16 @@ def _check_end(motion: FreeMotion | HeavyTop | GyrostatMotion, until: float) -> 
 
 def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedBody:
     """Read the body, or make it from the moments that were typed."""
-    if file is not None:
-        if spin.center:
-            raise PolhodeError("--center: the file tells where the centre of mass is; leave it out")
-        return load_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
+    if not spin.moments:
+        return any_body(file, options, with_shape=any(path.suffix.lower() in DRAWN for path in spin.save))
     for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
         if is_given:
             raise PolhodeError(f"{option}: --moments are of no molecule; leave it out")
-    if spin.gravity is not None and (options.mass is None or not spin.center):
+    if spin.gravity is not None and (options.mass is None or not options.com):
         raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
     moments = amounts(spin.moments, 3, "kg m^2", "--moments")
     mass = amount(options.mass, "kg", "--mass") if options.mass is not None else 1.0
-    center = vector(spin.center, "m", "--center") if spin.center else (0.0, 0.0, 0.0)
+    center = vector(options.com, "m", "--center") if options.com else (0.0, 0.0, 0.0)
     body = RigidBody.from_principal(mass, moments, center_of_mass=center)
     return LoadedBody(body=body, source=[], mass_unit="kg", length="m")
 
@@ -223,6 +228,12 @@ def _gyrostat_motion(loaded: LoadedBody, axes: Floats, spin: SpinOptions) -> Gyr
 def _heavy_top(body: RigidBody, axes: Floats, spin: SpinOptions) -> HeavyTop:
     g = quantity(spin.gravity or "", "m/s^2", "--gravity")
     return body.heavy_top(_omega(axes, spin), _attitude(spin), (0.0, 0.0, -g))
+
+
+def _source(file: Path | None, spin: SpinOptions) -> str:
+    if file is not None:
+        return shown(file)
+    return "(moments)" if spin.moments else "(inertia)"
 
 
 def _axes_text(spin: SpinOptions) -> str:

@@ -9,8 +9,8 @@ import numpy as np
 
 from polhode._drift import drift
 from polhode._lengths import lengths
+from polhode._quantities import has_unit, quantity
 from polhode.cli.layout import Cell, Column, Field, Table
-from polhode.cli.quantities import has_unit, quantity
 from polhode.cli.spin_kinds import period_fields
 from polhode.errors import PolhodeError
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode._drift import drift
 from polhode._lengths import lengths
-from polhode.cli.layout import Field
+from polhode.cli.layout import Column, Field, Table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -65,6 +65,45 @@ class FreeKind:
             ),
             Field("energy_ratio", "E / E_min", motion.energy_ratio, hint="1 for a spin about e3"),
             Field("modulus", "elliptic modulus", motion.modulus),
+        ]
+
+    def light_curve(self) -> list[Field | Table]:
+        """Tell the periods in the other convention, and the frequencies of the light curve."""
+        periods = self._motion.periods
+        found = periods.light_curve()
+        order = np.argsort(found.frequency)
+        rows = [
+            {
+                "j": int(found.j[k]),
+                "m": int(found.m[k]),
+                "frequency": 86400.0 * f,
+                "period": 1.0 / (3600.0 * f),
+            }
+            for k, f in zip(order.tolist(), found.frequency[order].tolist(), strict=True)
+            if f > 0.0
+        ]
+        swings = "swinging" if self._motion.mode == "long-axis" else "rotation"
+        return [
+            *period_fields(
+                "short_axis.rotation_period", "P_psi, short axis", periods.rotation, f"{swings}, about e3", {}
+            ),
+            *period_fields(
+                "short_axis.precession_period",
+                "P_phi, short axis",
+                periods.precession_short_axis,
+                "mean, of e3 about L",
+                {},
+            ),
+            Table(
+                "light_curve",
+                [
+                    Column("j", "j f_phi"),
+                    Column("m", "+ m f_psi"),
+                    Column("frequency", "frequency", "1/d"),
+                    Column("period", "period", "h"),
+                ],
+                rows,
+            ),
         ]
 
     def constants(self, moment_unit: str) -> list[Field]:

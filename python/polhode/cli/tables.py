@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode._quantities import quantity
 from polhode.cli.layout import Field
-from polhode.cli.quantities import quantity
 from polhode.cli.sigmas import about_point, angle_field, squared, told
+from polhode.equimomental import ellipsoid
 from polhode.files.mesh_solid import MeshSolid
 from polhode.results import TOP_RTOL
 from polhode.units import metres_per
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from polhode.cli.loading import LoadedBody
 
-__all__ = ["FileUnits", "body_fields", "tensor_fields", "top_fields", "trust_fields"]
+__all__ = ["FileUnits", "body_fields", "ellipsoid_fields", "tensor_fields", "top_fields", "trust_fields"]
 
 
 @dataclass(frozen=True)
@@ -129,6 +130,28 @@ def body_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
         Field("gaps", "gaps 2-1, 3-2", principal.gaps, hint="of I3"),
         *top_fields(loaded),
     ]
+
+
+def ellipsoid_fields(loaded: LoadedBody, units: FileUnits) -> list[Field]:
+    """Semi-axes of the homogeneous ellipsoid with the same mass and moments, and of that of equal volume."""
+    plain = ellipsoid(loaded.body)
+    fields = units.fields(
+        "equivalent_ellipsoid.semi_axes",
+        "same moments",
+        plain.semi_axes,
+        loaded.length,
+        length=1,
+        scale=float(plain.semi_axes.max()),
+    )
+    if np.isfinite(loaded.volume) and plain.volume > 0.0:
+        fields += units.fields(
+            "equivalent_ellipsoid.equal_volume",
+            "scaled to volume",
+            ellipsoid(loaded.body, loaded.volume).semi_axes,
+            loaded.length,
+            length=1,
+        )
+    return fields
 
 
 def top_fields(loaded: LoadedBody, rtol: float | None = None) -> list[Field]:

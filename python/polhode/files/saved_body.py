@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode import _core
 from polhode.errors import FileFormatError, PolhodeError
-from polhode.files.fields import numbers, write_json
+from polhode.files.fields import numbers, read_json, write_json
 from polhode.files.record import array_schema, in_json, read_record, record_suffix, required, write_npz
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ __all__ = [
     "body_of",
     "check_has_bodies",
     "load_body",
+    "read_report",
     "save_body",
 ]
 
@@ -32,6 +33,9 @@ _FORMAT: Final = "polhode.RigidBody/1"
 
 BODY_ARRAYS: Final = ("mass", "center_of_mass", "inertia")
 """The fields that every file of a body has."""
+
+_REPORTED: Final = ("mass", "center_of_mass", "inertia_about_center_of_mass")
+"""Of a report, in kg and m."""
 
 _DOUBTS: Final = ("variable_counts", "variables", "tangents", "second_order")
 
@@ -99,6 +103,37 @@ def load_body(path: str | PathLike[str]) -> RigidBody:
     """
     file = Path(path)
     return body_of(read_record(file, _FORMAT, BODY_FIELDS), file)
+
+
+def read_report(path: str | PathLike[str]) -> RigidBody | None:
+    """Read the body of a report in kg and m, as ``polhode report --output`` writes it; None for another file.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    """
+    file = Path(path)
+    fields = read_json(file) if file.suffix.lower() == ".json" else {}
+    units = fields.get("units")
+    if not isinstance(units, dict) or not all(name in fields for name in _REPORTED):
+        return None
+    mass_unit, length = units.get("mass"), units.get("center_of_mass")
+    if (mass_unit, length) != ("kg", "m"):
+        raise FileFormatError(
+            f"{file}: a report in {mass_unit} and {length}; state --length-unit when it is made, for kg and m"
+        )
+    if "sigma" in fields:
+        raise FileFormatError(
+            f'{file}: a report does not tell which of its sigmas go together; take "sigma" out to leave '
+            "them out, or save the body, which keeps them"
+        )
+    mass, center, tensor = (numbers(fields[name], name, file) for name in _REPORTED)
+    try:
+        return _core.RigidBody(mass, tensor, center)
+    except PolhodeError as error:
+        raise FileFormatError(f"{file}: {error}") from error
+    except ValueError as error:
+        raise FileFormatError(f"{file}: not the numbers of a body: {error}") from error
 
 
 def body_fields(body: RigidBody) -> dict[str, Any]:

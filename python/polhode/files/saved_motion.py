@@ -34,13 +34,20 @@ __all__ = [
     "save_trajectory",
     "save_trajectory_json",
     "save_trajectory_npz",
+    "table_of",
 ]
 
 TRAJECTORY_SUFFIXES: Final = (".csv", ".json", ".npz")
 
 _FORMAT: Final = "polhode.Trajectory/1"
 _STATES: Final = {"t": 0, "omega": 3, "quaternion": 4, "position": 3, "velocity": 3}
-_COLUMNS: Final = {"omega": "xyz", "quaternion": "xyzw", "position": "xyz", "velocity": "xyz"}
+_COLUMNS: Final[dict[str, str | tuple[str, ...]]] = {
+    "omega": "xyz",
+    "quaternion": "xyzw",
+    "position": "xyz",
+    "velocity": "xyz",
+}
+_EULER: Final = ("phi", "theta", "psi")
 _COUNTS: Final = ("steps", "evaluations")
 _ENDS: Final = ("complete", "stopped", "failed")
 _OFF_UNITY: Final = 1e-6
@@ -281,23 +288,51 @@ def _check_unit(quaternion: NDArray[np.float64], file: Path) -> None:
         raise FileFormatError(f"{file}: a quaternion has the norm {np.sqrt(off[0]):.9g}, expected 1")
 
 
+def table_of(trajectory: Trajectory) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[Any]]]:
+    """Give a motion as columns by name: what names a row (body, time), and what stands in it.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        At times of shape (T,).
+
+    Returns
+    -------
+    index, columns : dict of str and numpy.ndarray, shape (..., T)
+        Torques are there where the load is known and all states are numbers.
+    """
+    shape = trajectory.omega.shape[:-2]
+    times = (*shape, len(trajectory))
+    places = list(np.indices(times)[:-1])
+    names = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
+    index: dict[str, NDArray[Any]] = dict(zip(names, places, strict=True))
+    index["t"] = np.broadcast_to(trajectory.t, times)
+    vectors = {name: (getattr(trajectory, name), parts) for name, parts in _COLUMNS.items()}
+    vectors["euler"] = trajectory.euler_angles("ZXZ", singular="nan"), _EULER
+    is_free = not trajectory._is_loaded() and trajectory.carried is None
+    is_known = trajectory.load is not None or is_free or "_rotor" in trajectory.__dict__
+    if is_known and all(np.isfinite(values).all() for values, _ in list(vectors.values())[:-1]):
+        vectors["torque"] = trajectory.torque(), "xyz"
+    columns = {
+        f"{name}_{part}": values[..., k]
+        for name, (values, parts) in vectors.items()
+        for k, part in enumerate(parts)
+    }
+    for name, values in trajectory.states.items():
+        columns |= {f"states_{name}_{k}": values[..., k] for k in range(values.shape[-1])}
+    return index, columns
+
+
 def _save_csv(trajectory: Trajectory, file: Path) -> None:
     if trajectory.t.ndim != 1:
         raise ValueError(
             f"path: {file}: a table has one row for each time, and these are of shape {trajectory.t.shape}; "
             "give times in one row, or save as .npz"
         )
-    shape = trajectory.omega.shape[:-2]
-    names = ["body"] if len(shape) == 1 else [f"body_{axis}" for axis in range(len(shape))]
-    names.append("t")
-    times = (*shape, len(trajectory))
-    columns: list[NDArray[Any]] = list(np.indices(times)[:-1])
-    columns.append(np.broadcast_to(trajectory.t, times))
-    for array, components in _COLUMNS.items():
-        names += [f"{array}_{component}" for component in components]
-        columns += list(np.moveaxis(getattr(trajectory, array), -1, 0))
-    rows = np.stack([np.asarray(column, dtype=np.float64).reshape(-1) for column in columns], axis=-1)
+    index, columns = table_of(trajectory)
+    every = index | columns
+    rows = np.stack([np.asarray(column, dtype=np.float64).reshape(-1) for column in every.values()], axis=-1)
     # 17 significant digits give the same float64 back.
-    formats = ["%d"] * len(shape) + ["%.17g"] * (len(names) - len(shape))
+    formats = ["%d"] * (len(index) - 1) + ["%.17g"] * (len(columns) + 1)
     with writing(file) as stream:
-        np.savetxt(stream, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")
+        np.savetxt(stream, rows, fmt=formats, delimiter=",", header=",".join(every), comments="")

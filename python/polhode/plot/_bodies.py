@@ -36,6 +36,7 @@ def body(
     *,
     opacity: float = 1.0,
     length_unit: str | None = None,
+    colors: ArrayLike | None = None,
 ) -> Axes3D:
     """Draw a mesh as a shaded body with its edges.
 
@@ -51,6 +52,8 @@ def body(
         Of the surface, from 0 to 1.
     length_unit : str, optional
         Name of the unit of the coordinates; without it the coordinate axes are not drawn.
+    colors : array_like, shape (m, 3), optional
+        Red, green and blue of each triangle, from 0 to 1; a pale blue by default.
 
     Returns
     -------
@@ -65,14 +68,17 @@ def body(
     normals = unit_normals(points[corners])
     pieces, owner = cut(points[corners], size / _PIECES)
     brightness = 0.66 + 0.42 * (normals @ (_LIGHT / np.linalg.norm(_LIGHT)))
-    colors = np.clip(brightness[:, np.newaxis] * _SURFACE, 0.0, 1.0)[owner]
+    own = _SURFACE if colors is None else _core.real_numbers(colors, "colors")
+    if own.shape not in ((3,), (len(corners), 3)):
+        raise ValueError(f"colors: expected shape ({len(corners)}, 3), got {own.shape}")
+    shades = np.clip(brightness[:, np.newaxis] * own, 0.0, 1.0)[owner]
     outline = _outline(points, corners, normals, size)
     # One collection for both, since matplotlib sorts by depth within a collection only: a piece of outline is
     # a triangle with two equal corners. Triangles edged in their own colour show no hairlines between them.
     surface = art3d.Poly3DCollection(
         np.concatenate([pieces, outline]),
-        facecolors=np.concatenate([colors, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
-        edgecolors=np.concatenate([colors, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
+        facecolors=np.concatenate([shades, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
+        edgecolors=np.concatenate([shades, np.tile(OUTLINE_COLOR, (len(outline), 1))]),
         linewidths=0.7,
         alpha=opacity,
     )

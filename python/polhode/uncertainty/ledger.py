@@ -13,6 +13,7 @@ import numpy as np
 
 from polhode.errors import PolhodeError
 from polhode.uncertainty._covariances import Covariances
+from polhode.uncertainty._of_bodies import parts_of_bodies
 from polhode.uncertainty._parts import COLUMNS, read_parts
 from polhode.uncertainty._results import Ledger, Part, Sigmas, frozen, tensors
 from polhode.uncertainty._rollup import roll_values
@@ -21,15 +22,17 @@ from polhode.uncertainty._table import read_table
 from polhode.uncertainty._tree import Tree, make_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from numpy.typing import NDArray
 
+    from polhode._core import RigidBody
+    from polhode.uncertainty._parts import Parts
     from polhode.uncertainty._table import Table
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Ledger", "Part", "Shares", "Sigmas", "ledger"]
+__all__ = ["Ledger", "Part", "Shares", "Sigmas", "ledger", "ledger_of_bodies"]
 
 
 def ledger(
@@ -120,7 +123,42 @@ def ledger(
     is_part = np.empty(len(rows), np.bool_)
     is_part[made.order] = made.is_leaf
     parts = read_parts(read, is_part, where, overwrite=overwrite, rtol=rtol)
-    is_uncertain = parts.sigma[:, is_part].any()
+    words = {name: tuple(read.words(name)) for name in ("name", "comment") if name in read}
+    return _rolled(made, tuple(parents), is_part, parts, words, rtol)
+
+
+def ledger_of_bodies(
+    ids: Sequence[str], parents: Sequence[str], bodies: Sequence[RigidBody | None], comments: Sequence[str]
+) -> Ledger:
+    """Roll up a tree whose leaves are bodies in the frame of the whole.
+
+    Errors that bodies share stay shared, by the variables that they depend on.
+
+    Parameters
+    ----------
+    ids, parents : sequence of str
+        The parent of the root is "".
+    bodies : sequence of (RigidBody or None)
+        None for nodes with children.
+    comments : sequence of str
+        For the reader.
+    """
+    made = make_tree(ids, parents, lambda row: repr(ids[row]))
+    is_part = np.array([body is not None for body in bodies])
+    parts = parts_of_bodies(ids, bodies)
+    return _rolled(made, tuple(parents), is_part, parts, {"comment": tuple(comments)}, None)
+
+
+def _rolled(
+    made: Tree,
+    parents: tuple[str, ...],
+    is_part: NDArray[np.bool_],
+    parts: Parts,
+    words: dict[str, tuple[str, ...]],
+    rtol: float | None,
+) -> Ledger:
+    """Roll the parts up to every level."""
+    is_uncertain = parts.sigma[:, is_part].any() or parts.correlated[1].any()
     with np.errstate(over="ignore", invalid="ignore"):
         values = roll_values(made, *map(made.by_place, (parts.mass, parts.center, parts.inertia)))
         covariances = Covariances(made, values, parts) if is_uncertain else None
@@ -131,7 +169,7 @@ def ledger(
     predicted = _rolled_sum(made, growing) if parts.growth[is_part].any() else values.mass
     return Ledger(
         ids=made.ids,
-        parents=tuple(parents),
+        parents=parents,
         root=made.ids[int(made.order[0])],
         depth=frozen(made.depth()),
         is_part=frozen(is_part),
@@ -144,7 +182,7 @@ def ledger(
         _values=values,
         _covariances=covariances,
         _sources=tuple(parts.source),
-        _words={name: tuple(read.words(name)) for name in ("name", "comment") if name in read},
+        _words=words,
         _rtol=rtol,
     )
 

@@ -20,7 +20,7 @@ from polhode.errors import PolhodeError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["amount", "amounts", "has_unit", "quantities", "quantity", "split_vector", "vector"]
+__all__ = ["amount", "amounts", "has_unit", "quantities", "quantity", "split", "split_vector", "vector"]
 
 _NUMBER: Final = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>\S.*?)?\s*")
@@ -35,7 +35,19 @@ _LAST_PLACES: Final = re.compile(
 _SIGMA_EXAMPLE: Final = "1.00 ± 0.01"
 _FACTOR: Final = r"[A-Za-zµμ°Å_]+(?:(?:\^|\*\*)?-?\d)?"
 _BARE_POWER: Final = re.compile(r"(?<=[A-Za-zµμ°Å])(?=-?\d)")
-_UNIT: Final = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/· ]\s*{_FACTOR})*")
+_UNIT: Final = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR})*")
+_SIGNS: Final = str.maketrans({"·": "*", "²": "^2", "³": "^3"})
+_HYPHEN: Final = re.compile(r"(?<=[A-Za-z0-9])-(?=[A-Za-z])")
+"""As in ``lbf-in-s^2``: a product."""
+_WEIGHTS: Final = re.compile(r"\b(lb|oz)\b")
+_OWN_UNITS: Final = (
+    "rev = turn",
+    "lbm = pound",
+    "ozm = ounce",
+    "pcf = pound / foot ** 3",
+    "pci = pound / inch ** 3",
+)
+"""What drawings and printouts of the desk say, beside what pint knows."""
 _FREQUENCIES: Final = re.compile(r"[kMG]?Hz|hertz|1\s*/.*|cps")
 _EXAMPLES: Final = {
     "kg": "0.3 lb",
@@ -184,7 +196,7 @@ def quantities(texts: Sequence[str], count: int, unit: str, option: str) -> tupl
     -------
     tuple of float
     """
-    return tuple(quantity(part, unit, option) for part in _split(texts, count, unit, option))
+    return tuple(quantity(part, unit, option) for part in split(texts, count, unit, option))
 
 
 def vector(texts: Sequence[str], unit: str, option: str) -> tuple[float, float, float]:
@@ -195,7 +207,40 @@ def vector(texts: Sequence[str], unit: str, option: str) -> tuple[float, float, 
 
 def split_vector(texts: Sequence[str], unit: str, option: str) -> list[str]:
     """Split three numbers, each with its unit, without converting them; see `quantities`."""
-    return _split(texts, 3, unit, option)
+    return split(texts, 3, unit, option)
+
+
+def split(texts: Sequence[str], count: int | None, unit: str, option: str) -> list[str]:
+    """Split several numbers, each with its unit, without converting them; see `quantities`.
+
+    Parameters
+    ----------
+    texts, unit, option
+        See `quantities`.
+    count : int, optional
+        How many there have to be; any number of them without it.
+    """
+    text = " ".join(texts)
+    if _has_sigma(text):
+        raise PolhodeError(
+            f"{option}: {text!r} has a sigma, which {option} does not take; write the numbers alone"
+        )
+    if "," in text:
+        parts = [part.strip() for part in text.strip().strip(",").split(",")]
+        last = _QUANTITY.fullmatch(parts[-1])
+        if last is not None and last["unit"] and not any(has_unit(part) for part in parts[:-1]):
+            parts = [f"{part} {last['unit']}" for part in parts[:-1]] + [parts[-1]]
+    else:
+        words = text.split()
+        numbers = [word for word in words if re.fullmatch(_NUMBER, word)]
+        behind = " ".join(words[len(numbers) :])
+        parts = [f"{number} {behind}" for number in numbers] if numbers else [text]
+    if count is not None and len(parts) != count:
+        raise PolhodeError(
+            f"{option}: expected {count} numbers, got {len(parts)} in {text!r}; for example "
+            f"{', '.join([_example(unit).strip(chr(34))] * count)!r}"
+        )
+    return parts
 
 
 def _typed(text: str) -> _Typed | None:
@@ -242,30 +287,6 @@ def _converted(text: str, typed: _Typed, unit: str, option: str) -> float:
     return value
 
 
-def _split(texts: Sequence[str], count: int, unit: str, option: str) -> list[str]:
-    text = " ".join(texts)
-    if _has_sigma(text):
-        raise PolhodeError(
-            f"{option}: {text!r} has a sigma, which {option} does not take; write the numbers alone"
-        )
-    if "," in text:
-        parts = [part.strip() for part in text.strip().strip(",").split(",")]
-        last = _QUANTITY.fullmatch(parts[-1])
-        if last is not None and last["unit"] and not any(has_unit(part) for part in parts[:-1]):
-            parts = [f"{part} {last['unit']}" for part in parts[:-1]] + [parts[-1]]
-    else:
-        words = text.split()
-        numbers = [word for word in words if re.fullmatch(_NUMBER, word)]
-        behind = " ".join(words[len(numbers) :])
-        parts = [f"{number} {behind}" for number in numbers] if numbers else [text]
-    if len(parts) != count:
-        raise PolhodeError(
-            f"{option}: expected {count} numbers, got {len(parts)} in {text!r}; for example "
-            f"{', '.join([_example(unit).strip(chr(34))] * count)!r}"
-        )
-    return parts
-
-
 def _example(unit: str) -> str:
     return f'"{_EXAMPLES[unit]}"' if unit in _EXAMPLES else f'"1 {unit}"'
 
@@ -281,17 +302,20 @@ def _factor(text: str, unit: str, option: str) -> Decimal:
             f"{option}: {text!r} does not say what is counted; write turn/s, rad/s, deg/s or rpm"
         )
     pint = require("pint", extra="units", purpose=f"{option}: a unit ({text})")
-    if _UNIT.fullmatch(text) is None:
+    plain = _HYPHEN.sub("*", text.translate(_SIGNS))
+    if _UNIT.fullmatch(plain) is None:
         raise PolhodeError(f"{option}: {text!r} is not a unit; write {_example(unit)}")
     registry = _registry()
     try:
-        given = registry.parse_units(_BARE_POWER.sub("^", text))
+        given = registry.parse_units(_BARE_POWER.sub("^", plain))
         factor = registry.Quantity(Decimal(1), given).to(registry.parse_units(unit))
     except pint.UndefinedUnitError:
         raise PolhodeError(f"{option}: {text!r} is not a known unit; write {_example(unit)}") from None
     except pint.DimensionalityError:
-        message = f"{option}: {text!r} cannot be converted to {unit}; write {_example(unit)}"
-        raise PolhodeError(message) from None
+        as_force = _WEIGHTS.sub(r"\1f", plain)
+        is_force = as_force != plain and registry.parse_units(as_force).is_compatible_with(unit)
+        way_out = "lb and oz are masses here; write lbf or ozf" if is_force else f"write {_example(unit)}"
+        raise PolhodeError(f"{option}: {text!r} cannot be converted to {unit}; {way_out}") from None
     return Decimal(factor.magnitude)
 
 
@@ -300,5 +324,6 @@ def _registry() -> Any:
     import pint
 
     registry: Any = pint.UnitRegistry(non_int_type=Decimal)
-    registry.define("rev = turn")
+    for unit in _OWN_UNITS:
+        registry.define(unit)
     return registry

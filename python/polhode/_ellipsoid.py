@@ -1,0 +1,84 @@
+"""The homogeneous ellipsoid with the mass and the moments of a body."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from polhode._core import RigidBody, real_numbers
+from polhode._repr import short
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["EquivalentEllipsoid", "ellipsoid"]
+
+
+class EquivalentEllipsoid(NamedTuple):
+    """A homogeneous ellipsoid that stands for a body.
+
+    Attributes
+    ----------
+    semi_axes : numpy.ndarray, shape (..., 3)
+        Along the principal axes of the body, so descending; zero for a direction in which it has no extent.
+    axes : numpy.ndarray, shape (..., 3, 3)
+        Those principal axes, as columns.
+    volume : float or numpy.ndarray, shape (...)
+    """
+
+    semi_axes: Floats
+    axes: Floats
+    volume: Any
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+def ellipsoid(body: RigidBody, volume: ArrayLike | None = None) -> EquivalentEllipsoid:
+    """Find the homogeneous ellipsoid with the same mass and the same moments, ``a² = 5 (I2 + I3 - I1) / 2m``.
+
+    Parameters
+    ----------
+    body : RigidBody
+        One body or a stack.
+    volume : float or array_like, optional
+        Of the body. The ellipsoid then has this volume, and the axis ratios of the one with the same moments:
+        what is called the dynamically equivalent equal-volume ellipsoid of an asteroid. Its moments are those
+        of the body only where the body is as dense as it.
+
+    Returns
+    -------
+    EquivalentEllipsoid
+
+    Examples
+    --------
+    >>> from polhode import equimomental, solids
+    >>> brick = solids.box((3.0, 2.0, 1.0), density=1.0)
+    >>> equimomental.ellipsoid(brick).semi_axes
+    array([1.93649167, 1.29099445, 0.64549722])
+    >>> equimomental.ellipsoid(brick, volume=6.0).semi_axes
+    array([1.86105147, 1.24070098, 0.62035049])
+    """
+    if not isinstance(body, RigidBody):
+        raise TypeError(f"body: expected a RigidBody, got {type(body).__name__}")
+    principal = body.principal
+    least, middle, greatest = np.moveaxis(principal.moments, -1, 0)
+    # The two larger moments of a thin body differ by little: their difference first.
+    spread = greatest - middle
+    squares = np.stack([middle + greatest - least, least + spread, least - spread], axis=-1)
+    mass = np.asarray(body.mass)[..., np.newaxis]
+    semi_axes = np.sqrt(2.5 * np.maximum(squares, 0.0) / mass)
+    own = 4.0 / 3.0 * np.pi * np.prod(semi_axes, axis=-1)
+    if volume is None:
+        return EquivalentEllipsoid(semi_axes, principal.axes, own[()])
+    wanted = real_numbers(volume, "volume")
+    if not (np.isfinite(wanted) & (wanted > 0.0)).all():
+        raise ValueError(f"volume: must be positive and finite, got {np.asarray(volume)}")
+    wanted = np.broadcast_to(wanted, own.shape)
+    if not (own > 0.0).all():
+        raise ValueError("volume: a flat or straight body has no ellipsoid with a volume; leave it out")
+    semi_axes = semi_axes * np.cbrt(wanted / own)[..., np.newaxis]
+    return EquivalentEllipsoid(semi_axes, principal.axes, wanted.copy()[()])

@@ -1,0 +1,176 @@
+"""What a part of an assembly is made of: its body in its own axes, before it is placed."""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from polhode import laminae, rods, solids
+from polhode._core import RigidBody
+from polhode._printed import from_printout
+from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
+from polhode.errors import PolhodeError
+from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.saved_body import read_report
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from polhode.assembly.numbers import Scope
+
+__all__ = ["SAVED", "body_of_part", "kind_of"]
+
+SAVED: Final = (".json", ".npz")
+"""Of bodies that ``RigidBody.save`` wrote, and of reports."""
+_SHAPES: Final = {name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__}
+_NO_LENGTHS: Final = {"angle": "rad", "sides": "1"}
+"""Arguments of shapes that are no lengths, with their units."""
+
+
+def kind_of(table: Mapping[str, Any], where: str) -> str:
+    """Tell what a part is."""
+    kinds = [name for name in KINDS if name in table]
+    if len(kinds) == 1:
+        return kinds[0]
+    if not kinds:  # a wrong key may be why
+        every = {
+            *COMMON,
+            *FILE,
+            *(name for shape in _SHAPES.values() for name in inspect.signature(shape).parameters),
+        }
+        check_keys(table, sorted(every), where)
+    found = f"it has {' and '.join(kinds)}" if kinds else "it has none"
+    raise PolhodeError(f"{where}: a part is one of {', '.join(KINDS)}; {found}")
+
+
+def body_of_part(
+    kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
+) -> tuple[RigidBody, dict[str, Any]]:
+    """Make the body of a part that is a solid, a file or numbers; give the arguments of a solid too."""
+    arguments: dict[str, Any] = {}
+    try:
+        if kind == "solid":
+            body, arguments = _solid(table, scope)
+        elif kind == "inertia":
+            body = _printed(table, scope)
+        else:
+            body = _file(table, scope, folder)
+    except (ValueError, TypeError, OverflowError, OSError) as error:
+        if str(error).startswith(scope.where):
+            raise
+        what = (
+            f"{error.filename}: {error.strerror}; check the path"
+            if isinstance(error, OSError)
+            else str(error)
+        )
+        kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
+        raise kind_of_error(f"{scope.where}: {what}") from error
+    if body.shape:
+        raise PolhodeError(f"{scope.where}: its numbers are of {body.shape[0]} bodies, not of one")
+    return body, arguments
+
+
+def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]:
+    if ("mass" in table) == ("density" in table):
+        raise PolhodeError(f"{scope.where}: {what} needs its mass or its density, one of the two")
+    if "mass" in table:
+        return {"mass": scope.amount("mass", table["mass"], "kg")}
+    return {"density": scope.amount("density", table["density"], "kg/m^3")}
+
+
+def _solid(table: Mapping[str, Any], scope: Scope) -> tuple[RigidBody, dict[str, Any]]:
+    name = text_of(table, "solid", scope.where)
+    if name not in _SHAPES:
+        raise PolhodeError(
+            f"{scope.where}: solid: there is no {name!r}; there are {', '.join(sorted(_SHAPES))}"
+        )
+    shape: Callable[..., RigidBody] = _SHAPES[name]
+    taken = inspect.signature(shape).parameters
+    check_keys(table, (*COMMON, *taken), f"{scope.where} ({name})")
+    own = [key for key in taken if key not in ("mass", "density")]
+    missing = [key for key in own if key not in table]
+    if missing:
+        raise PolhodeError(f"{scope.where}: a {name} takes {', '.join(own)}; {missing[0]} is missing")
+    options = {
+        key: scope.numbers(key, table[key], _NO_LENGTHS[key])
+        if key in _NO_LENGTHS
+        else scope.lengths(key, table[key])
+        for key in own
+    }
+    if "sides" in options:
+        options["sides"] = table["sides"]
+    try:
+        return shape(**options, **_weight(table, scope, f"a {name}")), options
+    except TypeError as error:
+        raise PolhodeError(f"{scope.where}: {name}: {error}") from None
+
+
+def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
+    given = table["inertia"]
+    where = f"{scope.where}: inertia"
+    if not isinstance(given, dict):
+        raise PolhodeError(
+            f"{where}: write a table, as in inertia = {{ mass = 2, com = [0, 0, 1], tensor = [3, 4, 5] }}"
+        )
+    check_keys(table, COMMON, scope.where)
+    check_keys(given, PRINTED, where)
+    for name in ("mass", "tensor"):
+        if name not in given:
+            raise PolhodeError(f"{where}: {name} is missing")
+    inner = type(scope)(where, scope.length_unit)
+    rows = given["tensor"]
+    flat = (
+        [x for row in rows for x in row]
+        if isinstance(rows, list) and rows and isinstance(rows[0], list)
+        else rows
+    )
+    tensor = inner.numbers("tensor", flat, "kg m^2", scope.metres**2)
+    com = inner.lengths("com", given["com"], 3) if "com" in given else (0.0, 0.0, 0.0)
+    rtol = inner.numbers("rtol", given["rtol"], "1") if "rtol" in given else None
+    try:
+        return from_printout(
+            inner.amount("mass", given["mass"], "kg"),
+            com,
+            tensor if isinstance(tensor, list) else [tensor],
+            products=given.get("products"),
+            about=given.get("about", "center_of_mass"),
+            rtol=rtol,
+        )
+    except PolhodeError as error:
+        if not str(error).startswith(where):
+            error.args = (f"{where}: {error}",)
+        raise
+
+
+def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> RigidBody:
+    check_keys(table, (*COMMON, *FILE), scope.where)
+    path = folder / text_of(table, "file", scope.where)
+    suffix = path.suffix.lower()
+    if suffix == ".toml":
+        raise PolhodeError(
+            f"{scope.where}: file: {path.name} is an assembly; write assembly = instead of file ="
+        )
+    if suffix in SAVED:
+        surplus = next((key for key in (*FILE, "length_unit") if key in table), None)
+        if surplus is not None:
+            raise PolhodeError(
+                f"{scope.where}: {surplus}: {path.name} is a saved body, whole as it is; leave it out"
+            )
+        reported = read_report(path)
+        body = RigidBody.load(path) if reported is None else reported
+        if body.shape:
+            raise PolhodeError(
+                f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one"
+            )
+        return body
+    if scope.length_unit is None:
+        raise PolhodeError(f"{scope.where}: {path.name} does not say its unit of length; state length_unit")
+    options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
+    if "weld" in table:
+        options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / scope.metres
+    if suffix != MOLECULE_SUFFIX:
+        options |= _weight(table, scope, path.name)
+    else:
+        options |= {key: table[key] for key in ("mass", "density") if key in table}
+    return RigidBody.from_file(path, length_unit=scope.length_unit, **options)

@@ -1,0 +1,74 @@
+"""An assembly drawn: each part where it stands, those of one branch in one colour."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from polhode._scene.shape import equivalent_box
+from polhode._scene.solids import solid_surface
+from polhode._scene.triangles import joined
+from polhode.assembly.matter import SAVED
+from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.loaded import load
+from polhode.plot import body as draw_body
+from polhode.plot import principal_axes
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+    from numpy.typing import NDArray
+
+    from polhode.assembly.result import Assembly, Member
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["draw"]
+
+_COLORS: Final = np.array(
+    [
+        (0.55, 0.72, 0.86), (0.94, 0.75, 0.47), (0.52, 0.78, 0.68), (0.90, 0.62, 0.50), (0.84, 0.68, 0.78),
+        (0.72, 0.86, 0.95), (0.95, 0.90, 0.58),
+    ]
+)  # fmt: skip
+"""Paler than those of the sunburst, in the same order."""
+_MOST: Final = 20_000
+"""Triangles that are drawn of all parts together."""
+
+
+def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | None = None) -> Axes3D:
+    """Draw the parts where they stand; see :meth:`Assembly.plot`.
+
+    A mesh is drawn as it is, or coarser where it has many triangles; a solid as it is; another part as the
+    box of the same inertia.
+    """
+    branches = sorted(assembly.ledger[assembly.ledger.root].children, key=lambda node: -node.mass)
+    tops = {node.id: k for k, node in enumerate(branches)}
+    vertices, faces, colors = [], [], []
+    corners = 0
+    for part in assembly.parts:
+        color = tops[part.id.partition("/")[0]]
+        points, triangles = _surface(part, max(_MOST // len(assembly.parts), 400))
+        vertices.append(points)
+        faces.append(triangles + corners)
+        colors.append(np.tile(_COLORS[color % len(_COLORS)], (len(triangles), 1)))
+        corners += len(points)
+    every = np.concatenate(vertices)
+    ax = draw_body(every, np.concatenate(faces), ax, length_unit=length_unit, colors=np.concatenate(colors))
+    reach = 0.55 * float(np.ptp(every, axis=0).max())
+    if assembly.body.principal.top != "point":
+        principal_axes(assembly.body, ax, length=reach)
+    return ax
+
+
+def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
+    """Give the triangles of a part where it stands."""
+    surface = solid_surface(part.solid, part.arguments)
+    if part.file is not None and part.file.suffix.lower() not in (*SAVED, MOLECULE_SUFFIX):
+        mesh = load(part.file).mesh
+        surface = mesh.vertices * part.metres, mesh.faces
+    if surface is None:
+        box = equivalent_box(part.body, np.zeros(3))
+        return box.vertices, box.faces
+    vertices, faces, _ = joined(*surface, most)
+    return vertices @ part.rotation.T + part.displacement, faces

@@ -1,0 +1,176 @@
+"""Where the parts of an assembly stand: position, rotation, and the copies of a part."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from polhode import _core
+from polhode.assembly.keys import check_keys
+from polhode.errors import PolhodeError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from polhode.assembly.numbers import Scope
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["HERE", "Place", "copies", "place_of"]
+
+_FORMS: Final = ("axis", "sequence", "quaternion_xyzw", "matrix")
+_ANGLES: Final = ("degrees", "radians")
+_EXAMPLE: Final = "rotation = { axis = [0, 0, 1], degrees = 90 }"
+_OFF_UNITY: Final = 1e-6
+"""By which a quaternion or a matrix of few digits may be off; it is made exact."""
+MOST_COPIES: Final = 100_000
+"""Of one part."""
+
+
+class Place(NamedTuple):
+    """A placement r → R r + d."""
+
+    rotation: Floats
+    displacement: Floats
+
+    def of(self, inner: Place) -> Place:
+        """Place what is placed within: first `inner`, then this one."""
+        return Place(self.rotation @ inner.rotation, self.rotation @ inner.displacement + self.displacement)
+
+    def placed(self, body: _core.RigidBody) -> _core.RigidBody:
+        """Place a body."""
+        if not np.array_equal(self.rotation, np.eye(3)):
+            body = body.rotated(_core.quaternion_from_matrix(self.rotation))
+        return body.translated(self.displacement) if self.displacement.any() else body
+
+
+HERE: Final = Place(np.eye(3), np.zeros(3))
+
+
+def place_of(table: Mapping[str, Any], scope: Scope) -> Place:
+    """Read where a part stands."""
+    position = scope.lengths("position", table["position"], 3) if "position" in table else (0.0, 0.0, 0.0)
+    return Place(_rotation(table.get("rotation"), "rotation", scope), np.array(position))
+
+
+def copies(table: Mapping[str, Any], scope: Scope) -> list[Place]:
+    """Read how often a part is there: by how much each copy is moved, the first by nothing."""
+    count = table.get("count", 1)
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_COPIES:
+        raise PolhodeError(
+            f"{scope.where}: count: {str(count)[:40]!r} is not a whole number from 1 to {MOST_COPIES}"
+        )
+    moved = next((key for key in ("step", "turn") if key in table), None)
+    if moved is not None and count == 1:
+        raise PolhodeError(f"{scope.where}: {moved}: it is from one copy to the next; state count, 2 or more")
+    step = Place(
+        _rotation(table.get("turn"), "turn", scope),
+        np.array(scope.lengths("step", table["step"], 3)) if "step" in table else np.zeros(3),
+    )
+    places = [HERE]
+    while len(places) < count:
+        places.append(step.of(places[-1]))
+    return places
+
+
+def _rotation(given: Any, key: str, scope: Scope) -> Floats:
+    """Read a rotation: it takes the axes of the part to where they stand, v = R v_part."""
+    if given is None:
+        return np.eye(3)
+    where = f"{scope.where}: {key}"
+    if not isinstance(given, dict):
+        raise PolhodeError(
+            f"{where}: {str(given)[:40]!r} is not a table that says what it means; write {_EXAMPLE}"
+        )
+    check_keys(given, (*_FORMS, *_ANGLES), where)
+    forms = [name for name in _FORMS if name in given]
+    if len(forms) != 1:
+        raise PolhodeError(f"{where}: give one of {', '.join(_FORMS)}; for example {_EXAMPLE}")
+    form = forms[0]
+    inner = type(scope)(where)
+    if form in ("quaternion_xyzw", "matrix"):
+        check_keys(given, (form,), where)
+        return _quaternion(given[form], inner) if form == "quaternion_xyzw" else _matrix(given[form], inner)
+    units = [name for name in _ANGLES if name in given]
+    if len(units) != 1:
+        raise PolhodeError(
+            f"{where}: state the angle of {form} as degrees or as radians; for example {_EXAMPLE}"
+        )
+    if form == "axis":
+        axis = np.array(inner.numbers("axis", given["axis"], "1", count=3))
+        largest = float(np.abs(axis).max())
+        if not largest > 0.0:
+            raise PolhodeError(f"{where}: axis: a rotation about 0 0 0 has no direction; name an axis")
+        axis /= largest
+        return _turn(axis / np.linalg.norm(axis), _angles(given, units[0], 1, inner)[0])
+    sequence = given["sequence"]
+    letters = sequence if isinstance(sequence, str) else ""
+    if len(letters) != 3 or letters.upper().strip("XYZ") or letters not in (letters.upper(), letters.lower()):
+        raise PolhodeError(
+            f"{where}: sequence: {str(sequence)[:40]!r} is not three letters of XYZ (about the axes of the "
+            "turning part) or of xyz (about those that stand)"
+        )
+    turns = [
+        _turn(np.eye(3)["xyz".index(letter.lower())], angle)
+        for letter, angle in zip(letters, _angles(given, units[0], 3, inner), strict=True)
+    ]
+    first, second, third = turns if letters.isupper() else turns[::-1]
+    return first @ second @ third
+
+
+def _angles(given: Mapping[str, Any], unit: str, count: int, scope: Scope) -> list[tuple[float, float]]:
+    """Give cosines and sines; those of whole quarter turns in degrees are exact."""
+    angles = scope.numbers(unit, given[unit], "1", count=count)
+    if unit == "radians":
+        return [(float(np.cos(x)), float(np.sin(x))) for x in angles]
+    found = []
+    for angle in angles:
+        quarters, rest = divmod(angle + 45.0, 90.0)
+        c, s = float(np.cos(np.deg2rad(rest - 45.0))), float(np.sin(np.deg2rad(rest - 45.0)))
+        for _ in range(int(quarters) % 4):
+            c, s = -s, c
+        found.append((c + 0.0, s + 0.0))
+    return found
+
+
+def _turn(axis: Floats, angle: tuple[float, float]) -> Floats:
+    """Rotate about a unit vector: R = c 1 + s a× + (1 − c) a aᵀ."""
+    c, s = angle
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turned: Floats = c * np.eye(3) + s * cross + (1.0 - c) * np.outer(axis, axis)
+    return turned
+
+
+def _quaternion(given: Any, scope: Scope) -> Floats:
+    q = np.array(scope.numbers("quaternion_xyzw", given, "1", count=4))
+    size = float(np.linalg.norm(q)) if np.abs(q).max() < 2.0 else np.inf
+    if not abs(size - 1.0) <= _OFF_UNITY:
+        raise PolhodeError(f"{scope.where}: quaternion_xyzw: its length is {size:.9g}, expected 1")
+    return _core.rotate(q / size, np.eye(3)).T
+
+
+def _matrix(given: Any, scope: Scope) -> Floats:
+    rows = (
+        np.array([scope.numbers("matrix", row, "1", count=3) for row in given])
+        if isinstance(given, list)
+        else None
+    )
+    if rows is None or rows.shape != (3, 3):
+        raise PolhodeError(f"{scope.where}: matrix: expected three rows of three numbers")
+    off = float(np.abs(rows @ rows.T - np.eye(3)).max()) if np.abs(rows).max() < 2.0 else np.inf
+    if not off <= _OFF_UNITY or np.linalg.det(rows) < 0.0:
+        what = (
+            f"its rows are off from unit vectors at right angles by {off:.2g}"
+            if off > _OFF_UNITY
+            else "it mirrors"
+        )
+        raise PolhodeError(f"{scope.where}: matrix: {what}; a rotation keeps lengths and hands")
+    if off == 0.0:
+        return rows
+    u, _, v = np.linalg.svd(rows)
+    nearest: Floats = u @ v
+    return nearest

@@ -1,0 +1,110 @@
+"""What an assembly is once it is read: its parts in the axes of the whole, their tree and their sum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from polhode._core import RigidBody
+from polhode.errors import PolhodeError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+    from numpy.typing import NDArray
+
+    from polhode.uncertainty import Ledger, Part
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Assembly", "Member"]
+
+
+class Member(NamedTuple):
+    """One part of an assembly, where it stands.
+
+    Attributes
+    ----------
+    id : str
+        The names from the whole down, with / between them; a copy by its number.
+    body : RigidBody
+        In the axes of the whole, in kg and m.
+    solid : str
+        The name of its shape; "" where it is of a file or of numbers.
+    arguments : dict
+        Of that shape, lengths in metres.
+    file : pathlib.Path or None
+        What it was read from.
+    metres : float
+        In one unit of that file.
+    rotation, displacement : numpy.ndarray, shapes (3, 3) and (3,)
+        How it is placed: ``r = rotation @ r_part + displacement``.
+    """
+
+    id: str
+    body: RigidBody
+    solid: str
+    arguments: dict[str, Any]
+    file: Path | None
+    metres: float
+    rotation: Floats
+    displacement: Floats
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Assembly:
+    """A body of many parts.
+
+    Attributes
+    ----------
+    name : str
+    parts : tuple of Member
+        Those that have no parts of their own, in the order of the file.
+    ledger : Ledger
+        The tree, rolled up to every level: :func:`polhode.uncertainty.ledger`.
+    notes : tuple of str
+        What a reader should know, say copies at one place.
+    """
+
+    name: str
+    parts: tuple[Member, ...]
+    ledger: Ledger
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    def body(self) -> RigidBody:
+        """The whole as one body, with its uncertainty."""
+        return RigidBody.stack([part.body for part in self.parts]).combined()
+
+    def __getitem__(self, name: str) -> Part:
+        """Give a node of the tree by its names with / between them, as ``"arm/motor"``."""
+        if name not in self.ledger:
+            raise PolhodeError(f"there is no part {name!r} in {self.name!r}")
+        return self.ledger[name]
+
+    def __len__(self) -> int:
+        return len(self.parts)
+
+    def __repr__(self) -> str:
+        count = f"{len(self.parts)} parts" if len(self.parts) != 1 else "1 part"
+        return f"<Assembly {self.name!r}: {count}, mass {float(self.body.mass):.6g}>"
+
+    def plot(self, ax: Axes3D | None = None, **options: Any) -> Axes3D:
+        """Draw the parts where they stand, with the principal axes of the whole; needs matplotlib.
+
+        Parameters
+        ----------
+        ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+            Where to draw; a new figure by default.
+        **options
+            `length_unit`, see :func:`polhode.plot.body`.
+
+        Returns
+        -------
+        mpl_toolkits.mplot3d.axes3d.Axes3D
+        """
+        from polhode.assembly.picture import draw
+
+        return draw(self, ax, **options)

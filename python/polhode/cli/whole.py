@@ -1,0 +1,168 @@
+"""Bodies from wherever they come: a file with a shape, or whole without one.
+
+Whole are saved bodies, assemblies, and the numbers that a CAD program printed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from polhode import RigidBody
+from polhode._quantities import amount, has_unit, quantities, split, vector
+from polhode.cli.layout import Field, Report
+from polhode.cli.loading import LoadedBody, load_body
+from polhode.cli.sigmas import note_linear, told
+from polhode.cli.source import shown
+from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
+from polhode.errors import PolhodeError
+from polhode.files.saved_body import read_report
+from polhode.units import metres_per
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from polhode.cli.options import BodyOptions
+
+__all__ = ["any_body", "body_sections", "is_whole", "whole_report"]
+
+_WHOLE: Final = (".json", ".npz", ".toml")
+"""Endings of such files."""
+_OF_SHAPES: Final = ("density", "mass", "weld", "closure", "orient", "bond_sigma", "mass_sigmas")
+
+
+def is_whole(file: Path | None) -> bool:
+    """Whether this is no file with a shape."""
+    return file is None or file.suffix.lower() in _WHOLE
+
+
+def any_body(file: Path | None, options: BodyOptions, **how: bool) -> LoadedBody:
+    """Read the body in a file, or without one that of a CAD program's numbers; `how` is of `load_body`."""
+    if file is None or options.inertia or options.com or options.products is not None:
+        return _printed(file, options)
+    if is_whole(file):
+        return _whole_body(file, options)
+    return load_body(file, options, **how)
+
+
+def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
+    """Read a saved body or an assembly."""
+    is_assembly = file.suffix.lower() == ".toml"
+    kind = "assembly" if is_assembly else "saved body"
+    for name in (*_OF_SHAPES, *(("length_unit",) if is_assembly else ())):
+        if getattr(options, name):
+            reason = "whose parts state theirs" if is_assembly else "whole as it is"
+            raise PolhodeError(
+                f"--{name.replace('_', '-')}: {file} is {_article(kind)}, {reason}; leave it out"
+            )
+    if is_assembly:
+        from polhode.assembly import read
+
+        made = read(file)
+        return LoadedBody(made.body, [], "kg", "m", notes=made.notes, kind=kind)
+    reported = read_report(file)
+    body = RigidBody.load(file) if reported is None else reported
+    if body.shape:
+        raise PolhodeError(
+            f"{file}: it holds a stack of bodies, of shape {body.shape}, not one; save one of them alone"
+        )
+    unit = options.length_unit
+    if reported is not None:
+        if unit is not None:
+            raise PolhodeError(f"--length-unit: {file} is a report, in kg and m; leave it out")
+        return LoadedBody(body, [], "kg", "m", kind="report")
+    if unit is None:
+        return LoadedBody(body, [], "mass", "unit", kind=kind)
+    return LoadedBody(body.scaled(length=metres_per(unit)), [], "kg", "m", kind=kind)
+
+
+def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
+    """Make the body of --mass, --com and --inertia."""
+    from polhode._printed import from_printout
+
+    if file is not None:
+        name = "--inertia" if options.inertia else "--com" if options.com else "--products"
+        raise PolhodeError(f"{name}: {shown(file)} tells what the body is; leave it out, or the file")
+    for name in ("length_unit", *(name for name in _OF_SHAPES if name != "mass")):
+        if getattr(options, name):
+            raise PolhodeError(
+                f"--{name.replace('_', '-')}: --inertia has its own units and no shape; leave it out"
+            )
+    if not options.inertia or options.mass is None:
+        raise PolhodeError(
+            "give a file, or what a CAD program printed: "
+            '--mass "2 lbm" --com "0 0 1 in" --inertia "3 4 5 0.1 0 0 lbm in^2" --products positive'
+        )
+    count = len(split(options.inertia, None, "kg m^2", "--inertia"))
+    if count not in (3, 6, 9):
+        raise PolhodeError(
+            f"--inertia: expected 3, 6 or 9 numbers, got {count}: the moments, Ixx Iyy Izz Ixy Ixz Iyz, or "
+            "the rows of the tensor"
+        )
+    body = from_printout(
+        amount(options.mass, "kg", "--mass"),
+        vector(options.com, "m", "--com") if options.com else (0.0, 0.0, 0.0),
+        quantities(options.inertia, count, "kg m^2", "--inertia"),
+        products=options.products,
+        about=options.inertia_about,
+        name="--inertia",
+    )
+    texts = (
+        ("--mass", (options.mass,), "kg"),
+        ("--com", options.com, "m"),
+        ("--inertia", options.inertia, "kg m^2"),
+    )
+    notes = [
+        f"{option} has no unit: {unit} was taken"
+        for option, words, unit in texts
+        if words and not any(has_unit(part) for part in split(words, None, unit, option))
+    ]
+    if not options.com:
+        notes.append("no --com was given: the centre of mass was taken at the origin")
+    return LoadedBody(body, [], "kg", "m", notes=tuple(notes), kind="printout")
+
+
+def whole_report(
+    file: Path | None, loaded: LoadedBody, mass_unit: str | None, about: tuple[float, float, float] | None
+) -> Report:
+    """Report on such a body."""
+    report = Report()
+    report.section(
+        "",
+        Field("file", "file", "(inertia)" if file is None else shown(file)),
+        Field("format", "format", loaded.kind),
+        Field("length_unit", "length unit", "m" if loaded.length == "m" else "unit unknown"),
+    )
+    body_sections(report, loaded, FileUnits("m", mass_unit), about)
+    return report
+
+
+def body_sections(
+    report: Report, loaded: LoadedBody, units: FileUnits, about: tuple[float, float, float] | None
+) -> None:
+    """Add what is told of every body: mass, tensors, principal axes, and where the numbers come from."""
+    body = loaded.body
+    report.section(
+        "mass",
+        *units.fields("mass", "mass", body.mass, loaded.mass_unit, mass=1, **told(body, "mass")),
+        *units.fields(
+            "center_of_mass",
+            "centre of mass",
+            body.center_of_mass,
+            loaded.length,
+            length=1,
+            scale=loaded.extent,
+            **told(body, "center_of_mass"),
+        ),
+    )
+    report.section("inertia, its axes", *tensor_fields(loaded, units, about))
+    report.section("principal axes", *body_fields(loaded, units))
+    report.section("equivalent ellipsoid, along e1 e2 e3", *ellipsoid_fields(loaded, units))
+    report.section("trust", *trust_fields(loaded))
+    report.notes += loaded.notes
+    if loaded.length == "unit":
+        report.notes.append("unit unknown: all results are in the file's own units")
+    note_linear(report)
+
+
+def _article(kind: str) -> str:
+    return f"an {kind}" if kind[0] in "aeiou" else f"a {kind}"
