@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode import robots
+from polhode._quantities import quantity
 from polhode.cli.layout import Column, Field, Report, Table
 from polhode.cli.outputs import check_outputs
-from polhode._quantities import quantity
 from polhode.cli.source import STDIN, shown
 from polhode.cli.text import in_options
 from polhode.errors import FileFormatError, PolhodeError

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from polhode import RigidBody
-from polhode.cli.layout import Column, Table
 from polhode._quantities import has_unit, quantity
+from polhode.cli.layout import Column, Table
 from polhode.errors import PolhodeError
 from polhode.files.components import Part, groups_of, overlaps, parts_of, told
 from polhode.files.mesh import weld_within

@@ -13,7 +13,7 @@ from polhode.cli.options import ReportOptions
 from polhode.cli.sigmas import Told, note_linear, told
 from polhode.cli.source import STDIN, shown
 from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
-from polhode.cli.whole import any_body, is_whole, whole_report
+from polhode.cli.whole import any_body, whole_report
 from polhode.errors import PolhodeError
 from polhode.files.mesh_solid import MeshSolid
 from polhode.units import metres_per

@@ -175,7 +175,9 @@ def solid_of(
             if asked[name]:
                 raise PolhodeError(f"{name}: repair closes and orients by itself; leave one of the two out")
         if union:
-            raise PolhodeError("union: it joins components that are whole; repair the mesh in a file of its own first")
+            raise PolhodeError(
+                "union: it joins components that are whole; repair the mesh in a file of its own first"
+            )
         with naming_file(file):
             return _repaired_solid(loaded.mesh, density, mass, scale, weld)
     if union:
@@ -230,6 +232,8 @@ def _joined(loaded: Loaded, weld: float) -> Loaded:
     with naming_file(loaded.path):
         joined = united([(part.vertices, part.faces) for part in parts], mesh.format)
     return replace(loaded, is_stream=False, _mesh=joined)
+
+
 def _cad_solid(
     loaded: Loaded, cad: CadFile, density: Number | None, mass: Number | None, asked: Mapping[str, object]
 ) -> MeshSolid:
