@@ -236,6 +236,9 @@ class TestRefusals:
         path = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step")
         with pytest.raises(PolhodeError, match=r"orient: .* holds solids, not a mesh; leave it out"):
             RigidBody.from_file(path, density=1.0, orient=True)
+        code, _, err = run("report", str(path), "--density", "1", "--repair")
+        assert code == 2
+        assert err.startswith("polhode: --repair: ")
         with pytest.raises(FileFormatError, match="solids with curved faces, not triangles"):
             read_mesh(path)
         with pytest.raises(FileFormatError, match="holds solids, not atoms"):

@@ -250,6 +250,15 @@ class TestLimits:
         assert code == 2
         assert "--repair" not in err.partition("bottle.obj")[2]
 
+    def test_corners_nearer_than_32_bits_tell(self, tmp_path: Path) -> None:
+        """Far from the origin all corners of a small part are that near: they are not joined."""
+        small = VERTICES * 1e-7 + np.array([1.0, 0.0, 0.0])
+        solid = solid_from_file(written(tmp_path / "part.obj", (small, mixed()[1])), density=1.0, repair=True)
+        assert [step.name for step in solid.steps] == ["orient"]
+        assert solid.body.mass == pytest.approx(float(WHOLE.mass) * 1e-21, rel=1e-6)
+        with pytest.raises(ValueError, match="give a smaller length"):
+            solid_from_file(tmp_path / "part.obj", density=1.0, repair=True, weld=1e-7)
+
     def test_what_nothing_mends(self, tmp_path: Path) -> None:
         sheet = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
         path = written(tmp_path / "sheet.obj", sheet)

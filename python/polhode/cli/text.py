@@ -29,6 +29,7 @@ _WAYS_OUT: Final = (
     ("give the body a thickness, or nothing inside", "leave out --wheel"),
     ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
 )
+_OF_MESHES: Final = re.compile(r"^(?=(?:weld|closure|orient|repair): .* holds solids, not a mesh)")
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")
 
 
@@ -36,7 +37,7 @@ def in_options(message: str) -> str:
     """Replace the names of Python's arguments in a message by the options of the command line."""
     for argument, option in _WAYS_OUT:
         message = message.replace(argument, option)
-    return _WELD.sub("--weld ", message)
+    return _OF_MESHES.sub("--", _WELD.sub("--weld ", message))
 
 
 def printable(text: str) -> str:

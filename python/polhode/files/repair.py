@@ -81,8 +81,11 @@ def repaired(mesh: Mesh, weld: float = 0.0) -> tuple[Mesh, list[tuple[str, str, 
         steps.append((name, what, spanned_volume(mesh)))
 
     corners, length = len(mesh.vertices), weld or resolution_of(mesh)
-    if length > 0.0:
-        mesh = weld_within(mesh, length)
+    try:
+        mesh = weld_within(mesh, length) if length > 0.0 else mesh
+    except ValueError:
+        if weld:
+            raise  # corners this near are no copies of one another, and nobody asked for this length
     welded = corners - len(mesh.vertices)
     if welded:
         note("weld", f"{_count(welded, 'corner')} within {length:g} of another joined")
