@@ -377,6 +377,7 @@ class RigidBody:
         weld: float = 0.0,
         closure: Literal["caps", "hull"] | None = None,
         orient: bool = False,
+        union: bool = False,
         repair: bool = False,
         index_base: Literal[0, 1] = 1,
         masses: Literal["most_common", "average"] = "most_common",

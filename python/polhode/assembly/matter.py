@@ -11,8 +11,10 @@ from polhode._core import RigidBody
 from polhode._printed import from_printout
 from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
 from polhode.errors import PolhodeError
-from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.content import is_molecule
+from polhode.files.loaded import load
 from polhode.files.saved_body import read_report
+from polhode.units import metres_per
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -46,16 +48,20 @@ def kind_of(table: Mapping[str, Any], where: str) -> str:
 
 def body_of_part(
     kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
-) -> tuple[RigidBody, dict[str, Any]]:
-    """Make the body of a part that is a solid, a file or numbers; give the arguments of a solid too."""
+) -> tuple[RigidBody, dict[str, Any], float]:
+    """Make the body of a part that is a solid, a file or numbers.
+
+    The arguments of a solid come with it, and how many metres the unit of length has.
+    """
     arguments: dict[str, Any] = {}
+    metres = scope.metres
     try:
         if kind == "solid":
             body, arguments = _solid(table, scope)
         elif kind == "inertia":
             body = _printed(table, scope)
         else:
-            body = _file(table, scope, folder)
+            body, metres = _file(table, scope, folder)
     except (ValueError, TypeError, OverflowError, OSError) as error:
         if str(error).startswith(scope.where):
             raise
@@ -68,7 +74,7 @@ def body_of_part(
         raise kind_of_error(f"{scope.where}: {what}") from error
     if body.shape:
         raise PolhodeError(f"{scope.where}: its numbers are of {body.shape[0]} bodies, not of one")
-    return body, arguments
+    return body, arguments, metres
 
 
 def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]:
@@ -143,7 +149,7 @@ def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
         raise
 
 
-def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> RigidBody:
+def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBody, float]:
     check_keys(table, (*COMMON, *FILE), scope.where)
     path = folder / text_of(table, "file", scope.where)
     suffix = path.suffix.lower()
@@ -163,14 +169,22 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> RigidBody:
             raise PolhodeError(
                 f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one"
             )
-        return body
-    if scope.length_unit is None:
-        raise PolhodeError(f"{scope.where}: {path.name} does not say its unit of length; state length_unit")
+        return body, scope.metres
+    unit = _unit_of(path, table, scope)
     options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
     if "weld" in table:
-        options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / scope.metres
-    if suffix != MOLECULE_SUFFIX:
+        options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / metres_per(unit)
+    if not is_molecule(path):
         options |= _weight(table, scope, path.name)
     else:
         options |= {key: table[key] for key in ("mass", "density") if key in table}
-    return RigidBody.from_file(path, length_unit=scope.length_unit, **options)
+    return RigidBody.from_file(path, length_unit=unit, **options), metres_per(unit)
+
+
+def _unit_of(path: Path, table: Mapping[str, Any], scope: Scope) -> str:
+    """Give the unit of a file: its own, unless its table states another, else the one that its table has."""
+    own = None if is_molecule(path) else load(path).unit
+    unit = table.get("length_unit", own) or scope.length_unit
+    if unit is None:
+        raise PolhodeError(f"{scope.where}: {path.name} does not say its unit of length; state length_unit")
+    return str(unit)

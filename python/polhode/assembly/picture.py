@@ -10,7 +10,7 @@ from polhode._scene.shape import equivalent_box
 from polhode._scene.solids import solid_surface
 from polhode._scene.triangles import joined
 from polhode.assembly.matter import SAVED
-from polhode.files.content import MOLECULE_SUFFIX
+from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.plot import body as draw_body
 from polhode.plot import principal_axes
@@ -64,9 +64,10 @@ def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | Non
 def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
     """Give the triangles of a part where it stands."""
     surface = solid_surface(part.solid, part.arguments)
-    if part.file is not None and part.file.suffix.lower() not in (*SAVED, MOLECULE_SUFFIX):
-        mesh = load(part.file).mesh
-        surface = mesh.vertices * part.metres, mesh.faces
+    if part.file is not None and part.file.suffix.lower() not in SAVED and not is_molecule(part.file):
+        loaded = load(part.file)
+        if loaded.cad is None:
+            surface = loaded.mesh.vertices * part.metres, loaded.mesh.faces
     if surface is None:
         box = equivalent_box(part.body, np.zeros(3))
         return box.vertices, box.faces

@@ -190,9 +190,9 @@ def _part(
             name, comment or inner.comment, children=inner.children, members=inner.members, notes=inner.notes
         )
     else:
-        body, arguments = body_of_part(kind, row, scope, folder)
+        body, arguments, metres = body_of_part(kind, row, scope, folder)
         shape = text_of(row, "solid", scope.where)
-        one = _Unit(name, comment, body, file, scope.metres, shape, arguments)
+        one = _Unit(name, comment, body, file, metres, shape, arguments)
     place, moves = place_of(row, scope), copies(row, scope)
     if len(moves) == 1:
         return place, one

@@ -82,8 +82,8 @@ def report(
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved body
-        (JSON, NPZ), an assembly (TOML), or - for standard input; without one, the numbers of --inertia.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved
+        body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, the numbers of --inertia.
     """
     from polhode.cli.outputs import check_outputs
     from polhode.cli.report import file_report, for_program
@@ -172,8 +172,8 @@ def spin(
     Parameters
     ----------
     file
-        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved body
-        (JSON, NPZ), an assembly (TOML), or - for standard input; without one, --moments or --inertia.
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved
+        body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, --moments or --inertia.
     """
     from polhode.cli.outputs import check_outputs
     from polhode.cli.spin import spin_report

@@ -64,10 +64,10 @@ def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], fl
     low, high = geometry.low, geometry.high
     if low is None or high is None or fit_in_box(body, low, high).possible:
         return None
-    reason = _excess(body, low, high)
+    beyond = Finding(_word_of(body, low, high), _excess(body, low, high))
     most = _COARSEST * float(np.linalg.norm(high - low))
     if not fit_in_box(body, low - most, high + most).possible:
-        return Finding("impossible", reason)
+        return beyond
     allowed = min(coarseness(), most)
     if allowed > 0.0 and fit_in_box(body, low - allowed, high + allowed).possible:
         inner, outer = 0.0, allowed
@@ -77,10 +77,21 @@ def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], fl
             inner, outer = (inner, middle) if is_enough else (middle, outer)
         return Finding(
             "coarse",
-            f"{reason}; walls {outer * 1e3:.3g} mm farther out would do, and its shapes may be off by "
+            f"{beyond.reason}; walls {outer * 1e3:.3g} mm farther out would do, and its shapes may be off by "
             f"{allowed * 1e3:.3g} mm",
         )
-    return Finding("impossible", reason)
+    return beyond
+
+
+def _word_of(body: RigidBody, low: Floats, high: Floats) -> Literal["suspect", "impossible"]:
+    """Say how bad it is: makers publish tensors far beyond the room of their shapes, and simulators run them.
+
+    A centre of mass outside is a fault of the place, and more than 1000 times a filled box one of the unit.
+    """
+    center, sides = body.center_of_mass, high - low
+    spread = float(np.trace(body.inertia)) / 2.0 / float(body.mass)
+    is_outside = bool(((center < low) | (center > high)).any())
+    return "impossible" if is_outside or spread > FAR * float(sides @ sides) / 12.0 else "suspect"
 
 
 def _excess(body: RigidBody, low: Floats, high: Floats) -> str:

@@ -181,6 +181,9 @@ impl PyRigidBody {
     ///     alone. Some exporters leave a mesh open by the last digits of its corners.
     /// closure, orient
     ///     As of `from_mesh`, for a mesh that is open or wound inward.
+    /// union : bool, optional
+    ///     Join components of a mesh that overlap, so that what they share counts once; by manifold3d (extra `union`). How
+    ///     far it moves corners, a part in 1e12 or so of the size, is in no bound.
     /// repair : bool, optional
     ///     Mend a mesh: weld corners, drop faces that stand twice, wind the others alike, fill loops, each where there is
     ///     need. `provenance` says "repaired", and :func:`polhode.files.solid_from_file` what was done.
@@ -207,7 +210,7 @@ impl PyRigidBody {
     /// --------
     /// polhode.files : the readers, which also return vertices and faces.
     #[staticmethod]
-    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, repair=false, index_base=1, masses="most_common", progress=None))]
+    #[pyo3(signature = (path, *, density=None, mass=None, length_unit=None, weld=0.0, closure=None, orient=false, union=false, repair=false, index_base=1, masses="most_common", progress=None))]
     #[expect(clippy::too_many_arguments, reason = "one for each of Python's")]
     fn from_file<'py>(
         py: Python<'py>,
@@ -218,6 +221,7 @@ impl PyRigidBody {
         weld: f64,
         closure: Option<&str>,
         orient: bool,
+        union: bool,
         repair: bool,
         index_base: i64,
         masses: &str,
@@ -230,6 +234,7 @@ impl PyRigidBody {
         options.set_item("weld", weld)?;
         options.set_item("closure", closure)?;
         options.set_item("orient", orient)?;
+        options.set_item("union", union)?;
         options.set_item("repair", repair)?;
         options.set_item("index_base", index_base)?;
         options.set_item("masses", masses)?;
