@@ -179,7 +179,20 @@ ROOM: Final = {
         urdf(link("a", 6.0, 0.999 * GROWN, CUBE)), {"a": "suspect"}, "its shapes may be off by 34.6 mm"
     ),
     "beyond what a box may be off": Row(
-        urdf(link("a", 6.0, 1.001 * GROWN, CUBE)), {"a": "impossible"}, "where its shape has room for 0.5 m"
+        urdf(link("a", 6.0, 1.001 * GROWN, CUBE)), {"a": "suspect"}, "where its shape has room for 0.5 m"
+    ),
+    # The cube filled has moments of 1: 3 times that is on its walls, 1000 times beyond any reason.
+    "the room of a cube, 999 times": Row(
+        urdf(link("a", 6.0, 999.0, CUBE)), {"a": "suspect"}, "its shape would need 5.99e+03 kg/m^3"
+    ),
+    "the room of a cube, 1001 times": Row(
+        urdf(link("a", 6.0, 1001.0, CUBE)), {"a": "impossible"}, "where its shape has room for 0.5 m"
+    ),
+    # The tensor of the cube filled twice, which has no room 0.1 m from a wall.
+    "no room beside a wall": Row(
+        urdf(link("a", 6.0, 2.0, CUBE, at="0.4 0 0")),
+        {"a": "impossible"},
+        "as the centre of mass is 0.1 m from",
     ),
     # 2 % of the diagonal of the ball's box is δ = 6.93 mm. Spread s² = I/2m about a centre d beyond the ball
     # needs (δ − d)(0.2 + δ + d) ≥ s².

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+import trimesh
 from command_line import one_line, run
+from mesh_files import dae, glb, obj
 from polhode import RigidBody, Uncertain, assembly, solids
+from polhode.assembly.picture import _surface
 from polhode.errors import PolhodeError
 from random_assemblies import Random, ours, ten, toml
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 @pytest.mark.parametrize("seed", range(60))
@@ -208,9 +214,41 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 ]
 
 
+class TestUnitsOfFiles:
+    @pytest.fixture
+    def box(self, tmp_path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """A box of 20 by 30 by 40, as a DAE in centimetres, a GLB, which is in metres, and an OBJ."""
+        solid = trimesh.creation.box((20, 30, 40))
+        mesh = np.asarray(solid.vertices), np.asarray(solid.faces)
+        (tmp_path / "part.dae").write_bytes(dae(*mesh, unit='<unit meter="0.01"/>'))
+        (tmp_path / "part.glb").write_bytes(glb(*mesh))
+        (tmp_path / "part.obj").write_bytes(obj(*mesh))
+        return mesh
+
+    @pytest.mark.usefixtures("box")
+    @pytest.mark.parametrize(("name", "own"), [("part.dae", 0.01), ("part.glb", 1.0), ("part.obj", 0.001)])
+    def test_a_file_keeps_its_own(self, name: str, own: float, tmp_path: Path) -> None:
+        table = {"length_unit": "mm", "part": [{"name": "a", "file": name, "density": 1000.0}]}
+        whole = assembly.read(table, folder=tmp_path)
+        assert whole.body.mass == pytest.approx(24e6 * own**3, rel=1e-6)
+        points, _ = _surface(whole.parts[0], 100)
+        np.testing.assert_allclose(np.ptp(points, axis=0), np.array([20, 30, 40]) * own, rtol=1e-6)
+
+    @pytest.mark.usefixtures("box")
+    def test_another_is_refused_or_taken(self, tmp_path: Path) -> None:
+        part = {"name": "a", "file": "part.dae", "density": 1000.0, "length_unit": "mm"}
+        with pytest.raises(PolhodeError, match="says itself that its unit is 'cm'"):
+            assembly.read({"part": [part]}, folder=tmp_path)
+        whole = assembly.read({"part": [part | {"file": "part.glb"}]}, folder=tmp_path)
+        assert whole.body.mass == pytest.approx(0.024e-3 * 1000, rel=1e-6)
+
+
 class TestRefused:
     @pytest.mark.parametrize(("table", "says"), REFUSED, ids=[says[:40] for _, says in REFUSED])
     def test_it_says_where_and_why(self, table: dict[str, Any], says: str, tmp_path: Path) -> None:
+        (tmp_path / "part.obj").write_text(
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+        )
         with pytest.raises(PolhodeError) as caught:
             assembly.read(table, folder=tmp_path)
         assert says in str(caught.value)

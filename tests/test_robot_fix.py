@@ -135,10 +135,11 @@ class TestCommand:
         assert "changes nothing" not in run("check", tmp_path / "r.urdf", "--density", "1000 kg/m^3")[1]
 
     def test_tensors_that_may_have_been_measured_are_named_before(self, tmp_path: Path) -> None:
-        """A valid tensor beyond the room of its shape; a placeholder and a broken law are no measurements."""
+        """A valid tensor without room in its shape; a placeholder and a broken law are no measurements."""
         (tmp_path / "r.urdf").write_text(
             urdf(
-                link("arm", 5.0, (0.3, 0.31, 0.32), BALL),
+                link("arm", 5.0, (0.019, 0.02, 0.021), BALL, at="0.12 0 0"),
+                link("far", 5.0, (0.3, 0.31, 0.32), BALL),
                 link("one", 5.0, 1.0, BALL),
                 link("law", 5.0, (0.1, 0.1, 0.3), BALL),
             )
@@ -148,6 +149,8 @@ class TestCommand:
             assert code == (0 if more else 1)
             (warning,) = [line for line in out.splitlines() if "warning: " in line]
             assert "perhaps identified or measured: arm; compare" in warning
+            _, out, _ = run("check", tmp_path / "r.urdf", "--strict", *more)
+            assert "perhaps identified or measured: arm, far; compare" in out
 
     def test_numbers_that_stay_keep_their_form(self, tmp_path: Path) -> None:
         text = (

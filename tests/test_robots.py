@@ -142,6 +142,9 @@ class TestThreeFormats:
 
     def test_what_no_body_of_its_size_has(self, format_name: str) -> None:
         (verdict,) = robots.check(written(format_name, (0.1, 0, 0), np.diag([0.9, 0.8, 0.7])))
+        assert verdict.verdict == "suspect"
+        assert "room for" in verdict.reason
+        (verdict,) = robots.check(written(format_name, (0.1, 0, 0), 1e3 * np.diag([0.9, 0.8, 0.7])))
         assert verdict.verdict == "impossible"
         assert "room for" in verdict.reason
         (verdict,) = robots.check(written(format_name, (3, 0, 0), true_l()[1]))

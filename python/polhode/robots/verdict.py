@@ -10,7 +10,7 @@ import numpy as np
 from polhode import RigidBody, principal_moments
 from polhode.errors import PolhodeError
 from polhode.robots.model import Inertial
-from polhode.robots.room import FAR, LEAST, MOST, beyond_room, beyond_size, density_needed, times, too_dense
+from polhode.robots.room import LEAST, MOST, beyond_room, beyond_size, density_needed, times, too_dense
 from polhode.robots.structure import standings, without_mass
 from polhode.validity import nearest_valid
 
@@ -276,8 +276,7 @@ class _Judging(NamedTuple):
         if size is not None and size.word == "impossible":
             return size.word, _joined(compared, size.reason, needed)
         if factor is not None and not LEAST <= factor <= MOST:
-            far: Word = "impossible" if factor > FAR else "suspect"
-            return far, _joined(compared, size.reason if size else "", needed)
+            return "suspect", _joined(compared, size.reason if size else "", needed)
         if size is not None and size.word == "coarse":
             return size.word, _joined(compared, size.reason)
         if size is None and own is None:
