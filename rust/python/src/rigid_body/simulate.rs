@@ -147,23 +147,10 @@ impl PyRigidBody {
     ) -> PyResult<Bound<'py, PyAny>> {
         hints::refuse_unknown("RigidBody.simulate", &KEYWORDS, unknown)?;
         if is_any(&[Some(omega), attitude, position, velocity]) {
-            let options = PyDict::new(py);
-            for (name, value) in [
-                ("load", load),
-                ("position", position),
-                ("velocity", velocity),
-                ("events", events),
-                ("states", states),
-            ] {
-                options.set_item(name, value)?;
-            }
-            options.set_item("about", about)?;
-            options.set_item("method", method)?;
-            options.set_item("rtol", rtol)?;
-            options.set_item("atol", atol)?;
-            options.set_item("on_failure", on_failure)?;
-            options.set_item("progress", &progress)?;
-            options.set_item("max_steps", max_steps)?;
+            let arrays = [load, position, velocity, events, states];
+            let words = (about, method, on_failure);
+            let numbers = (rtol, atol, max_steps);
+            let options = options_of(py, arrays, words, numbers, progress.as_ref())?;
             let given = (slf, t, omega, attitude);
             if let Some(motion) = handed_over(py, "simulated", given, Some(&options))? {
                 return Ok(motion);
@@ -254,6 +241,34 @@ impl PyRigidBody {
         }
         Ok(trajectory)
     }
+}
+
+/// The keywords as Python has them.
+fn options_of<'py>(
+    py: Python<'py>,
+    [load, position, velocity, events, states]: [Given<'_, 'py>; 5],
+    (about, method, on_failure): (&str, &str, &str),
+    (rtol, atol, max_steps): (f64, Option<f64>, Option<i128>),
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let options = PyDict::new(py);
+    for (name, value) in [
+        ("load", load),
+        ("position", position),
+        ("velocity", velocity),
+        ("events", events),
+        ("states", states),
+    ] {
+        options.set_item(name, value)?;
+    }
+    options.set_item("about", about)?;
+    options.set_item("method", method)?;
+    options.set_item("rtol", rtol)?;
+    options.set_item("atol", atol)?;
+    options.set_item("on_failure", on_failure)?;
+    options.set_item("progress", progress)?;
+    options.set_item("max_steps", max_steps)?;
+    Ok(options)
 }
 
 /// The steps that a run may take.
