@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
-__all__ = ["Overlap", "Part", "groups_of", "labels", "overlaps", "parts_of", "told", "winding"]
+__all__ = ["Overlap", "Part", "groups_of", "labels", "meeting", "overlaps", "parts_of", "told", "winding"]
 
 # Winding numbers are taken at so many corners at most: each looks at every face.
 _SAMPLES: Final = 12
@@ -142,24 +142,32 @@ def parts_of(vertices: Floats, faces: Integers, groups: Sequence[str] | None = N
     ]
 
 
-def overlaps(parts: Sequence[Part]) -> list[Overlap]:
-    """Find the parts that share matter.
+def meeting(parts: Sequence[Part]) -> list[tuple[int, int]]:
+    """Give the pairs of parts whose boxes meet, the larger one first."""
+    used = [part.vertices[part.faces] for part in parts]
+    low = np.array([corners.min(axis=(0, 1)) for corners in used])
+    high = np.array([corners.max(axis=(0, 1)) for corners in used])
+    volumes = np.array([part.volume for part in parts])
+    pairs = []
+    for i in np.argsort(-volumes, kind="stable").tolist():
+        meet = (np.maximum(low, low[i]) < np.minimum(high, high[i])).all(axis=1)
+        later = (volumes < volumes[i]) | ((volumes == volumes[i]) & (np.arange(len(parts)) > i))
+        pairs += [(i, k) for k in np.flatnonzero(meet & later).tolist()]
+    return pairs
+
+
+def overlaps(parts: Sequence[Part], pairs: Sequence[tuple[int, int]] | None = None) -> list[Overlap]:
+    """Find the parts that share matter, among those whose boxes meet.
 
     With manifold3d the shared volumes are computed. Without it parts are told that hold corners of one
     another, of which up to 12 are tried, and the volume only of one that lies within another.
     """
     found: list[Overlap] = []
-    used = [part.vertices[part.faces] for part in parts]
-    low = np.array([corners.min(axis=(0, 1)) for corners in used])
-    high = np.array([corners.max(axis=(0, 1)) for corners in used])
-    volumes = np.array([part.volume for part in parts])
-    for i in np.argsort(-volumes, kind="stable").tolist():
-        meet = (np.maximum(low, low[i]) < np.minimum(high, high[i])).all(axis=1)
-        later = (volumes < volumes[i]) | ((volumes == volumes[i]) & (np.arange(len(parts)) > i))
-        for k in np.flatnonzero(meet & later).tolist():
-            shared = _shared(parts[i], parts[k], used[i], used[k])
-            if shared is not None:
-                found.append(shared)
+    for i, k in meeting(parts) if pairs is None else pairs:
+        one, other = parts[i], parts[k]
+        shared = _shared(one, other, one.vertices[one.faces], other.vertices[other.faces])
+        if shared is not None:
+            found.append(shared)
     return found
 
 

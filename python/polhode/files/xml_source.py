@@ -29,6 +29,8 @@ __all__ = [
 ]
 
 _START_TAG: Final = re.compile(rb"<[^\"'<>]*(?:\"[^\"]*\"[^\"'<>]*|'[^']*'[^\"'<>]*)*>")
+# A declaration after blanks or comments.
+_LATE: Final = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!--(?:(?!--).)*-->\s*)*(<\?xml\s[^<>]*\?>)", re.DOTALL)
 _DEEPEST: Final = 200
 _MOST_ELEMENTS: Final = 1_000_000
 
@@ -104,6 +106,15 @@ class Edit(NamedTuple):
     text: str
 
 
+def _declared_late(source: bytes) -> bytes:
+    """Blank out a declaration that stands after blanks or comments, where XML has none but readers take it."""
+    found = _LATE.match(source)
+    if found is None:
+        return source
+    start, end = found.span(1)
+    return source[:start] + b" " * (end - start) + source[end:]
+
+
 def parse_xml(
     source: bytes, name: str, *, file: str = "", above: int = 0, budget: Budget | None = None
 ) -> Element:
@@ -135,6 +146,7 @@ def parse_xml(
     """
     if source.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in source[:4]:
         raise FileFormatError(f"{name}: is in UTF-16; save it as UTF-8")
+    source = _declared_late(source)
     spent = budget if budget is not None else Budget()
     parser = expat.ParserCreate()
     parser.buffer_text = True

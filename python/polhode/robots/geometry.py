@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
-from polhode.files.components import overlaps, parts_of, told
+from polhode.files.components import meeting, overlaps, parts_of, told
 from polhode.files.loaded import load
 from polhode.robots.facets import sagitta
 from polhode.robots.words import quoted, shortened
@@ -42,6 +42,8 @@ _OF_PRIMITIVES: Final = 0.02
 _LITTLE: Final = 1e-3
 # Meshes of more triangles are not searched for components that overlap.
 _MOST_FACES: Final = 50_000
+# Nor are components with more triangles than this, counted once for each pair whose boxes meet.
+_MOST_PAIRED: Final = 50_000
 
 
 @dataclass(frozen=True)
@@ -102,6 +104,10 @@ class GeometryReader:
         """Take the shapes of a link together."""
         notes: dict[str, str] = {}  # where each was found first
         folder = link.folder or self._folder
+        for shape in link.shapes:
+            if _is_nothing(shape):
+                notes.setdefault(f"a {shape.kind} of size 0 is no shape; it is left out", shape.where)
+        link = replace(link, shapes=tuple(shape for shape in link.shapes if not _is_nothing(shape)))
         boxes = [self._box(shape, folder, notes) for shape in link.shapes]
         body, volume, role = self._whole(link, folder, notes)
         told = tuple(f"{where}: {note}" if where else note for note, where in notes.items())
@@ -255,6 +261,10 @@ class GeometryReader:
         return position - reach, position + reach
 
 
+def _is_nothing(shape: Shape) -> bool:
+    return shape.kind in _SOLIDS and not shape.problem and not any(shape.size)
+
+
 def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
     """Say which components of a mesh overlap; "" where none do, or where there are too many faces."""
     if len(faces) > _MOST_FACES:
@@ -262,8 +272,11 @@ def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
     parts = parts_of(vertices, faces)
     if len(parts) < 2:
         return ""
+    pairs = meeting(parts)
+    if sum(len(parts[i].faces) + len(parts[k].faces) for i, k in pairs) > _MOST_PAIRED:
+        return f"{name}: its {len(parts)} components were not searched for overlaps; polhode report does it"
     total = sum(part.volume for part in parts)
-    found = [each for each in overlaps(parts) if not each.volume < _LITTLE * total]  # or it is not known
+    found = [each for each in overlaps(parts, pairs) if not each.volume < _LITTLE * total]  # or it is not known
     lines = told(found, total, " m^3")
     return f"{name}: {'; '.join(lines)}" if lines else ""
 

@@ -76,6 +76,7 @@ class _Reader:
                 f"{' and '.join(done)} of the compiler changes masses later, which is not judged"
             ] = None
         self.geoms: dict[str, dict[str, str]] = {"main": {}}
+        self.scales: dict[str, str] = {}  # of the meshes of each class
         for default in root.all("default"):
             self._add_class(default, {}, default.attributes.get("class", "main"))
         self.meshes: dict[str, tuple[Element, str]] = {}
@@ -241,13 +242,17 @@ class _Reader:
                 yield Member(child, Place.here(), inherited, "")
             yield from self.everything(child, tag, child.attributes.get("childclass", inherited))
 
-    def _add_class(self, default: Element, inherited: dict[str, str], name: str) -> None:
+    def _add_class(
+        self, default: Element, inherited: dict[str, str], name: str, mesh_scale: str = "1"
+    ) -> None:
         own = dict(inherited)
         for geom in default.all("geom"):
             own |= {name: text for name, text in geom.attributes.items() if name in _OF_GEOMS}
-        self.geoms[name] = own
+        for mesh in default.all("mesh"):
+            mesh_scale = mesh.attributes.get("scale", mesh_scale)
+        self.geoms[name], self.scales[name] = own, mesh_scale
         for child in default.all("default"):
-            self._add_class(child, own, child.attributes.get("class", ""))
+            self._add_class(child, own, child.attributes.get("class", ""), mesh_scale)
 
     def _place(self, element: Element, attributes: dict[str, str]) -> Place:
         position = numbers(element, attributes.get("pos", "0 0 0"), 3, "pos")
@@ -314,7 +319,8 @@ class _Reader:
             if name not in self.meshes:
                 return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass, geom.where)
             mesh, address = self.meshes[name]
-            factors = scale(mesh, mesh.attributes.get("scale", "1"))
+            of_class = self.scales.get(mesh.attributes.get("class", "main"), "1")
+            factors = scale(mesh, mesh.attributes.get("scale", of_class))
             return Shape("mesh", factors, place, "collision", address, density, mass, geom.where)
         place, size = self._sized(geom, attributes, kind)
         return Shape(kind, size, frame.then(place), "collision", "", density, mass, geom.where)

@@ -39,7 +39,7 @@ FAR: Final = 1000.0
 # The densest matter, osmium, in kg/m^3.
 _DENSEST: Final = 22_590.0
 # No shape is taken to be farther off than this, of the diagonal of all.
-_COARSEST: Final = 0.05
+_COARSEST: Final = 0.02
 _STEPS: Final = 40
 
 
@@ -59,7 +59,7 @@ def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], fl
     geometry : Geometry
         All of whose shapes were read.
     coarseness : callable
-        Gives how far the shapes may be off, in metres; more than 5 % of their diagonal is not counted.
+        Gives how far the shapes may be off, in metres; more than 2 % of their diagonal is not counted.
     """
     low, high = geometry.low, geometry.high
     if low is None or high is None or fit_in_box(body, low, high).possible:
