@@ -97,7 +97,7 @@ def _git(git: Path, *words: str) -> subprocess.CompletedProcess[bytes]:
 
 def unpacked(git: Path, repository: str, commit: str, scratch: Path) -> Path:
     """Write the parts of robots at a commit into a folder, as in a clone; what a mirror lacks stays out."""
-    folder = scratch / f"{repository.replace('/', '+')}@{commit[:12]}"
+    folder = scratch / f"{repository.replace('/', '+')}@{commit[:12]}" / repository.split("/")[1]
     if folder.exists():
         return folder
     half = folder.with_name(f"{folder.name}.half")

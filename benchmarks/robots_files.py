@@ -122,7 +122,7 @@ class Meshes:
             return path if path.is_file() else None
         package, rest = (named[1] or named[3]).strip(), named[2] or named[4]
         around = [p for p in robot.parents if p.is_relative_to(self.folder)]
-        above = [p for p in around if p.name == package or p == self.folder]
+        above = [p for p in around if p.name == package]
         above += [p / package for p in around]
         shared = {p: sum(map(str.__eq__, p.parts, robot.parts)) for p in self.packages[package]}
         places = [*above, *sorted(shared, key=lambda p: (-shared[p], p))]
