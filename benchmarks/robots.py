@@ -10,6 +10,7 @@ these need ``pip install mujoco pin pycollada``. ``--renew`` writes into ``robot
 from __future__ import annotations
 
 import argparse
+import os
 import shutil
 import subprocess
 import tempfile
@@ -329,6 +330,9 @@ def main() -> None:
     parser.add_argument("--judge", choices=JUDGES, default="ours")
     parser.add_argument("--renew", action="store_true", help="write what the judges say into robots.toml")
     options = parser.parse_args()
+    options.mirrors, options.scratch = options.mirrors.resolve(), options.scratch.resolve()
+    options.scratch.mkdir(parents=True, exist_ok=True)
+    os.chdir(options.scratch)  # where MuJoCo leaves its log
     counts: Counter[str] = Counter()
     seconds, rows = [], []
     for file in listed():
