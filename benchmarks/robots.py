@@ -255,6 +255,9 @@ def compare(file: File, judged: Judged) -> list[tuple[str, str, str, str, str]]:
     if judged.unread:
         return [("unread", "", "", "", judged.unread)]
     told = {name for name, _, _ in unique(judged.links)}
+    if judged.by in ("mujoco", "pinocchio"):  # they tell only what they refuse
+        refused = [(name, file.expected(name), f"{word}: {why}") for name, word, why in judged.links]
+        return [("refused", name, *told, said) for name, told, said in refused if told[0] not in FAILING]
     if len(judged.links) != file.links and not file.path.endswith(".xml"):
         return [("other links", "", str(file.links), file.by, str(len(judged.links)))]
     found = [
