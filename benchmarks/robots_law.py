@@ -5,7 +5,8 @@ Of each link they say a word and the rule that gave it:
 - ``law``: no body has the mass and the tensor (one is negative, or a moment larger than the others' sum);
 - ``sign``: the tensor stands for nothing (the unit tensor, none with a mass, one for unlike masses);
 - ``joints``: it has a shape and is moved by a joint, and neither it nor what is fixed to it has mass;
-- ``room``: the second moments are beyond those of matter within the box around all its shapes
+- ``room``: the second moments are beyond those of matter within the box around all its shapes (``suspect``
+  where they are 3 to 1000 times those of the box filled, and the centre of mass is inside)
   (``room dae`` where one is a DAE mesh, which takes its reader's word for unit and axes);
 - ``shape``: more than 1000 times the moments of its shapes filled evenly; ``suspect`` where more than
   3 times or less than a tenth.
@@ -80,10 +81,21 @@ def of_tensor(link: Link, copied: set[float]) -> Said:
         elif size and (over := overshoot(link, low, high) / size) > 1e-9:
             kinds = {each.dae for each in known} - {""}
             is_sure = (over > NARROW and "y-up" not in kinds) or ratio > ABSURD * GREY
-            return ("impossible" if is_sure else "disputed"), "room dae" if kinds else "room"
+            return (beyond(link, low, high) if is_sure else "disputed"), "room dae" if kinds else "room"
     if ratio > ABSURD:
         return ("impossible" if ratio > ABSURD * GREY else "disputed"), "shape"
     return ("good" if LEAST <= ratio <= MOST else "suspect"), ("law" if own is None else "shape")
+
+
+def beyond(link: Link, low: Array, high: Array) -> str:
+    """Tell what a tensor without room is: suspect from 3 to 1000 times that of the box filled."""
+    size = float(np.linalg.norm(high - low))
+    times = float(np.trace(link.tensor)) / 2.0 / link.mass / (size**2 / 12.0)
+    if ((link.center < low) | (link.center > high)).any():
+        return "impossible"
+    if any(limit / GREY < times < limit * GREY for limit in (MOST, ABSURD)):
+        return "disputed"
+    return "suspect" if MOST < times < ABSURD else "impossible"
 
 
 def isotropic(tensor: Array) -> float | None:

@@ -157,6 +157,7 @@ TENSORS: Final = {
     "a tensor without mass": Row(urdf(link("a", 0.0, 0.5)), {"a": "impossible"}),
     "zero with mass": Row(urdf(link("a", 1.0, 0.0)), {"a": "placeholder"}, "where mass has no spread"),
     "zero with mass and shape": Row(urdf(link("a", 1.0, 0.0, BALL)), {"a": "placeholder"}),
+    "zero with little mass and shape": Row(urdf(link("a", 1e-9, 0.0, BALL)), {"a": "placeholder"}),
     "zero with mass, tied": Row(
         urdf(bare("base"), ARM, link("a", 1.0, 0.0), joint("base", "arm"), joint("arm", "a", "fixed")),
         {"base": "none", "arm": "good", "a": "placeholder"},
@@ -208,6 +209,10 @@ ROOM: Final = {
         "its shapes may be off by 6.93 mm",
     ),
     "a point farther outside": Row(urdf(link("a", 0.1, 1e-7, BALL, at="0 0 0.107")), {"a": "impossible"}),
+    "a ball without size beside a cube": Row(
+        urdf(link("a", 6.0, 1.0, '<sphere radius="0"/>', CUBE)), {"a": "good"}, "as its collision shape"
+    ),
+    "a ball without size alone": Row(urdf(link("a", 6.0, 2.0, '<sphere radius="0"/>')), {"a": "good"}),
     "a tenth": Row(urdf(link("a", 5.0, 0.00201, BALL)), {"a": "good"}),
     "less than a tenth": Row(urdf(link("a", 5.0, 0.00199, BALL)), {"a": "suspect"}),
     "three times, with room": Row(urdf(link("a", 5.0, 0.0599, BALL, seen=CUBE)), {"a": "good"}),

@@ -194,6 +194,19 @@ def test_check_leaves_out_what_is_little(depth: float, is_told: bool, tmp_path: 
     assert bool(verdict.notes) == is_told
 
 
+@pytest.mark.parametrize(("most", "is_told"), [(48, False), (47, True)])
+def test_check_tells_where_it_does_not_search(
+    most: int, is_told: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three cubes in a row, of which two pairs meet: 4 times 12 triangles."""
+    monkeypatch.setattr("polhode.robots.geometry._MOST_PAIRED", most)
+    row = [at((1, 1, 1), (x, 0, 0)) for x in (0.0, 0.9995, 1.999)]
+    (tmp_path / "row.obj").write_bytes(obj(*joined(*row)))
+    text = urdf(link("a", 1.0, (0.2, 0.8, 0.8), '<mesh filename="row.obj"/>'))
+    (verdict,) = robots.check(robots.parse_robot(text.encode(), name="r", folder=tmp_path))
+    assert any("3 components were not searched for overlaps" in note for note in verdict.notes) == is_told
+
+
 class TestUnion:
     @pytest.mark.parametrize("count", [2, 3, 4])
     def test_of_boxes_is_that_of_closed_forms(

@@ -11,9 +11,10 @@ import pytest
 import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
-from mesh_files import obj
+from mesh_files import binary_stl, obj
 from oracles.meshes import box, cube
 from polhode import RigidBody, robots
+from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -106,6 +107,44 @@ def written(format_name: str, center: Any, tensor: np.ndarray) -> robots.Robot:
     }
     source = FORMATS[format_name].format(**values).encode()
     return robots.parse_robot(source, name="l", folder=".")
+
+
+@pytest.mark.parametrize(
+    ("defaults", "own", "moment"),
+    [
+        ('<mesh scale="0.1 0.1 0.1"/>', "", 0.01 / 6.0),
+        ('<mesh scale="0.1 0.1 0.1"/>', 'scale="1 1 1"', 1.0 / 6.0),
+        ('<default class="small"><mesh scale="0.1 0.1 0.1"/></default>', "", 1.0 / 6.0),
+        ('<default class="small"><mesh scale="0.1 0.1 0.1"/></default>', 'class="small"', 0.01 / 6.0),
+        ('<mesh scale="0.1 0.1 0.1"/><default class="in"><geom/></default>', 'class="in"', 0.01 / 6.0),
+    ],
+)
+def test_meshes_of_mjcf_have_the_scale_of_their_class(
+    defaults: str, own: str, moment: float, tmp_path: Path
+) -> None:
+    cube = trimesh.creation.box((1, 1, 1))
+    (tmp_path / "cube.stl").write_bytes(binary_stl(np.asarray(cube.vertices), np.asarray(cube.faces)))
+    text = f"""<mujoco><default>{defaults}</default><asset><mesh name="cube" file="cube.stl" {own}/></asset>
+    <worldbody><body name="a"><freejoint/><geom type="mesh" mesh="cube" mass="1"/></body>
+    </worldbody></mujoco>"""
+    robot = robots.parse_robot(text.encode(), name="r", folder=tmp_path)
+    (verdict,) = robots.check(robot)
+    np.testing.assert_allclose(there(verdict.moments), [moment] * 3, rtol=1e-9)
+
+
+@pytest.mark.parametrize("before", [" ", "\n\n", "<!-- by hand -->\n", "\ufeff\n", " <!-- a --> <!-- b --> "])
+def test_a_declaration_may_stand_after_blanks_and_comments(before: str) -> None:
+    text = """<?xml version="1.0"?><robot name="one"><link name="ball"><inertial><mass value="5"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link></robot>"""
+    source = (before + text).encode()
+    robot = robots.parse_robot(source, name="one", folder=".")
+    better = robots.fixed(robot, robots.check(robot))
+    assert better == source.replace(b'"1" iyy="1" izz="1"', b'"0.02" iyy="0.02" izz="0.02"').replace(
+        b'ixy="0" ixz="0" iyz="0"', b'ixy="0" ixz="0" iyz="0"'
+    )
+    with pytest.raises(FileFormatError, match="not well-formed"):
+        robots.parse_robot(("two " + text).encode(), name="one", folder=".")
 
 
 @pytest.mark.parametrize("format_name", FORMATS)

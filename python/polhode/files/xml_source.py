@@ -107,7 +107,7 @@ class Edit(NamedTuple):
 
 
 def _declared_late(source: bytes) -> bytes:
-    """Blank out a declaration that stands after blanks or comments, where XML has none but readers take it."""
+    """Blank out a declaration after blanks or comments, where XML has none but other readers take it."""
     found = _LATE.match(source)
     if found is None:
         return source

@@ -276,7 +276,9 @@ def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
     if sum(len(parts[i].faces) + len(parts[k].faces) for i, k in pairs) > _MOST_PAIRED:
         return f"{name}: its {len(parts)} components were not searched for overlaps; polhode report does it"
     total = sum(part.volume for part in parts)
-    found = [each for each in overlaps(parts, pairs) if not each.volume < _LITTLE * total]  # or it is not known
+    found = [
+        each for each in overlaps(parts, pairs) if not each.volume < _LITTLE * total
+    ]  # or it is not known
     lines = told(found, total, " m^3")
     return f"{name}: {'; '.join(lines)}" if lines else ""
 
