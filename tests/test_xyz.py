@@ -62,7 +62,7 @@ def test_xyz_takes_no_mass(given: str, write: Any) -> None:
         (b"1\na\nO 0 zero 0\n", "line 3"),
         (b"1\na\nO 0 nan 0\n", "line 3"),
         (b"2\na\nO 0 0 0\n\n", "line 4"),
-        (b"1\nProperties=pos:R:3:species:S:1\n0 0 0 O\n", "line 2 declares other columns"),
+        (b"1\nProperties=pos:R:3:forces:R:3\n0 0 0 0 0 0\n", "line 2 declares no columns"),
         (b"1\n\xff\xfe\nO 0 0 0\n", "not a text file"),
         (b"9" * 30 + b"\nmany\nO 0 0 0\n", "promises 9999"),
         (bytes(80) + bytes(4), "content is binary STL"),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 import numpy as np
 
 from polhode import _core
-from polhode.errors import MeshError, PolhodeError
+from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.files.loaded import Loaded, load
 from polhode.files.mesh import weld_within
 from polhode.files.repair import RepairStep, repaired, resolution_of, spanned_volume
@@ -190,9 +190,11 @@ def solid_of(
                 )
         except MeshError as error:
             if file.stat().st_size <= _SMALL_FILE:
-                if error.law == "closed" and loaded.format == "binary STL":
-                    _offer_weld(error, loaded.mesh)
-                _offer_repair(error, loaded.mesh, scale)
+                # Of a file that another reader refuses there is no way out to tell.
+                with suppress(FileFormatError):
+                    if error.law == "closed" and loaded.format == "binary STL":
+                        _offer_weld(error, loaded.mesh)
+                    _offer_repair(error, loaded.mesh, scale)
             raise
         return MeshSolid(body, loaded.format, None, faces, volume, area, 0)
     mesh = loaded.mesh
@@ -247,7 +249,7 @@ def _cad_solid(
         body, parts = solids_of(cad, density, mass)
     area = sum(part.moments.area for part in cad.parts) * 1e-6
     faces, volume = sum(part.faces for part in cad.parts), sum(part.volume for part in parts)
-    return MeshSolid(body, loaded.format, None, faces, volume, area, 0, parts)
+    return MeshSolid(body, loaded.format, None, faces, volume, area, 0, parts=parts)
 
 
 def _value(number: Number) -> float:
