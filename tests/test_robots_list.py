@@ -58,7 +58,10 @@ LINKS = {
     "true": (inertial(1, 1 / 6, 1 / 6, 1 / 6) + BOX, "good"),
     "small": (inertial(1, 0.01, 0.01, 0.012) + BOX, "suspect"),
     "large": (inertial(1, 0.45, 0.45, 0.451) + BOX, "good"),  # 2.7 times, nearly all in the corners
-    "beyond": (inertial(1, 0.6, 0.6, 0.61) + BOX, "impossible"),
+    "beyond": (inertial(1, 0.6, 0.6, 0.61) + BOX, "disputed"),  # 3.6 times: as near to 3 as digits may decide
+    "far beyond": (inertial(1, 6, 6, 6.1) + BOX, "suspect"),
+    "beyond reason": (inertial(1, 600, 600, 601) + BOX, "impossible"),
+    "beside a wall": (inertial(1, 0.3, 0.3, 0.31, at="0.45 0 0") + BOX, "impossible"),
     "away": (inertial(1, 0.1, 0.1, 0.11, at="0.7 0 0") + BOX, "impossible"),
     "narrow": (inertial(1, 0.503, 0.503, 0.504) + BOX, "disputed"),
     "triangle": (inertial(1, 1, 1, 3), "impossible"),

@@ -109,7 +109,7 @@ class Edit(NamedTuple):
 def _declared_late(source: bytes) -> bytes:
     """Blank out a declaration after blanks or comments, where XML has none but other readers take it."""
     found = _LATE.match(source)
-    if found is None:
+    if found is None or not source[: found.start(1)].removeprefix(b"\xef\xbb\xbf"):
         return source
     start, end = found.span(1)
     return source[:start] + b" " * (end - start) + source[end:]
