@@ -132,6 +132,18 @@ def test_meshes_of_mjcf_have_the_scale_of_their_class(
     np.testing.assert_allclose(there(verdict.moments), [moment] * 3, rtol=1e-9)
 
 
+def test_the_same_moments_in_turned_axes_are_a_placeholder() -> None:
+    turned = "0.709167 -0.0920216 -0.0630148 0.696164"
+    bodies = "".join(
+        f'<body><freejoint/><inertial pos="0 0 0" quat="{quat}" mass="{mass}" '
+        'diaginertia="1e-5 1e-5 1e-5"/></body>'
+        for quat, mass in (("1 0 0 0", 0.1), (turned, 0.075))
+    )
+    text = f"<mujoco><worldbody>{bodies}</worldbody></mujoco>"
+    verdicts = robots.check(robots.parse_robot(text.encode(), name="r", folder="."))
+    assert [verdict.verdict for verdict in verdicts] == ["placeholder", "placeholder"]
+
+
 @pytest.mark.parametrize("before", [" ", "\n\n", "<!-- by hand -->\n", "\ufeff\n", " <!-- a --> <!-- b --> "])
 def test_a_declaration_may_stand_after_blanks_and_comments(before: str) -> None:
     text = """<?xml version="1.0"?><robot name="one"><link name="ball"><inertial><mass value="5"/>

@@ -184,7 +184,7 @@ def _placeholders(links: Sequence[Link]) -> dict[float, int]:
 
 
 def _isotropic(tensor: Floats) -> float | None:
-    moment = float(tensor[0, 0])
+    moment = float(f"{tensor[0, 0]:.9g}")  # which the turn of its axes leaves alone
     return moment if np.allclose(tensor, moment * np.eye(3), rtol=0.0, atol=1e-9 * abs(moment)) else None
 
 
