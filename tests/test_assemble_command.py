@@ -53,6 +53,7 @@ class TestCommand:
         assert {key: told[key] for key in report if key != "notes"} == {
             k: v for k, v in report.items() if k != "notes"
         } | {"units": told["units"]}
+        assert run("assemble", cart, "--as", "drake") == run("report", cart, "--as", "drake")
         made.body.save(tmp_path / "cart.json")
         code, saved, _ = run("report", tmp_path / "cart.json", "--length-unit", "m", "--format", "json")
         assert code == 0

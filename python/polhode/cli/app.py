@@ -227,15 +227,21 @@ def assemble(
     file
         An assembly (TOML).
     """
-    from polhode.cli.assemble import assembly_report, save_assembly
+    from polhode.cli.assemble import assembly_for_program, assembly_report, save_assembly
     from polhode.cli.outputs import check_outputs
     from polhode.files.reading import files_read
 
     places = [*(("--save", path) for path in assemble.save), ("--output", output.output)]
     check_outputs(places, [file, extra.expect])
     with files_read() as read:
-        told, made = assembly_report(file, assemble, extra)
+        if extra.program is not None:
+            text = assembly_for_program(file, assemble, extra, output.form)
+        else:
+            told, made = assembly_report(file, assemble, extra)
     check_outputs(places, read)
+    if extra.program is not None:
+        _write_text(text, output)
+        return GOOD
     differing = []
     if extra.expect is not None:
         from polhode.cli.compare import held_against

@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from polhode._extras import require
 from polhode._quantities import quantity, vector
+from polhode._snippets import to_text
 from polhode.assembly import read
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.ledger import node_row, tensor_row
 from polhode.cli.loading import LoadedBody
+from polhode.cli.report import check_alone
 from polhode.cli.source import STDIN
 from polhode.cli.tables import FileUnits
 from polhode.cli.whole import body_sections
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from polhode.assembly import Assembly
     from polhode.cli.options import AssembleOptions, ReportOptions
 
-__all__ = ["assembly_report", "save_assembly"]
+__all__ = ["assembly_for_program", "assembly_report", "save_assembly"]
 
 _PICTURES: Final = (".png", ".pdf", ".svg")
 _SAVED: Final = (*_PICTURES, ".json", ".npz", ".csv")
@@ -39,9 +41,7 @@ def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) 
     if extra.mass_unit is not None:
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
     about = vector(extra.about, "m", "--about") if extra.about else None
-    if file == STDIN:
-        raise PolhodeError("-: an assembly names files beside its own; save it in one, and name that")
-    made = read(file)
+    made = _read(file)
     whole = made.ledger[made.ledger.root]
     report = Report()
     report.section(
@@ -69,6 +69,20 @@ def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) 
     loaded = LoadedBody(made.body, [], "kg", "m", notes=made.notes, kind="assembly")
     body_sections(report, loaded, FileUnits("m", extra.mass_unit), about)
     return report, made
+
+
+def assembly_for_program(file: Path, options: AssembleOptions, extra: ReportOptions, form: str | None) -> str:
+    """Write the mass properties of the whole for the program of --as."""
+    check_alone(extra, form)
+    if options.save:
+        raise PolhodeError("--save: --as prints numbers alone; leave one of the two out")
+    return to_text(_read(file).body, str(extra.program))
+
+
+def _read(file: Path) -> Assembly:
+    if file == STDIN:
+        raise PolhodeError("-: an assembly names files beside its own; save it in one, and name that")
+    return read(file)
 
 
 def save_assembly(made: Assembly, path: Path) -> list[str]:

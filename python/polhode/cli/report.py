@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from polhode.cli.loading import LoadedBody
     from polhode.cli.options import BodyOptions
 
-__all__ = ["file_report", "for_program"]
+__all__ = ["check_alone", "file_report", "for_program"]
 
 UNKNOWN = "unit unknown"
 PLAIN = ReportOptions()
@@ -53,14 +53,7 @@ def file_report(file: Path | None, options: BodyOptions, extra: ReportOptions = 
 
 def for_program(file: Path | None, options: BodyOptions, extra: ReportOptions, form: str | None) -> str:
     """Write the mass properties of the body in a file for the program of --as."""
-    for option, is_given in (
-        ("--format", form is not None),
-        ("--expect", extra.expect is not None),
-        ("--about", extra.about),
-        ("--mass-unit", extra.mass_unit is not None),
-    ):
-        if is_given:
-            raise PolhodeError(f"{option}: --as prints the numbers that {extra.program} takes; leave it out")
+    check_alone(extra, form)
     loaded = any_body(file, options)
     if loaded.mass_unit != "kg" or loaded.length != "m":
         reason = "is a molecule, in u and angstrom" if loaded.mass_unit == "u" else "does not say its unit"
@@ -71,6 +64,18 @@ def for_program(file: Path | None, options: BodyOptions, extra: ReportOptions, f
     if loaded.assumed:
         raise PolhodeError("--as: neither density nor mass is given; state --density or --mass")
     return to_text(loaded.body, str(extra.program))
+
+
+def check_alone(extra: ReportOptions, form: str | None) -> None:
+    """Refuse what the numbers for the program of --as have no place for."""
+    for option, is_given in (
+        ("--format", form is not None),
+        ("--expect", extra.expect is not None),
+        ("--about", extra.about),
+        ("--mass-unit", extra.mass_unit is not None),
+    ):
+        if is_given:
+            raise PolhodeError(f"{option}: --as prints the numbers that {extra.program} takes; leave it out")
 
 
 def _point(

@@ -11,6 +11,7 @@ from polhode import RigidBody
 from polhode._quantities import amount, has_unit, quantities, split, vector
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody, load_body
+from polhode.cli.options import BodyOptions
 from polhode.cli.sigmas import note_linear, told
 from polhode.cli.source import shown
 from polhode.cli.tables import FileUnits, body_fields, ellipsoid_fields, tensor_fields, trust_fields
@@ -21,13 +22,14 @@ from polhode.units import metres_per
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from polhode.cli.options import BodyOptions
-
 __all__ = ["any_body", "body_sections", "is_whole", "whole_report"]
 
 _WHOLE: Final = (".json", ".npz", ".toml")
 """Endings of such files."""
-_OF_SHAPES: Final = ("density", "mass", "weld", "closure", "orient", "bond_sigma", "mass_sigmas")
+_OF_MESHES: Final = ("weld", "closure", "orient", "union", "repair", "index_base")
+_OF_SHAPES: Final = ("density", "mass", *_OF_MESHES, "bond_sigma", "mass_sigmas")
+_OF_PRINTOUTS: Final = ("inertia", "com", "products", "inertia_about")
+_PLAIN: Final = BodyOptions()
 
 
 def is_whole(file: Path | None) -> bool:
@@ -37,7 +39,7 @@ def is_whole(file: Path | None) -> bool:
 
 def any_body(file: Path | None, options: BodyOptions, **how: bool) -> LoadedBody:
     """Read the body in a file, or without one that of a CAD program's numbers; `how` is of `load_body`."""
-    if file is None or options.inertia or options.com or options.products is not None:
+    if file is None or any(_is_given(options, name) for name in _OF_PRINTOUTS):
         return _printed(file, options)
     if is_whole(file):
         return _whole_body(file, options)
@@ -49,7 +51,7 @@ def _whole_body(file: Path, options: BodyOptions) -> LoadedBody:
     is_assembly = file.suffix.lower() == ".toml"
     kind = "assembly" if is_assembly else "saved body"
     for name in (*_OF_SHAPES, *(("length_unit",) if is_assembly else ())):
-        if getattr(options, name):
+        if _is_given(options, name):
             reason = "whose parts state theirs" if is_assembly else "whole as it is"
             raise PolhodeError(
                 f"--{name.replace('_', '-')}: {file} is {_article(kind)}, {reason}; leave it out"
@@ -80,10 +82,10 @@ def _printed(file: Path | None, options: BodyOptions) -> LoadedBody:
     from polhode._printed import from_printout
 
     if file is not None:
-        name = "--inertia" if options.inertia else "--com" if options.com else "--products"
-        raise PolhodeError(f"{name}: {shown(file)} tells what the body is; leave it out, or the file")
+        name = next(name for name in _OF_PRINTOUTS if _is_given(options, name)).replace("_", "-")
+        raise PolhodeError(f"--{name}: {shown(file)} tells what the body is; leave it out, or the file")
     for name in ("length_unit", *(name for name in _OF_SHAPES if name != "mass")):
-        if getattr(options, name):
+        if _is_given(options, name):
             raise PolhodeError(
                 f"--{name.replace('_', '-')}: --inertia has its own units and no shape; leave it out"
             )
@@ -162,6 +164,11 @@ def body_sections(
     if loaded.length == "unit":
         report.notes.append("unit unknown: all results are in the file's own units")
     note_linear(report)
+
+
+def _is_given(options: BodyOptions, name: str) -> bool:
+    """Whether an option differs from what holds without it."""
+    return bool(getattr(options, name) != getattr(_PLAIN, name))
 
 
 def _article(kind: str) -> str:
