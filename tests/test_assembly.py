@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -241,6 +242,53 @@ class TestUnitsOfFiles:
             assembly.read({"part": [part]}, folder=tmp_path)
         whole = assembly.read({"part": [part | {"file": "part.glb"}]}, folder=tmp_path)
         assert whole.body.mass == pytest.approx(0.024e-3 * 1000, rel=1e-6)
+
+    def test_molecules_are_in_angstrom(self, tmp_path: Path) -> None:
+        (tmp_path / "pair.xyz").write_text("2\npair\nH 0 0 0\nH 2 0 0\n")
+        part = {"name": "a", "file": "pair.xyz"}
+        for unit, metres in (({}, 1e-10), ({"length_unit": "nm"}, 1e-9)):
+            whole = assembly.read({"length_unit": "in", "part": [part | unit]}, folder=tmp_path)
+            np.testing.assert_allclose(whole.body.center_of_mass, [metres, 0, 0], rtol=1e-12)
+
+
+class TestMeshes:
+    CORNER = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+
+    def part(self, tmp_path: Path, faces: str, **keys: Any) -> dict[str, Any]:
+        (tmp_path / "part.obj").write_text(self.CORNER + faces)
+        return {"part": [{"name": "a", "file": "part.obj", "length_unit": "m", "density": 6.0} | keys]}
+
+    def test_one_is_repaired_where_its_part_says_so(self, tmp_path: Path) -> None:
+        table = self.part(tmp_path, "f 1 3 2\nf 1 2 4\nf 2 3 4\n")
+        with pytest.raises(PolhodeError, match="repair = true mends it") as caught:
+            assembly.read(table, folder=tmp_path)
+        assert 'closure = "caps" or "hull"' in str(caught.value)
+        (tmp_path / "whole.toml").write_text(toml(table))
+        _, _, err = run("assemble", tmp_path / "whole.toml")
+        assert "repair = true mends it" in err
+        assert "--" not in err
+        table["part"][0]["repair"] = True
+        whole = assembly.read(table, folder=tmp_path)
+        assert whole.body.mass == pytest.approx(1.0, rel=1e-14)
+        assert "part 'a': its mesh was repaired" in whole.notes[0]
+        table["part"][0]["repair"] = "no"
+        with pytest.raises(PolhodeError, match="repair: 'no' is neither true nor false"):
+            assembly.read(table, folder=tmp_path)
+
+    def test_what_overlaps_is_joined_where_its_part_says_so(self, tmp_path: Path) -> None:
+        pytest.importorskip("manifold3d", reason="joining needs polhode[union]")
+        boxes = [trimesh.creation.box((2, 2, 2)) for _ in range(2)]
+        boxes[1].apply_translation((1, 0, 0))
+        both: Any = trimesh.util.concatenate(boxes)
+        (tmp_path / "part.obj").write_bytes(obj(np.asarray(both.vertices), np.asarray(both.faces)))
+        part = {"name": "a", "file": "part.obj", "length_unit": "m", "density": 1.0, "union": True}
+        assert assembly.read({"part": [part]}, folder=tmp_path).body.mass == pytest.approx(12.0, rel=1e-12)
+
+    def test_faces_that_count_from_0_in_a_packed_file(self, tmp_path: Path) -> None:
+        text = self.CORNER + "f 0 2 1\nf 0 1 3\nf 1 2 3\nf 0 3 2\n"
+        (tmp_path / "part.tab.gz").write_bytes(gzip.compress(text.encode()))
+        part = {"name": "a", "file": "part.tab.gz", "length_unit": "m", "density": 6.0, "index_base": 0}
+        assert assembly.read({"part": [part]}, folder=tmp_path).body.mass == pytest.approx(1.0, rel=1e-14)
 
 
 class TestRefused:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
@@ -287,6 +288,15 @@ class TestReport:
         np.testing.assert_allclose(found["center_of_mass"], want.center_of_mass, atol=1e-14)
         assert found["density"] == pytest.approx(float(want.mass) / 1.35, rel=1e-14)
         assert [part["density"] for part in found["components"]] == [2700.0, 7800.0]
+
+    def test_names_of_a_packed_file_and_bare_numbers(self, tmp_path: Path) -> None:
+        path = written(tmp_path / "two.obj", at((1, 1, 1), (0, 0, 0)), at((1, 1, 1), (3, 0, 0)))
+        packed = tmp_path / "two.obj.gz"
+        packed.write_bytes(gzip.compress(path.read_bytes()))
+        found = self.report(packed, "--length-unit", "m", "--density", "body=2700, insert=7.8 g/cm^3")
+        assert [part["density"] for part in found["components"]] == [2700.0, 7800.0]
+        assert "--density body=2700 has no unit: kg/m^3 was taken" in found["notes"]
+        assert not any("insert" in note for note in found["notes"])
 
     def test_components_without_names_have_numbers(self, tmp_path: Path) -> None:
         (tmp_path / "two.obj").write_bytes(obj(*joined(at((1, 1, 1), (0, 0, 0)), at((1, 1, 1), (3, 0, 0)))))

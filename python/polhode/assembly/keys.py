@@ -17,7 +17,7 @@ KINDS: Final = ("solid", "file", "assembly", "inertia")
 """One of them says what a part is."""
 REPEATED: Final = ("count", "step", "turn")
 COMMON: Final = ("name", "comment", *KINDS, "length_unit", "position", "rotation", *REPEATED)
-FILE: Final = ("mass", "density", "weld", "closure", "orient", "index_base")
+FILE: Final = ("mass", "density", "weld", "closure", "orient", "union", "repair", "index_base")
 PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
 """Of `inertia`, as CAD programs print it."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -28,6 +29,8 @@ SAVED: Final = (".json", ".npz")
 _SHAPES: Final = {name: getattr(room, name) for room in (solids, laminae, rods) for name in room.__all__}
 _NO_LENGTHS: Final = {"angle": "rad", "sides": "1"}
 """Arguments of shapes that are no lengths, with their units."""
+_SWITCHES: Final = ("orient", "union", "repair")
+_ARGUMENT: Final = re.compile(r"\b(weld|closure|orient|union|repair|index_base)=(\S+)")
 
 
 def kind_of(table: Mapping[str, Any], where: str) -> str:
@@ -68,13 +71,19 @@ def body_of_part(
         what = (
             f"{error.filename}: {error.strerror}; check the path"
             if isinstance(error, OSError)
-            else str(error)
+            else _in_keys(str(error))
         )
         kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
         raise kind_of_error(f"{scope.where}: {what}") from error
     if body.shape:
         raise PolhodeError(f"{scope.where}: its numbers are of {body.shape[0]} bodies, not of one")
     return body, arguments, metres
+
+
+def _in_keys(message: str) -> str:
+    """Write Python's arguments in the message of a reader as keys of the file."""
+    message = _ARGUMENT.sub(lambda found: f"{found[1]} = {found[2].lower()}", message)
+    return message.replace("leave length_unit out", "leave it out of the part")
 
 
 def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]:
@@ -172,6 +181,9 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBo
         return body, scope.metres
     unit = _unit_of(path, table, scope)
     options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
+    for key in (key for key in _SWITCHES if key in table):
+        if not isinstance(table[key], bool):
+            raise PolhodeError(f"{scope.where}: {key}: {repr(table[key])[:60]} is neither true nor false")
     if "weld" in table:
         options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / metres_per(unit)
     if not is_molecule(path):
@@ -183,7 +195,7 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBo
 
 def _unit_of(path: Path, table: Mapping[str, Any], scope: Scope) -> str:
     """Give the unit of a file: its own, unless its table states another, else the one that its table has."""
-    own = None if is_molecule(path) else load(path).unit
+    own = "angstrom" if is_molecule(path) else load(path, index_base=table.get("index_base", 1)).unit
     unit = table.get("length_unit", own) or scope.length_unit
     if unit is None:
         raise PolhodeError(f"{scope.where}: {path.name} does not say its unit of length; state length_unit")

@@ -74,8 +74,8 @@ def read(
 
     - ``solid``: a shape of :mod:`polhode.solids`, :mod:`polhode.laminae` or :mod:`polhode.rods`, with its
       arguments as keys, and ``mass`` or ``density``;
-    - ``file``: a mesh, with ``mass`` or ``density`` (also ``weld``, ``closure``, ``orient``, ``index_base``),
-      a molecule, a body that was saved, or a report of one (JSON);
+    - ``file``: a mesh, with ``mass`` or ``density`` (also ``weld``, ``closure``, ``orient``, ``union``,
+      ``repair``, ``index_base``), a molecule, a body that was saved, or a report of one (JSON);
     - ``assembly``: another such file;
     - ``inertia``: a table with ``mass``, ``com`` and ``tensor`` as a CAD program prints them, ``products``
       (``"positive"`` or ``"negative"``), ``about``, and ``rtol`` for a table of few digits.
@@ -192,7 +192,9 @@ def _part(
     else:
         body, arguments, metres = body_of_part(kind, row, scope, folder)
         shape = text_of(row, "solid", scope.where)
-        one = _Unit(name, comment, body, file, metres, shape, arguments)
+        mended = "repaired" in body.provenance.checked
+        notes: tuple[str, ...] = (f"{scope.where}: its mesh was repaired; polhode report lists how",) * mended
+        one = _Unit(name, comment, body, file, metres, shape, arguments, notes=notes)
     place, moves = place_of(row, scope), copies(row, scope)
     if len(moves) == 1:
         return place, one

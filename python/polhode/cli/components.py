@@ -12,6 +12,7 @@ from polhode.errors import PolhodeError
 from polhode.files.components import Part, groups_of, overlaps, parts_of, told
 from polhode.files.mesh import weld_within
 from polhode.files.repair import repaired
+from polhode.files.unpacked import inner_suffix, unpacked
 
 if TYPE_CHECKING:
     from polhode.cli.layout import Report
@@ -116,8 +117,9 @@ def _parts(loaded: Loaded, scale: float, weld: float, *, mended: bool = False) -
     mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
     vertices = mesh.vertices * scale
     parts = parts_of(vertices, mesh.faces)
-    if len(parts) > 1 and loaded.path.suffix.lower() == ".obj":
-        groups = groups_of(loaded.path)
+    if len(parts) > 1 and inner_suffix(loaded.path) == ".obj":
+        with unpacked(loaded.path) as inside:
+            groups = groups_of(inside)
         if len(groups) == len(mesh.faces):  # none fell together when corners did
             return parts_of(vertices, mesh.faces, groups)
     return parts

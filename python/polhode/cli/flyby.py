@@ -11,7 +11,7 @@ from polhode._extras import require
 from polhode._quantities import quantities, quantity, vector
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.source import shown
-from polhode.cli.whole import any_body
+from polhode.cli.whole import any_body, check_moments_alone
 from polhode.errors import PolhodeError
 from polhode.files.picture import save_picture
 from polhode.flybys import Flyby, flyby
@@ -102,6 +102,7 @@ def _run(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[F
     if file is not None:
         asteroid = any_body(file, body).body
     else:
+        check_moments_alone(body)
         asteroid = RigidBody.from_principal(1.0, quantities(options.moments, 3, "kg m^2", "--moments"))
     rotation, precession = quantities(options.periods, 2, "s", "--periods")
     span = quantity(options.span, "s", "--span")

@@ -234,10 +234,15 @@ def _taken(options: BodyOptions, unit: str | None) -> list[str]:
     """Say in which unit bare numbers were taken."""
     if unit is None:
         return []  # the report says that no unit is known
+    texts = [("--mass", options.mass, "kg")]
+    if has_names(options.density):
+        texts += [("--density", item, "kg/m^3") for item in str(options.density).split(",")]
+    else:
+        texts.insert(0, ("--density", options.density, "kg/m^3"))
     return [
         f"{option} {text.strip()} has no unit: {si} was taken"
-        for option, text, si in (("--density", options.density, "kg/m^3"), ("--mass", options.mass, "kg"))
-        if text is not None and not has_unit(text) and not has_names(text)
+        for option, text, si in texts
+        if text is not None and not has_unit(text.partition("=")[2] or text)
     ]
 
 

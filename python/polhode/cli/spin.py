@@ -19,7 +19,7 @@ from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
 from polhode.cli.spin_sigmas import attitude_field, of_end, of_start
 from polhode.cli.tables import top_fields
-from polhode.cli.whole import any_body
+from polhode.cli.whole import any_body, check_moments_alone
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
 
@@ -178,6 +178,7 @@ def _body(file: Path | None, spin: SpinOptions, options: BodyOptions) -> LoadedB
     for option, is_given in (("--bond-sigma", options.bond_sigma), ("--mass-sigmas", options.mass_sigmas)):
         if is_given:
             raise PolhodeError(f"{option}: --moments are of no molecule; leave it out")
+    check_moments_alone(options, "mass", "com")
     if spin.gravity is not None and (options.mass is None or not options.com):
         raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
     moments = amounts(spin.moments, 3, "kg m^2", "--moments")

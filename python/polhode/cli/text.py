@@ -16,6 +16,7 @@ _WAYS_OUT: Final = (
     ("repair=True mends it", "--repair mends it"),
     ('closure="hull" takes', "--closure hull takes"),
     ("repair closes and orients by itself", "--repair closes and orients by itself"),
+    ("leave index_base out", "leave --index-base out"),
     ("leave length_unit out", "leave --length-unit out"),
     ("pass allow_outside=True", "pass --allow-outside"),
     ("pass rtol= if the table was printed to few digits", "give more digits"),
@@ -29,7 +30,8 @@ _WAYS_OUT: Final = (
     ("give the body a thickness, or nothing inside", "leave out --wheel"),
     ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
 )
-_OF_MESHES: Final = re.compile(r"^(?=(?:weld|closure|orient|repair): .* holds solids, not a mesh)")
+_NAMED: Final = re.compile(r"^(weld|closure|orient|union|repair|index_base|length_unit)(?=: )")
+"""Of arguments that are options by the same names."""
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")
 
 
@@ -37,7 +39,8 @@ def in_options(message: str) -> str:
     """Replace the names of Python's arguments in a message by the options of the command line."""
     for argument, option in _WAYS_OUT:
         message = message.replace(argument, option)
-    return _OF_MESHES.sub("--", _WELD.sub("--weld ", message))
+    message = _NAMED.sub(lambda found: f"--{found[1].replace('_', '-')}", message)
+    return _WELD.sub("--weld ", message)
 
 
 def printable(text: str) -> str:

@@ -5,6 +5,7 @@ Whole are saved bodies, assemblies, and the numbers that a CAD program printed.
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING, Final
 
 from polhode import RigidBody
@@ -22,7 +23,7 @@ from polhode.units import metres_per
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["any_body", "body_sections", "is_whole", "whole_report"]
+__all__ = ["any_body", "body_sections", "check_moments_alone", "is_whole", "whole_report"]
 
 _WHOLE: Final = (".json", ".npz", ".toml")
 """Endings of such files."""
@@ -164,6 +165,15 @@ def body_sections(
     if loaded.length == "unit":
         report.notes.append("unit unknown: all results are in the file's own units")
     note_linear(report)
+
+
+def check_moments_alone(options: BodyOptions, *taken: str) -> None:
+    """Refuse options of a file beside --moments, but those that are `taken`."""
+    for field in fields(options):
+        if field.name not in taken and _is_given(options, field.name):
+            raise PolhodeError(
+                f"--{field.name.replace('_', '-')}: --moments are of no file; leave it out, or name the file"
+            )
 
 
 def _is_given(options: BodyOptions, name: str) -> bool:
