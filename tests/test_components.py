@@ -298,6 +298,39 @@ class TestReport:
         assert "--density body=2700 has no unit: kg/m^3 was taken" in found["notes"]
         assert not any("insert" in note for note in found["notes"])
 
+    def test_components_that_were_turned_are_listed_and_joined(self, tmp_path: Path, has_union: bool) -> None:
+        path = written(tmp_path / "two.obj", at((2, 2, 2), (0, 0, 0)), at((1, 1, 1), (3, 0, 0), inward=True))
+        found = self.report(path, "--orient", "--density", "body=1, insert=3")
+        assert found["mass"] == pytest.approx(11.0, rel=1e-14)
+        assert [part["volume"] for part in found["components"]] == pytest.approx([8.0, 1.0])
+        if has_union:
+            code, _, err = run("report", path, "--union", "--density", "1")
+            assert code == 2
+            assert "component 2 of the mesh is inside out" in err
+            assert "pass --orient to turn it" in err
+            assert self.report(path, "--union", "--orient", "--density", "1")["mass"] == pytest.approx(9.0)
+
+    def test_more_than_are_listed(self, tmp_path: Path, has_union: bool) -> None:
+        many = [at((2, 2, 2), (i, 0, 0)) for i in range(201)]
+        (tmp_path / "many.obj").write_bytes(obj(*joined(*many)))
+        found = self.report(tmp_path / "many.obj", "--density", "1")
+        assert found["mass"] == pytest.approx(201 * 8.0)
+        assert any("201 components are more than 200" in note for note in found["notes"])
+        if has_union:
+            whole = self.report(tmp_path / "many.obj", "--density", "1", "--union")
+            assert whole["mass"] == pytest.approx(202 * 4.0, rel=1e-12)
+
+    def test_corners_that_were_welded_before_the_union_are_told(self, tmp_path: Path) -> None:
+        pytest.importorskip("manifold3d", reason="joining needs polhode[union]")
+        vertices, faces = at((2, 2, 2), (1, 0, 0))
+        faces = faces.copy()
+        vertices = np.vstack([vertices, vertices[faces[0, 0]] + 1e-7])
+        faces[0, 0] = 8
+        (tmp_path / "two.obj").write_bytes(obj(*joined(at((2, 2, 2), (0, 0, 0)), (vertices, faces))))
+        found = self.report(tmp_path / "two.obj", "--density", "1", "--union", "--weld", "1e-6")
+        assert found["mass"] == pytest.approx(12.0, rel=1e-6)
+        assert any(note.startswith("1 corners were joined") for note in found["notes"])
+
     def test_components_without_names_have_numbers(self, tmp_path: Path) -> None:
         (tmp_path / "two.obj").write_bytes(obj(*joined(at((1, 1, 1), (0, 0, 0)), at((1, 1, 1), (3, 0, 0)))))
         found = self.report(tmp_path / "two.obj", "--density", "1=1,2=3")

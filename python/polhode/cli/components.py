@@ -9,7 +9,7 @@ from polhode import RigidBody
 from polhode._quantities import has_unit, quantity
 from polhode.cli.layout import Column, Table
 from polhode.errors import PolhodeError
-from polhode.files.components import Part, groups_of, overlaps, parts_of, told
+from polhode.files.components import MOST_PARTS, Part, groups_of, labels, overlaps, parts_of, told
 from polhode.files.mesh import weld_within
 from polhode.files.repair import repaired
 from polhode.files.unpacked import inner_suffix, unpacked
@@ -60,7 +60,13 @@ def components_of(
         return None
     parts = _parts(loaded, scale, weld, mended=options.repair)
     if len(parts) < 2:
-        return None
+        count = int(labels(loaded.mesh.faces, len(loaded.mesh.vertices)).max(initial=0)) + 1
+        if count <= MOST_PARTS or weld != 0.0 or options.repair:
+            return None
+        note = (
+            f"{count} components are more than {MOST_PARTS}: they are not listed, nor is seen what overlaps"
+        )
+        return Components([], [], [note])
     notes = told(overlaps(parts), sum(part.volume for part in parts), _unit(options))
     if notes:
         notes.append("--union counts what components share once, where they are of one material")

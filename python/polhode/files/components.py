@@ -21,11 +21,22 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
-__all__ = ["Overlap", "Part", "groups_of", "labels", "meeting", "overlaps", "parts_of", "told", "winding"]
+__all__ = [
+    "MOST_PARTS",
+    "Overlap",
+    "Part",
+    "groups_of",
+    "labels",
+    "meeting",
+    "overlaps",
+    "parts_of",
+    "told",
+    "winding",
+]
 
 # Winding numbers are taken at so many corners at most: each looks at every face.
 _SAMPLES: Final = 12
-_MOST_PARTS: Final = 200
+MOST_PARTS: Final = 200
 # What is shared by less than this, of the smaller one, is contact.
 _CONTACT: Final = 1e-9
 _MOST_TOLD: Final = 8
@@ -45,6 +56,8 @@ class Part(NamedTuple):
     volume : float
         Without the cavities.
     cavities : int
+    was_inward : bool
+        Whether its surface faced inward in the mesh.
     """
 
     name: str
@@ -52,6 +65,7 @@ class Part(NamedTuple):
     faces: Integers
     volume: float
     cavities: int
+    was_inward: bool = False
 
 
 class Overlap(NamedTuple):
@@ -94,7 +108,9 @@ def labels(faces: Integers, count: int) -> NDArray[np.intp]:
     return numbered
 
 
-def parts_of(vertices: Floats, faces: Integers, groups: Sequence[str] | None = None) -> list[Part]:
+def parts_of(
+    vertices: Floats, faces: Integers, groups: Sequence[str] | None = None, most: int = MOST_PARTS
+) -> list[Part]:
     """Take a closed mesh apart.
 
     Parameters
@@ -103,12 +119,14 @@ def parts_of(vertices: Floats, faces: Integers, groups: Sequence[str] | None = N
     faces : numpy.ndarray, shape (m, 3)
     groups : sequence of str, optional
         The name of the group of each face.
+    most : int
+        How many components are told apart.
 
     Returns
     -------
     list of Part
-        One for each component wound outward, in the order of the faces; of one component where there are
-        too many to be told apart.
+        One for each component that is no cavity, in the order of the faces, turned where it faced inward; one
+        for all where there are more than `most`.
     """
     label = labels(faces, len(vertices))
     count = int(label.max(initial=-1)) + 1
@@ -116,11 +134,12 @@ def parts_of(vertices: Floats, faces: Integers, groups: Sequence[str] | None = N
     corners = vertices[faces] - middle
     six = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
     volumes = np.bincount(label, weights=six, minlength=count) / 6.0
-    if volumes.sum() < 0.0:
+    is_turned = bool(volumes.sum() < 0.0)
+    if is_turned:
         faces, volumes = faces[:, ::-1], -volumes
-    if not 1 < count <= _MOST_PARTS:
-        return [Part("1", vertices, faces, float(volumes.sum()), 0)]
-    of = [np.flatnonzero(label == k) for k in range(count)]
+    if not 1 < count <= most:
+        return [Part("1", vertices, faces, float(volumes.sum()), 0, is_turned)]
+    of = np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
     outer = [k for k in range(count) if volumes[k] > 0.0]
     holes: dict[int, list[int]] = {k: [] for k in outer}
     for k in (k for k in range(count) if volumes[k] <= 0.0):
@@ -129,6 +148,15 @@ def parts_of(vertices: Floats, faces: Integers, groups: Sequence[str] | None = N
         around = [o for o in around if winding(point[None], vertices[faces[of[o]]])[0] > 0.5]
         if around:
             holes[min(around, key=lambda o: volumes[o])].append(k)
+    nested = {k for inside in holes.values() for k in inside}
+    least = -1e-14 * np.abs(volumes).sum()  # a sheet of no thickness has the volume of its rounding errors
+    turned = [k for k in range(count) if volumes[k] < least and k not in nested]
+    if turned:
+        faces = faces.copy()
+        faces[np.isin(label, turned)] = faces[np.isin(label, turned), ::-1]
+        volumes[turned] *= -1.0
+        holes |= {k: [] for k in turned}
+        outer = sorted(holes)
     names = _names([groups[of[k][0]] if groups else "" for k in outer])
     return [
         Part(
@@ -137,6 +165,7 @@ def parts_of(vertices: Floats, faces: Integers, groups: Sequence[str] | None = N
             faces[np.concatenate([of[k], *(of[hole] for hole in holes[k])])],
             float(volumes[k] + sum(volumes[hole] for hole in holes[k])),
             len(holes[k]),
+            is_turned != (k in turned),
         )
         for k, name in zip(outer, names, strict=True)
     ]

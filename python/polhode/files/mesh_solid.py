@@ -180,8 +180,11 @@ def solid_of(
             )
         with naming_file(file):
             return _repaired_solid(loaded.mesh, density, mass, scale, weld)
+    joined = 0
     if union:
-        loaded, weld = _joined(loaded, weld), 0.0
+        mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
+        joined = len(loaded.mesh.vertices) - len(mesh.vertices)
+        loaded, weld = _joined(loaded, mesh, orient), 0.0
     if loaded.is_stream and weld == 0.0 and closure is None:
         try:
             with naming_file(file):
@@ -219,19 +222,24 @@ def solid_of(
         if closure is None:
             _offer_repair(error, mesh, scale)
         raise
-    welded = corners - len(mesh.vertices)
+    welded = joined + corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
 
 
-def _joined(loaded: Loaded, weld: float) -> Loaded:
-    """Give the file with its components joined to one solid."""
+def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:
+    """Give the file with the components of its mesh joined to one solid."""
     from polhode.files.components import parts_of
     from polhode.files.union import united
 
-    mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
-    parts = parts_of(mesh.vertices, mesh.faces)
+    parts = parts_of(mesh.vertices, mesh.faces, most=len(mesh.faces))
     with naming_file(loaded.path):
+        inward = next((part.name for part in parts if part.was_inward), None)
+        if inward is not None and not orient:
+            raise MeshError(
+                f"component {inward} of the mesh is inside out, and lies in no other as a cavity; reverse "
+                "the order of its vertices, or pass orient=True to turn it"
+            )
         joined = united([(part.vertices, part.faces) for part in parts], mesh.format)
     return replace(loaded, is_stream=False, _mesh=joined)
 
