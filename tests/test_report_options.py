@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import io
 import json
 import subprocess
@@ -184,6 +185,12 @@ class TestStandardInput:
     def test_molecule(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"1\nneon\nNe 0 0 0\n")))
         assert fields("-")["isotopes"] == "1 20Ne"
+
+    def test_packed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(gzip.compress(b"solid"))))
+        code, _, err = run("report", "-")
+        assert code == 2
+        assert "standard input is packed with gzip; unpack it before" in err
 
 
 def test_solidworks(shared_data: Path) -> None:

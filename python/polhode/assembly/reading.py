@@ -192,7 +192,7 @@ def _part(
     else:
         body, arguments, metres = body_of_part(kind, row, scope, folder)
         shape = text_of(row, "solid", scope.where)
-        mended = "repaired" in body.provenance.checked
+        mended = row.get("repair") is True and "repaired" in body.provenance.checked
         notes: tuple[str, ...] = (f"{scope.where}: its mesh was repaired; polhode report lists how",) * mended
         one = _Unit(name, comment, body, file, metres, shape, arguments, notes=notes)
     place, moves = place_of(row, scope), copies(row, scope)

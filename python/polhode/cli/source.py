@@ -84,7 +84,12 @@ def as_file(file: Path) -> Iterator[Path]:
             head = stream.read(4096)
         if not head:
             raise FileFormatError("-: nothing came on standard input; send a file into it")
-        suffix = _SUFFIXES.get(content_format(head, raw.stat().st_size)[0] or "")
+        found, _ = content_format(head, raw.stat().st_size)
+        suffix = _SUFFIXES.get(found or "")
+        if found == "packed with gzip":
+            raise FileFormatError(
+                "-: standard input is packed with gzip; unpack it before, as in gunzip -c FILE | polhode"
+            )
         if suffix is None:
             raise FileFormatError(
                 "-: the content does not tell its format; save it in a file with the format's suffix"

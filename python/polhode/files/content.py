@@ -90,6 +90,8 @@ def is_molecule(path: Path) -> bool:
 def unread(file: Path, suffix: str, readable: tuple[str, ...]) -> FileFormatError:
     """Give the error of a file whose suffix is none that is read."""
     name = f"files named {suffix}" if suffix else "files without a suffix"
+    if file.suffix.lower() == _PACKED and suffix in (".json", ".npz", ".toml"):
+        return FileFormatError(f"{file}: {name} are read unpacked alone; unpack it with gunzip")
     return FileFormatError(f"{file}: {name} are not read; use one of {', '.join(readable)}")
 
 

@@ -128,7 +128,8 @@ def parse_robot(
         raise FileFormatError(f"{name}: the file is empty")
     body_format, _ = content_format(source[:4096], len(source))
     if body_format is not None:
-        raise FileFormatError(f"{name}: is {body_format}, not a robot; polhode report reads it")
+        way_out = "unpack it with gunzip" if "gzip" in body_format else "polhode report reads it"
+        raise FileFormatError(f"{name}: is {body_format}, not a robot; {way_out}")
     home = Path(folder)
     addresses = Addresses(home, [Path(package) for package in packages], allow_outside=allow_outside)
     sources = Sources(home, addresses)
