@@ -100,6 +100,15 @@ def test_axes_go_together_as_in_numpy() -> None:
     same(BODY.simulate(T, lazily(OMEGA[0])), BODY.simulate(T, OMEGA[0]))
 
 
+@pytest.mark.parametrize("shape", [(1, 3), (3, 1, 3), (1, 4, 3), (2, 3, 1, 3), (1, 1, 1, 3)])
+def test_axes_of_one_row_stay(shape: tuple[int, ...]) -> None:
+    omega = RNG.normal(size=shape)
+    chunks = (1,) * (len(shape) - 1)
+    same(BODY.simulate(T, lazily(omega, *chunks)), BODY.simulate(T, omega))
+    same(STACK[:1].simulate(T, lazily(omega, *chunks)), STACK[:1].simulate(T, omega))
+    same(BODY.simulate(T, lazily(OMEGA[0]), TURNS[:1]), BODY.simulate(T, OMEGA[0], TURNS[:1]))
+
+
 def test_methods_are_those_of_the_whole_stack() -> None:
     """By itself, the first chunk would be tops, with another method."""
     moments = np.concatenate([np.tile([0.9, 0.9, 0.5], (5, 1)), np.tile([0.9, 1.3, 1.0], (5, 1))])

@@ -83,6 +83,17 @@ class Labels:
                 "too, as an xarray.DataArray"
             )
         self.stack = named
+        # Those along which everything has one row stay with whatever has them.
+        self.ones = set(named)
+        for array, tail in zip(arrays, tails, strict=True):
+            stack = np.shape(array)[: np.ndim(array) - tail]
+            own = (
+                array.dims[: len(stack)] if labelled(array) is not None else named[len(named) - len(stack) :]
+            )
+            self.ones -= {str(dim) for dim, size in zip(own, stack, strict=True) if size != 1}
+        for shape in shapes:
+            own = named[len(named) - len(shape) :]
+            self.ones -= {dim for dim, size in zip(own, shape, strict=True) if size != 1}
         self.cuts: dict[str, tuple[int, ...]] = {}
         self.sizes: dict[str, tuple[int, str]] = {}
 
@@ -96,7 +107,9 @@ class Labels:
                 array = real_numbers(array, name)
             dims = self.stack[len(self.stack) + 1 - array.ndim :]
             # An axis of one goes along with all.
-            kept = [axis for axis, size in enumerate(array.shape[:-1]) if size != 1]
+            kept = [
+                axis for axis, size in enumerate(array.shape[:-1]) if size != 1 or dims[axis] in self.ones
+            ]
             picked = array[tuple(slice(None) if axis in kept else 0 for axis in range(len(dims)))]
             found = xarray.DataArray(picked, dims=[*(dims[axis] for axis in kept), f"{name} in"])
         for dim, size in zip(found.dims[:-1], found.shape[:-1], strict=True):
