@@ -295,3 +295,14 @@ def test_what_is_wrong_is_told_before_anything_is_computed(arguments: Any, words
     given = {"t": T, "omega": LAZY} | arguments
     with pytest.raises((ValueError, TypeError), match=words):
         BODY.simulate(**given)
+
+
+@pytest.mark.parametrize("name", ["time", "omega", "status", "component", "wheel"])
+def test_names_of_the_result_are_refused(name: str) -> None:
+    load = loads.wheel(axis=(0, 0, 1), inertia=0.1, rate=2.0)
+    at_one_time = xarray.DataArray(lazily(OMEGA, 4), dims=("clone", "xyz"), coords={name: 5.0})
+    with pytest.raises(ValueError, match=rf"named '{name}', .* leave it out with \.drop_vars\('{name}'\)"):
+        BODY.simulate(T, at_one_time, load=load)
+    assert BODY.simulate(T, at_one_time.drop_vars(name), load=load).omega.shape == (10, 5, 3)
+    with pytest.raises(ValueError, match=f"an axis of the stack is named '{name}'"):
+        BODY.simulate(T, xarray.DataArray(lazily(OMEGA, 4), dims=(name, "xyz")), load=load)

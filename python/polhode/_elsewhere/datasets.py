@@ -11,7 +11,7 @@ from polhode._elsewhere.kinds import check_real, dask_array, labelled
 from polhode._extras import require
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
 __all__ = ["Labels", "dataset", "one_chunk", "require_xarray"]
 
@@ -44,6 +44,16 @@ def one_chunk(array: Any, name: str, size: int) -> None:
         )
 
 
+def _check_coordinates(array: Any, results: Collection[str]) -> None:
+    """Refuse an array of which a coordinate would go along under a name of the result."""
+    own = {str(name) for name, one in array.coords.items() if array.dims[-1] not in one.dims}
+    for name in sorted((own - {str(dim) for dim in array.dims}) & set(results)):
+        raise ValueError(
+            f"a coordinate of the stack is named {name!r}, as one of the result; leave it out with "
+            f".drop_vars({name!r}), or rename it"
+        )
+
+
 class Labels:
     """Names for the axes of stacks: those of labelled arrays, or those of ``Trajectory.to_xarray``.
 
@@ -54,17 +64,24 @@ class Labels:
         How many axes of each are not of the stack.
     shapes : sequence of tuple of int
         Of what else is a stack.
+    results : sequence of str
+        What will be computed.
     """
 
     def __init__(
-        self, arrays: Sequence[Any], tails: Sequence[int], shapes: Sequence[tuple[int, ...]]
+        self,
+        arrays: Sequence[Any],
+        tails: Sequence[int],
+        shapes: Sequence[tuple[int, ...]],
+        results: Sequence[str],
     ) -> None:
         named: list[str] = []
         for array, tail in zip(arrays, tails, strict=True):
             if labelled(array) is not None:
                 own = [str(dim) for dim in array.dims[: array.ndim - tail]]
                 named += [dim for dim in own if dim not in named]
-        taken = sorted(set(named) & set(_OWN))
+                _check_coordinates(array, {*_OWN, *results})
+        taken = sorted(set(named) & {*_OWN, *results})
         if taken:
             raise ValueError(f"an axis of the stack is named {taken[0]!r}, as one of the result; rename it")
         depth = max(
