@@ -306,3 +306,12 @@ def test_names_of_the_result_are_refused(name: str) -> None:
     assert BODY.simulate(T, at_one_time.drop_vars(name), load=load).omega.shape == (10, 5, 3)
     with pytest.raises(ValueError, match=f"an axis of the stack is named '{name}'"):
         BODY.simulate(T, xarray.DataArray(lazily(OMEGA, 4), dims=(name, "xyz")), load=load)
+
+
+@pytest.mark.parametrize("name", ["omega", "position", "component"])
+def test_names_of_exact_motions_are_refused(name: str) -> None:
+    times = xarray.DataArray(da.from_array(T, chunks=2), dims="orbit", coords={name: 5.0})
+    with pytest.raises(ValueError, match=rf"named '{name}', .* leave it out with \.drop_vars\('{name}'\)"):
+        BODY.free_motion(OMEGA[0]).at(times)
+    with pytest.raises(ValueError, match=f"t: its axis '{name}' has the name of one of the result"):
+        BODY.free_motion(OMEGA[0]).at(xarray.DataArray(times.data, dims=name))

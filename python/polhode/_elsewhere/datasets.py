@@ -13,7 +13,7 @@ from polhode._extras import require
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-__all__ = ["Labels", "dataset", "one_chunk", "require_xarray"]
+__all__ = ["Labels", "check_coordinates", "dataset", "one_chunk", "require_xarray"]
 
 _OWN: Final = ("time", "component", "quaternion_component")
 _FRAMES: Final = {"omega": "body", "position": "space", "velocity": "space"}
@@ -44,12 +44,13 @@ def one_chunk(array: Any, name: str, size: int) -> None:
         )
 
 
-def _check_coordinates(array: Any, results: Collection[str]) -> None:
+def check_coordinates(array: Any, tail: int, results: Collection[str]) -> None:
     """Refuse an array of which a coordinate would go along under a name of the result."""
-    own = {str(name) for name, one in array.coords.items() if array.dims[-1] not in one.dims}
+    last = set(array.dims[array.ndim - tail :])
+    own = {str(name) for name, one in array.coords.items() if not last & set(one.dims)}
     for name in sorted((own - {str(dim) for dim in array.dims}) & set(results)):
         raise ValueError(
-            f"a coordinate of the stack is named {name!r}, as one of the result; leave it out with "
+            f"a coordinate is named {name!r}, as one of the result; leave it out with "
             f".drop_vars({name!r}), or rename it"
         )
 
@@ -80,7 +81,7 @@ class Labels:
             if labelled(array) is not None:
                 own = [str(dim) for dim in array.dims[: array.ndim - tail]]
                 named += [dim for dim in own if dim not in named]
-                _check_coordinates(array, {*_OWN, *results})
+                check_coordinates(array, tail, {*_OWN, *results})
         taken = sorted(set(named) & {*_OWN, *results})
         if taken:
             raise ValueError(f"an axis of the stack is named {taken[0]!r}, as one of the result; rename it")
