@@ -100,6 +100,15 @@ def test_axes_go_together_as_in_numpy() -> None:
     same(BODY.simulate(T, lazily(OMEGA[0])), BODY.simulate(T, OMEGA[0]))
 
 
+@pytest.mark.parametrize("shape", [(1, 3), (3, 1, 3), (1, 4, 3), (2, 3, 1, 3), (1, 1, 1, 3)])
+def test_axes_of_one_row_stay(shape: tuple[int, ...]) -> None:
+    omega = RNG.normal(size=shape)
+    chunks = (1,) * (len(shape) - 1)
+    same(BODY.simulate(T, lazily(omega, *chunks)), BODY.simulate(T, omega))
+    same(STACK[:1].simulate(T, lazily(omega, *chunks)), STACK[:1].simulate(T, omega))
+    same(BODY.simulate(T, lazily(OMEGA[0]), TURNS[:1]), BODY.simulate(T, OMEGA[0], TURNS[:1]))
+
+
 def test_methods_are_those_of_the_whole_stack() -> None:
     """By itself, the first chunk would be tops, with another method."""
     moments = np.concatenate([np.tile([0.9, 0.9, 0.5], (5, 1)), np.tile([0.9, 1.3, 1.0], (5, 1))])
@@ -286,3 +295,23 @@ def test_what_is_wrong_is_told_before_anything_is_computed(arguments: Any, words
     given = {"t": T, "omega": LAZY} | arguments
     with pytest.raises((ValueError, TypeError), match=words):
         BODY.simulate(**given)
+
+
+@pytest.mark.parametrize("name", ["time", "omega", "status", "component", "wheel"])
+def test_names_of_the_result_are_refused(name: str) -> None:
+    load = loads.wheel(axis=(0, 0, 1), inertia=0.1, rate=2.0)
+    at_one_time = xarray.DataArray(lazily(OMEGA, 4), dims=("clone", "xyz"), coords={name: 5.0})
+    with pytest.raises(ValueError, match=rf"named '{name}', .* leave it out with \.drop_vars\('{name}'\)"):
+        BODY.simulate(T, at_one_time, load=load)
+    assert BODY.simulate(T, at_one_time.drop_vars(name), load=load).omega.shape == (10, 5, 3)
+    with pytest.raises(ValueError, match=f"an axis of the stack is named '{name}'"):
+        BODY.simulate(T, xarray.DataArray(lazily(OMEGA, 4), dims=(name, "xyz")), load=load)
+
+
+@pytest.mark.parametrize("name", ["omega", "position", "component"])
+def test_names_of_exact_motions_are_refused(name: str) -> None:
+    times = xarray.DataArray(da.from_array(T, chunks=2), dims="orbit", coords={name: 5.0})
+    with pytest.raises(ValueError, match=rf"named '{name}', .* leave it out with \.drop_vars\('{name}'\)"):
+        BODY.free_motion(OMEGA[0]).at(times)
+    with pytest.raises(ValueError, match=f"t: its axis '{name}' has the name of one of the result"):
+        BODY.free_motion(OMEGA[0]).at(xarray.DataArray(times.data, dims=name))

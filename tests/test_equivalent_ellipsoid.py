@@ -62,6 +62,25 @@ def test_flat_and_straight_bodies() -> None:
         equimomental.ellipsoid(3.0)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("length", [1e-120, 1e120, 1e153])
+def test_volumes_beyond_the_range_of_numbers(length: float) -> None:
+    moments = np.array([1.0, 2.0, 2.5]) * length * length
+    body: Any = RigidBody.from_principal(1.0, moments)
+    assert np.allclose(
+        equimomental.ellipsoid(body).semi_axes / length, np.sqrt([8.75, 3.75, 1.25]), rtol=1e-14
+    )
+    found = equimomental.ellipsoid(body, 4 / 3 * np.pi).semi_axes
+    assert np.allclose(found, np.sqrt([8.75, 3.75, 1.25]) / (8.75 * 3.75 * 1.25) ** (1 / 6), rtol=1e-13)
+
+
+def test_volumes_are_one_or_one_for_each_body() -> None:
+    body: Any = solids.cube(1.0, mass=1.0)
+    with pytest.raises(
+        ValueError, match=r"volume: expected one, or one for each body of shape \(\), got \(2,\)"
+    ):
+        equimomental.ellipsoid(body, [1.0, 2.0])
+
+
 def test_reports_tell_both(tmp_path: Path) -> None:
     path = write_obj(tmp_path / "b.obj", *box((30.0, 20.0, 10.0)))
     code, out, _ = run("report", path, "--length-unit", "mm", "--density", "1000", "--format", "json")

@@ -66,19 +66,28 @@ def ellipsoid(body: RigidBody, volume: ArrayLike | None = None) -> EquivalentEll
         raise TypeError(f"body: expected a RigidBody, got {type(body).__name__}")
     principal = body.principal
     least, middle, greatest = np.moveaxis(principal.moments, -1, 0)
+    # A quarter of each, of which no sum is beyond the range of float64.
+    least, middle, greatest = least / 4.0, middle / 4.0, greatest / 4.0
     # The two larger moments of a thin body differ by little: their difference first.
     spread = greatest - middle
     squares = np.stack([middle + greatest - least, least + spread, least - spread], axis=-1)
     mass = np.asarray(body.mass)[..., np.newaxis]
-    semi_axes = np.sqrt(2.5 * np.maximum(squares, 0.0) / mass)
-    own = 4.0 / 3.0 * np.pi * np.prod(semi_axes, axis=-1)
+    semi_axes = np.sqrt(10.0) * (np.sqrt(np.maximum(squares, 0.0)) / np.sqrt(mass))
+    with np.errstate(over="ignore", under="ignore"):  # zero or infinite beyond the range of float64
+        own = 4.0 / 3.0 * np.pi * np.prod(semi_axes, axis=-1)
     if volume is None:
         return EquivalentEllipsoid(semi_axes, principal.axes, own[()])
     wanted = real_numbers(volume, "volume")
     if not (np.isfinite(wanted) & (wanted > 0.0)).all():
         raise ValueError(f"volume: must be positive and finite, got {np.asarray(volume)}")
+    if wanted.shape not in ((), own.shape):
+        raise ValueError(
+            f"volume: expected one, or one for each body of shape {own.shape}, got {wanted.shape}"
+        )
     wanted = np.broadcast_to(wanted, own.shape)
-    if not (own > 0.0).all():
+    if not (semi_axes > 0.0).all():
         raise ValueError("volume: a flat or straight body has no ellipsoid with a volume; leave it out")
-    semi_axes = semi_axes * np.cbrt(wanted / own)[..., np.newaxis]
+    # Lengths over the mean one, whose volumes stay within the range of float64.
+    ratios = semi_axes / np.cbrt(semi_axes).prod(axis=-1, keepdims=True)
+    semi_axes = ratios * np.cbrt(wanted / (4.0 / 3.0 * np.pi))[..., np.newaxis]
     return EquivalentEllipsoid(semi_axes, principal.axes, wanted.copy()[()])

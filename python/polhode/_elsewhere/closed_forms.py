@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from polhode._elsewhere.datasets import dataset, require_xarray
+from polhode._elsewhere.datasets import check_coordinates, dataset, require_xarray
 from polhode._elsewhere.kinds import check_real, dask_array, labelled
 
 __all__ = ["motion_at"]
@@ -42,7 +42,9 @@ def motion_at(motion: Any, t: Any) -> Any:
     if labelled(t) is None:
         dims = ["time"] if t.ndim == 1 else [f"time_{axis}" for axis in range(t.ndim)]
         t = xarray.DataArray(t, dims=dims)
-    taken = sorted(set(t.dims) & {*stack, "component", "quaternion_component"})
+    results = {*stack, *_TAILS, "component", "quaternion_component"}
+    check_coordinates(t, 0, results)
+    taken = sorted(set(t.dims) & results)
     if taken:
         raise ValueError(f"t: its axis {taken[0]!r} has the name of one of the result; rename it")
     found = xarray.apply_ufunc(

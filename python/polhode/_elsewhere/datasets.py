@@ -11,9 +11,9 @@ from polhode._elsewhere.kinds import check_real, dask_array, labelled
 from polhode._extras import require
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
-__all__ = ["Labels", "dataset", "one_chunk", "require_xarray"]
+__all__ = ["Labels", "check_coordinates", "dataset", "one_chunk", "require_xarray"]
 
 _OWN: Final = ("time", "component", "quaternion_component")
 _FRAMES: Final = {"omega": "body", "position": "space", "velocity": "space"}
@@ -44,6 +44,17 @@ def one_chunk(array: Any, name: str, size: int) -> None:
         )
 
 
+def check_coordinates(array: Any, tail: int, results: Collection[str]) -> None:
+    """Refuse an array of which a coordinate would go along under a name of the result."""
+    last = set(array.dims[array.ndim - tail :])
+    own = {str(name) for name, one in array.coords.items() if not last & set(one.dims)}
+    for name in sorted((own - {str(dim) for dim in array.dims}) & set(results)):
+        raise ValueError(
+            f"a coordinate is named {name!r}, as one of the result; leave it out with "
+            f".drop_vars({name!r}), or rename it"
+        )
+
+
 class Labels:
     """Names for the axes of stacks: those of labelled arrays, or those of ``Trajectory.to_xarray``.
 
@@ -54,17 +65,24 @@ class Labels:
         How many axes of each are not of the stack.
     shapes : sequence of tuple of int
         Of what else is a stack.
+    results : sequence of str
+        What will be computed.
     """
 
     def __init__(
-        self, arrays: Sequence[Any], tails: Sequence[int], shapes: Sequence[tuple[int, ...]]
+        self,
+        arrays: Sequence[Any],
+        tails: Sequence[int],
+        shapes: Sequence[tuple[int, ...]],
+        results: Sequence[str],
     ) -> None:
         named: list[str] = []
         for array, tail in zip(arrays, tails, strict=True):
             if labelled(array) is not None:
                 own = [str(dim) for dim in array.dims[: array.ndim - tail]]
                 named += [dim for dim in own if dim not in named]
-        taken = sorted(set(named) & set(_OWN))
+                check_coordinates(array, tail, {*_OWN, *results})
+        taken = sorted(set(named) & {*_OWN, *results})
         if taken:
             raise ValueError(f"an axis of the stack is named {taken[0]!r}, as one of the result; rename it")
         depth = max(
@@ -83,6 +101,17 @@ class Labels:
                 "too, as an xarray.DataArray"
             )
         self.stack = named
+        # Those along which everything has one row stay with whatever has them.
+        self.ones = set(named)
+        for array, tail in zip(arrays, tails, strict=True):
+            stack = np.shape(array)[: np.ndim(array) - tail]
+            own = (
+                array.dims[: len(stack)] if labelled(array) is not None else named[len(named) - len(stack) :]
+            )
+            self.ones -= {str(dim) for dim, size in zip(own, stack, strict=True) if size != 1}
+        for shape in shapes:
+            own = named[len(named) - len(shape) :]
+            self.ones -= {dim for dim, size in zip(own, shape, strict=True) if size != 1}
         self.cuts: dict[str, tuple[int, ...]] = {}
         self.sizes: dict[str, tuple[int, str]] = {}
 
@@ -96,7 +125,9 @@ class Labels:
                 array = real_numbers(array, name)
             dims = self.stack[len(self.stack) + 1 - array.ndim :]
             # An axis of one goes along with all.
-            kept = [axis for axis, size in enumerate(array.shape[:-1]) if size != 1]
+            kept = [
+                axis for axis, size in enumerate(array.shape[:-1]) if size != 1 or dims[axis] in self.ones
+            ]
             picked = array[tuple(slice(None) if axis in kept else 0 for axis in range(len(dims)))]
             found = xarray.DataArray(picked, dims=[*(dims[axis] for axis in kept), f"{name} in"])
         for dim, size in zip(found.dims[:-1], found.shape[:-1], strict=True):

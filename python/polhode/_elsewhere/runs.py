@@ -75,7 +75,9 @@ def simulated(body: RigidBody, t: Any, omega: Any, attitude: Any, options: dict[
         rest["on_failure"] = "keep"
     states = _first(body, times, options | rest).states
     options = _settled(body, times, options)
-    labels = Labels(list(given.values()), [1] * len(given), [body.shape, _shape_of(options["load"])])
+    shapes = [body.shape, _shape_of(options["load"])]
+    results = ["omega", "quaternion", "position", "velocity", "status", *states]
+    labels = Labels(list(given.values()), [1] * len(given), shapes, results)
     arrays = {name: labels.named(value, name) for name, value in given.items()}
     # A stack of bodies goes as its numbers, of which each chunk gets its own.
     arrays["body"] = labels.chunked(body.__reduce__()[1][0], body.shape, "body")
