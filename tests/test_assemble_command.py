@@ -89,7 +89,7 @@ class TestCommand:
         code, out, err = run("report", path, "--format", "json", "--expect", path)
         assert (code, err) == (0, "")
         assert json.loads(out)["format"] == "report"
-        assert run("report", path, "--as", "urdf") == run("report", *words, "--as", "urdf")
+        assert run("report", path, "--as", "urdf")[:2] == run("report", *words, "--as", "urdf")[:2]
         part = {"name": "a", "file": "part.json", "position": [1, 0, 0]}
         body = assembly.read({"part": [part]}, folder=tmp_path).body
         assert body.center_of_mass.tolist() == [1.0, 0.0, 0.1]

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from cad_files import SOLIDS, occt, primitive, write_assembly, write_step
 from command_line import one_line, run
-from polhode import RigidBody, Uncertain, solids
+from polhode import RigidBody, Uncertain, assembly, solids
 from polhode.errors import FileFormatError, MeshError, PolhodeError
 from polhode.files import cad_apart, cad_file, load, read_mesh, solid_from_file
 from polhode.files.cad_file import read_cad
@@ -262,6 +262,20 @@ class TestApart:
         path.write_bytes(path.read_bytes()[:2000])
         with pytest.raises(FileFormatError, match=r"thing\.step: .* cut short"):
             load(path)
+
+    def test_in_an_assembly_of_parts(self, tmp_path: Path) -> None:
+        path = write_assembly(tmp_path / "thing.step", {"block": 7.85, "ball": 2.7})
+        whole = solid_from_file(path)
+        table = {"length_unit": "in", "part": [{"name": "a", "file": path.name}]}
+        made = assembly.read(table, folder=tmp_path)
+        assert made.body.mass == pytest.approx(float(whole.body.mass), rel=1e-14)
+        code, out, _ = run("report", str(path))
+        assert code == 0
+        assert "where two overlap, what they share counts twice" in out
+        plain = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step")
+        table = {"part": [{"name": "a", "file": plain.name}]}
+        with pytest.raises(PolhodeError, match=r"part\.step needs its mass or its density"):
+            assembly.read(table, folder=tmp_path)
 
     def test_a_break_down_is_an_error(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         path = write_step(primitive("Sphere", 10.0)(), tmp_path / "part.step")

@@ -266,6 +266,31 @@ class TestReport:
             assert alone["mass"] == pytest.approx(2 * 1.21, rel=1e-12)
             assert any("how far that moves corners is in no bound" in note for note in alone["notes"])
 
+    def test_numbers_for_other_programs_come_with_notes(self, tmp_path: Path, has_union: bool) -> None:
+        path = written(tmp_path / "two.obj", at((1, 1, 1), (0, 0, 0)), at((1, 0.5, 0.7), (0.6, 0.1, 0.05)))
+        code, out, err = run("report", path, "--length-unit", "m", "--density", "2", "--as", "urdf")
+        assert code == 0
+        assert out.startswith("<inertial>")
+        notes = err.splitlines()
+        assert all(note.startswith("polhode: note: ") for note in notes)
+        assert any("components body and insert overlap" in note for note in notes)
+        assert has_union == any("0.14 m^3" in note for note in notes)
+
+    def test_what_is_repaired_is_joined_after(self, tmp_path: Path) -> None:
+        pytest.importorskip("manifold3d")
+        vertices, faces = joined(at((1, 1, 1), (0, 0, 0)), at((1, 0.5, 0.7), (0.6, 0.1, 0.05)))
+        faces = np.concatenate([faces[:2], faces[2:3, ::-1], faces[3:], faces[-1:]])  # one turned, one twice
+        path = tmp_path / "two.obj"
+        path.write_bytes(obj(vertices, faces))
+        found = self.report(path, "--length-unit", "mm", "--density", "2", "--repair", "--union")
+        assert found["mass"] == pytest.approx(2 * 1.21e-9, rel=1e-12)
+        assert [step["step"] for step in found["repaired"]] == ["drop", "orient", "union"]
+        union = found["repaired"][-1]["volume_change_percent"]
+        assert union == pytest.approx(-100 * 0.14 / 1.21, rel=1e-9)
+        body = RigidBody.from_file(path, length_unit="mm", density=2.0, repair=True, union=True)
+        assert body.mass == pytest.approx(2 * 1.21e-9, rel=1e-12)
+        assert body.provenance.checked.endswith(", repaired")
+
     @pytest.mark.parametrize(("most", "is_told"), [(24, True), (23, False)])
     def test_large_meshes_are_not_taken_apart(
         self, most: int, is_told: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -156,6 +156,28 @@ class TestStepsAtMost:
             BODY.simulate([0.0, 300.0], (0.1, 0.2, 1.0), **options, max_steps=steps // 2)
         assert 0.0 < caught.value.time < 300.0
 
+    @pytest.mark.parametrize("method", ["taylor", "dop853"])
+    @pytest.mark.parametrize("most", [1, 3, 7, 12, 18])
+    def test_neighbours_do_not_matter(self, method: str, most: int) -> None:
+        omega = np.random.default_rng(most).normal(size=(40, 3)) * 10.0
+        options: Any = {"load": loads.constant_torque((1.0, 0.0, 0.0)), "method": method}
+        options |= {"max_steps": most, "on_failure": "keep"}
+        alone = [str(BODY.simulate([0.0, 2.0], one, **options).status) for one in omega]
+        assert BODY.simulate([0.0, 2.0], omega, **options).status.tolist() == alone
+        pairs = [BODY.simulate([0.0, 2.0], omega[k : k + 2], **options).status for k in range(0, 40, 2)]
+        assert np.concatenate(pairs).tolist() == alone
+
+    @pytest.mark.parametrize("most", [3, 12])
+    def test_chunks_do_not_matter(self, most: int) -> None:
+        def status(chunk: int) -> Any:
+            omega = distributions.normal((0.0, 0.0, 3.0), sigma=(10.0, 10.0, 10.0))
+            load = loads.constant_torque((1.0, 0.0, 0.0))
+            found = ensemble(BODY, [0.0, 2.0], omega, load=load, n=60, seed=1, chunk=chunk, max_steps=most)
+            return found.compute().status.to_numpy().tolist()
+
+        first = status(1)
+        assert all(status(chunk) == first for chunk in (2, 3, 5, 60))
+
     def test_closed_forms_take_none(self) -> None:
         assert BODY.simulate([0.0, 1e6], (0.1, 0.2, 1.0), max_steps=1).status == "complete"
 

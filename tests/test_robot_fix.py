@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from command_line import run
 from polhode import robots
-from robot_texts import BALL, ROUND, bare, joint, link, mjcf, sdf, sjoint, slink, urdf, weighed
+from robot_texts import BALL, ROUND, UNREAD, bare, joint, link, mjcf, sdf, sjoint, slink, urdf, weighed
 from test_robots import there
 
 if TYPE_CHECKING:
@@ -126,6 +126,20 @@ class TestCommand:
         code, _, _ = run("check", tmp_path / "r.urdf", "--fix", better, "--mass", "3 kg")
         assert code == 0
         assert 'value="3.0"' in better.read_text()
+
+    def test_a_mass_is_shared_by_links_of_known_volumes(self, tmp_path: Path) -> None:
+        known, unread = bare("a", BALL), bare("b", UNREAD)
+        text = urdf(bare("base"), known, unread, joint("base", "a"), joint("base", "b"))
+        (tmp_path / "r.urdf").write_text(text)
+        code, _, err = run("check", tmp_path / "r.urdf", "--mass", "3 kg")
+        assert code == 2
+        assert err.startswith("polhode: --mass: the shape of b, which has no mass, tells no volume")
+        assert "pass --density" in err
+        code, out, _ = run(
+            "check", tmp_path / "r.urdf", "--fix", tmp_path / "f.urdf", "--density", "1 g/cm^3"
+        )
+        assert code == 1
+        assert "left as they are: b" in out
 
     def test_a_density_that_serves_nothing_is_told(self, tmp_path: Path) -> None:
         (tmp_path / "r.urdf").write_text(urdf(link("a", 5.0, 0.02, BALL)))

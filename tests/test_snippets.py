@@ -180,10 +180,15 @@ class TestCommand:
     @pytest.mark.parametrize("program", PROGRAMS)
     def test_it_prints_the_lines_alone(self, program: str, tmp_path: Path) -> None:
         body = RigidBody(2.0, [(3.0, -0.5, 0), (-0.5, 4.0, 0), (0, 0, 5.0)], (0, 0, 0.1))
-        assert run("report", *self.WORDS, "--as", program) == (0, forms.to_text(body, program) + "\n", "")
-        out = tmp_path / "x.json"
-        assert run("report", *self.WORDS, "--as", program, "--output", out) == (0, "", "")
-        assert out.read_text() == forms.to_text(body, program) + "\n"
+        code, out, err = run("report", *self.WORDS, "--as", program)
+        assert (code, out) == (0, forms.to_text(body, program) + "\n")
+        assert err.splitlines() == [
+            f"polhode: note: {option} has no unit: {unit} was taken"
+            for option, unit in (("--mass", "kg"), ("--com", "m"), ("--inertia", "kg m^2"))
+        ]
+        path = tmp_path / "x.json"
+        assert run("report", *self.WORDS, "--as", program, "--output", path)[:2] == (0, "")
+        assert path.read_text() == forms.to_text(body, program) + "\n"
 
     def test_refused(self, tmp_path: Path) -> None:
         rows: list[tuple[tuple[str, ...], str]] = [

@@ -186,11 +186,17 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBo
             raise PolhodeError(f"{scope.where}: {key}: {repr(table[key])[:60]} is neither true nor false")
     if "weld" in table:
         options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / metres_per(unit)
-    if not is_molecule(path):
+    if not is_molecule(path) and not ({"mass", "density"}.isdisjoint(table) and _has_materials(path)):
         options |= _weight(table, scope, path.name)
     else:
         options |= {key: table[key] for key in ("mass", "density") if key in table}
     return RigidBody.from_file(path, length_unit=unit, **options), metres_per(unit)
+
+
+def _has_materials(path: Path) -> bool:
+    """Tell whether a file says the density of every solid in it."""
+    cad = load(path).cad
+    return cad is not None and all(part.density is not None for part in cad.parts)
 
 
 def _unit_of(path: Path, table: Mapping[str, Any], scope: Scope) -> str:

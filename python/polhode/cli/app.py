@@ -92,12 +92,13 @@ def report(
     check_outputs([("--output", output.output)], [file, extra.expect])
     with files_read() as read:
         if extra.program is not None:
-            text = for_program(file, body, extra, output.form)
+            text, notes = for_program(file, body, extra, output.form)
         else:
             told = file_report(file, body, extra)
     check_outputs([("--output", output.output)], read)
     if extra.program is not None:
         _write_text(text, output)
+        _note(notes)
         return GOOD
     differing = []
     if extra.expect is not None:
@@ -235,12 +236,13 @@ def assemble(
     check_outputs(places, [file, extra.expect])
     with files_read() as read:
         if extra.program is not None:
-            text = assembly_for_program(file, assemble, extra, output.form)
+            text, notes = assembly_for_program(file, assemble, extra, output.form)
         else:
             told, made = assembly_report(file, assemble, extra)
     check_outputs(places, read)
     if extra.program is not None:
         _write_text(text, output)
+        _note(notes)
         return GOOD
     differing = []
     if extra.expect is not None:
@@ -356,6 +358,14 @@ def _fail(message: str, code: int = BAD_INPUT) -> int:
         with suppress(OSError):  # nobody reads it: the exit code remains
             print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
     return code
+
+
+def _note(notes: list[str]) -> None:
+    """Print notes on stderr, where the output is for another program."""
+    if sys.stderr is not None:
+        with suppress(OSError):
+            for note in notes:
+                print("polhode: note:", printable(in_options(note)), file=sys.stderr, flush=True)
 
 
 def _write_text(text: str, options: OutputOptions) -> None:

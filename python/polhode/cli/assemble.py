@@ -71,12 +71,15 @@ def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) 
     return report, made
 
 
-def assembly_for_program(file: Path, options: AssembleOptions, extra: ReportOptions, form: str | None) -> str:
-    """Write the mass properties of the whole for the program of --as."""
+def assembly_for_program(
+    file: Path, options: AssembleOptions, extra: ReportOptions, form: str | None
+) -> tuple[str, list[str]]:
+    """Write the mass properties of the whole for the program of --as; what has to be noted too."""
     check_alone(extra, form)
     if options.save:
         raise PolhodeError("--save: --as prints numbers alone; leave one of the two out")
-    return to_text(_read(file).body, str(extra.program))
+    made = _read(file)
+    return to_text(made.body, str(extra.program)), list(made.notes)
 
 
 def _read(file: Path) -> Assembly:

@@ -132,6 +132,10 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
         solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
     notes = [*_taken(options, unit), *_of_unit(loaded, asked), *loaded.notes]
+    if len(solid.parts) > 1:
+        notes.append(
+            "solids of a CAD file are taken as they stand: where two overlap, what they share counts twice"
+        )
     notes += _unusual(solid.volume, unit, loaded)
     if weld != 0.0 and not options.repair:
         notes.append(f"{solid.welded} corners were joined to others within {weld:g} (--weld)")

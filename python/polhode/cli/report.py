@@ -51,10 +51,12 @@ def file_report(file: Path | None, options: BodyOptions, extra: ReportOptions = 
     return atoms_report(file, loaded, loaded.source, about)
 
 
-def for_program(file: Path | None, options: BodyOptions, extra: ReportOptions, form: str | None) -> str:
-    """Write the mass properties of the body in a file for the program of --as."""
+def for_program(
+    file: Path | None, options: BodyOptions, extra: ReportOptions, form: str | None
+) -> tuple[str, list[str]]:
+    """Write the mass properties of the body in a file for the program of --as; what has to be noted too."""
     check_alone(extra, form)
-    loaded = any_body(file, options)
+    loaded = any_body(file, options, with_components=True)
     if loaded.mass_unit != "kg" or loaded.length != "m":
         reason = "is a molecule, in u and angstrom" if loaded.mass_unit == "u" else "does not say its unit"
         way_out = "" if loaded.mass_unit == "u" else "; state --length-unit"
@@ -63,7 +65,8 @@ def for_program(file: Path | None, options: BodyOptions, extra: ReportOptions, f
         )
     if loaded.assumed:
         raise PolhodeError("--as: neither density nor mass is given; state --density or --mass")
-    return to_text(loaded.body, str(extra.program))
+    found = loaded.source.components if isinstance(loaded.source, MeshSolid) else None
+    return to_text(loaded.body, str(extra.program)), [*loaded.notes, *(found.notes if found else ())]
 
 
 def check_alone(extra: ReportOptions, form: str | None) -> None:

@@ -18,6 +18,7 @@ _WAYS_OUT: Final = (
     ("repair closes and orients by itself", "--repair closes and orients by itself"),
     ("leave index_base out", "leave --index-base out"),
     ("leave length_unit out", "leave --length-unit out"),
+    ("pass density= instead", "pass --density instead"),
     ("pass allow_outside=True", "pass --allow-outside"),
     ("pass rtol= if the table was printed to few digits", "give more digits"),
     ("pass rtol= for a table printed to few digits", "give more digits"),
@@ -30,7 +31,7 @@ _WAYS_OUT: Final = (
     ("give the body a thickness, or nothing inside", "leave out --wheel"),
     ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
 )
-_NAMED: Final = re.compile(r"^(weld|closure|orient|union|repair|index_base|length_unit)(?=: )")
+_NAMED: Final = re.compile(r"^(weld|closure|orient|union|repair|index_base|length_unit|mass|density)(?=: )")
 """Of arguments that are options by the same names."""
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")
 

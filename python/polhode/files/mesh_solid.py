@@ -174,12 +174,9 @@ def solid_of(
         for name in ("closure", "orient"):
             if asked[name]:
                 raise PolhodeError(f"{name}: repair closes and orients by itself; leave one of the two out")
-        if union:
-            raise PolhodeError(
-                "union: it joins components that are whole; repair the mesh in a file of its own first"
-            )
         with naming_file(file):
-            return _repaired_solid(loaded.mesh, density, mass, scale, weld)
+            first = _repaired_solid(loaded.mesh, density, mass, scale, weld)
+            return _united(loaded, first, weld, density, mass, scale) if union else first
     joined = 0
     if union:
         mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
@@ -297,13 +294,36 @@ def _repaired_solid(
             RepairStep("orient", "components that faced inward, and are no cavities, turned", change)
         )
     if steps:
-        numbers = np.array(body.__reduce__()[1][0], dtype=np.float64)
-        numbers[_CHECKS] = int(numbers[_CHECKS]) | _REPAIRED
-        numbers[_WELDED] = welded
-        if any(step.name == "fill" for step in steps):
-            numbers[_CLOSURE], numbers[_CHANGE] = _CAPS, abs(filled) * np.sign(filled * last) * scale**3
-        body = _core.RigidBody._from_numbers(numbers, body._doubts())
+        has_filled = any(step.name == "fill" for step in steps)
+        closed = abs(filled) * np.sign(filled * last) * scale**3 if has_filled else None
+        body = _marked(body, welded, closed)
     return MeshSolid(body, mesh.format, corners - welded, faces, volume, area, welded, steps=tuple(steps))
+
+
+def _marked(body: _core.RigidBody, welded: int, closed: float | None) -> _core.RigidBody:
+    """Give the body of a mesh that was repaired; `closed` is the change of volume by what was filled."""
+    numbers = np.array(body.__reduce__()[1][0], dtype=np.float64)
+    numbers[_CHECKS] = int(numbers[_CHECKS]) | _REPAIRED
+    numbers[_WELDED] = welded
+    if closed is not None:
+        numbers[_CLOSURE], numbers[_CHANGE] = _CAPS, closed
+    return _core.RigidBody._from_numbers(numbers, body._doubts())
+
+
+def _united(
+    loaded: Loaded, first: MeshSolid, weld: float, density: Number | None, mass: Number | None, scale: float
+) -> MeshSolid:
+    """Join the components of a mesh that was repaired first."""
+    mended, _, _, _ = repaired(loaded.mesh, weld)
+    joined = _joined(loaded, mended, orient=True)
+    solid = solid_of(joined, density=density, mass=mass, scale=scale)
+    change = 100.0 * (solid.volume - first.volume) / solid.volume
+    step = RepairStep("union", "components joined, so that what they share counts once", change)
+    provenance = first.body.provenance
+    closed = float(provenance.volume_change) if provenance.closure else None
+    return solid._replace(
+        body=_marked(solid.body, first.welded, closed), steps=(*first.steps, step), welded=first.welded
+    )
 
 
 def _offer_repair(error: MeshError, mesh: Mesh, scale: float) -> None:

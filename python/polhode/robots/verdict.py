@@ -308,6 +308,16 @@ def _filled(
         if (body := geometry.filled(link)) is not None
     }
     volume = sum(float(body.mass) for body in without.values())
+    unread = [
+        link.name
+        for link, verdict in zip(robot.links, verdicts, strict=True)
+        if is_without_mass(link, verdict) and geometry.filled(link) is None
+    ]
+    if mass is not None and unread:
+        raise PolhodeError(
+            f"mass: the shape of {unread[0]}, which has no mass, tells no volume, so that its share is not "
+            "known; pass density= instead"
+        )
     for i, body in without.items():
         weighed = body.scaled(mass=density if density is not None else (mass or 0.0) / volume)
         better = _rounded(

@@ -40,6 +40,11 @@ impl<X: Precision> Course<'_, X> {
         self.task.times[self.task.times.len() - 1]
     }
 
+    /// The most steps that it may take.
+    pub(in crate::motion::integrate::taylor) fn most_steps(&self) -> u64 {
+        self.task.tolerance.most_steps
+    }
+
     /// Whether so many steps up to `now`, in units of the unit of rates, let the motion come to its end.
     pub(in crate::motion::integrate::taylor) fn check_steps(
         &self,

@@ -128,11 +128,18 @@ where
         self.leads[row] = None;
     }
 
-    /// Ends the motions that would take too many steps; whether there was one.
+    /// Ends the motions that would take too many steps; whether there was one. Each is judged by its own steps, whatever goes on
+    /// beside it.
+    #[inline(always)]
     pub(super) fn refuse_endless(&mut self) -> bool {
+        self.leads.iter().flatten().any(Lead::is_due) && self.refuse_due()
+    }
+
+    #[inline(never)]
+    fn refuse_due(&mut self) -> bool {
         let mut ended = false;
         for row in 0..R {
-            let Some(lead) = &self.leads[row] else {
+            let Some(lead) = self.leads[row].as_ref().filter(|lead| lead.is_due()) else {
                 continue;
             };
             let (course, elapsed) = (&lead.job.course, self.now[row].0);

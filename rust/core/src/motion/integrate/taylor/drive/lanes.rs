@@ -57,6 +57,14 @@ pub(super) struct Lead<'a, X: Precision> {
     pub(super) flips_at_once: u32,
 }
 
+impl<X: Precision> Lead<'_, X> {
+    /// Whether it is to be judged by its steps: after every 64, and when it has taken all it may.
+    #[inline(always)]
+    pub(super) fn is_due(&self) -> bool {
+        self.steps >= self.job.course.most_steps() || self.steps.is_multiple_of(64)
+    }
+}
+
 /// `R` motions under way. Times are since the start, in the unit of each motion.
 pub(super) struct Lanes<'a, L: Number<Real: Precision>, S, const B: usize, const R: usize> {
     pub(super) settings: Settings,

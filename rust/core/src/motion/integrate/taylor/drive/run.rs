@@ -54,18 +54,17 @@ pub(in crate::motion::integrate::taylor) fn drive<
             None
         };
         idle = lanes.step();
-        if let (Some(see), Some(before)) = (&mut see, before) {
-            let step = lanes.seen(before);
-            idle |= lanes.refuse_endless();
-            if see(step, idle).is_break() {
-                lanes.end(0, End::Stopped);
-                return ControlFlow::Break(());
-            }
+        let seen = before.map(|before| lanes.seen(before));
+        idle |= lanes.refuse_endless();
+        if let (Some(see), Some(step)) = (&mut see, seen)
+            && see(step, idle).is_break()
+        {
+            lanes.end(0, End::Stopped);
+            return ControlFlow::Break(());
         }
         patience -= 1;
         if patience == 0 {
             patience = looks_after;
-            idle |= lanes.refuse_endless();
             if watch(lanes.fraction()).is_break() {
                 for row in 0..R {
                     lanes.end(row, End::Stopped);
