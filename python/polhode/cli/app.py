@@ -28,7 +28,7 @@ from polhode.cli.options import (
     SpinOptions,
 )
 from polhode.cli.standard_output import ReaderLeft, standard_output
-from polhode.cli.text import in_options, printable
+from polhode.cli.text import in_options, note, printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -98,7 +98,7 @@ def report(
     check_outputs([("--output", output.output)], read)
     if extra.program is not None:
         _write_text(text, output)
-        _note(notes)
+        note(notes)
         return GOOD
     differing = []
     if extra.expect is not None:
@@ -242,7 +242,7 @@ def assemble(
     check_outputs(places, read)
     if extra.program is not None:
         _write_text(text, output)
-        _note(notes)
+        note(notes)
         return GOOD
     differing = []
     if extra.expect is not None:
@@ -358,14 +358,6 @@ def _fail(message: str, code: int = BAD_INPUT) -> int:
         with suppress(OSError):  # nobody reads it: the exit code remains
             print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
     return code
-
-
-def _note(notes: list[str]) -> None:
-    """Print notes on stderr, where the output is for another program."""
-    if sys.stderr is not None:
-        with suppress(OSError):
-            for note in notes:
-                print("polhode: note:", printable(in_options(note)), file=sys.stderr, flush=True)
 
 
 def _write_text(text: str, options: OutputOptions) -> None:

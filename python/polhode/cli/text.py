@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import re
+import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rich.console import Console
 
-__all__ = ["in_options", "printable", "write"]
+__all__ = ["in_options", "note", "printable", "write"]
 
 _WAYS_OUT: Final = (
     ('closure="caps" or "hull"', "--closure caps or --closure hull"),
@@ -47,6 +51,15 @@ def in_options(message: str) -> str:
 def printable(text: str) -> str:
     """Escape control characters, so that text from a file is safe to show in a terminal."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def note(notes: Iterable[str]) -> None:
+    """Print notes on stderr, where the output is for another program."""
+    if sys.stderr is None:
+        return
+    with suppress(OSError):  # nobody reads them
+        for each in notes:
+            print("polhode: note:", printable(in_options(each)), file=sys.stderr, flush=True)
 
 
 def write(console: Console, line: str = "", style: str = "") -> None:
