@@ -33,15 +33,20 @@ pytestmark = [
 @pytest.fixture(scope="module")
 def workers() -> Iterator[Any]:
     """A cluster of one worker, which tests make larger."""
-    with (
-        distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0", host="127.0.0.1"
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        # Workers import what tests hand over from beside the tests.
-        client.register_plugin(Beside(str(TESTS)))
-        yield client
+    cluster = distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0", host="127.0.0.1"
+    )
+    try:
+        with distributed.Client(cluster) as client:
+            # Workers import what tests hand over from beside the tests.
+            client.register_plugin(Beside(str(TESTS)))
+            yield client
+    finally:
+        try:
+            cluster.close()
+        except KeyError:
+            # When all processes have ended it may yet ask for a worker that a test has killed.
+            cluster.status = distributed.Status.closed
 
 
 class Beside(distributed.WorkerPlugin):  # type: ignore[misc,name-defined]  # found by pytest alone
