@@ -14,8 +14,10 @@ from command_line import run
 from mesh_files import obj
 from oracles.meshes import box
 from polhode import RigidBody, robots, solids
+from polhode.errors import MeshError
 from polhode.files import body_from_file, components
 from polhode.files.components import labels, overlaps, parts_of, winding
+from polhode.files.union import shared_volume, united
 from robot_texts import link, urdf
 
 if TYPE_CHECKING:
@@ -119,6 +121,12 @@ class TestParts:
             np.testing.assert_allclose([part.volume for part in parts], [64 - 27, 1, 1], rtol=1e-14)
             assert overlaps(parts) == []
 
+    def test_corners_that_are_equal_are_one(self) -> None:
+        """Each face with vertices of its own: still two cubes."""
+        vertices, faces = joined(at((1, 1, 1), (0, 0, 0)), at((1, 1, 1), (3, 0, 0)))
+        parts = parts_of(vertices[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3))
+        np.testing.assert_allclose([part.volume for part in parts], [1.0, 1.0], rtol=1e-14)
+
     def test_one_component_is_one_part(self) -> None:
         (part,) = parts_of(*at((1, 2, 3), (5, 5, 5)))
         assert part.volume == pytest.approx(6.0, rel=1e-14)
@@ -209,6 +217,17 @@ def test_check_tells_where_it_does_not_search(
 
 
 class TestUnion:
+    def test_what_is_open_is_not_handed_over(self) -> None:
+        """Manifold3d ends the process on some meshes that are open."""
+        pytest.importorskip("manifold3d")
+        vertices, faces = at((1, 1, 1), (0, 0, 0))
+        other = at((1, 1, 1), (0.5, 0, 0))
+        for open_faces in (faces[:-1], faces[:9], np.concatenate([faces[:-1], faces[-1:, ::-1]])):
+            assert np.isnan(shared_volume((vertices, open_faces), other))
+            with pytest.raises(MeshError, match="a component is open"):
+                united([(vertices, open_faces), other], "OBJ")
+        assert shared_volume((vertices, faces), other) == pytest.approx(0.5, rel=1e-12)
+
     @pytest.mark.parametrize("count", [2, 3, 4])
     def test_of_boxes_is_that_of_closed_forms(
         self, count: int, rng: np.random.Generator, tmp_path: Path

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from polhode.files.union import has_union, shared_volume
+from polhode.files.mesh import weld
+from polhode.files.union import has_union, is_closed, shared_volume
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -128,6 +129,8 @@ def parts_of(
         One for each component that is no cavity, in the order of the faces, turned where it faced inward; one
         for all where there are more than `most`.
     """
+    if not is_closed(faces):  # by its vertices, of which several may stand at one place
+        vertices, faces, _ = weld(vertices, faces, "")
     label = labels(faces, len(vertices))
     count = int(label.max(initial=-1)) + 1
     middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0 if len(vertices) else 0.0
@@ -203,11 +206,11 @@ def overlaps(parts: Sequence[Part], pairs: Sequence[tuple[int, int]] | None = No
 def _shared(large: Part, small: Part, of_large: Floats, of_small: Floats) -> Overlap | None:
     if has_union():
         volume = shared_volume((large.vertices, large.faces), (small.vertices, small.faces))
-        if np.isnan(volume):
-            return Overlap(large.name, small.name, volume, False)
         if volume <= _CONTACT * small.volume:
             return None
-        return Overlap(large.name, small.name, volume, volume >= (1.0 - _CONTACT) * small.volume)
+        if volume > 0.0:
+            return Overlap(large.name, small.name, volume, volume >= (1.0 - _CONTACT) * small.volume)
+        # What manifold3d takes for no solid is looked at as without it.
     inside = _share_inside(of_small, of_large)
     if 0.0 < inside < 1.0:
         return Overlap(large.name, small.name, float("nan"), False)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
     Surface = tuple[Floats, Integers]
 
-__all__ = ["has_union", "shared_volume", "united"]
+__all__ = ["has_union", "is_closed", "shared_volume", "united"]
 
 
 def has_union() -> bool:
@@ -83,6 +83,10 @@ def _centred(parts: Sequence[Surface]) -> tuple[Floats, list[Surface]]:
 def _manifold(surface: Surface) -> Any:
     library = _library()
     vertices, faces = surface
+    if not is_closed(faces):  # which may end the process in there
+        raise MeshError(
+            "a component is open, so that there is no union; leave the union out, or repair the mesh"
+        )
     solid = library.Manifold(
         library.Mesh64(
             vert_properties=np.ascontiguousarray(vertices, dtype=np.float64),
@@ -95,6 +99,15 @@ def _manifold(surface: Surface) -> Any:
             "leave the union out, or repair the mesh"
         )
     return solid
+
+
+def is_closed(faces: Integers) -> bool:
+    """Whether each edge is gone along as often one way as the other."""
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
+    count = int(ends.max(initial=0)) + 1
+    there, back = ends[:, 0] * count + ends[:, 1], ends[:, 1] * count + ends[:, 0]
+    is_edge = bool((ends[:, 0] != ends[:, 1]).all())
+    return is_edge and bool(np.array_equal(np.sort(there), np.sort(back)))
 
 
 def _surface(solid: Any) -> Surface:
