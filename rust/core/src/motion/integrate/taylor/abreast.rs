@@ -7,7 +7,7 @@ use crate::numerics::lane::Lane;
 
 /// `R` motions, the lanes over the motions.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(align(64))] // see Pack
 pub(super) struct Abreast<L, const B: usize, const R: usize> {
     orders: [Order<Pack<L, R>>; COUNT],
     directions: [[[Pack<L, R>; 3]; B]; COUNT],

@@ -16,7 +16,7 @@ use crate::numerics::number::Number;
 ///
 /// where a vector s among them has the rate `−ω × s` besides.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(align(64))] // see Pack
 pub(super) struct Carried<T> {
     states: Vec<State<T>>,
     /// Σ z g.
@@ -26,7 +26,7 @@ pub(super) struct Carried<T> {
 
 /// One of them.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(align(64))] // see Pack
 struct State<T> {
     value: T,
     rest: T,

@@ -26,10 +26,8 @@ type Vectors<T> = [[T; 3]; COUNT];
 /// ```text
 /// p_k = Σ_{0<j≤k} ((a + 1) j − k) u_j p_{k−j}/(k u₀)
 /// ```
-///
-/// Aligned, since a register of the widest lanes that lies in two lines of the cache takes twice as long to load.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(align(64))] // see Pack
 pub(super) struct Gradient<T> {
     position: Vectors<T>,
     velocity: Vectors<T>,
@@ -123,7 +121,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         self.progress.get(row)
     }
 
-    /// Position and velocity at a time after the start of the step, over the distance there.
+    /// Position and velocity at a time after the start of the step, lengths over the distance at the start.
     #[inline(always)]
     fn after(&self, order: usize, h: Pack<L, R>) -> [[Pack<L, R>; 3]; 2] {
         let mut position = [Pack::new(0.0); 3];

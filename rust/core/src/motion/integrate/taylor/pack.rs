@@ -5,6 +5,9 @@ use std::ops::{Add, Mul, Neg, Sub};
 use crate::numerics::number::Number;
 
 /// One number of `R` rows; with one row plain arithmetic. Every operation acts on each row by itself.
+///
+/// What holds many of them is aligned to a line of the cache: a register of the widest lanes that lies in two lines takes twice as
+/// long to load.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pack<L, const R: usize>(pub(super) [L; R]);
 

@@ -9,7 +9,7 @@ use crate::numerics::number::{Number, Real};
 
 /// Position and velocity of the centre of mass in N, and the series of the acceleration in a step.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(align(64))] // see Pack
 pub(super) struct Push<T> {
     value: [T; 6],
     rest: [T; 6],

@@ -26,7 +26,7 @@ pub(super) trait Analytic<T, const B: usize> {
 /// passes through zero all the same the step ends, and at ω = 0 there is no series, and of |ω| ω no second derivative: below
 /// [`STILL`](Precision::STILL) of the fastest ω the term counts as zero, in steps over which what it does stays below rounding.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(align(64))] // see Pack
 pub(super) struct Quadratic<T> {
     squares: [T; COUNT],
     speeds: [T; COUNT],
@@ -123,7 +123,7 @@ impl<L: Number<Real: Precision>, const R: usize, const B: usize> Analytic<Pack<L
 
 /// Torques that are cubics in time, in the body or in space: of the latter `Σ_j τ_j·γ_{k−j}` with the axes γ of space.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(align(64))] // see Pack
 pub(super) struct Forced<T> {
     in_body: [[T; 3]; 4],
     in_space: [[T; 3]; 4],

@@ -1,4 +1,5 @@
 use super::*;
+use crate::motion::loads::stumpff::moved;
 
 type State = (Vector3<f64>, Vector3<f64>);
 
@@ -85,6 +86,27 @@ fn there_and_back_at_all_scales() {
     assert!(Orbit::new(1.0, &Vector3::x(), &Vector3::x()).is_err());
     assert!(Orbit::new(0.0, &Vector3::x(), &Vector3::y()).is_err());
     assert!(Orbit::new(1.0, &Vector3::zeros(), &Vector3::y()).is_err());
+}
+
+#[test]
+fn functions_after_a_small_step_follow_from_those_before() {
+    for beta in [1.7_f64, -1.7, 1e-9, 0.0] {
+        for s in [0.3, -2.0, 7.0] {
+            let before = functions(beta, s);
+            // To the largest step for which they are taken from there, in units of 1/√|β|.
+            for part in [1e-9, -1e-6, 0.99e-4, -0.99e-4] {
+                let h = part / beta.abs().sqrt().max(0.1);
+                let (found, exact) = (moved(&before, beta, h), functions(beta, s + h));
+                let size = exact.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+                for k in 0..4 {
+                    assert!(
+                        (found[k] - exact[k]).abs() < 4e-15 * size,
+                        "{beta} {s} {h} {k}"
+                    );
+                }
+            }
+        }
+    }
 }
 
 #[test]

@@ -18,6 +18,9 @@ use crate::numerics::number::{Number, Real};
 /// How far ω may outgrow the unit of rates before another is taken: far below where its 26th power overflows.
 pub(super) const OUTGROWN: f64 = 65_536.0;
 
+/// Steps of a motion between two looks at whether it will ever end.
+const JUDGED_EVERY: u64 = 64;
+
 /// Gets the samples of a motion in the numbers of its run.
 pub(in crate::motion::integrate::taylor) type Tell<'a, X> = &'a mut dyn FnMut(usize, &[X; 7]);
 
@@ -58,10 +61,10 @@ pub(super) struct Lead<'a, X: Precision> {
 }
 
 impl<X: Precision> Lead<'_, X> {
-    /// Whether it is to be judged by its steps: after every 64, and when it has taken all it may.
+    /// Whether it is to be judged by its steps: now and then, and when it has taken all it may.
     #[inline(always)]
     pub(super) fn is_due(&self) -> bool {
-        self.steps >= self.job.course.most_steps() || self.steps.is_multiple_of(64)
+        self.steps >= self.job.course.most_steps() || self.steps.is_multiple_of(JUDGED_EVERY)
     }
 }
 
