@@ -243,6 +243,26 @@ def test_masks_and_units_within_chunks_are_refused(cloud: Any) -> None:
         MADE.from_particles(masked, positions)
 
 
+@pytest.mark.parametrize("start", [0, 100])
+def test_errors_name_the_rows_of_the_whole(start: int, tmp_path: Path, monkeypatch: Any) -> None:
+    from polhode._elsewhere import particles
+
+    monkeypatch.setattr(particles, "_PIECE", 4096)
+    row, places = 4096 + 17, np.ones((10_000, 3))
+    masses, masked = np.ones(10_000), np.ma.ones(10_000)
+    masses[row], masked[row] = -1.0, np.ma.masked
+    np.save(tmp_path / "masses.npy", masses)
+    stored = np.load(tmp_path / "masses.npy", mmap_mode="r")
+    for given in (masses, stored, *(da.from_array(masses, chunks=size) for size in (4096, 3000))):
+        with pytest.raises(errors.InvalidInertiaError, match=rf"masses\[{row}\] is -1\.0"):
+            MassAccumulator().add(given, places, start=start)
+    for given in (masked, da.from_array(masked, chunks=3000)):
+        with pytest.raises(ValueError, match=rf"masses: the element at \({row},\) is masked"):
+            MassAccumulator().add(given, places, start=start)
+    with pytest.raises(errors.InvalidInertiaError, match=rf"^particles {start + 3000} to {start + 5999}: "):
+        MassAccumulator().add(da.from_array(masses, chunks=3000), places, start=start)
+
+
 @pytest.mark.parametrize(
     ("masses", "positions", "words"),
     [

@@ -136,6 +136,25 @@ def test_names_and_coordinates_go_along() -> None:
     assert np.array_equal(both.omega, BODY.simulate(T, OMEGA[:, None], TURNS[:4]).omega)
 
 
+def test_coordinates_are_the_same_for_all_arguments() -> None:
+    numbers = np.arange(10)
+    starts = xarray.DataArray(lazily(OMEGA, 4), dims=("clone", "xyz"), coords={"clone": numbers})
+    turns = xarray.DataArray(TURNS, dims=("clone", "xyzw"), coords={"clone": numbers[::-1]})
+    with pytest.raises(
+        ValueError,
+        match=r"omega and attitude: their coordinates of the axis 'clone' are not the same; .*"
+        r"attitude\.drop_vars\('clone'\)",
+    ):
+        BODY.simulate(T, starts, turns)
+    whole = BODY.simulate(T, OMEGA, TURNS)
+    for other in (turns.assign_coords(clone=numbers), turns.drop_vars("clone")):
+        found = BODY.simulate(T, starts, other)
+        assert found.clone.to_numpy().tolist() == numbers.tolist()
+        assert np.array_equal(found.quaternion, whole.quaternion)
+    reordered = BODY.simulate(T, *xarray.align(starts, turns.sortby("clone"), join="exact"))
+    assert np.array_equal(reordered.quaternion, BODY.simulate(T, OMEGA, TURNS[::-1]).quaternion)
+
+
 def test_nothing_is_computed_before() -> None:
     def never(_: Any) -> Any:
         raise AssertionError

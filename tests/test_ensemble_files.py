@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -209,3 +210,60 @@ class TestCheckpoints:
             assert path.read_bytes() == bad
         with pytest.raises(ValueError, match=r"checkpoint: keeps reductions, .* to_zarr"):
             twisted(20).compute(checkpoint=path)
+
+    @pytest.mark.parametrize(
+        "change",
+        [
+            {"done": list(range(6)), "nodes": []},
+            {"done": list(range(6))},
+            {"nodes": []},
+            {"done": []},
+            {"done": [0, 1, 2, 99]},
+            {"done": None},
+        ],
+    )
+    def test_what_somebody_has_changed_is_refused(self, change: dict[str, Any], tmp_path: Path) -> None:
+        path = tmp_path / "kept.npz"
+        self.ended(path)
+        with zipfile.ZipFile(path) as archive:
+            members = {name: archive.read(name) for name in archive.namelist()}
+        state = json.loads(members["state.json"])
+        assert 0 < len(state["done"]) < 6
+        for text in (json.dumps(state | change), "[]"):
+            with zipfile.ZipFile(path, "w") as archive:
+                for name, data in (members | {"state.json": text.encode()}).items():
+                    archive.writestr(name, data)
+            with pytest.raises(FileFormatError, match=r"has begun \(.*\); give another path"):
+                self.reduced().compute(checkpoint=path)
+
+    def test_a_tree_that_has_lost_a_node_is_not_written(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """A run may be ended while two nodes are merged."""
+        path = tmp_path / "kept.npz"
+        mean = all_reductions()["mean"]
+        merged, calls = type(mean).merged, 0
+
+        def ends(*arguments: Any) -> Any:
+            nonlocal calls
+            calls += 1
+            if calls == 2:
+                raise KeyboardInterrupt
+            return merged(*arguments)
+
+        monkeypatch.setattr("polhode.ensembles.checkpoints._BETWEEN", 0.0)
+        with monkeypatch.context() as patch:
+            patch.setattr(type(mean), "merged", ends)
+            with pytest.raises(KeyboardInterrupt):
+                self.reduced(reduce=mean).compute(checkpoint=path)
+        told: list[float] = []
+        found = self.reduced(reduce=mean, progress=told.append).compute(checkpoint=path)
+        assert 0.5 < told[0] < 0.8
+        assert all_bytes(found) == all_bytes(self.reduced(reduce=mean).compute())
+
+    def test_one_that_is_complete_is_not_written_again(self, tmp_path: Path) -> None:
+        path = tmp_path / "kept.npz"
+        self.reduced().compute(checkpoint=path)
+        before = path.stat().st_mtime_ns
+        self.reduced().compute(checkpoint=path)
+        assert path.stat().st_mtime_ns == before

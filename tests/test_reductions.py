@@ -116,6 +116,29 @@ class TestSums:
         assert np.abs(both.mean - rows.mean(axis=0)).max() < 1e-7
         assert np.abs(np.asarray(both.products) / 999 - np.cov(rows.T)).max() < 1e-6
 
+    @pytest.mark.parametrize("place", [0, 5, 8191])
+    def test_infinite_values_have_an_infinite_mean(self, place: int, rng: np.random.Generator) -> None:
+        rows = rng.normal(size=(8192, 5))
+        rows[place, :4] = np.inf, -np.inf, np.nan, np.inf
+        rows[100, 3] = -np.inf
+        one, other = (moments(part, products=True) for part in np.split(rows, 2))
+        for both in (one.merged(other), other.merged(one)):
+            assert np.array_equal(both.mean[:4], [np.inf, -np.inf, np.nan, np.nan], equal_nan=True)
+            products = np.asarray(both.products)
+            assert np.isnan(products[:4]).all()
+            assert np.isnan(products[:, :4]).all()
+            assert both.mean[4] == pytest.approx(rows[:, 4].mean(), abs=1e-14)
+            assert products[4, 4] / 8191 == pytest.approx(rows[:, 4].var(ddof=1), rel=1e-12)
+
+    def test_an_ensemble_with_infinite_values_tells_so(self) -> None:
+        def ratio(motion: Any) -> Any:
+            with np.errstate(divide="ignore"):
+                return 1.0 / np.maximum(motion.omega[:, 0, 0], 0.0)
+
+        found = twisted(N, t=(0.0,), reduce=reductions.mean(ratio)).compute()
+        assert found.mean == np.inf
+        assert found.members > 4096
+
 
 class TestSketch:
     @pytest.mark.parametrize("most", [64, 256])

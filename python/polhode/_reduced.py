@@ -22,7 +22,8 @@ class Means(NamedTuple):
     Attributes
     ----------
     mean : numpy.ndarray
-        Not a number where no member is left.
+        Not a number where no member is left, where a value is none, and where values are infinite with both
+        signs; infinite where they are so with one.
     members, left_out : int
         Members that are in it, and those that failed.
     """
@@ -42,7 +43,7 @@ class MeansAndCovariance(NamedTuple):
     ----------
     mean : numpy.ndarray, shape (k,)
     covariance : numpy.ndarray, shape (k, k)
-        Divided by one less than the count.
+        Divided by one less than the count. Not a number where a value is none or infinite.
     members, left_out : int
         Members that are in it, and those that failed.
     """

@@ -37,23 +37,31 @@ class Moments(NamedTuple):
     def merged(self, other: Moments) -> Moments:
         """Those of both, after Chan, Golub and LeVeque."""
         count = self.members + other.members
-        step = other.mean - self.mean
-        mean = self.mean + step * (other.members / count)
-        if self.products is None or other.products is None:
-            return Moments(count, mean, None)
-        between = step[:, np.newaxis] * step * (self.members * (other.members / count))
-        return Moments(count, mean, self.products + other.products + between)
+        with np.errstate(invalid="ignore"):
+            step = other.mean - self.mean
+            mean = self.mean + step * (other.members / count)
+            # A step from an infinite mean leads nowhere: the mean stays what it is.
+            infinite = np.isinf(self.mean)
+            mean[infinite] = self.mean[infinite] + other.mean[infinite]
+            if self.products is None or other.products is None:
+                return Moments(count, mean, None)
+            between = step[:, np.newaxis] * step * (self.members * (other.members / count))
+            return Moments(count, mean, self.products + other.products + between)
 
 
 def moments(values: Floats, *, products: bool) -> Moments:
-    """Give the moments of rows, shape (n, k)."""
+    """Give the moments of rows, shape (n, k).
+
+    Infinite values have an infinite mean, those of both signs none; no products with them are numbers.
+    """
     count = len(values)
-    mean = halved(values) / count
-    if not products:
-        return Moments(count, mean, None)
-    off = values - mean
-    rows = [halved(off[:, [k]] * off) for k in range(off.shape[1])]
-    return Moments(count, mean, np.stack(rows))
+    with np.errstate(invalid="ignore"):
+        mean = halved(values) / count
+        if not products:
+            return Moments(count, mean, None)
+        off = values - mean
+        rows = [halved(off[:, [k]] * off) for k in range(off.shape[1])]
+        return Moments(count, mean, np.stack(rows))
 
 
 class Order(NamedTuple):

@@ -114,6 +114,7 @@ class Labels:
             self.ones -= {dim for dim, size in zip(own, shape, strict=True) if size != 1}
         self.cuts: dict[str, tuple[int, ...]] = {}
         self.sizes: dict[str, tuple[int, str]] = {}
+        self.indexes: dict[str, tuple[Any, str]] = {}
 
     def named(self, array: Any, name: str) -> Any:
         """Give an array with names; that of its last axis is the argument's own."""
@@ -136,6 +137,13 @@ class Labels:
                 raise ValueError(
                     f"{known[1]} and {name}: their axis {dim!r} has {known[0]} and {size} rows; give "
                     "both the same, or one"
+                )
+        for dim, index in found.indexes.items():
+            first = self.indexes.setdefault(str(dim), (index, name))
+            if not first[0].equals(index):
+                raise ValueError(
+                    f"{first[1]} and {name}: their coordinates of the axis {dim!r} are not the same; make "
+                    f"them so, such as with xarray.align, or leave one out: {name}.drop_vars({dim!r})"
                 )
         self.cuts |= {str(dim): cuts for dim, cuts in found.chunksizes.items()}
         return found

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["check_real", "dask_array", "in_memory", "is_stored", "labelled"]
+__all__ = ["check_real", "check_sizes", "dask_array", "in_memory", "is_stored", "labelled"]
 
 
 def _library(array: Any) -> str:
@@ -45,12 +45,19 @@ def in_memory(array: Any) -> Any:
     return np.asarray(array) if isinstance(array, np.memmap) else array
 
 
+def check_sizes(array: Any, name: str) -> None:
+    """Refuse an array of so many numbers as nobody knows."""
+    if np.isnan(np.array(np.shape(array), dtype=float)).any():
+        raise ValueError(
+            f"{name}: the sizes of its chunks are not known; {name}.compute_chunk_sizes() finds them"
+        )
+
+
 def check_real(array: Any, name: str) -> None:
     """Refuse an array of dask of no real numbers, or of so many as nobody knows, before it is computed."""
     if array.dtype.kind not in "biuf":
         raise TypeError(f"{name}: expected real numbers, got dtype {array.dtype}")
-    if np.isnan(np.array(array.shape, dtype=float)).any():
-        raise ValueError(f"{name}: the sizes of its chunks are not known; .compute_chunk_sizes() finds them")
+    check_sizes(array, name)
     if isinstance(array._meta, np.ma.MaskedArray):
         raise TypeError(
             f"{name}: its elements may be masked and have no value; give them values with "

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from polhode._core import MassAccumulator
-from polhode._elsewhere.kinds import dask_array, in_memory, is_stored
+from polhode._elsewhere.kinds import check_sizes, dask_array, in_memory, is_stored
 from polhode._extras import require
 from polhode._progress import watched
 from polhode.ensembles.fingerprint import build
@@ -22,6 +23,8 @@ _PIECE: Final = 1 << 18
 """Particles that are read at a time, 8 MB; a multiple of the blocks by which the core sums."""
 _AT_ONCE: Final = 32
 """Sums that are merged by one task."""
+_ROW: Final = re.compile(r"(?<=\bmasses\[)\d+|(?<=the element at \()\d+")
+"""A row in an error of the core."""
 
 
 def summed(masses: Any, positions: Any, start: int) -> MassAccumulator | None:
@@ -50,10 +53,7 @@ def summed(masses: Any, positions: Any, start: int) -> MassAccumulator | None:
 def _check(masses: Any, positions: Any) -> None:
     """Refuse shapes that make no particles, before anything is read."""
     for name, array in (("masses", masses), ("positions", positions)):
-        if np.isnan(np.array(np.shape(array), dtype=float)).any():
-            raise ValueError(
-                f"{name}: the sizes of its chunks are not known; {name}.compute_chunk_sizes() finds them"
-            )
+        check_sizes(array, name)
     (n,), (m, *axes) = np.shape(masses), np.shape(positions)
     if axes != [3]:
         raise ValueError(f"positions: expected shape (n, 3), got {np.shape(positions)}")
@@ -68,7 +68,7 @@ def _in_pieces(masses: Any, positions: Any, start: int) -> MassAccumulator:
     with watched(f"{count} particles") as tell:
         while first < count:
             end = min(first + _PIECE - (start + first) % _PIECE, count)
-            total.merge(_part(masses[first:end], positions[first:end], start + first))
+            total.merge(_part(masses[first:end], positions[first:end], start, first))
             first = end
             if tell is not None:
                 tell(end / count)
@@ -112,17 +112,17 @@ def _placed(masses: Any, positions: Any, place: Any, *, first: int, wanted: tupl
             f"this worker has polhode {build()[0]} (core {build()[1][:8]}) and the client polhode "
             f"{wanted[0]} (core {wanted[1][:8]}); the same package must be installed on all of them"
         )
-    return _boxed(_part(masses, positions, first + place[0].start))
+    return _boxed(_part(masses, positions, first, place[0].start))
 
 
-def _part(masses: Any, positions: Any, start: int) -> MassAccumulator:
-    """Sum particles; errors tell which of all they are."""
-    part = MassAccumulator()
+def _part(masses: Any, positions: Any, start: int, row: int) -> MassAccumulator:
+    """Sum some rows, from `row` on; errors tell which of all they are."""
+    part, first = MassAccumulator(), start + row
     try:
-        part.add(in_memory(masses), in_memory(positions), start=start)
+        part.add(in_memory(masses), in_memory(positions), start=first)
     except ValueError as error:
-        told = f"particles {start} to {start + len(masses) - 1}: {error}"
-        raise type(error)(told) from None
+        told = _ROW.sub(lambda found: str(row + int(found[0])), str(error))
+        raise type(error)(f"particles {first} to {first + len(masses) - 1}: {told}") from None
     return part
 
 

@@ -14,6 +14,7 @@ from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text
 from polhode.errors import PolhodeError
 from polhode.files.content import is_molecule
 from polhode.files.loaded import load
+from polhode.files.mesh_solid import solid_of
 from polhode.files.saved_body import read_report
 from polhode.units import metres_per
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from polhode.assembly.numbers import Scope
+    from polhode.files.loaded import Loaded
 
 __all__ = ["SAVED", "body_of_part", "kind_of"]
 
@@ -179,30 +181,32 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBo
                 f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one"
             )
         return body, scope.metres
-    unit = _unit_of(path, table, scope)
     options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
     for key in (key for key in _SWITCHES if key in table):
         if not isinstance(table[key], bool):
             raise PolhodeError(f"{scope.where}: {key}: {repr(table[key])[:60]} is neither true nor false")
+    if is_molecule(path):
+        unit = str(table.get("length_unit", "angstrom"))
+        options |= {key: table[key] for key in ("mass", "density", "weld") if key in table}
+        return RigidBody.from_file(path, length_unit=unit, **options), metres_per(unit)
+    loaded = load(path, index_base=options.pop("index_base", 1))
+    metres = metres_per(_unit_of(loaded, table, scope))
     if "weld" in table:
-        options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / metres_per(unit)
-    if not is_molecule(path) and not ({"mass", "density"}.isdisjoint(table) and _has_materials(path)):
+        options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / metres
+    if not ({"mass", "density"}.isdisjoint(table) and _has_materials(loaded)):
         options |= _weight(table, scope, path.name)
-    else:
-        options |= {key: table[key] for key in ("mass", "density") if key in table}
-    return RigidBody.from_file(path, length_unit=unit, **options), metres_per(unit)
+    return solid_of(loaded, scale=metres, **options).body, metres
 
 
-def _has_materials(path: Path) -> bool:
+def _has_materials(loaded: Loaded) -> bool:
     """Tell whether a file says the density of every solid in it."""
-    cad = load(path).cad
-    return cad is not None and all(part.density is not None for part in cad.parts)
+    return loaded.cad is not None and all(part.density is not None for part in loaded.cad.parts)
 
 
-def _unit_of(path: Path, table: Mapping[str, Any], scope: Scope) -> str:
-    """Give the unit of a file: its own, unless its table states another, else the one that its table has."""
-    own = "angstrom" if is_molecule(path) else load(path, index_base=table.get("index_base", 1)).unit
-    unit = table.get("length_unit", own) or scope.length_unit
+def _unit_of(loaded: Loaded, table: Mapping[str, Any], scope: Scope) -> str:
+    """Give the unit of a file: its own, else the one that is stated for its part or for the assembly."""
+    unit = loaded.length(table.get("length_unit")) or scope.length_unit
     if unit is None:
-        raise PolhodeError(f"{scope.where}: {path.name} does not say its unit of length; state length_unit")
-    return str(unit)
+        name = loaded.path.name
+        raise PolhodeError(f"{scope.where}: {name} does not say its unit of length; state length_unit")
+    return unit

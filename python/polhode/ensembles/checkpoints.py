@@ -14,12 +14,13 @@ from polhode._reducing import Moments, Order
 from polhode.ensembles.fingerprint import fingerprint
 from polhode.ensembles.reducing import State
 from polhode.ensembles.stores import check_same, header
+from polhode.ensembles.tree import BLOCK
 from polhode.errors import FileFormatError
 from polhode.files.writing import writing
 from polhode.reductions import Kept
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from polhode.ensembles.plan import Plan
@@ -34,6 +35,9 @@ _KIND: Final = "polhode reductions"
 _TUPLES: Final[dict[str, Any]] = {one.__name__: one for one in (State, Kept, Moments, Order)} | {
     "tuple": None
 }
+_BROKEN: Final = (
+    zipfile.BadZipFile, zlib.error, EOFError, KeyError, ValueError, TypeError, AttributeError, RuntimeError,
+)  # fmt: skip
 
 
 class Checkpoint:
@@ -52,6 +56,8 @@ class Checkpoint:
         self.path, self.plan, self.tree = path, plan, tree
         self.head = header(plan) | {"kind": _KIND, "inputs": fingerprint(plan, dict(named))}
         self.done: set[int] = set()
+        self.is_new = False
+        """Whether chunks are in the tree that are not in the file."""
         self.written = time.monotonic()
         if path.exists():
             self._read()
@@ -63,6 +69,7 @@ class Checkpoint:
     def add(self, index: int) -> None:
         """Tell that a chunk is in the tree."""
         self.done.add(index)
+        self.is_new = True
         if time.monotonic() - self.written >= _BETWEEN:
             self.write()
 
@@ -76,7 +83,18 @@ class Checkpoint:
             for number, array in enumerate(arrays):
                 with archive.open(f"{number}.npy", "w", force_zip64=True) as member:
                     np.lib.format.write_array(member, array, allow_pickle=False)
-        self.written = time.monotonic()
+        self.is_new, self.written = False, time.monotonic()
+
+    def close(self) -> None:
+        """Write what is new, but for a tree that was ended while a chunk came into it."""
+        if self.is_new and self._is_whole():
+            self.write()
+
+    def _is_whole(self) -> bool:
+        """Whether the tree has the blocks of those chunks that are done, and no others."""
+        bounds = [self.plan.bounds(index) for index in self.done]
+        chunks = [(first // BLOCK, -(-(first + count) // BLOCK)) for first, count in bounds]
+        return _joined(self.tree.spans()) == _joined(chunks)
 
     def _read(self) -> None:
         try:
@@ -86,12 +104,25 @@ class Checkpoint:
                 for level, index, state in found["nodes"]:
                     self.tree.nodes[level, index] = _restored(state, archive)
                 self.done = set(found["done"])
+                if not self._is_whole():
+                    raise ValueError("its chunks are not those of its nodes")
         except FileFormatError:
             raise
-        except (zipfile.BadZipFile, zlib.error, EOFError, KeyError, ValueError, TypeError) as error:
+        except _BROKEN as error:
             raise FileFormatError(
-                f"{self.path}: holds no reductions that compute has begun ({error})"
+                f"{self.path}: holds no reductions that compute has begun ({error}); give another path, or "
+                "delete it"
             ) from None
+
+
+def _joined(spans: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Join those that follow each other."""
+    found: list[tuple[int, int]] = []
+    for begin, end in sorted(spans):
+        if found and found[-1][1] == begin:
+            begin = found.pop()[0]
+        found.append((begin, end))
+    return found
 
 
 def _plain(value: Any, arrays: list[Any]) -> Any:

@@ -280,8 +280,8 @@ class Ensemble:
                 if kept is not None:
                     kept.add(index)
         finally:
-            if kept is not None and kept.done:
-                kept.write()
+            if kept is not None:
+                kept.close()
         parts, left_out = tree.root
         found = {
             name: reduction.finished(part, left_out)

@@ -48,6 +48,10 @@ class Tree(Generic[S]):
             level, index = level + 1, index >> 1
         self.nodes[level, index] = state
 
+    def spans(self) -> list[tuple[int, int]]:
+        """Give the blocks of each node: the first, and that after the last."""
+        return [(index << level, min(index + 1 << level, self.leaves)) for level, index in self.nodes]
+
     @property
     def root(self) -> S:
         """The state of all blocks, once all are there."""
