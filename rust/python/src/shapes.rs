@@ -1,6 +1,7 @@
 //! What all homogeneous shapes share: mass or density, lengths that broadcast.
 
-use polhode::mass::Amount;
+use polhode::Error;
+use polhode::mass::{Amount, RigidBody};
 use polhode::uncertainty::{Doubt, Follow, OfPolygon, OfShape, Shape, follow};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -42,12 +43,29 @@ macro_rules! shape {
 }
 pub(crate) use shape;
 
+/// A [`Shape`], whichever it is: what is done with its lengths is compiled once for each number of them.
+pub(crate) trait AnyShape<const N: usize>: Sync {
+    fn body(&self, lengths: &[f64; N], amount: Amount) -> Result<RigidBody, Error>;
+
+    fn doubt(&self, amount: Amount, from: Follow<'_>) -> Result<Doubt, Error>;
+}
+
+impl<const N: usize, S: Shape<N> + Sync> AnyShape<N> for S {
+    fn body(&self, lengths: &[f64; N], amount: Amount) -> Result<RigidBody, Error> {
+        self.of(lengths, amount)
+    }
+
+    fn doubt(&self, amount: Amount, from: Follow<'_>) -> Result<Doubt, Error> {
+        follow(&OfShape(self, amount), from)
+    }
+}
+
 /// A shape with one list of N lengths.
 pub(crate) fn one<const N: usize>(
     size: &Bound<'_, PyAny>,
     name: &str,
     amounts: (Given<'_, '_>, Given<'_, '_>),
-    shape: &(impl Shape<N> + Sync),
+    shape: &dyn AnyShape<N>,
 ) -> PyResult<PyRigidBody>
 where
     [f64; N]: Item + Sync,
@@ -59,7 +77,7 @@ where
         [&sizes.values.shape, &amounts.values.shape],
     )?;
     let bodies = grid.try_map(size.py(), |[s, a]| {
-        shape.of(&sizes.values[s], amounts.values[a])
+        shape.body(&sizes.values[s], amounts.values[a])
     })?;
     let is_uncertain = sizes.is_uncertain() || amounts.given.is_uncertain();
     let doubts = carried(size.py(), &grid, is_uncertain, |[s, a]| {
@@ -73,7 +91,7 @@ pub(crate) fn lengths<const N: usize>(
     names: [&str; N],
     lengths: [&Bound<'_, PyAny>; N],
     amounts: (Given<'_, '_>, Given<'_, '_>),
-    shape: &(impl Shape<N> + Sync),
+    shape: &dyn AnyShape<N>,
 ) -> PyResult<PyRigidBody> {
     let py = lengths[0].py();
     let mut read_in: Vec<Quantity<f64>> = Vec::with_capacity(N);
@@ -90,7 +108,7 @@ pub(crate) fn lengths<const N: usize>(
         [&together.shape, &amounts.values.shape],
     )?;
     let bodies = grid.try_map(py, |[l, a]| {
-        shape.of(&of_row(&together[l]), amounts.values[a])
+        shape.body(&of_row(&together[l]), amounts.values[a])
     })?;
     let is_uncertain = amounts.given.is_uncertain() || read_in.iter().any(Quantity::is_uncertain);
     let doubts = carried(py, &grid, is_uncertain, |[l, a]| {
@@ -132,7 +150,7 @@ impl Amounts {
         &self,
         row: usize,
         corners: Vec<Number<'_>>,
-    ) -> Result<Doubt, polhode::Error> {
+    ) -> Result<Doubt, Error> {
         let relative = factor(&self.given.row(row));
         let mut numbers = corners;
         numbers.push((1.0, &relative));
@@ -148,8 +166,8 @@ impl Amounts {
         &self,
         row: usize,
         lengths: Vec<Number<'_>>,
-        shape: &impl Shape<N>,
-    ) -> Result<Doubt, polhode::Error> {
+        shape: &dyn AnyShape<N>,
+    ) -> Result<Doubt, Error> {
         let relative = factor(&self.given.row(row));
         let mut numbers = lengths;
         numbers.push((1.0, &relative));
@@ -157,6 +175,6 @@ impl Amounts {
             bodies: &[],
             numbers: &numbers,
         };
-        follow(&OfShape(shape, self.values[row]), from)
+        shape.doubt(self.values[row], from)
     }
 }

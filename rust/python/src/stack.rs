@@ -170,18 +170,30 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         f: impl Fn([usize; K]) -> Result<R, Error>,
     ) -> PyResult<Stack<R>> {
         let mut rows = Vec::with_capacity(self.len());
-        let mut beat = Beat::new(py);
-        for (row, operands) in self.rows().enumerate() {
-            if row % FEW == FEW - 1 {
-                beat.mark()?;
-            }
-            let value = f(operands);
-            rows.push(value.map_err(|error| at_row(&self.shape, row, &to_py(py, &error), py))?);
-        }
+        self.in_order(py, &mut |row| {
+            rows.push(f(self.operands(row))?);
+            Ok(())
+        })?;
         Ok(Stack {
             shape: self.shape.clone(),
             rows,
         })
+    }
+
+    /// Does each row.
+    fn in_order(
+        &self,
+        py: Python<'_>,
+        row: &mut dyn FnMut(usize) -> Result<(), Error>,
+    ) -> PyResult<()> {
+        let mut beat = Beat::new(py);
+        for index in 0..self.len() {
+            if index % FEW == FEW - 1 {
+                beat.mark()?;
+            }
+            row(index).map_err(|error| at_row(&self.shape, index, &to_py(py, &error), py))?;
+        }
+        Ok(())
     }
 
     /// As [`try_map`](Self::try_map) where a single row may take long: each asks now and then whether to go on.
@@ -200,18 +212,37 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         blank: Option<R>,
         f: impl Fn([usize; K], &mut Watch<'_>) -> Result<R, Error> + Sync,
     ) -> PyResult<Stack<R>> {
+        let first = |watch: &mut Watch<'_>| f(self.operands(0), watch);
+        let block = |start: usize, out: &mut [R], watch: &mut Watch<'_>| {
+            for (row, value) in (start..).zip(out) {
+                *value = f(self.operands(row), watch).map_err(|error| (row, error))?;
+            }
+            Ok(())
+        };
+        self.in_blocks(py, size, blank, &first, &block)
+    }
+
+    /// The first row, then the others in blocks of so many rows. Here, in [`in_order`](Self::in_order) and in
+    /// [`detached`](Self::detached) is what does not depend on how rows are made, and is compiled once.
+    fn in_blocks<R: Clone + Send>(
+        &self,
+        py: Python<'_>,
+        size: usize,
+        mut blank: Option<R>,
+        first: &(dyn Fn(&mut Watch<'_>) -> Result<R, Error> + Sync),
+        block: &(dyn Fn(usize, &mut [R], &mut Watch<'_>) -> Result<(), (usize, Error)> + Sync),
+    ) -> PyResult<Stack<R>> {
         let count = self.len();
         let mut rows = memory::vector(Names(&self.names), &self.shape, 0)?;
-        let interrupt = Interrupt::new(None);
-        let watch = &mut |_| interrupt.poll(None);
-        let outcome = py.detach(|| {
+        self.detached(py, &mut |interrupt| {
             if count == 0 {
                 return Ok(());
             }
+            let watch = &mut |_| interrupt.poll(None);
             // The first row stands in each place until it is filled, unless there is a blank one: no row is written twice
             // over as many pages.
-            let first = f(self.operands(0), watch).map_err(|error| Halt::Failed((0, error)))?;
-            let blank = blank.unwrap_or_else(|| first.clone());
+            let first = first(watch).map_err(|error| Halt::Failed((0, error)))?;
+            let blank = blank.take().unwrap_or_else(|| first.clone());
             rows.push(first);
             while rows.len() < count {
                 rows.resize(count.min(rows.len() + BLOCK), blank.clone());
@@ -220,21 +251,28 @@ impl<'a, const K: usize> Broadcast<'a, K> {
                 }
             }
             fill_blocks(&mut rows[1..], size, watch, |start, out| {
-                let watch = &mut |_| interrupt.poll(None);
-                for (row, value) in (start + 1..).zip(out) {
-                    *value = f(self.operands(row), watch).map_err(|error| (row, error))?;
-                }
-                Ok(())
+                block(start + 1, out, &mut |_| interrupt.poll(None))
             })
-        });
-        interrupt.finish(py, outcome.is_ok())?;
-        if let Err(Halt::Failed((row, error))) = outcome {
-            return Err(at_row(&self.shape, row, &to_py(py, &error), py));
-        }
+        })?;
         Ok(Stack {
             shape: self.shape.clone(),
             rows,
         })
+    }
+
+    /// Does the rows while other threads of Python go on.
+    fn detached(
+        &self,
+        py: Python<'_>,
+        rows: &mut (dyn FnMut(&Interrupt) -> Result<(), Halt<(usize, Error)>> + Send),
+    ) -> PyResult<()> {
+        let interrupt = Interrupt::new(None);
+        let outcome = py.detach(|| rows(&interrupt));
+        interrupt.finish(py, outcome.is_ok())?;
+        if let Err(Halt::Failed((row, error))) = outcome {
+            return Err(at_row(&self.shape, row, &to_py(py, &error), py));
+        }
+        Ok(())
     }
 
     /// The rows of each stack, one after the other.

@@ -8,7 +8,7 @@
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -105,57 +105,46 @@ fn watch_interval() -> Duration {
 pub fn fill_blocks<T: Send, E: Send>(
     out: &mut [T],
     block: usize,
-    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    watch: &mut Watch<'_>,
     work: impl Fn(usize, &mut [T]) -> Result<(), E> + Sync,
 ) -> Result<(), Halt<E>> {
-    let total = out.len();
-    let mut blocks = out.chunks_mut(block).enumerate();
-    let mut done = 0;
-    let (start, interval) = (Instant::now(), watch_interval());
-    let mut looked_up = start;
-    let mut may_share = true;
-    loop {
-        let now = Instant::now();
-        if may_share && blocks.len() > 1 && now - start >= ALONE {
-            // Asked only now, since to ask takes longer than a small job.
-            if thread_count() > 1 {
-                break;
-            }
-            may_share = false;
-        }
-        if now - looked_up >= interval {
-            looked_up = now;
-            if watch(fraction(done, total)).is_break() {
-                return Err(Halt::Stopped);
-            }
-        }
-        let Some((index, slice)) = blocks.next() else {
-            return Ok(());
-        };
-        work(index * block, slice).map_err(Halt::Failed)?;
-        done += slice.len();
-    }
+    in_blocks(out, block, watch, &work)
+}
 
-    let helpers = thread_count().min(blocks.len());
-    let queue = Queue::new(blocks, helpers);
-    let finished = AtomicUsize::new(done);
-    let flow = thread::scope(|scope| {
-        for _ in 0..helpers {
-            scope.spawn(|| {
-                let _leaving = Leaving(&queue);
-                while let Some((index, slice)) = queue.take() {
-                    match work(index * block, slice) {
-                        Ok(()) => finished.fetch_add(slice.len(), Ordering::Relaxed),
-                        Err(error) => return queue.fail(index, error),
-                    };
+/// Compiled once for all work on the same elements.
+fn in_blocks<T: Send, E: Send>(
+    out: &mut [T],
+    block: usize,
+    watch: &mut Watch<'_>,
+    work: &(dyn Fn(usize, &mut [T]) -> Result<(), E> + Sync),
+) -> Result<(), Halt<E>> {
+    let total = out.len();
+    let blocks = out.chunks_mut(block).enumerate();
+    let count = blocks.len();
+    let blocks = Mutex::new(blocks);
+    // The failing block with the lowest index so far. Blocks are started in order, so when one fails all lower ones have
+    // been started too, and each of them has its say before the job returns.
+    let failure = Mutex::new(None);
+    let turn = || {
+        let Some((index, slice)) = locked(&blocks).next() else {
+            return Turn::Over;
+        };
+        match work(index * block, slice) {
+            Ok(()) => Turn::Done(slice.len()),
+            Err(error) => {
+                let mut first = locked(&failure);
+                if (first.as_ref()).is_none_or(|&(lowest, _)| index < lowest) {
+                    *first = Some((index, error));
                 }
-            });
+                Turn::Over
+            }
         }
-        queue.serve(|| watch(fraction(finished.load(Ordering::Relaxed), total)))
-    });
-    match (flow, queue.into_failure()) {
+    };
+    let flow = take_turns(&turn, count, total, watch);
+    let failure = failure.into_inner().unwrap_or_else(PoisonError::into_inner);
+    match (flow, failure) {
         (ControlFlow::Break(()), _) => Err(Halt::Stopped),
-        (_, Some(error)) => Err(Halt::Failed(error)),
+        (_, Some((_, error))) => Err(Halt::Failed(error)),
         (_, None) => Ok(()),
     }
 }
@@ -186,93 +175,117 @@ fn fraction(done: usize, total: usize) -> f64 {
     done as f64 / total as f64
 }
 
-/// The blocks still to be done, and what the threads have to tell each other.
-struct Queue<I, E> {
-    state: Mutex<State<I, E>>,
+/// What came of a turn: the next block, done.
+enum Turn {
+    /// It had so many elements.
+    Done(usize),
+    /// No block is left, or it failed: no further one is to be begun.
+    Over,
+}
+
+/// Takes turns until `count` blocks are done, with others once it is worth while. No word of this depends on what the
+/// blocks hold, so that it is compiled once.
+fn take_turns(
+    turn: &(dyn Fn() -> Turn + Sync),
+    count: usize,
+    total: usize,
+    watch: &mut Watch<'_>,
+) -> ControlFlow<()> {
+    let mut done = 0;
+    let mut left = count;
+    let (start, interval) = (Instant::now(), watch_interval());
+    let mut looked_up = start;
+    let mut may_share = true;
+    loop {
+        let now = Instant::now();
+        if may_share && left > 1 && now - start >= ALONE {
+            // Asked only now, since to ask takes longer than a small job.
+            if thread_count() > 1 {
+                break;
+            }
+            may_share = false;
+        }
+        if now - looked_up >= interval {
+            looked_up = now;
+            watch(fraction(done, total))?;
+        }
+        let Turn::Done(elements) = turn() else {
+            return ControlFlow::Continue(());
+        };
+        done += elements;
+        left -= 1;
+    }
+
+    let helpers = thread_count().min(left);
+    let crew = Crew::of(helpers);
+    let finished = AtomicUsize::new(done);
+    thread::scope(|scope| {
+        for _ in 0..helpers {
+            scope.spawn(|| {
+                let _leaving = Leaving(&crew);
+                while !crew.is_over.load(Ordering::Relaxed) {
+                    match turn() {
+                        Turn::Done(elements) => finished.fetch_add(elements, Ordering::Relaxed),
+                        Turn::Over => return crew.is_over.store(true, Ordering::Relaxed),
+                    };
+                }
+            });
+        }
+        crew.serve(|| watch(fraction(finished.load(Ordering::Relaxed), total)))
+    })
+}
+
+/// What threads that take turns have to tell each other.
+struct Crew {
+    /// Whether no further block is to be begun.
+    is_over: AtomicBool,
+    running: Mutex<usize>,
     someone_left: Condvar,
 }
 
-struct State<I, E> {
-    /// `None` once no further block is to be started.
-    blocks: Option<I>,
-    /// The failing block with the lowest index so far. Blocks are started in order, so when one fails all
-    /// lower ones have been started too, and each of them has its say before the job returns.
-    failure: Option<(usize, E)>,
-    running: usize,
-}
-
-impl<B, I: Iterator<Item = (usize, B)>, E> Queue<I, E> {
-    fn new(blocks: I, running: usize) -> Self {
+impl Crew {
+    fn of(running: usize) -> Self {
         Self {
-            state: Mutex::new(State {
-                blocks: Some(blocks),
-                failure: None,
-                running,
-            }),
+            is_over: AtomicBool::new(false),
+            running: Mutex::new(running),
             someone_left: Condvar::new(),
-        }
-    }
-
-    fn take(&self) -> Option<(usize, B)> {
-        self.state().blocks.as_mut()?.next()
-    }
-
-    fn fail(&self, index: usize, error: E) {
-        let mut state = self.state();
-        state.blocks = None;
-        if state
-            .failure
-            .as_ref()
-            .is_none_or(|(lowest, _)| index < *lowest)
-        {
-            state.failure = Some((index, error));
         }
     }
 
     /// Calls `watch` at every interval until all threads have left.
     fn serve(&self, mut watch: impl FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
         let mut flow = ControlFlow::Continue(());
-        let mut state = self.state();
-        while state.running > 0 {
+        let mut running = locked(&self.running);
+        while *running > 0 {
             let (woken, timeout) = self
                 .someone_left
-                .wait_timeout(state, watch_interval())
+                .wait_timeout(running, watch_interval())
                 .unwrap_or_else(PoisonError::into_inner);
-            state = woken;
-            if timeout.timed_out() && state.running > 0 && flow.is_continue() {
-                drop(state);
+            running = woken;
+            if timeout.timed_out() && *running > 0 && flow.is_continue() {
+                drop(running);
                 flow = watch();
-                state = self.state();
+                running = locked(&self.running);
                 if flow.is_break() {
-                    state.blocks = None;
+                    self.is_over.store(true, Ordering::Relaxed);
                 }
             }
         }
         flow
     }
-
-    fn into_failure(self) -> Option<E> {
-        let state = self
-            .state
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner);
-        state.failure.map(|(_, error)| error)
-    }
 }
 
-impl<I, E> Queue<I, E> {
-    /// The state stays valid between any two statements, so a panic elsewhere does not spoil it.
-    fn state(&self) -> MutexGuard<'_, State<I, E>> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+/// What is behind a lock. It stays valid between any two statements, so a panic elsewhere does not spoil it.
+fn locked<T>(behind: &Mutex<T>) -> MutexGuard<'_, T> {
+    behind.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Signs a thread off when it ends, also by a panic.
-struct Leaving<'a, I, E>(&'a Queue<I, E>);
+struct Leaving<'a>(&'a Crew);
 
-impl<I, E> Drop for Leaving<'_, I, E> {
+impl Drop for Leaving<'_> {
     fn drop(&mut self) {
-        self.0.state().running -= 1;
+        *locked(&self.0.running) -= 1;
         self.0.someone_left.notify_one();
     }
 }

@@ -35,6 +35,43 @@ const ABREAST: usize = 8;
 /// # Errors
 /// Those of `change`.
 pub fn follow(change: &impl Change, from: Follow<'_>) -> Result<Doubt, Error> {
+    follow_any(change, &from)
+}
+
+/// A [`Change`] of the two kinds of numbers that doubts need: what is done with them is compiled once for all changes.
+trait AnyChange {
+    fn of_jets(
+        &self,
+        bodies: &[Ten<Jet<ABREAST>>],
+        numbers: &[Jet<ABREAST>],
+    ) -> Result<Ten<Jet<ABREAST>>, Error>;
+
+    fn of_parabolas(
+        &self,
+        bodies: &[Ten<Parabola>],
+        numbers: &[Parabola],
+    ) -> Result<Ten<Parabola>, Error>;
+}
+
+impl<C: Change> AnyChange for C {
+    fn of_jets(
+        &self,
+        bodies: &[Ten<Jet<ABREAST>>],
+        numbers: &[Jet<ABREAST>],
+    ) -> Result<Ten<Jet<ABREAST>>, Error> {
+        self.of(bodies, numbers)
+    }
+
+    fn of_parabolas(
+        &self,
+        bodies: &[Ten<Parabola>],
+        numbers: &[Parabola],
+    ) -> Result<Ten<Parabola>, Error> {
+        self.of(bodies, numbers)
+    }
+}
+
+fn follow_any(change: &dyn AnyChange, from: &Follow<'_>) -> Result<Doubt, Error> {
     let mut variables: Vec<Variable> = (from.bodies.iter())
         .flat_map(|(_, doubt)| doubt.tangents.iter().map(|(variable, _)| *variable))
         .chain(
@@ -47,14 +84,14 @@ pub fn follow(change: &impl Change, from: Follow<'_>) -> Result<Doubt, Error> {
     variables.dedup();
     let mut tangents = Vec::with_capacity(variables.len());
     for some in variables.chunks(ABREAST) {
-        let found = change.of(&bodies_along(&from, some), &numbers_along(&from, some))?;
+        let found = change.of_jets(&bodies_along(from, some), &numbers_along(from, some))?;
         for (k, variable) in some.iter().enumerate() {
             tangents.push((*variable, found.map(|number| number.slopes[k])));
         }
     }
     Ok(Doubt {
         tangents,
-        bends: bends(change, &from)?,
+        bends: bends(change, from)?,
     })
 }
 
@@ -89,7 +126,7 @@ fn numbers_along(from: &Follow<'_>, some: &[Variable]) -> Vec<Jet<ABREAST>> {
 }
 
 /// The second-order terms along the probes.
-fn bends(change: &impl Change, from: &Follow<'_>) -> Result<[Tangent; PROBES], Error> {
+fn bends(change: &dyn AnyChange, from: &Follow<'_>) -> Result<[Tangent; PROBES], Error> {
     let bodies: Vec<_> = from
         .bodies
         .iter()
@@ -104,7 +141,9 @@ fn bends(change: &impl Change, from: &Follow<'_>) -> Result<[Tangent; PROBES], E
     for (probe, bend) in bends.iter_mut().enumerate() {
         let bodies: Vec<_> = bodies.iter().map(|body| body[probe]).collect();
         let numbers: Vec<_> = numbers.iter().map(|number| number[probe]).collect();
-        *bend = change.of(&bodies, &numbers)?.map(|number| number.bend);
+        *bend = change
+            .of_parabolas(&bodies, &numbers)?
+            .map(|number| number.bend);
     }
     Ok(bends)
 }

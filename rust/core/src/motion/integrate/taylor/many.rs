@@ -1,6 +1,6 @@
 //! The motions of many tasks, on all cores.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use super::course::parts;
@@ -44,20 +44,53 @@ pub fn solve_many<'a, E: From<Error> + Send>(
     };
     let is_precise = !runs.is_empty() && task(0).tolerance.is_beyond_doubles();
     let block = if is_precise { 1 } else { block(runs.len()) };
+    let tasks = Tasks {
+        task,
+        terms,
+        begun: &begun,
+        ask: &ask,
+    };
     // Where a run is stopped, what was done by then is kept.
     let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, slots| {
-        let (count, example) = (slots.len(), task(first));
+        let (runs, flow) = tasks.solve(first..first + slots.len(), is_precise);
+        for (slot, run) in slots.iter_mut().zip(runs) {
+            *slot = run.map(|run| run.with_error(E::from));
+        }
+        if flow.is_break() {
+            stopped.store(true, Ordering::Relaxed);
+            return Err(());
+        }
+        Ok(())
+    });
+}
+
+/// What is asked of the tasks of a call, and told of them.
+struct Tasks<'a, 'b> {
+    task: &'b (dyn Fn(usize) -> Task<'a> + Sync),
+    terms: &'b (dyn Fn(usize) -> &'a [Term] + Sync),
+    begun: &'b AtomicUsize,
+    ask: &'b (dyn Fn() -> ControlFlow<()> + Sync),
+}
+
+impl Tasks<'_, '_> {
+    /// The motions of some of the tasks. It knows nothing of its caller's error, so that the series are compiled once.
+    fn solve(
+        &self,
+        some: Range<usize>,
+        is_precise: bool,
+    ) -> (Vec<Option<Run<Error>>>, ControlFlow<()>) {
+        let (first, count, example) = (some.start, some.len(), (self.task)(some.start));
         let mut runs = vec![None; count];
         let mut common = Parts::default();
-        for row in first..first + count {
-            common = common.with(&parts(terms(row), example.subject.pivoted));
+        for row in some {
+            common = common.with(&parts((self.terms)(row), example.subject.pivoted));
         }
         let settings = settings(&example, common);
         let begin = |row: usize| {
-            begun.fetch_add(1, Ordering::Relaxed);
-            (task(row), terms(row))
+            self.begun.fetch_add(1, Ordering::Relaxed);
+            ((self.task)(row), (self.terms)(row))
         };
-        let watch = &mut |_| ask();
+        let watch = &mut |_| (self.ask)();
         let flow = if is_precise {
             let jobs = &mut rows(first, &mut runs, &begin);
             dispatch(Precisely {
@@ -83,15 +116,8 @@ pub fn solve_many<'a, E: From<Error> + Send>(
                 })
             }
         };
-        for (slot, run) in slots.iter_mut().zip(runs) {
-            *slot = run.map(|run: Run<Error>| run.with_error(E::from));
-        }
-        if flow.is_break() {
-            stopped.store(true, Ordering::Relaxed);
-            return Err(());
-        }
-        Ok(())
-    });
+        (runs, flow)
+    }
 }
 
 /// Motions that a thread takes at a time: many, since lanes idle at the end of a block, but many blocks too, since the first is done
