@@ -53,6 +53,9 @@ pub mod principal;
 pub mod random;
 pub mod uncertainty;
 
+/// Vectors, matrices and quaternions of this crate's interface: its `nalgebra` is the one that fits.
+pub use nalgebra;
+
 pub use error::Error;
 pub use mass::RigidBody;
 pub use principal::PrincipalAxes;

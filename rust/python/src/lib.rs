@@ -69,7 +69,9 @@ mod uncertain;
 
 use pyo3::prelude::*;
 
-#[pymodule]
+// Every class is frozen or borrowed for as long as it changes, and what is shared is atomic: no call needs the lock of the
+// interpreter.
+#[pymodule(gil_used = false)]
 mod _core {
     use numpy::{PyArray1, PyArrayMethods};
     use pyo3::prelude::*;

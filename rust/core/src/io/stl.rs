@@ -2,8 +2,10 @@
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
-use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
+use std::fs::File;
+use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use super::mesh::TriangleMesh;
 use crate::error::FileFault;
@@ -43,6 +45,16 @@ pub fn read(mut source: impl Read, held: u64) -> Result<TriangleMesh, StreamErro
     })
 }
 
+/// Reads a file as [`read`] does.
+///
+/// # Errors
+/// When the file cannot be opened, and as [`read`].
+pub fn read_file(path: impl AsRef<Path>) -> Result<TriangleMesh, StreamError> {
+    let file = File::open(path)?;
+    let held = file.metadata()?.len();
+    read(BufReader::with_capacity(RECORD * CHUNK, file), held)
+}
+
 /// The number of triangles that the header promises and the length confirms; `source` is then at the first of them.
 fn triangles(source: &mut impl Read, held: u64) -> Result<usize, StreamError> {
     let mut header = [0; HEADER];
@@ -74,6 +86,18 @@ fn triangles(source: &mut impl Read, held: u64) -> Result<usize, StreamError> {
 pub struct StlStream<R> {
     source: R,
     count: usize,
+}
+
+impl StlStream<File> {
+    /// A file by its path: as large as the disk, since its triangles are never all in memory.
+    ///
+    /// # Errors
+    /// When the file cannot be opened, and as [`Self::new`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, StreamError> {
+        let file = File::open(path)?;
+        let held = file.metadata()?.len();
+        Self::new(file, held)
+    }
 }
 
 impl<R: Read + Seek> StlStream<R> {

@@ -6,6 +6,7 @@
 //! millisecond is shared with others, and from then on the calling thread serves `watch`: progress and Ctrl-C.
 
 use std::convert::Infallible;
+use std::fmt;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -28,6 +29,24 @@ pub enum Halt<E> {
     Stopped,
     /// A block failed; of all failing blocks, the one that comes first.
     Failed(E),
+}
+
+impl<E: fmt::Display> fmt::Display for Halt<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stopped => Error::Stopped.fmt(f),
+            Self::Failed(error) => error.fmt(f),
+        }
+    }
+}
+
+impl<E: std::error::Error + 'static> std::error::Error for Halt<E> {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Stopped => None,
+            Self::Failed(error) => Some(error),
+        }
+    }
 }
 
 impl From<Halt<Infallible>> for Error {

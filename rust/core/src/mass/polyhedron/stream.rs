@@ -1,5 +1,6 @@
 //! Triangles one after the other, without all of them ever being in memory: what a reader of files offers.
 
+use std::fmt;
 use std::io;
 use std::ops::ControlFlow;
 
@@ -33,6 +34,26 @@ pub enum StreamError {
     Failed(Error),
     /// Whoever watched said stop.
     Stopped,
+}
+
+impl fmt::Display for StreamError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io(error) => error.fmt(f),
+            Self::Failed(error) => error.fmt(f),
+            Self::Stopped => Error::Stopped.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for StreamError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Io(error) => Some(error),
+            Self::Failed(error) => Some(error),
+            Self::Stopped => None,
+        }
+    }
 }
 
 impl From<io::Error> for StreamError {

@@ -54,6 +54,14 @@ pub struct Invariants {
     pub(super) twice_energy: f64,
 }
 
+impl FreeMotion {
+    /// What the motion keeps.
+    #[must_use]
+    pub fn invariants(&self) -> Invariants {
+        Invariants::of_motion(self)
+    }
+}
+
 impl Invariants {
     /// Of a body with these ascending principal moments and ω, components in principal axes, both finite.
     #[must_use]

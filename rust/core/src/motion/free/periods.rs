@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::invariants::Invariants;
+use super::motion::FreeMotion;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{Real, complete_first, complete_third};
 
@@ -22,6 +23,27 @@ pub struct Periods {
     pub flip: f64,
     /// `⟨φ̇_k⟩`: mean rate at which each principal axis goes about L, always in the positive sense.
     pub rates: [f64; 3],
+}
+
+impl FreeMotion {
+    /// The periods of the motion and its mean rates, as [`Invariants::periods`].
+    ///
+    /// ```
+    /// use polhode::RigidBody;
+    /// use polhode::motion::free::FreeMotion;
+    /// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+    ///
+    /// let moments = [1.0, 1.0, 1.5];
+    /// let top = RigidBody::from_principal(1.0, &moments, &Matrix3::identity(), &Vector3::zeros(), 0.0)?;
+    /// let motion = FreeMotion::of(&top, &Vector3::new(0.6, 0.0, 2.0), &UnitQuaternion::identity())?;
+    /// // Of a symmetric top ω goes round in the body at (I₃ − I₁) ω₃ / I₁ = 1 rad/s.
+    /// assert!((motion.periods().rotation - std::f64::consts::TAU).abs() < 1e-14);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    #[must_use]
+    pub fn periods(&self) -> Periods {
+        self.invariants().periods()
+    }
 }
 
 impl Invariants {

@@ -14,6 +14,7 @@
 //! | a wheel with motor and friction | `ḣ = τ − c Ω − c₀ sign(Ω)` | [`wheel`], [`held`], `bearing`, `resting` |
 //! | a spherical damper | `N = k (σ − ω)` | [`slug`] |
 //! | any of them on and off | windows of time | [`schedule`] |
+//! | what the caller knows | a closure of time and state | `callback` |
 //!
 //! A law more is a file more here, which answers what a [`Law`] is asked, and its name in the list in `term.rs`.
 
@@ -21,6 +22,7 @@ mod aim;
 mod analytic;
 mod axes;
 mod bearing;
+mod callback;
 mod carried;
 pub mod constant_force;
 pub mod constant_torque;
@@ -57,6 +59,7 @@ pub use self::aim::{Aim, Sampling};
 pub use self::analytic::Analytic;
 pub use self::axes::{Axes, Exact};
 pub use self::bearing::Bearing;
+pub use self::callback::Callback;
 pub use self::carried::Carried;
 pub use self::constant_force::ConstantForce;
 pub use self::constant_torque::ConstantTorque;

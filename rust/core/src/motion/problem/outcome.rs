@@ -2,6 +2,7 @@
 
 use super::crossing::Crossing;
 use super::task::Task;
+use crate::error::Error;
 use crate::motion::state::Phase;
 
 /// What an integration took.
@@ -47,14 +48,31 @@ impl<E> Run<E> {
     /// One that has come no further than the first time.
     pub(crate) fn at_start(task: &Task<'_>, end: End<E>) -> Self {
         let mut samples = vec![task.initial.unknown(); task.times.len()];
-        samples[0] = task.initial.clone();
+        if let Some(first) = samples.first_mut() {
+            *first = task.initial.clone();
+        }
         Self {
             samples,
             crossings: Vec::new(),
             effort: Effort::default(),
-            time: task.times[0],
+            time: task.times.first().copied().unwrap_or(f64::NAN),
             phase: task.initial.clone(),
             end,
+        }
+    }
+
+    /// The run, where it came to its end: at the last time, or at an event that ends it.
+    ///
+    /// # Errors
+    /// What failed, or [`Error::Stopped`] where the watch stopped it. Who wants the states until then looks at [`Self::end`] instead.
+    pub fn into_result(self) -> Result<Self, E>
+    where
+        E: From<Error>,
+    {
+        match self.end {
+            End::Complete | End::Event => Ok(self),
+            End::Stopped => Err(Error::Stopped.into()),
+            End::Failed(error) => Err(error),
         }
     }
 

@@ -1,8 +1,9 @@
 //! What is to be simulated, and how.
 
+use super::limits::check_times;
 use super::method::Method;
 use super::tolerance::Tolerance;
-use crate::error::Error;
+use crate::error::{Error, all_finite};
 use crate::mass::RigidBody;
 use crate::mass::refined::RefinedPrincipal;
 use crate::motion::euler_equations::EulerEquations;
@@ -50,7 +51,7 @@ pub struct Task<'a> {
     pub euler: EulerEquations,
     /// The state at the first time.
     pub initial: Phase,
-    /// When the state is asked for, the start first; see [`check_times`](super::limits::check_times).
+    /// When the state is asked for, the start first; see [`check_times`].
     pub times: &'a [f64],
     /// How.
     pub method: Method,
@@ -109,6 +110,28 @@ impl<'a> Task<'a> {
             tolerance,
             casing: None,
         }
+    }
+
+    /// Checks the times, and that the state at the first of them is one.
+    ///
+    /// # Errors
+    /// As [`check_times`], and where a number of the state is not finite; a pivoted body needs neither position nor velocity.
+    pub(in crate::motion) fn check_start(&self) -> Result<(), Error> {
+        check_times(self.times)?;
+        let Phase {
+            attitude,
+            omega,
+            position,
+            velocity,
+            own,
+        } = &self.initial;
+        all_finite("attitude", &attitude.coords)?;
+        all_finite("omega", omega)?;
+        if !self.subject.pivoted {
+            all_finite("position", position)?;
+            all_finite("velocity", velocity)?;
+        }
+        all_finite("the states of the load", own)
     }
 
     /// The task of a body that carries this along: its equations are those of the body without the wheels that turn freely. States of

@@ -77,9 +77,6 @@ impl Row<'_> {
 /// in the lanes of each core. `watch` gets the fraction done, but from within rows on several cores none, and may stop all.
 /// Then, and where a row [ends all](Rows::ends_all), no further row is begun, and those begun are kept. Lanes do not ask whether
 /// a row ends all.
-///
-/// # Panics
-/// When there are no times; see [`check_times`](super::check_times).
 pub fn simulate_many<R: Rows>(
     plan: &Plan<'_>,
     rows: &R,

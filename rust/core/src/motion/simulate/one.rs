@@ -15,14 +15,17 @@ use crate::motion::problem::{End, Method, Run, Task};
 /// Steps end where the load is not smooth; samples and events between the ends of steps come from the dense output. `watch`
 /// is called with the fraction done after each step and may stop the run.
 ///
-/// # Panics
-/// When there are no times; see [`check_times`](crate::motion::problem::check_times).
+/// What is wrong with the times, the state at the start or the method ends the run before its first step: see [`Run::end`], or
+/// [`Run::into_result`] for who wants all states or none.
 pub fn simulate<L: Load>(
     task: &Task<'_>,
     load: &mut L,
     events: &mut dyn Events<Error = L::Error>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<L::Error> {
+    if let Err(error) = task.check_start() {
+        return Run::at_start(task, End::Failed(error.into()));
+    }
     let plan = Plan::new(
         slice::from_ref(task.body),
         task.subject.pivoted,

@@ -1,5 +1,6 @@
 //! What all motions of a stack have in common, and the method that serves them.
 
+use std::fmt;
 use std::ops::ControlFlow;
 
 use nalgebra::UnitQuaternion;
@@ -8,7 +9,7 @@ use super::choose::closed_top;
 use crate::error::Error;
 use crate::mass::RigidBody;
 use crate::motion::loads::Term;
-use crate::motion::problem::{Footing, Method, Task, Tolerance, check_scales};
+use crate::motion::problem::{Footing, Method, Task, Tolerance, check_scales, check_times};
 use crate::motion::state::Phase;
 
 /// Asked now and then whether to go on, with the fraction done where that is known.
@@ -33,6 +34,21 @@ pub struct Refusal {
     pub error: Error,
 }
 
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.body {
+            Some(number) => write!(f, "body {number}: {}", self.error),
+            None => self.error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&self.error)
+    }
+}
+
 impl<'a> Plan<'a> {
     /// Motions of `bodies`, all of them free or all with their origin fixed, by `method` or what [`Method::Auto`] chooses.
     ///
@@ -40,7 +56,7 @@ impl<'a> Plan<'a> {
     /// bodies are looked through, it is as if they had no closed form.
     ///
     /// # Errors
-    /// When the method cannot serve, and for the first body whose equations of motion leave the range of float64.
+    /// When the times do not run one way, when the method cannot serve, and for the first body whose equations of motion leave the range of float64.
     pub fn new(
         bodies: &'a [RigidBody],
         pivoted: bool,
@@ -50,6 +66,7 @@ impl<'a> Plan<'a> {
         terms: Option<&[Term]>,
         watch: &Ask<'_>,
     ) -> Result<Self, Refusal> {
+        check_times(times).map_err(|error| Refusal { body: None, error })?;
         let are_tops =
             || (bodies.iter()).all(|body| watch(None).is_continue() && closed_top(body).is_ok());
         let method = method

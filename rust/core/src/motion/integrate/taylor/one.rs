@@ -8,20 +8,21 @@ use super::job::{job, settings};
 use super::kernels::{OneByOne, Precisely};
 use crate::error::Error;
 use crate::motion::loads::Term;
-use crate::motion::problem::{End, Run, Task};
+use crate::motion::problem::{End, Run, Task, check_times};
 use crate::numerics::dispatch::dispatch;
 
 /// The motion of `task` under `terms`.
 ///
 /// About every 64 steps `watch` gets the fraction done and may stop the run.
-///
-/// # Panics
-/// When there are no times; see [`check_times`](crate::motion::problem::check_times).
+/// What is wrong with the times ends the run before its first step.
 pub fn solve_one(
     task: &Task<'_>,
     terms: &[Term],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<Error> {
+    if let Err(error) = check_times(task.times) {
+        return Run::at_start(task, End::Failed(error));
+    }
     let mut run = Run::at_start(task, End::Stopped);
     go(task, terms, &mut run, watch, None);
     run

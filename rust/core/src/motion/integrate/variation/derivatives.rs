@@ -10,7 +10,7 @@ use crate::motion::loads::Term;
 use crate::motion::loads::variables::{
     ATTITUDE, Block, CENTER, LOAD, MASS, MOMENTS, PRODUCTS, Varied, WIDTH,
 };
-use crate::motion::problem::Task;
+use crate::motion::problem::{Task, check_times};
 
 /// Derivatives of (δ, ω) at a time: δ is a small rotation of the body from its attitude, `R → R exp(δ×)`, components in the body
 /// frame as it stands at that time, ω likewise in the body frame.
@@ -36,16 +36,14 @@ pub struct Variation {
 /// `watch` gets the fraction done and may stop it.
 ///
 /// # Errors
-/// When a term cannot act, the motion cannot go on, [`MotionFault::NoSeries`], [`MotionFault::NotFiniteDerivative`], or
+/// When the times do not run one way, a term cannot act, the motion cannot go on, [`MotionFault::NoSeries`], [`MotionFault::NotFiniteDerivative`], or
 /// [`Error::Stopped`].
-///
-/// # Panics
-/// When there are no times; see [`check_times`](crate::motion::problem::check_times).
 pub fn variations(
     task: &Task<'_>,
     terms: &[Term],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Vec<Variation>, Error> {
+    check_times(task.times)?;
     let is_known = |term: &Term| term.character(task.subject.pivoted).has_series && term.own() == 0;
     if !terms.iter().all(is_known) {
         return Err(MotionFault::NoSeries.into());

@@ -1,0 +1,124 @@
+//! A load that is a closure of the caller.
+
+use std::marker::PhantomData;
+
+use nalgebra::Vector3;
+
+use super::load::Load;
+use super::wrench::Wrench;
+use crate::error::Error;
+use crate::motion::state::Phase;
+
+/// A load that only the caller knows: a closure of time and state.
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::loads::Callback;
+/// use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
+/// use polhode::nalgebra::{UnitQuaternion, Vector3};
+/// use std::ops::ControlFlow;
+///
+/// let ball = solids::sphere(1.0, Amount::Mass(5.0))?; // I = 2
+/// let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() };
+/// let tolerance = Tolerance::new(1e-12, 0.0)?;
+/// let task = Task::free(&ball, Phase::in_place(&state), &[0.0, 3.0], Method::Auto, tolerance);
+/// let mut push = Callback::torque(|t, _: &Phase| Ok::<_, polhode::Error>(Vector3::z() * t));
+/// let run = simulate(&task, &mut push, &mut NoEvents::new(), &mut |_| ControlFlow::Continue(()));
+/// let run = run.into_result()?;
+/// assert!((run.phase.omega.z - 9.0 / 4.0).abs() < 1e-12); // ω = t²/(2 I)
+/// # Ok::<(), polhode::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Callback<F, E> {
+    wrench: F,
+    exerts_force: bool,
+    depends_on_rates: bool,
+    breaks: Vec<f64>,
+    span: [f64; 2],
+    error: PhantomData<fn() -> E>,
+}
+
+impl<E: From<Error>, F: FnMut(f64, &Phase) -> Result<Wrench, E>> Callback<F, E> {
+    /// A force in N and a torque in B about the reference point, of time and state.
+    #[must_use]
+    pub fn wrench(wrench: F) -> Self {
+        Self {
+            wrench,
+            exerts_force: true,
+            depends_on_rates: true,
+            breaks: Vec::new(),
+            span: [f64::NEG_INFINITY, f64::INFINITY],
+            error: PhantomData,
+        }
+    }
+}
+
+impl<E: From<Error>> Callback<(), E> {
+    /// A torque in B about the reference point, of time and state.
+    #[must_use]
+    pub fn torque<G: FnMut(f64, &Phase) -> Result<Vector3<f64>, E>>(
+        mut torque: G,
+    ) -> Callback<impl FnMut(f64, &Phase) -> Result<Wrench, E>, E> {
+        let couple = move |t: f64, phase: &Phase| torque(t, phase).map(Wrench::couple);
+        Callback {
+            exerts_force: false,
+            ..Callback::wrench(couple)
+        }
+    }
+}
+
+impl<F, E> Callback<F, E> {
+    /// The same load, which is known not to depend on ω or on the velocity: so that the splitting method can serve it.
+    #[must_use]
+    pub fn independent_of_rates(self) -> Self {
+        Self {
+            depends_on_rates: false,
+            ..self
+        }
+    }
+
+    /// The same load, which is not smooth at these times: a step ends there, and the closure is asked for times on either side of
+    /// each, never for the time itself.
+    #[must_use]
+    pub fn with_breaks(self, times: &[f64]) -> Self {
+        Self {
+            breaks: times.to_vec(),
+            ..self
+        }
+    }
+}
+
+impl<E: From<Error>, F: FnMut(f64, &Phase) -> Result<Wrench, E>> Load for Callback<F, E> {
+    type Error = E;
+
+    fn exerts_force(&self) -> bool {
+        self.exerts_force
+    }
+
+    fn depends_on_rates(&self) -> bool {
+        self.depends_on_rates
+    }
+
+    fn breaks(&self, _: f64, _: f64) -> Vec<f64> {
+        self.breaks.clone()
+    }
+
+    fn enter(&mut self, from: f64, to: f64) -> Result<(), E> {
+        let is_break = |t: f64| self.breaks.contains(&t);
+        let (low, high) = (from.min(to), from.max(to));
+        self.span = [
+            if is_break(low) { low.next_up() } else { low },
+            if is_break(high) {
+                high.next_down()
+            } else {
+                high
+            },
+        ];
+        Ok(())
+    }
+
+    fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, E> {
+        let [low, high] = self.span;
+        (self.wrench)(t.max(low).min(high), phase)
+    }
+}
