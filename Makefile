@@ -50,6 +50,10 @@ lint: build ## formatting, lints, types, stubs
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest polhode._core
+	$(BIN)/zizmor --offline --no-progress --quiet .github
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-forms .github/ISSUE_TEMPLATE/[!c]*.yml
+	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.readthedocs .readthedocs.yaml
 
 format: setup ## put all sources in form
 	cargo fmt --all
@@ -63,10 +67,10 @@ docs: build $(VENV)/.docs ## the pages as a site in docs/_build/html; a warning 
 figures: build ## draw the figures of the pages anew
 	for script in docs/figures/[!_]*.py; do $(BIN)/python $$script || exit 1; done
 
-package: setup ## source distribution and wheel into dist/, the wheel built from the source distribution
+package: $(VENV)/.package ## source distribution and wheel into dist/, as they are published; on Linux for systems since 2014
 	rm -rf dist
-	$(BIN)/maturin sdist --out dist
-	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist dist/*.tar.gz
+	$(BIN)/python packaging/build.py
+	$(BIN)/python packaging/try_wheel.py dist
 
 bench: build ## times beside the peers, as ratios, of the extension as in a wheel; NAMES= picks files of rows
 	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]" \
@@ -95,6 +99,10 @@ $(VENV)/.tools: pyproject.toml $(VENV)/.python
 
 $(VENV)/.docs: pyproject.toml $(VENV)/.tools
 	$(BIN)/python -m pip install --quiet --group docs
+	@touch $@
+
+$(VENV)/.package: pyproject.toml $(VENV)/.tools
+	$(BIN)/python -m pip install --quiet --group package
 	@touch $@
 
 $(VENV)/.built: $(VENV)/.tools $(RUST)

@@ -1,0 +1,103 @@
+"""What the sources of a release have beside those of the repository: absolute links, addresses, licences.
+
+The address of the project stands in ``Cargo.toml`` as ``repository``, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+THIRD_PARTY = "LICENSE-THIRD-PARTY"
+#: A link within the repository, as Markdown writes it; also of a picture.
+LINK = re.compile(r"(!?)\[((?:[^][]|\[[^][]*\])*)\]\((?!\w+:|#)([^)\s]+)\)")
+
+
+def manifest() -> dict[str, Any]:
+    """``Cargo.toml`` of the workspace: its package."""
+    package: dict[str, Any] = tomllib.loads((ROOT / "Cargo.toml").read_text("utf-8"))["workspace"]["package"]
+    return package
+
+
+def address() -> str:
+    """The address of the project."""
+    return str(manifest()["repository"])
+
+
+def addresses() -> dict[str, str]:
+    """The addresses that a package index shows."""
+    home = address()
+    return {
+        "Repository": home,
+        "Documentation": f"{home}/blob/v{manifest()['version']}/docs/index.md",
+        "Changelog": f"{home}/blob/v{manifest()['version']}/CHANGELOG.md",
+        "Issues": f"{home}/issues",
+    }
+
+
+def absolute(text: str) -> str:
+    """Markdown of the root of the repository, its links as they lead from anywhere."""
+    tag = f"v{manifest()['version']}"
+
+    def lead(found: re.Match[str]) -> str:
+        is_picture, words, target = found.groups()
+        kind = "raw" if is_picture else "tree" if (ROOT / target.split("#")[0]).is_dir() else "blob"
+        return f"{is_picture}[{words}]({address()}/{kind}/{tag}/{target})"
+
+    return LINK.sub(lead, text)
+
+
+def dressed(sources: Path) -> None:
+    """Make the copy of the repository one that leads and tells everywhere."""
+    readme = sources / "README.md"
+    readme.write_text(absolute(readme.read_text("utf-8")), "utf-8")
+    (sources / THIRD_PARTY).write_text(third_party(), "utf-8")
+    project = sources / "pyproject.toml"
+    lines = "".join(f'{name} = "{target}"\n' for name, target in addresses().items())
+    text = project.read_text("utf-8").replace(
+        "[project.scripts]", f"[project.urls]\n{lines}\n[project.scripts]"
+    )
+    text = text.replace('"LICENSE-APACHE"]', f'"LICENSE-APACHE", "{THIRD_PARTY}"]')
+    project.write_text(text, "utf-8")
+
+
+def third_party() -> str:
+    """The licences of the crates that are compiled into the extension."""
+    command = ["cargo", "metadata", "--locked", "--format-version", "1"]
+    told = json.loads(
+        subprocess.check_output(command, cwd=ROOT, env={**os.environ, "CARGO_TERM_COLOR": "never"})
+    )
+    packages = {package["id"]: package for package in told["packages"]}
+    nodes = {node["id"]: node for node in told["resolve"]["nodes"]}
+    within: set[str] = set()
+    ahead = [key for key, package in packages.items() if package["name"] == "polhode-python"]
+    while ahead:
+        key = ahead.pop()
+        within.add(key)
+        needs = (d for d in nodes[key]["deps"] if any(kind["kind"] is None for kind in d["dep_kinds"]))
+        ahead += [need["pkg"] for need in needs if need["pkg"] not in within]
+    crates = [packages[key] for key in within if packages[key]["source"]]
+    parts = [
+        "The extension of polhode contains, besides its own code, the standard library of Rust\n"
+        "(MIT OR Apache-2.0) and parts of these crates, on any system.\nTheir licences follow, each once.\n"
+    ]
+    texts: dict[str, list[str]] = {}
+    for crate in sorted(crates, key=lambda crate: (crate["name"], crate["version"])):
+        name = f"{crate['name']} {crate['version']} ({crate['license']})"
+        files = sorted(
+            file
+            for file in Path(crate["manifest_path"]).parent.iterdir()
+            if re.match(r"(LICEN[CS]E|COPYING|NOTICE|UNLICENSE)", file.name, re.IGNORECASE) and file.is_file()
+        )
+        parts.append(f"- {name}" + ("" if files else ", which ships no text of it"))
+        for file in files:
+            texts.setdefault(file.read_text("utf-8").strip(), []).append(f"{crate['name']}: {file.name}")
+    rule = "=" * 80
+    parts += [f"\n{rule}\n" + "\n".join(names) + f"\n{rule}\n\n{text}" for text, names in texts.items()]
+    return "\n".join(parts) + "\n"

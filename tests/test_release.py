@@ -1,0 +1,195 @@
+"""What is published: its links lead from anywhere, its versions agree, its bytes are those of the sources."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+import runpy
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGING = ROOT / "packaging"
+
+
+@pytest.fixture
+def script(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The names of a file in ``packaging``."""
+    monkeypatch.syspath_prepend(PACKAGING)
+    return lambda name: runpy.run_path(str(PACKAGING / f"{name}.py"))
+
+
+class TestLinks:
+    def test_every_link_of_the_readme_is_absolute_where_it_is_published(self, script: Any) -> None:
+        dress = script("dress")
+        text = dress["absolute"]((ROOT / "README.md").read_text("utf-8"))
+        targets = re.findall(r"\]\(([^)\s]+)\)", text)
+        assert len(targets) > 13
+        assert [target for target in targets if not target.startswith("https://")] == []
+        home = dress["address"]()
+        within = [target.removeprefix(home) for target in targets if target.startswith(home)]
+        for target in within:
+            kind, version, path = re.fullmatch(r"/(raw|tree|blob)/v([\d.]+)/(.+)", target).groups()  # type: ignore[union-attr]
+            assert version == dress["manifest"]()["version"]
+            assert (ROOT / path).is_dir() == (kind == "tree")
+            assert (ROOT / path).exists()
+        assert any(target.startswith("/raw/") for target in within)
+
+    @pytest.mark.parametrize(
+        ("text", "found"),
+        [
+            ("[a](docs/index.md#b)", "[a]({}/blob/v{}/docs/index.md#b)"),
+            ("![a [b]](docs/images/t-handle.png)", "![a [b]]({}/raw/v{}/docs/images/t-handle.png)"),
+            ("[e](examples)", "[e]({}/tree/v{}/examples)"),
+            ("[a](https://b.c/d) [e](#f) x](y", "[a](https://b.c/d) [e](#f) x](y"),
+        ],
+    )
+    def test_links_of_each_kind(self, script: Any, text: str, found: str) -> None:
+        dress = script("dress")
+        assert dress["absolute"](text) == found.format(dress["address"](), dress["manifest"]()["version"])
+
+    def test_the_address_stands_in_one_place(self, script: Any) -> None:
+        address = script("dress")["address"]()
+        holding = [
+            path.relative_to(ROOT).as_posix()
+            for pattern in ("*.*", ".github/**/*.*", "rust/*/*.*", "docs/*.*", "packaging/**/*.*")
+            for path in ROOT.glob(pattern)
+            if path.is_file() and path.suffix in (".toml", ".md", ".yml", ".yaml", ".cff", ".py")
+            if address in path.read_text("utf-8")
+        ]
+        assert holding == ["Cargo.toml"]
+
+
+class TestVersions:
+    def test_the_citation_the_crates_and_the_package_agree(self, script: Any) -> None:
+        import polhode
+
+        version = script("dress")["manifest"]()["version"]
+        cited = (ROOT / "CITATION.cff").read_text("utf-8")
+        assert f"\nversion: {version}\n" in cited
+        assert polhode.__version__ == version
+        workspace = tomllib.loads((ROOT / "Cargo.toml").read_text("utf-8"))["workspace"]
+        assert workspace["dependencies"]["polhode"]["version"] == version
+        assert f'version: "{version}"' in (PACKAGING / "conda" / "recipe.yaml").read_text("utf-8")
+
+    def test_notes_are_the_section_of_the_changelog(self, script: Any) -> None:
+        notes = script("notes")["notes"]
+        log = "# Log\n\n## [Unreleased]\n\n- c\n\n## [1.10.0] - 2026-01-02\n\n- b\n\n## [1.1.0]\n- a\n"
+        assert [notes(tag, log) for tag in ("Unreleased", "v1.10.0", "1.1.0", "v1.1", "v2.0.0")] == [
+            "- c\n",
+            "- b\n",
+            "- a\n",
+            None,
+            None,
+        ]
+        assert notes("Unreleased", (ROOT / "CHANGELOG.md").read_text("utf-8"))
+
+    @pytest.mark.parametrize("words", [["v9.9.9"], ["Unreleased", "--to-publish"]])
+    def test_notes_of_what_is_no_release_are_refused(
+        self,
+        script: Any,
+        words: list[str],
+        monkeypatch: pytest.MonkeyPatch,
+        capsys: pytest.CaptureFixture[str],
+    ) -> None:
+        monkeypatch.setattr(sys, "argv", ["notes.py", *words])
+        with pytest.raises(SystemExit):
+            script("notes")["main"]()
+        assert "v9.9.9" not in capsys.readouterr().out
+
+    def test_nothing_is_built_to_publish_without_an_address(
+        self, script: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        build = script("build")
+        if ".invalid/" not in build["address"]():
+            pytest.skip("the project has an address")
+        monkeypatch.setattr(sys, "argv", ["build.py", "--to-publish"])
+        with pytest.raises(SystemExit):
+            build["main"]()
+        assert "`repository` is still a placeholder" in capsys.readouterr().err
+
+    def test_the_workflow_tries_the_least_rust_that_is_stated(self) -> None:
+        workflow = (ROOT / ".github" / "workflows" / "release.yml").read_text("utf-8")
+        least = tomllib.loads((ROOT / "Cargo.toml").read_text("utf-8"))["workspace"]["package"][
+            "rust-version"
+        ]
+        assert f"cargo +{least} test" in workflow
+
+    def test_the_places_of_wheels_are_those_of_the_changelog(self) -> None:
+        workflow = (ROOT / ".github" / "workflows" / "release.yml").read_text("utf-8")
+        places = re.findall(r"triple: (\w+)-(\w+-[\w-]+)", workflow)
+        systems = {system for _, system in places}
+        assert len(places) == 2 * len(systems) == 8
+        assert {system.split("-")[-1] for system in systems} == {"gnu", "musl", "darwin", "msvc"}
+        assert 'python: ["3.11", "3.14t"]' in workflow
+
+
+class TestLicences:
+    def test_licences_of_all_that_is_compiled_in(self, script: Any) -> None:
+        text = script("dress")["third_party"]()
+        for crate in ("nalgebra", "pyo3", "numpy", "thiserror"):
+            assert re.search(rf"^- {crate} [\d.]+", text, re.MULTILINE)
+        for other in ("proptest", "polhode 0", "/root/", "/home/"):
+            assert other not in text
+
+    def test_both_licences_stand_in_the_crate(self) -> None:
+        for name in ("LICENSE-MIT", "LICENSE-APACHE"):
+            assert (ROOT / "rust" / "core" / name).read_bytes() == (ROOT / name).read_bytes()
+
+
+class TestBytes:
+    def test_a_wheel_without_traces(self, script: Any, tmp_path: Path) -> None:
+        plain = script("plain")["without_traces"]
+        wheels = []
+        for number in (1, 2):
+            wheel, out = tmp_path / f"{number}.whl", tmp_path / f"out{number}.whl"
+            bill = {
+                "serialNumber": f"urn:{number}",
+                "metadata": {"timestamp": number, "name": f"file:///tmp/x{number}/rust"},
+            }
+            with zipfile.ZipFile(wheel, "w") as archive:
+                archive.writestr(zipfile.ZipInfo("a.so", (2000 + number, 1, 1, 0, 0, 0)), b"code")
+                archive.writestr("a.dist-info/sboms/a.cyclonedx.json", json.dumps(bill))
+                archive.writestr("a.dist-info/RECORD", "old")
+            plain(wheel, out, f"/tmp/x{number}")
+            wheels.append(out.read_bytes())
+        assert wheels[0] == wheels[1]
+        with zipfile.ZipFile(out) as archive:
+            record = archive.read("a.dist-info/RECORD").decode().splitlines()
+            assert [line.split(",")[0] for line in record] == archive.namelist()
+            assert json.loads(archive.read(archive.namelist()[1])) == {
+                "metadata": {"name": "file:///polhode/rust"}
+            }
+            digest = base64.urlsafe_b64encode(hashlib.sha256(b"code").digest()).decode().rstrip("=")
+            assert record[0] == f"a.so,sha256={digest},4"
+
+
+class TestFiles:
+    @pytest.mark.parametrize(
+        "name",
+        [
+            ".github/SECURITY.md",
+            ".github/CODE_OF_CONDUCT.md",
+            ".github/pull_request_template.md",
+            ".github/ISSUE_TEMPLATE/bug.yml",
+            ".readthedocs.yaml",
+            "packaging/conda/recipe.yaml",
+            "packaging/deny.toml",
+        ],
+    )
+    def test_it_is_there(self, name: str) -> None:
+        assert (ROOT / name).stat().st_size > 100
+
+    def test_what_crates_may_be_is_what_they_are(self) -> None:
+        rules = tomllib.loads((PACKAGING / "deny.toml").read_text("utf-8"))
+        lock = tomllib.loads((ROOT / "Cargo.lock").read_text("utf-8"))
+        sources = {package["source"] for package in lock["package"] if "source" in package}
+        assert sources == {"registry+https://github.com/rust-lang/crates.io-index"}
+        assert rules["sources"] == {"unknown-registry": "deny", "unknown-git": "deny"}
