@@ -60,11 +60,21 @@ def read_record(
     found = fields.get("format")
     found = str(found) if isinstance(found, np.ndarray) else found
     if found != expected:
-        raise FileFormatError(f"{file}: its format is {found!r}, expected {expected!r}")
+        told = f"{file}: its format is {found!r}, expected {expected!r}"
+        raise FileFormatError(f"{told}{_of_later(found, expected)}")
     if file.suffix.lower() == ".npz":
         known |= {name for name in fields if prefixes_in_npz and name.startswith(prefixes_in_npz)}
     check_names(fields, known, str(file))
     return fields
+
+
+def _of_later(found: object, expected: str) -> str:
+    """Give the way out where the file is of the same kind, but newer."""
+    kind, _, number = str(found).partition("/")
+    known, _, ours = expected.partition("/")
+    if kind == known and number.isdecimal() and int(number) > int(ours):
+        return ": a later version of polhode has written it; pip install --upgrade polhode"
+    return ""
 
 
 def check_names(fields: dict[str, Any], known: Collection[str], where: str) -> None:
