@@ -34,6 +34,7 @@ NO_TEST = {
         for name in ("from_file", "save", "plot", "view", "animate", "to_pandas", "to_xarray")
     ),
     *("read_stl", "read_plates", "stream_solid", "compiled"),
+    "machine",  # takes nothing
     # Objects of other libraries, which have to be there.
     *("RigidBody.from_mesh_object", "RigidBody.from_atoms"),
 }

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 __all__ = ["app", "run"]
 
-COMMANDS: Final = ("report", "check", "molecule", "spin", "flyby", "assemble", "ledger", "demo")
+COMMANDS: Final = ("report", "check", "molecule", "spin", "flyby", "assemble", "ledger", "demo", "validate")
 GOOD: Final = 0
 BAD_VERDICT: Final = 1
 BAD_INPUT: Final = 2
@@ -307,6 +307,25 @@ def demo(*, output_dir: Path = Path("polhode-demo")) -> int:
     return demonstration.run(output_dir, Console(highlight=False))
 
 
+@app.command
+def validate(*, output: Output = SHOWN) -> int:
+    """Hold this build against NASA's check case, an asteroid, molecules, a CAD printout and closed forms."""
+    from polhode.cli.outputs import check_outputs
+    from polhode.cli.validate import validation
+
+    check_outputs([("--output", output.output)], [])
+    told, is_good = validation()
+    _show(told, output)
+    return GOOD if is_good else BAD_VERDICT
+
+
+def _version_in_full() -> None:
+    """Print what a report of a fault has to tell."""
+    from polhode.cli.machine import as_text
+
+    print(as_text())
+
+
 def overview() -> str:
     """List the commands, each with the first line of its docstring."""
     lines = ["Usage: polhode COMMAND", "", app.help, "", "Commands:"]
@@ -314,6 +333,7 @@ def overview() -> str:
         document = app[name].default_command.__doc__ or ""
         lines.append(f"  {name:<12}{document.partition(chr(10))[0]}")
     lines += ["", "polhode COMMAND --help tells what a command takes; polhode --version the version."]
+    lines += ["polhode --version --verbose tells of the machine too, for reports of faults."]
     lines += ["Exit codes: 0 good, 1 the verdict is bad, 2 bad input."]
     return "\n".join(lines)
 
@@ -329,6 +349,8 @@ def run(arguments: list[str]) -> int:
     )
     if arguments in ([], ["--help"], ["-h"]):
         command = partial(print, overview())
+    if sorted(arguments) == ["--verbose", "--version"]:
+        command = _version_in_full
     try:
         with standard_output():
             code = command()

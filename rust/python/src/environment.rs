@@ -3,8 +3,8 @@
 use std::env;
 use std::num::NonZeroUsize;
 
-use polhode::numerics::dispatch::{Level, set_level};
-use polhode::numerics::threads::set_thread_limit;
+use polhode::numerics::dispatch::{Level, level, set_level};
+use polhode::numerics::threads::{set_thread_limit, thread_count};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -41,6 +41,16 @@ pub(crate) fn obey() -> PyResult<()> {
         }
     }
     Ok(())
+}
+
+/// What long runs use on this machine: the instruction set and the number of threads.
+///
+/// Returns
+/// -------
+/// tuple of str and int
+#[pyfunction]
+pub(crate) fn machine() -> (String, usize) {
+    (level().to_string(), thread_count())
 }
 
 fn read(variable: &str) -> PyResult<Option<String>> {

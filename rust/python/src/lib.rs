@@ -83,6 +83,8 @@ mod _core {
     #[pymodule_export]
     use crate::body::PyRigidBody;
     #[pymodule_export]
+    use crate::environment::machine;
+    #[pymodule_export]
     use crate::equimomental::stick;
     #[pymodule_export]
     use crate::euler_rates::{angular_velocity_from_euler_rates, euler_rates};
