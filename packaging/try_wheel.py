@@ -43,7 +43,7 @@ points = np.random.default_rng(1).random((1000, 3))
 
 def add(number):
     for _ in range(20):
-        shared.add(points, np.ones(len(points)))
+        shared.add(np.ones(len(points)), points)
 
 with ThreadPoolExecutor(8) as pool:
     list(pool.map(add, range(8)))

@@ -7,6 +7,7 @@ import hashlib
 import json
 import re
 import runpy
+import subprocess
 import sys
 import tomllib
 import zipfile
@@ -169,6 +170,13 @@ class TestBytes:
             }
             digest = base64.urlsafe_b64encode(hashlib.sha256(b"code").digest()).decode().rstrip("=")
             assert record[0] == f"a.so,sha256={digest},4"
+
+
+def test_the_program_that_tries_a_wheel_runs_here(script: Any) -> None:
+    program = script("try_wheel")["PROGRAM"]
+    done = subprocess.run([sys.executable, "-c", program], check=False, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert re.fullmatch(r"polhode \S+ on 3\.\S+ with(out)? the lock\n", done.stdout)
 
 
 class TestFiles:
