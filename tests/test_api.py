@@ -48,6 +48,7 @@ MODULES = [
     "polhode.parallel_axis",
     "polhode.results",
     "polhode.robots",
+    "polhode.samples",
     "polhode.tops",
     "polhode.trajectory",
     "polhode.uncertainty",
@@ -130,6 +131,8 @@ class TestNames:
             "plot",
             "results",
             "robots",
+            "samples",
+            "symbolic",
         }
         known |= {"files", "trajectory", "units", "view"}
         assert internal <= known

@@ -12,7 +12,7 @@ import pytest
 from markdown_code import blocks
 from polhode import RigidBody
 from polhode.cli import brick, main
-from polhode.cli.t_handle import t_handle
+from sample_files import t_handle
 
 README = Path(__file__).resolve().parents[1] / "README.md"
 Capture: TypeAlias = pytest.CaptureFixture[str]

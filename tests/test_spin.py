@@ -12,8 +12,8 @@ import pytest
 from command_line import run, write_obj
 from oracles.meshes import box, cube, icosphere
 from PIL import Image
+from polhode import samples
 from polhode.cli import brick
-from polhode.cli.t_handle import t_handle, write_stl
 
 
 @pytest.fixture
@@ -101,10 +101,9 @@ def volume(triangles: np.ndarray) -> float:
 
 def test_the_part_itself_is_drawn(tmp_path: Path) -> None:
     """Not the box of its inertia: about C, with its own outline, and its own volume."""
-    write_stl(tmp_path / "t.stl", *t_handle())
     saves = [argument for name in ("t.html", "t.png") for argument in ("--save", tmp_path / name)]
     turn = ("--omega", 0, 0, 1, "--until", 1, "--samples", 11)
-    code, out, err = run("spin", tmp_path / "t.stl", "--length-unit", "mm", *turn, *saves)
+    code, out, err = run("spin", samples.path("t-handle.stl"), "--length-unit", "mm", *turn, *saves)
     assert (code, err) == (0, "")
     assert "coarser" not in out
     triangles = drawn(tmp_path / "t.html")
