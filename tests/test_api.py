@@ -49,6 +49,7 @@ MODULES = [
     "polhode.results",
     "polhode.robots",
     "polhode.samples",
+    "polhode.symbolic",
     "polhode.tops",
     "polhode.trajectory",
     "polhode.uncertainty",
@@ -57,6 +58,7 @@ MODULES = [
 HEAVY = (
     "uncertainties",
     "matplotlib",
+    "sympy",
     "trimesh",
     "scipy",
     "rich",

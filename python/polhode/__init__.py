@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from polhode import plot as plot
     from polhode import robots as robots
     from polhode import samples as samples
+    from polhode import symbolic as symbolic
     from polhode import units as units
     from polhode import view as view
     from polhode._core import (
@@ -104,7 +105,7 @@ _HOMES = (
 _APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",))
 """Names whose module is imported for them alone: it has many files."""
 
-_LATER = ("animation", "files", "molecules", "plot", "robots", "samples", "units", "view")
+_LATER = ("animation", "files", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
 """Modules that a star import leaves out: some need libraries, and their names are those of many scripts."""
 
 __all__ = [
