@@ -48,15 +48,26 @@ PIECES: dict[str, list[Piece]] = {
     "box": [((u, v, z), ((u, -a / 2, a / 2), (v, -b / 2, b / 2), (z, -c / 2, c / 2)))],
     "cube": [((u, v, z), ((u, -a / 2, a / 2), (v, -a / 2, a / 2), (z, -a / 2, a / 2)))],
     "sphere": [ball(R, R, R)],
-    "hollow_sphere": [((u * sin(v) * cos(t), u * sin(v) * sin(t), u * cos(v)), ((u, r, R), (v, 0, pi), ROUND))],
+    "hollow_sphere": [
+        ((u * sin(v) * cos(t), u * sin(v) * sin(t), u * cos(v)), ((u, r, R), (v, 0, pi), ROUND))
+    ],
     "hemisphere": [ball(R, R, R, half=True)],
     "ellipsoid": [ball(a, b, c)],
     "cylinder": [turned(R, 0, h)],
     "tube": [((u * cos(t), u * sin(t), z), ((u, r, R), ROUND, (z, 0, h)))],
     "cone": [turned(R * (1 - z / h), 0, h)],
     "frustum": [turned(R + (r - R) * z / h, 0, h)],
-    "capsule": [turned(R, -L / 2, L / 2), ball(R, R, R, half=True, up=L / 2), ball(R, R, -R, half=True, up=-L / 2)],
-    "torus": [(((R + u * cos(v)) * cos(t), (R + u * cos(v)) * sin(t), u * sin(v)), ((u, 0, r), (v, 0, 2 * pi), ROUND))],
+    "capsule": [
+        turned(R, -L / 2, L / 2),
+        ball(R, R, R, half=True, up=L / 2),
+        ball(R, R, -R, half=True, up=-L / 2),
+    ],
+    "torus": [
+        (
+            ((R + u * cos(v)) * cos(t), (R + u * cos(v)) * sin(t), u * sin(v)),
+            ((u, 0, r), (v, 0, 2 * pi), ROUND),
+        )
+    ],
     "tetrahedron": [
         simplex(
             [
@@ -147,7 +158,9 @@ def test_polygons_are_made_of_triangles(corners: list[tuple[int, int]]) -> None:
     assert shape.inertia.subs(numbers) == shape.mass * tensor(second)
     if len(corners) == 3:
         triangle = symbolic.shape("triangle")
-        assert sympy.simplify(triangle.inertia.subs(numbers) - shape.inertia.subs(numbers)) == sympy.zeros(3, 3)
+        assert sympy.simplify(triangle.inertia.subs(numbers) - shape.inertia.subs(numbers)) == sympy.zeros(
+            3, 3
+        )
 
 
 def drawn(name: str, rng: np.random.Generator) -> dict[str, Any]:
@@ -156,13 +169,19 @@ def drawn(name: str, rng: np.random.Generator) -> dict[str, Any]:
     if name in ("triangle", "polygon"):
         n = len(shape.sizes["vertices"])
         angles = np.sort((np.arange(n) + rng.uniform(-0.3, 0.3, n)) * 2 * np.pi / n)
-        return {"vertices": rng.uniform(0.7, 1.5, (n, 1)) * np.stack([np.cos(angles), np.sin(angles)], -1) + 0.3}
+        return {
+            "vertices": rng.uniform(0.7, 1.5, (n, 1)) * np.stack([np.cos(angles), np.sin(angles)], -1) + 0.3
+        }
     given: dict[str, Any] = {}
     for key, letters in shape.sizes.items():
         size = rng.uniform(0.5, 2.0, len(letters)) if isinstance(letters, tuple) else rng.uniform(0.5, 2.0)
         given[key] = rng.integers(3, 20) if key == "sides" else size
     if {"inner_radius", "minor_radius"} & set(given):
-        small, large = sorted(["inner_radius", "outer_radius"]) if "inner_radius" in given else ("minor_radius", "major_radius")
+        small, large = (
+            sorted(["inner_radius", "outer_radius"])
+            if "inner_radius" in given
+            else ("minor_radius", "major_radius")
+        )
         given[small] = given[large] * rng.uniform(0.1, 1.0)
     if name == "arc":
         given["angle"] = rng.uniform(1.0, 6.2)
@@ -198,7 +217,9 @@ def test_the_numbers_are_those_of_the_core(name: str, rng: np.random.Generator) 
 
 def test_all_shapes_are_there() -> None:
     rooms = {name: room for room in ("solids", "laminae", "rods") for name in getattr(polhode, room).__all__}
-    assert {name: symbolic.shape(name, corners=4 if name == "polygon" else None).room for name in symbolic.names()} == rooms
+    assert {
+        name: symbolic.shape(name, corners=4 if name == "polygon" else None).room for name in symbolic.names()
+    } == rooms
     assert set(PIECES) | {"prism", "triangle", "polygon"} == set(rooms)
 
 

@@ -45,7 +45,9 @@ def function(expression: Any, arguments: Iterable[Any]) -> Callable[..., NDArray
     unknown = expression.free_symbols - set(given)
     if unknown:
         names = ", ".join(sorted(map(str, unknown)))
-        raise ValueError(f"arguments: the expression also holds {names}; name them, or put numbers in their place")
+        raise ValueError(
+            f"arguments: the expression also holds {names}; name them, or put numbers in their place"
+        )
     elements = list(expression) if is_matrix else [expression]
     made = sympy.lambdify(given, elements, modules="numpy", cse=True)
     shape = [side for side in expression.shape if side > 1] if is_matrix else []

@@ -1,4 +1,4 @@
-"""The theorems of the textbook as expressions. Without arguments they are told in the letters of `symbols`."""
+"""The theorems of the textbook as expressions. Without arguments they are in the letters of `symbols`."""
 
 from __future__ import annotations
 
@@ -219,8 +219,10 @@ def rotation(sequence: str = "ZXZ", angles: Any = None) -> Any:
     return turned
 
 
-def angular_velocity(sequence: str = "ZXZ", frame: str = "body", angles: Any = None, rates: Any = None) -> Any:
-    """Angular velocity by Euler angles and their rates.
+def angular_velocity(
+    sequence: str = "ZXZ", frame: str = "body", angles: Any = None, rates: Any = None
+) -> Any:
+    r"""Angular velocity by Euler angles and their rates.
 
     Parameters
     ----------
@@ -238,7 +240,7 @@ def angular_velocity(sequence: str = "ZXZ", frame: str = "body", angles: Any = N
     --------
     >>> from polhode import symbolic
     >>> symbolic.angular_velocity()[2]
-    \\dot{\\psi} + \\dot{\\varphi}*cos(theta)
+    \dot{\psi} + \dot{\varphi}*cos(theta)
     """
     given = sympy.Matrix(symbols.rates if rates is None else list(rates))
     return _columns(sequence, frame, angles) * given
@@ -286,7 +288,7 @@ def _intrinsic(sequence: str, angles: Any) -> list[tuple[int, Any]]:
     mixed = letters not in (upper, letters.lower())
     if mixed or len(upper) != 3 or set(upper) - set("XYZ") or upper[0] == upper[1] or upper[1] == upper[2]:
         raise ValueError(
-            f"sequence: {sequence!r} is not three axes, neighbours different, in one case, such as 'ZXZ' or 'xyz'"
+            f"sequence: {sequence!r} is not three axes, neighbours different, in one case, as 'ZXZ' or 'xyz'"
         )
     turns = list(zip(("XYZ".index(letter) for letter in upper), angles, strict=True))
     return turns if letters == upper else turns[::-1]

@@ -170,7 +170,9 @@ def shape(name: str, *, corners: int | None = None) -> Shape:
         way_out = f"did you mean {near[0]}?" if near else f"there are {', '.join(table.SHAPES)}"
         raise ValueError(f"name: {name!r} is no shape; {way_out}")
     if (name == "polygon") != (corners is not None):
-        raise ValueError("corners: a polygon, and nothing else, needs their number: shape('polygon', corners=5)")
+        raise ValueError(
+            "corners: a polygon, and nothing else, needs their number: shape('polygon', corners=5)"
+        )
     row = table.SHAPES[name] if corners is None else table.polygon(corners)
     second = row.second_moment
     tensor = (symbols.mass * (sympy.trace(second) * sympy.eye(3) - second)).applyfunc(_tidy)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 from polhode.symbolic.symbols import positive, real, sympy
@@ -76,7 +77,7 @@ def polygon(corners: int) -> Row:
     first = sympy.Matrix(points[0])
     arms = [sympy.Matrix(point) - first for point in points[1:]]
     area, arm, second = sympy.S.Zero, sympy.zeros(2, 1), sympy.zeros(2, 2)
-    for a, b in zip(arms[:-1], arms[1:], strict=True):
+    for a, b in pairwise(arms):
         twice = a[0] * b[1] - a[1] * b[0]
         area += twice / 2
         arm += twice * (a + b) / 6
@@ -98,9 +99,7 @@ SHAPES: Final[dict[str, Row]] = {
     "cube": _row("solids", {"side": _a}, _a**3, *[_a**2 / 12] * 3),
     "sphere": _row("solids", {"radius": _R}, 4 * _pi * _R**3 / 3, *[_R**2 / 5] * 3),
     "hollow_sphere": _hollow_sphere(),
-    "hemisphere": _row(
-        "solids", {"radius": _R}, 2 * _pi * _R**3 / 3, _R**2 / 5, _R**2 / 5, 19 * _R**2 / 320
-    ),
+    "hemisphere": _row("solids", {"radius": _R}, 2 * _pi * _R**3 / 3, _R**2 / 5, _R**2 / 5, 19 * _R**2 / 320),
     "ellipsoid": _row(
         "solids", {"semi_axes": (_a, _b, _c)}, 4 * _pi * _a * _b * _c / 3, _a**2 / 5, _b**2 / 5, _c**2 / 5
     ),
