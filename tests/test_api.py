@@ -12,6 +12,7 @@ import subprocess
 import sys
 import types
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -49,12 +50,12 @@ MODULES = [
     "polhode.results",
     "polhode.robots",
     "polhode.samples",
-    "polhode.symbolic",
     "polhode.tops",
     "polhode.trajectory",
     "polhode.uncertainty",
     "polhode.view",
 ]
+MODULES += ["polhode.symbolic"] if find_spec("sympy") else []
 HEAVY = (
     "uncertainties",
     "matplotlib",
