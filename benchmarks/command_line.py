@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from harness import Row
-from polhode.cli.t_handle import write_stl
+from meshes import write_stl
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
+from molecule_files import write_molecules
 
 # What runs in the background of a shell ignores Ctrl-C, and so do its children: tests of it would not end.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -42,6 +43,12 @@ def shared_data() -> Path:
             pytest.fail(message)
         pytest.skip(message)
     return folder
+
+
+@pytest.fixture(scope="session")
+def eight_molecules(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the eight molecules of `molecule_files`."""
+    return write_molecules(tmp_path_factory.mktemp("molecules"))
 
 
 @pytest.fixture

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import types
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -48,14 +49,17 @@ MODULES = [
     "polhode.parallel_axis",
     "polhode.results",
     "polhode.robots",
+    "polhode.samples",
     "polhode.tops",
     "polhode.trajectory",
     "polhode.uncertainty",
     "polhode.view",
 ]
+MODULES += ["polhode.symbolic"] if find_spec("sympy") else []
 HEAVY = (
     "uncertainties",
     "matplotlib",
+    "sympy",
     "trimesh",
     "scipy",
     "rich",
@@ -130,6 +134,8 @@ class TestNames:
             "plot",
             "results",
             "robots",
+            "samples",
+            "symbolic",
         }
         known |= {"files", "trajectory", "units", "view"}
         assert internal <= known

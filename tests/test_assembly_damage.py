@@ -11,10 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from polhode import assembly
+from polhode import assembly, samples
 from polhode.errors import PolhodeError
 
-EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 MORE: list[dict[str, Any]] = [
     {
         "name": "m",
@@ -89,7 +88,7 @@ def spoiled(table: dict[str, Any], rng: random.Random) -> None:
 def check(seed: int, count: int, folder: Path) -> None:
     (folder / "t.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
     for name in ("rover.toml", "wheel.toml"):
-        (folder / name).write_bytes((EXAMPLES / name).read_bytes())
+        (folder / name).write_bytes(samples.path(name).read_bytes())
     whole = tomllib.loads((folder / "rover.toml").read_text("utf-8"))
     whole["part"] += MORE
     assembly.read(whole, folder=folder)

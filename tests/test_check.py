@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import sys
 from typing import TYPE_CHECKING
 
@@ -79,22 +80,32 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(tmp_path: Path) 
     assert "mesh a\\x9b2J\\u202e was not found" in out
 
 
-def test_tutorial_robot(shared_data: Path, tmp_path: Path) -> None:
-    path = shared_data / "urdf" / "07-physics.urdf"
+def test_a_robot_of_placeholders(tmp_path: Path) -> None:
+    """Links whose tensors nobody filled in, as in the tutorial of ROS; one has a mesh that is not there."""
+    cylinder, box = '<cylinder radius="0.035" length="0.1"/>', '<box size="0.4 0.28 0.07"/>'
+    shapes = (cylinder, box, '<sphere radius="0.01"/>', '<mesh filename="tip.dae"/>')
+    links = [
+        f'''<link name="l{k}"><inertial>
+<mass value="{k + 1}"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
+</inertial><collision><geometry>{shape}</geometry></collision></link>'''
+        for k, shape in enumerate(shapes)
+    ]
+    path = tmp_path / "r.urdf"
+    path.write_text("\n".join(['<robot name="r">', *links, "</robot>", ""]))
     code, out, _ = run("check", path)
     assert code == 1
-    rows = [line for line in out.splitlines() if "placeholder" in line]
-    assert len(rows) == 16
-    assert "400000 times its collision shape's" in next(row for row in rows if "gripper_pole" in row)
+    assert len(re.findall(r"(?m)^\s*l\d\b.*placeholder", out)) == 4
+    assert "times its collision shape's" in next(line for line in out.splitlines() if "l2" in line)
     code, out, _ = run("check", path, "--fix", tmp_path / "fixed.urdf", "--format", "json")
-    assert code == 1  # four links have meshes that are not there
+    assert code == 1  # one link has a mesh that is not there
     report = json.loads(out)
-    assert len(report["changed"]) == 12
-    assert any("left_tip" in note and "left as they are" in note for note in report["notes"])
+    assert len(report["changed"]) == 3
+    assert any("l3" in note and "left as they are" in note for note in report["notes"])
     again = json.loads(run("check", tmp_path / "fixed.urdf", "--format", "json")[1])
-    assert again["count"]["good"] == 12
-    before, after = (p.read_text().splitlines() for p in (path, tmp_path / "fixed.urdf"))
-    added = [line for line in after if line.strip().startswith("<origin") and line not in before]
-    assert len(added) == len(after) - len(before) == 3
-    kept = [line for line in after if line not in added]
-    assert sum(old != new for old, new in zip(before, kept, strict=True)) == 12
+    assert again["count"]["good"] == 3
+    by_hand = 2 * np.array([0.28**2 + 0.07**2, 0.4**2 + 0.07**2, 0.4**2 + 0.28**2]) / 12
+    turned = next(link for link in again["links"] if link["link"] == "l1")
+    np.testing.assert_allclose(
+        np.sort(turned["moments"]), np.sort(by_hand), rtol=5e-9
+    )  # as many digits as are written

@@ -1,18 +1,15 @@
-"""Every command that the README and the pages show, run as written, in their order, in one folder."""
+"""Every command that the README and the pages show, run as written, in their order, in an empty folder."""
 
 from __future__ import annotations
 
 import itertools
 import re
 import shlex
-import shutil
 from pathlib import Path
 
 import pytest
 from command_line import run
 from markdown_code import blocks
-from polhode.cli.t_handle import t_handle, write_stl
-from test_check import ROBOT
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", *sorted(p for p in (ROOT / "docs").rglob("*.md") if "_build" not in p.parts)]
@@ -31,13 +28,6 @@ def commands(page: Path) -> list[str]:
 
 @pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: p.name)
 def test_commands_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    write_stl(tmp_path / "part.stl", *t_handle())
-    (tmp_path / "polhode-demo").mkdir()
-    write_stl(tmp_path / "polhode-demo" / "t-handle.stl", *t_handle())  # as `make demo` leaves it
-    (tmp_path / "robot.urdf").write_text(ROBOT.format(1))
-    (tmp_path / "water.xyz").write_text("3\nwater\nO 0 0 0\nH 0.757 0 0.587\nH -0.757 0 0.587\n")
-    for name in ("craft.csv", "rover.toml", "wheel.toml"):
-        shutil.copy(ROOT / "examples" / name, tmp_path)
     monkeypatch.chdir(tmp_path)
     targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     for command in commands(page):

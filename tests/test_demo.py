@@ -12,7 +12,7 @@ import pytest
 from markdown_code import blocks
 from polhode import RigidBody
 from polhode.cli import brick, main
-from polhode.cli.t_handle import t_handle
+from sample_files import t_handle
 
 README = Path(__file__).resolve().parents[1] / "README.md"
 Capture: TypeAlias = pytest.CaptureFixture[str]
@@ -76,15 +76,3 @@ def test_demo_ends_with_1_where_the_brick_comes_out_wrong(
     assert main(["demo", "--output-dir", str(tmp_path)]) == 1
     out = capsys.readouterr().out
     assert "verdict: BAD" in out
-
-
-def test_brick_is_nasa_s(shared_data: Path) -> None:
-    """The constants typed into the demo are those of the files."""
-    text = (shared_data / "nesc" / "brick_inertia.dml").read_text()
-    for value in (*brick.MOMENTS, brick.MASS):
-        assert re.search(rf'initialValue="{value!r}0*"', text), value
-    header, *rows = (shared_data / "nesc" / "Atmos_02_sim_01.csv").read_text().splitlines()
-    last = dict(zip(header.split(","), rows[-1].split(","), strict=True))
-    columns = [f"bodyAngularRateWrtEi_deg_s_{name}" for name in ("Roll", "Pitch", "Yaw")]
-    assert float(last["time"]) == brick.DURATION
-    assert tuple(float(last[column]) for column in columns) == brick.NASA_RATES

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 import runpy
-import shutil
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -46,8 +45,6 @@ class TestCode:
     def test_blocks_print_what_is_shown(
         self, page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        for name in ("craft.csv", "rover.toml", "wheel.toml"):
-            shutil.copy(ROOT / "examples" / name, tmp_path)
         monkeypatch.chdir(tmp_path)
         run_page(page)
 

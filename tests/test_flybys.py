@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 HOUR, DAY = 3600.0, 86400.0
 EARTH = 398600.4418
-PASSAGE: dict[str, float] = {"eccentricity": 4.253901873, "periapsis": 38011.486}
+PASSAGE: dict[str, Any] = {"eccentricity": 4.253901873, "periapsis": 38011.486}
 ORBIT = orbits.from_elements(EARTH, **PASSAGE, since_periapsis=-3 * DAY)
 APOPHIS = RigidBody.from_principal(1.0, (0.64, 0.97, 1.0))
 PERIODS: dict[str, Any] = {

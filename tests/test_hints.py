@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import importlib
 import re
-from typing import TYPE_CHECKING, Any
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+import polhode
 import pytest
 from mesh_files import obj
 from oracles.meshes import cube
-from polhode import RigidBody, loads, solids
+from polhode import RigidBody, _hints, forms, laminae, loads, rods, solids
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,6 +23,10 @@ BODY: Any = solids.box((3.0, 2.0, 1.0), mass=1.0)
 TOP: Any = RigidBody.from_principal(1.0, (2.0, 2.0, 3.0), center_of_mass=(0.0, 0.0, 0.1))
 MADE: Any = RigidBody
 LOADS: Any = loads
+SOLIDS: Any = solids
+LAMINAE: Any = laminae
+RODS: Any = rods
+POLHODE: Any = polhode
 SPUN = ([0.0, 1.0], (0.0, 0.0, 1.0))
 
 MISTAKES: list[tuple[str, Callable[[], object], type[Exception], str]] = [
@@ -167,3 +175,121 @@ def test_a_molecule_is_no_mesh(tmp_path: Path, option: dict[str, Any]) -> None:
     neon.write_text("1\n\nNe 0 0 0\n")
     with pytest.raises(ValueError, match=f"{next(iter(option))}: .* is a molecule, not a mesh; leave it out"):
         RigidBody.from_file(neon, **option)
+
+
+@pytest.mark.parametrize(
+    ("ask", "says"),
+    [
+        (lambda: BODY.energy, "no attribute 'energy'; kinetic_energy(omega) gives it"),
+        (lambda: BODY.com, "'com'; center_of_mass is it"),
+        (lambda: BODY.moments, "'moments'; principal_moments are they"),
+        (lambda: BODY.axes, "'axes'; principal.axes are they"),
+        (lambda: BODY.moment_of_inertia, "inertia_about(point) that about another"),
+        (lambda: BODY.simulate(*SPUN).energy, "'energy'; kinetic_energy() gives it"),
+        (lambda: BODY.simulate(*SPUN).to_dataframe(), "'to_dataframe'; to_pandas() gives a DataFrame"),
+        (lambda: BODY.simulate(*SPUN).times, "'times'; t is it"),
+        (lambda: SOLIDS.cuboid, "module 'polhode.solids' has no attribute 'cuboid'; box((x, y, z)) is one"),
+        (lambda: SOLIDS.ball, "'ball'; sphere(radius) is one"),
+        (lambda: SOLIDS.disk, "'disk'; cylinder(radius, height) is one, laminae.disk(radius)"),
+        (lambda: SOLIDS.cylindre, "'cylindre'; did you mean cylinder?"),
+        (lambda: LAMINAE.disc, "module 'polhode.laminae' has no attribute 'disc'; disk(radius) is one"),
+        (lambda: RODS.hoop, "module 'polhode.rods' has no attribute 'hoop'; ring(radius) is one"),
+        (lambda: POLHODE.Body, "module 'polhode' has no attribute 'Body'; RigidBody is the class"),
+        (lambda: POLHODE.solid, "'solid'; did you mean solids?"),
+    ],
+)
+def test_other_names_lead_to_those_here(ask: Callable[[], object], says: str) -> None:
+    with pytest.raises(AttributeError, match=re.escape(says)):
+        ask()
+
+
+def test_what_nobody_means_has_no_hint() -> None:
+    for owner in (BODY, BODY.simulate(*SPUN), SOLIDS, POLHODE):
+        assert not hasattr(owner, "_q")
+        with pytest.raises(AttributeError, match=r"has no attribute 'qqqqqq'$"):
+            owner.qqqqqq  # noqa: B018 (asks for it)
+
+
+def test_hints_name_what_there_is() -> None:
+    """The first word of each hint is a public name of the module, or of one that it names."""
+    for module, hints in _hints._OF_MODULES.items():
+        known = importlib.import_module(module)
+        for name, way_out in hints.items():
+            assert not hasattr(known, name)
+            found = re.findall(r"\b([A-Za-z_]+(?:\.[a-z_]+)?)\(", way_out)
+            for word in found or [way_out.partition(" ")[0].rstrip(",")]:
+                owner, _, inner = word.rpartition(".")
+                home = getattr(polhode, owner) if owner else known
+                assert hasattr(home, inner) or inner == "simulate", word
+
+
+def test_principal_axes_unpack() -> None:
+    moments, axes = BODY.principal
+    assert moments is BODY.principal.moments or np.array_equal(moments, BODY.principal_moments)
+    np.testing.assert_array_equal(axes @ np.diag(moments) @ axes.T, BODY.inertia)
+    stack = solids.box([[1.0, 2.0, 3.0], [2.0, 2.0, 5.0]], mass=1.0)
+    moments, axes = stack.principal
+    assert (moments.shape, axes.shape) == ((2, 3), (2, 3, 3))
+    moments, axes = polhode.principal_axes(np.diag([3.0, 1.0, 2.0]))
+    assert moments.tolist() == [1.0, 2.0, 3.0]
+
+
+def test_plot_is_there_without_its_import() -> None:
+    code = """
+import sys
+import polhode
+assert not {"matplotlib", "scipy", "sympy", "pandas", "trimesh"} & set(sys.modules)
+assert "polhode.plot" not in sys.modules
+polhode.plot.body, polhode.samples.names, polhode.files, polhode.units, polhode.robots, polhode.animation
+assert "matplotlib" not in sys.modules
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+class TestCom:
+    """``"com"`` is the centre of mass wherever a point is asked for."""
+
+    OFF: Any = solids.box((3.0, 2.0, 1.0), mass=2.0).translated((0.3, -0.2, 0.5))
+    CALLS: ClassVar[list[Callable[[Any, str], object]]] = [
+        lambda b, at: b.inertia_about(at),
+        lambda b, at: b.moment_about((1, 2, 3), at),
+        lambda b, at: b.principal_about(at).moments,
+        lambda b, at: b.kinetic_energy((1, 2, 3), (3, 2, 1), about=at).mixed,
+        lambda b, at: b.angular_momentum((1, 2, 3), (3, 2, 1), about=at).mixed,
+        lambda b, at: b.angular_acceleration((1, 2, 3), (3, 2, 1), about=at),
+        lambda b, at: b.torque((1, 2, 3), (3, 2, 1), about=at),
+        lambda b, at: b.point_velocity(at, (1, 2, 3)),
+        lambda b, at: b.point_acceleration((1, 0, 0), (1, 2, 3), about=at),
+        lambda b, at: b.pivot_reaction((1, 2, 3), about=at),
+        lambda b, at: b.stability(1.0, about=at),
+        lambda b, at: b.simulate(*SPUN, about=at).omega,
+        lambda b, at: b.simulate(*SPUN).point(at),
+        lambda b, at: LOADS.uniform_gravity((0, 0, -1)).torque(
+            0.0, (0, 0, 1), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0), body=b, about=at
+        ),
+        lambda b, at: LOADS.uniform_gravity((0, 0, -1)).potential(b, (0, 0, 0, 1), about=at),
+        lambda _, at: LOADS.uniform_gravity((0, 0, -1)).keeps_momentum(at),
+        lambda _, at: (
+            polhode.tops.free_precession(solids.cylinder(1.0, 3.0, mass=1.0), (0.1, 0, 1), about=at).body_rate
+        ),
+        lambda _, at: (
+            forms.from_printout(1.0, (0, 0, 1), [1, 2, 2.5, 0.1, 0, 0], products="positive", about=at).inertia
+        ),
+        lambda b, at: POLHODE.ensemble(b, *SPUN, n=2, seed=1, about=at).compute().omega,
+    ]
+
+    @pytest.mark.parametrize("call", CALLS)
+    def test_it_is_center_of_mass(self, call: Callable[[Any, str], object]) -> None:
+        np.testing.assert_array_equal(call(self.OFF, "com"), call(self.OFF, "center_of_mass"))
+        with pytest.raises(ValueError, match="center_of_mass"):
+            call(self.OFF, "comm")
+
+
+def test_a_top_starts_upright() -> None:
+    gravity = (0.0, 0.0, -9.81)
+    top = TOP.heavy_top((0, 0.1, 9), gravity=gravity)
+    assert np.array_equal(top.quaternion, (0, 0, 0, 1))
+    assert np.array_equal(top.at(1.0).omega, TOP.heavy_top((0, 0.1, 9), None, gravity).at(1.0).omega)
+    with pytest.raises(TypeError, match=re.escape("gravity: a heavy top needs it, as gravity=(0, 0, -9.81)")):
+        TOP.heavy_top((0, 0.1, 9))

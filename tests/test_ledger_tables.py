@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from polhode import RigidBody, laminae, solids
+from polhode import RigidBody, laminae, samples, solids
 from polhode.errors import InvalidInertiaError
 from polhode.uncertainty import ledger
 from random_ledgers import (
@@ -19,7 +19,7 @@ from random_ledgers import (
     values,
 )
 
-CRAFT = Path(__file__).resolve().parents[1] / "examples" / "craft.csv"
+CRAFT = samples.path("craft.csv")
 HEAD = "id,parent,mass,Cx,Cy,Cz,Ixx,Iyy,Izz,Ixy,Ixz,Iyz,POIconv,sigma_mass"
 GOOD = "a,,,,,,,,,,,,,\nb,a,1,0,0,0,1,1,1,0,0,0,-,0.1\n"
 BAD_ROWS = {

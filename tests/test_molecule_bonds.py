@@ -180,10 +180,10 @@ def test_bonds_are_found(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generat
         bonds(["Fm"], [(0, 0, 0)])
 
 
-def test_bonds_of_known_molecules(shared_data: Path) -> None:
+def test_bonds_of_known_molecules(eight_molecules: Path) -> None:
     from polhode.io import read_xyz
 
     counts = {"h2o": 2, "co2": 2, "nh3": 3, "h2co": 3, "ch4": 4, "sf6": 6, "c6h6_re": 12, "c6h6_r0": 12}
     for name, count in counts.items():
-        molecule = read_xyz(shared_data / "molecules" / f"{name}.xyz")
+        molecule = read_xyz(eight_molecules / f"{name}.xyz")
         assert len(bonds(molecule.labels, molecule.positions)) == count

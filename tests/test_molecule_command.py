@@ -22,9 +22,9 @@ MASSES = {"1H": 1.007825031898, "2H": 2.014101777844, "16O": 15.99491461926, "18
 
 
 @pytest.mark.parametrize("name", CONSTANTS)
-def test_eight_molecules(name: str, shared_data: Path) -> None:
+def test_eight_molecules(name: str, eight_molecules: Path) -> None:
     constants, top, kappa = CONSTANTS[name]
-    code, out, err = run("molecule", shared_data / "molecules" / f"{name}.xyz", "--format", "json")
+    code, out, err = run("molecule", eight_molecules / f"{name}.xyz", "--format", "json")
     assert (code, err) == (0, "")
     report = json.loads(out)
     assert report["top"] == top
@@ -48,8 +48,8 @@ def test_eight_molecules(name: str, shared_data: Path) -> None:
         assert abs(report["inertial_defect"]) < 1e-8 * c
 
 
-def test_isotopologues_of_water(shared_data: Path) -> None:
-    path = shared_data / "molecules" / "h2o.xyz"
+def test_isotopologues_of_water(eight_molecules: Path) -> None:
+    path = eight_molecules / "h2o.xyz"
     words = ("--isotopes", "D", "--isotopes", "18O", "--isotopes", "2=D", "--isotopes", "18O,3=D")
     report = json.loads(run("molecule", path, *words, "--format", "json")[1])
     names = [row["isotopes"] for row in report["isotopologues"]]

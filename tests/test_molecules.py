@@ -111,9 +111,9 @@ def test_kappa_of_the_limits() -> None:
 
 
 @pytest.mark.parametrize("name", CONSTANTS)
-def test_published_geometries(shared_data: Path, name: str) -> None:
+def test_published_geometries(eight_molecules: Path, name: str) -> None:
     expected, top, kappa = CONSTANTS[name]
-    body = RigidBody.from_file(shared_data / "molecules" / f"{name}.xyz")
+    body = RigidBody.from_file(eight_molecules / f"{name}.xyz")
     constants = rotational_constants(body.principal_moments, "cm^-1")
     assert np.isinf(constants).tolist() == np.isinf(expected).tolist()
     finite = np.isfinite(constants)

@@ -43,7 +43,7 @@ class TestOrbit:
         part=st.floats(-0.9, 0.9),
         mu=st.floats(0.1, 10.0),
     )
-    def test_elements_come_back(self, part: float, eccentricity: float, **given: float) -> None:
+    def test_elements_come_back(self, part: float, eccentricity: float, **given: Any) -> None:
         most = np.pi if eccentricity < 1.0 else np.arccos(-1.0 / eccentricity)
         orbit = orbits.from_elements(given.pop("mu"), eccentricity=eccentricity, anomaly=part * most, **given)
         found = orbit.elements

@@ -173,7 +173,7 @@ def test_the_frame_turns_as_it_says(name: str) -> None:
 
 @pytest.mark.parametrize(("eccentricity", "far"), [(3.0, 1e5), (3.0, 1e8), (1.0, 1e8), (0.99999, 1e6)])
 def test_far_out_and_back(eccentricity: float, far: float) -> None:
-    arguments = {"eccentricity": eccentricity, "periapsis": 1.0, "since_periapsis": -far}
+    arguments: Any = {"eccentricity": eccentricity, "periapsis": 1.0, "since_periapsis": -far}
     plain = orbits.from_elements(MU, **arguments)
     round_ = orbits.from_elements(MU, **arguments, j2=0.0, radius=0.9)
     for t in (0.3 * far, 0.99 * far, far, 2.0 * far):

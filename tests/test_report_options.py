@@ -193,21 +193,6 @@ class TestStandardInput:
         assert "standard input is packed with gzip; unpack it before" in err
 
 
-def test_solidworks(shared_data: Path) -> None:
-    """Two parts as SolidWorks weighs them, in pounds and inches; the differences are tessellation."""
-    parts = json.loads((shared_data / "cad" / "mass_properties.json").read_text())
-    assert len(parts) == 2
-    for part in parts:
-        path = shared_data / "cad" / part["filename"]
-        options = ("--length-unit", "in", "--density", f"{part['density']} lb/in^3", "--mass-unit", "lb")
-        report = fields(path, *options, "--weld", "1e-6")["in_file_unit"]
-        moments = np.array(report["inertia_about_center_of_mass"])
-        assert report["mass"] == pytest.approx(part["mass"], rel=2e-3)
-        assert report["area"] == pytest.approx(part["area"], rel=2e-3)
-        np.testing.assert_allclose(report["center_of_mass"], part["center_mass"], rtol=2e-3, atol=2e-3)
-        np.testing.assert_allclose(moments, part["inertia"], rtol=2e-3, atol=2e-3 * moments.max())
-
-
 def test_the_help_needs_no_numpy() -> None:
 
     code = "import sys; from polhode.cli import main; main(['--help']); print('numpy' in sys.modules)"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import doctest
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -253,36 +252,6 @@ class TestFix:
         again = there(fixed.links[0].inertial)
         np.testing.assert_allclose(again.inertia, np.diag([2.5, 2.5, 1.0]), rtol=1e-9)
         np.testing.assert_allclose(again.center_of_mass, [0, 0, 1], rtol=1e-12)
-
-
-class TestTutorial:
-    """The official tutorial robot, whose 16 links all carry 1 1 1 (known_values.md, 7)."""
-
-    def test_all_placeholders_are_told(self, shared_data: Path) -> None:
-        robot = robots.read_robot(shared_data / "urdf" / "07-physics.urdf")
-        verdicts = robots.check(robot)
-        assert len(verdicts) == 16
-        assert {verdict.verdict for verdict in verdicts} == {"placeholder"}
-        with_shape = {v.name: v for v in verdicts if v.shape_moments is not None}
-        assert len(with_shape) == 12
-        assert all("has room for" in verdict.reason for verdict in with_shape.values())
-        wheel = with_shape["left_front_wheel"]
-        height, radius = Fraction("0.1"), Fraction("0.035")
-        across, along = (3 * radius**2 + height**2) / 12, radius**2 / 2
-        np.testing.assert_allclose(
-            there(wheel.shape_moments), [float(along), float(across), float(across)], rtol=1e-12
-        )
-        assert wheel.factor == pytest.approx(1632.65, abs=0.01)
-        assert with_shape["gripper_pole"].factor == pytest.approx(400_000, rel=1e-9)
-        assert with_shape["base_link"].factor == pytest.approx(5, rel=1e-12)
-        missing = [v for v in verdicts if v.shape_moments is None]
-        assert all("was not found" in v.notes[0] for v in missing)
-
-    def test_fixed_links_are_good(self, shared_data: Path) -> None:
-        robot = robots.read_robot(shared_data / "urdf" / "07-physics.urdf")
-        better = robots.fixed(robot, robots.check(robot))
-        verdicts = robots.check(robots.parse_robot(better, name="better", folder="."))
-        assert [v.verdict for v in verdicts].count("good") == 12
 
 
 class TestMeshes:

@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 from polhode import Trajectory, solids
 from polhode.cli import main
-from polhode.cli.t_handle import t_handle, write_stl
 from polhode.uncertainty import ledger
 
 __all__ = ["OLD", "WRITERS"]
@@ -100,7 +99,6 @@ WRITERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "assembly, report": ("told.txt", _command("assemble", "pair.toml", "--output", "OUT")),
     "snippet": ("told.urdf", _command("report", "pair.toml", "--as", "solidworks", "--output", "OUT")),
     "ledger, PNG": ("craft.png", _command("ledger", "craft.csv", "--picture", "OUT")),
-    "demo, STL": ("handle.stl", lambda path: write_stl(path, *t_handle())),
 }
 
 

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from polhode import animation as animation
     from polhode import (
         assembly,
         distributions,
@@ -25,6 +26,14 @@ if TYPE_CHECKING:
         uncertainty,
         validity,
     )
+    from polhode import files as files
+    from polhode import molecules as molecules
+    from polhode import plot as plot
+    from polhode import robots as robots
+    from polhode import samples as samples
+    from polhode import symbolic as symbolic
+    from polhode import units as units
+    from polhode import view as view
     from polhode._core import (
         FreeMotion,
         Gyrostat,
@@ -66,8 +75,10 @@ else:
         """Import a name when it is first used, so that the help of the command line needs no NumPy."""
         from importlib import import_module
 
+        if name in _LATER:
+            return import_module(f"polhode.{name}")
         if name not in __all__:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            raise import_module("polhode._hints").no_name(__name__, name, [*__all__, *_LATER])
         for home in _APART.get(name, _HOMES):
             value = getattr(import_module(home), name, None)
             if value is not None:
@@ -93,6 +104,9 @@ _HOMES = (
 
 _APART = dict.fromkeys(("Ensemble", "ensemble"), ("polhode.ensembles.call",))
 """Names whose module is imported for them alone: it has many files."""
+
+_LATER = ("animation", "files", "molecules", "plot", "robots", "samples", "symbolic", "units", "view")
+"""Modules that a star import leaves out: some need libraries, and their names are those of many scripts."""
 
 __all__ = [
     "AngularMomentum",

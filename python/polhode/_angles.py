@@ -24,6 +24,7 @@ def euler_angles(
     singular: Literal["raise", "nan"] = "raise",
     *,
     unwrap: bool = False,
+    degrees: bool = False,
 ) -> Floats:
     """Euler angles of the attitude at every time.
 
@@ -37,20 +38,27 @@ def euler_angles(
     unwrap : bool
         Let the first and the third angle run on over many turns, each by less than half a turn between
         neighbouring times at which it is defined; else each is within its range.
+    degrees : bool
+        Give degrees.
 
     Returns
     -------
     numpy.ndarray, shape (..., T, 3)
-        In radians.
+        In radians unless `degrees`.
     """
     if unwrap:
         self._check_series("euler_angles, unwrap")
     angles = _core.euler_angles_from_quaternion(self.quaternion, sequence, singular)
-    return _unwrapped(angles) if unwrap else angles
+    angles = _unwrapped(angles) if unwrap else angles
+    return np.rad2deg(angles) if degrees else angles
 
 
 def euler_rates(
-    self: Trajectory, sequence: str = "ZXZ", singular: Literal["raise", "nan"] = "raise"
+    self: Trajectory,
+    sequence: str = "ZXZ",
+    singular: Literal["raise", "nan"] = "raise",
+    *,
+    degrees: bool = False,
 ) -> Floats:
     """Rates of the Euler angles at every time.
 
@@ -60,13 +68,17 @@ def euler_rates(
         As in :mod:`polhode.euler_angles`; the default is the (phi, theta, psi) of Goldstein and Landau.
     singular : {"raise", "nan"}
         What to do at an attitude at which the angles or their rates are not defined.
+    degrees : bool
+        Give degrees per time.
 
     Returns
     -------
     numpy.ndarray, shape (..., T, 3)
+        In radians per time unless `degrees`.
     """
     angles = self.euler_angles(sequence, singular)
-    return _core.euler_rates(angles, self.omega, sequence, "body", singular)
+    rates = _core.euler_rates(angles, self.omega, sequence, "body", singular)
+    return np.rad2deg(rates) if degrees else rates
 
 
 def _unwrapped(angles: Floats) -> Floats:

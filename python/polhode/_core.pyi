@@ -132,7 +132,7 @@ __all__ = [
 ]
 
 _Floats: TypeAlias = NDArray[np.float64]
-_Reference: TypeAlias = Literal["center_of_mass", "origin"]
+_Reference: TypeAlias = Literal["center_of_mass", "com", "origin"]
 _About: TypeAlias = _Reference | ArrayLike
 _SpatialOrder: TypeAlias = Literal["angular-linear", "linear-angular"]
 _Attitude: TypeAlias = ArrayLike | SupportsQuaternion
@@ -500,8 +500,8 @@ class RigidBody:
     def heavy_top(
         self,
         omega: _Numbers,
-        attitude: _Attitude | Uncertain | None,
-        gravity: ArrayLike,
+        attitude: _Attitude | Uncertain | None = None,
+        gravity: ArrayLike | None = None,
         *,
         rtol: float = 1e-06,
     ) -> HeavyTop: ...
@@ -582,7 +582,7 @@ class HeavyTop:
     def axial_spin(self) -> Any: ...
     @property
     def sleeping_limit(self) -> Any: ...
-    def effective_potential(self, inclination: ArrayLike) -> _Floats: ...
+    def effective_potential(self, inclination: ArrayLike, *, degrees: bool = False) -> _Floats: ...
     def at(self, t: ArrayLike) -> Trajectory: ...
     def __copy__(self) -> HeavyTop: ...
     def __deepcopy__(self, memo: object, /) -> HeavyTop: ...
@@ -824,7 +824,12 @@ def polygon(
 def rod(length: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def ring(radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def arc(
-    radius: _Numbers, angle: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
+    radius: _Numbers,
+    angle: _Numbers,
+    *,
+    mass: _Numbers | None = None,
+    density: _Numbers | None = None,
+    degrees: bool = False,
 ) -> RigidBody: ...
 def region_box(low: ArrayLike, high: ArrayLike) -> Region: ...
 def region_ball(
@@ -848,17 +853,23 @@ def to_log_cholesky(body: RigidBody) -> _Floats: ...
 def from_log_cholesky(parameters: ArrayLike) -> RigidBody: ...
 def nearest_valid(inertia: ArrayLike) -> tuple[_Floats, Any]: ...
 def within_box(body: RigidBody, low: ArrayLike, high: ArrayLike) -> tuple[Any, _Floats]: ...
-def quaternion_from_euler_angles(angles: ArrayLike, sequence: str = "ZXZ") -> _Floats: ...
+def quaternion_from_euler_angles(
+    angles: ArrayLike, sequence: str = "ZXZ", *, degrees: bool = False
+) -> _Floats: ...
 def euler_angles_from_quaternion(
     quaternion: ArrayLike | SupportsQuaternion,
     sequence: str = "ZXZ",
     singular: Literal["raise", "nan"] = "raise",
+    *,
+    degrees: bool = False,
 ) -> _Floats: ...
 def angular_velocity_from_euler_rates(
     angles: ArrayLike,
     rates: ArrayLike,
     sequence: str = "ZXZ",
     frame: Literal["body", "space"] = "body",
+    *,
+    degrees: bool = False,
 ) -> _Floats: ...
 def euler_rates(
     angles: ArrayLike,
@@ -866,6 +877,8 @@ def euler_rates(
     sequence: str = "ZXZ",
     frame: Literal["body", "space"] = "body",
     singular: Literal["raise", "nan"] = "raise",
+    *,
+    degrees: bool = False,
 ) -> _Floats: ...
 def transport(rate_in_frame: ArrayLike, vector: ArrayLike, frame_omega: ArrayLike) -> _Floats: ...
 def motion_sensitivity(
@@ -883,7 +896,12 @@ def free_precession(
     body: RigidBody, omega: ArrayLike, about: _About = "center_of_mass", *, rtol: float = 1e-6
 ) -> FreePrecession: ...
 def least_spin(
-    body: RigidBody, gravity: ArrayLike, inclination: ArrayLike = 0.0, *, rtol: float = 1e-6
+    body: RigidBody,
+    gravity: ArrayLike,
+    inclination: ArrayLike = 0.0,
+    *,
+    rtol: float = 1e-6,
+    degrees: bool = False,
 ) -> Any: ...
 def nutation_damping(
     body: RigidBody,
@@ -900,6 +918,7 @@ def steady_precession(
     gravity: ArrayLike,
     *,
     rtol: float = 1e-6,
+    degrees: bool = False,
 ) -> _Floats: ...
 def quaternion_from_matrix(matrix: ArrayLike) -> _Floats: ...
 def rotate(quaternion: ArrayLike, vector: ArrayLike, inverse: bool = False) -> _Floats: ...

@@ -11,6 +11,8 @@ from polhode._continuous import ContinuousAxes, continuous
 from polhode._repr import one_line, short
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
@@ -67,7 +69,7 @@ class PrincipalSigma(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PrincipalAxes:
-    """Principal moments and axes of one tensor or of a stack.
+    """Principal moments and axes of one tensor or of a stack: ``moments, axes = body.principal``.
 
     Attributes
     ----------
@@ -94,6 +96,10 @@ class PrincipalAxes:
         if shape:
             return f"<PrincipalAxes stack of shape {shape}>"
         return one_line(self, {"moments": self.moments, "axes": self.axes, "top": self.top})
+
+    def __iter__(self) -> Iterator[Floats]:
+        """Give moments and axes, in this order."""
+        return iter((self.moments, self.axes))
 
     # A method that stands in a file of its own.
     continuous = continuous

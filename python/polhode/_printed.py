@@ -70,7 +70,7 @@ def from_printout(
     """
     if products is not None and products not in _PRODUCTS:
         raise PolhodeError(f"products: {products!r} is neither {' nor '.join(_PRODUCTS)}")
-    if about not in _ABOUT:
+    if about not in (*_ABOUT, "com"):
         raise PolhodeError(f"about: {about!r} is neither {' nor '.join(_ABOUT)}")
     matrix = _matrix(tensor, name)
     off = ~np.eye(3, dtype=np.bool_)

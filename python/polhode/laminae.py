@@ -5,6 +5,16 @@ corners are. Each takes exactly one of ``mass=`` and ``density=``, which is mass
 to a stack of bodies.
 """
 
+from typing import TYPE_CHECKING
+
 from polhode._core import annulus, disk, ellipse, polygon, rectangle, triangle
 
 __all__ = ["annulus", "disk", "ellipse", "polygon", "rectangle", "triangle"]
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

@@ -46,7 +46,7 @@ __all__ = [
 
 
 class Elements(NamedTuple):
-    """The elements of an orbit at its epoch; angles in radians.
+    """The elements of an orbit at its epoch; angles in radians, and in degrees by :meth:`in_degrees`.
 
     Attributes
     ----------
@@ -69,6 +69,11 @@ class Elements(NamedTuple):
     node: Any
     argument: Any
     anomaly: Any
+
+    def in_degrees(self) -> Elements:
+        """Give them with the four angles in degrees."""
+        angles = ("inclination", "node", "argument", "anomaly")
+        return self._replace(**{name: np.rad2deg(getattr(self, name)) for name in angles})
 
     def __repr__(self) -> str:
         return short(self)
@@ -307,8 +312,9 @@ def from_elements(
     j2: ArrayLike | None = None,
     radius: ArrayLike | None = None,
     pole: ArrayLike = (0, 0, 1),
+    degrees: bool = False,
 ) -> Orbit:
-    """Give the Kepler orbit with these elements; angles in radians.
+    """Give the Kepler orbit with these elements.
 
     Parameters
     ----------
@@ -318,7 +324,7 @@ def from_elements(
     periapsis, semi_major_axis : array_like, shape (...)
         Give exactly one: the least distance, or half of the major axis, negative for a hyperbola.
     inclination, node, argument : array_like, shape (...), optional
-        As in :class:`Elements`.
+        As in :class:`Elements`, in radians unless `degrees`.
     anomaly, since_periapsis : array_like, shape (...), optional
         Where the body is at the epoch: its true anomaly, or the time since it passed the periapsis. At the
         periapsis by default.
@@ -326,6 +332,8 @@ def from_elements(
         When it is there; the start of a motion by default.
     j2, radius, pole : array_like, optional
         As of :func:`kepler`; the elements are then those of the Kepler orbit that touches it at the epoch.
+    degrees : bool, optional
+        Inclination, node, argument and anomaly are in degrees.
 
     Returns
     -------
@@ -368,8 +376,12 @@ def from_elements(
             f"periapsis: must be positive, got {least.tolist()}; a hyperbola has a negative semi_major_axis, "
             "a parabola none"
         )
-    angles = (number(inclination, "inclination"), number(node, "node"), number(argument, "argument"))
-    nu = np.zeros(()) if anomaly is None else number(anomaly, "anomaly")
+    turn = np.deg2rad if degrees else np.asarray
+    angles = [
+        turn(number(one, name))
+        for one, name in ((inclination, "inclination"), (node, "node"), (argument, "argument"))
+    ]
+    nu = np.zeros(()) if anomaly is None else turn(number(anomaly, "anomaly"))
     given = (mass, e, least, nu, *angles)
     if not do_broadcast(*given):
         raise ValueError(

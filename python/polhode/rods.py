@@ -4,6 +4,16 @@ Each takes exactly one of ``mass=`` and ``density=``, which is mass per length. 
 bodies.
 """
 
+from typing import TYPE_CHECKING
+
 from polhode._core import arc, ring, rod
 
 __all__ = ["arc", "ring", "rod"]
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

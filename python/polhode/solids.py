@@ -6,6 +6,8 @@ stack of bodies. Zero lengths are limits: a flat cylinder is a disk, a hollow sp
 shell.
 """
 
+from typing import TYPE_CHECKING
+
 from polhode._core import (
     box,
     capsule,
@@ -43,3 +45,11 @@ __all__ = [
     "tube",
     "wedge",
 ]
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        """Refuse a name of others with the one here."""
+        from polhode._hints import no_name
+
+        raise no_name(__name__, name, __all__)

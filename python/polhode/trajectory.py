@@ -10,6 +10,7 @@ import numpy as np
 
 from polhode import _acting, _angles, _carried, _core, _doubts, _going_on, _outlets
 from polhode._drift import drift
+from polhode._hints import no_attribute
 from polhode._lengths import lengths
 from polhode.events import Events
 from polhode.results import AngularMomentum, Invariants, KineticEnergy, State
@@ -130,7 +131,7 @@ class Trajectory:
             elif outcome is not None and name in type(self).__dataclass_fields__:
                 value = getattr(outcome, name)
             else:
-                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+                raise no_attribute(name)
             self.__dict__[name] = value
             return value
 
@@ -206,19 +207,20 @@ class Trajectory:
             return in_body
         return AngularMomentum(*(_core.rotate(self.quaternion, part) for part in in_body))
 
-    def point(self, r: Literal["center_of_mass", "origin"] | ArrayLike) -> Floats:
+    def point(self, r: Literal["center_of_mass", "com", "origin"] | ArrayLike) -> Floats:
         """Position in space of a point of the body at every time.
 
         Parameters
         ----------
         r : {"center_of_mass", "origin"} or array_like, shape (..., 3)
-            The point in the body frame.
+            The point in the body frame; ``"com"`` is the centre of mass too.
 
         Returns
         -------
         numpy.ndarray, shape (..., T, 3)
         """
-        words = {"center_of_mass": self.body.center_of_mass, "origin": np.zeros(3)}
+        center = self.body.center_of_mass
+        words = {"center_of_mass": center, "com": center, "origin": np.zeros(3)}
         if isinstance(r, str) and r not in words:
             raise ValueError(f"r: {r!r} is not 'center_of_mass', 'origin' or a point of shape (..., 3)")
         place = words[r] if isinstance(r, str) else _core.real_numbers(r, "r")

@@ -92,7 +92,7 @@ VALUES: dict[str, Any] = {
     "force": [0.5, 0.0, 0.0], "rate": 1.5, "rotation_period": 4.0, "precession_period": 2.5,
     "mode": "long-axis", "sense": 1.0, "phase": 0.25, "angular_momentum_direction": [0.0, 0.5, 1.0],
     "t": [0.0, 0.25, 0.5], "load": None, "method": "auto", "events": None, "on_failure": "raise",
-    "progress": None, "n": 9, "start": None, "inclination": 0.5, "canonical": False,
+    "progress": None, "n": 9, "start": None, "inclination": 0.5, "canonical": False, "degrees": False,
     "tangent": TENSOR, "vector": [0.5, 0.0, 0.25], "frame": "body", "mu": 4.0, "epoch": None,
     "matrix": [[0.5, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.5]], "quadratic": None,
     "windows": [[0.0, 0.25], [0.5, 1.0]], "K": 1.0, "D": 0.5, "target": QUATERNION, "function": brake,

@@ -44,7 +44,12 @@ def kind_of(table: Mapping[str, Any], where: str) -> str:
         every = {
             *COMMON,
             *FILE,
-            *(name for shape in _SHAPES.values() for name in inspect.signature(shape).parameters),
+            *(
+                name
+                for shape in _SHAPES.values()
+                for name in inspect.signature(shape).parameters
+                if name != "degrees"
+            ),
         }
         check_keys(table, sorted(every), where)
     found = f"it has {' and '.join(kinds)}" if kinds else "it has none"
@@ -103,7 +108,7 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> tuple[RigidBody, dict[str,
             f"{scope.where}: solid: there is no {name!r}; there are {', '.join(sorted(_SHAPES))}"
         )
     shape: Callable[..., RigidBody] = _SHAPES[name]
-    taken = inspect.signature(shape).parameters
+    taken = [key for key in inspect.signature(shape).parameters if key != "degrees"]  # numbers have units
     check_keys(table, (*COMMON, *taken), f"{scope.where} ({name})")
     own = [key for key in taken if key not in ("mass", "density")]
     missing = [key for key in own if key not in table]

@@ -39,7 +39,9 @@ if TYPE_CHECKING:
 
 __all__ = ["app", "run"]
 
-COMMANDS: Final = ("report", "check", "molecule", "spin", "flyby", "assemble", "ledger", "demo", "validate")
+COMMANDS: Final = (
+    "report", "check", "molecule", "spin", "flyby", "assemble", "ledger", "samples", "demo", "validate",
+)  # fmt: skip
 GOOD: Final = 0
 BAD_VERDICT: Final = 1
 BAD_INPUT: Final = 2
@@ -288,6 +290,23 @@ def ledger(
         made.to_csv(output.output)
     else:
         _show(told, output)
+    return GOOD
+
+
+@app.command
+def samples(folder: Path | None = None, /) -> int:
+    """List the files to try things with, or put them into a folder: a mesh, molecules, a robot, an assembly.
+
+    Parameters
+    ----------
+    folder
+        Where they go; made where there is none.
+    """
+    from rich.console import Console
+
+    from polhode.cli import samples as shipped
+
+    shipped.run(folder, Console(highlight=False, soft_wrap=True))
     return GOOD
 
 

@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polhode import samples
 from polhode.cli import brick
 from polhode.cli.loading import load_body
 from polhode.cli.options import BodyOptions
 from polhode.cli.report import file_report
-from polhode.cli.t_handle import t_handle, write_stl
 from polhode.cli.text import write
 from polhode.errors import PolhodeError
 from polhode.files.loaded import read_mesh
+from polhode.files.writing import write_bytes
 from polhode.units import metres_per
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def run(directory: Path, console: Console) -> int:
     mesh_file, picture = directory / "t-handle.stl", directory / "t-handle.png"
 
     _heading(console, "1. A body: a steel T-handle, written to a file and read back")
-    write_stl(mesh_file, *t_handle())
+    write_bytes(mesh_file, samples.path("t-handle.stl").read_bytes())
     options = BodyOptions(density=STEEL, length_unit="mm")
     file_report(mesh_file, options).print(console)
 
@@ -72,9 +73,10 @@ def run(directory: Path, console: Console) -> int:
     comparisons = [brick.compare(rtol) for rtol in brick.BARS]
     _print_comparisons(console, comparisons)
 
-    _heading(console, "4. Now your own file")
+    _heading(console, "4. Now your own file, or one of those that ship with polhode")
     for command in (
-        'polhode report part.stl --length-unit mm --density "2.7 g/cm^3"',
+        "polhode samples .",
+        'polhode report bracket.ply --length-unit in --density "2.7 g/cm^3"',
         "polhode check robot.urdf --fix better.urdf",
         "polhode molecule water.xyz",
         f"polhode spin {mesh_file} --length-unit mm --axes principal --omega 0.01 6 0 --until 20 "

@@ -113,9 +113,9 @@ class BodyOptions:
         Words, Parameter(name=("--com", "--center"), negative="", consume_multiple=True, show_default=False)
     ] = ()
     products: Annotated[Literal["positive", "negative"] | None, Parameter(name="--products")] = None
-    inertia_about: Annotated[Literal["center_of_mass", "origin"], Parameter(name="--inertia-about")] = (
-        "center_of_mass"
-    )
+    inertia_about: Annotated[
+        Literal["center_of_mass", "com", "origin"], Parameter(name="--inertia-about")
+    ] = "center_of_mass"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ def ensemble(
     chunk: int = 4096,
     position: Any = None,
     velocity: Any = None,
-    about: Literal["center_of_mass", "origin"] = "center_of_mass",
+    about: Literal["center_of_mass", "com", "origin"] = "center_of_mass",
     method: str = "auto",
     rtol: float = 1e-10,
     atol: float | None = None,
@@ -105,6 +105,7 @@ def ensemble(
     (1000, 2, 3)
     """
     size, cut = _count(n, "n"), _count(chunk, "chunk")
+    about = "center_of_mass" if about == "com" else about  # one recipe, one fingerprint
     if on_failure not in ("keep", "raise"):
         raise ValueError(f'on_failure: expected "keep" or "raise", got {on_failure!r}')
     given = {

@@ -37,7 +37,7 @@ _PLUS: Final = 1
 _SIGNS: Final = {"": 0, "+": _PLUS, "-": 2}
 _CHUNK: Final = 4096
 """Bodies that are made at once."""
-_ABOUT: Final = ("", "center_of_mass", "origin")
+_ABOUT: Final = ("", "center_of_mass", "com", "origin")
 
 
 class Parts(NamedTuple):

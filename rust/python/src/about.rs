@@ -8,6 +8,9 @@ use pyo3::prelude::*;
 use crate::arrays::read;
 use crate::stack::Stack;
 
+/// Words for the centre of mass.
+const CENTER: [&str; 2] = ["center_of_mass", "com"];
+
 /// The points that an argument `about` (or `point`) stands for.
 pub(crate) fn points(
     py: Python<'_>,
@@ -19,7 +22,7 @@ pub(crate) fn points(
         return bodies.map(py, RigidBody::center_of_mass);
     };
     match about.extract::<String>() {
-        Ok(word) if word == "center_of_mass" => bodies.map(py, RigidBody::center_of_mass),
+        Ok(word) if CENTER.contains(&word.as_str()) => bodies.map(py, RigidBody::center_of_mass),
         Ok(word) if word == "origin" => Ok(Stack::one(Vector3::zeros())),
         Ok(word) => Err(PyValueError::new_err(format!(
             "{name}: expected \"center_of_mass\", \"origin\" or a point of shape (..., 3), got \"{word}\""
@@ -32,7 +35,7 @@ pub(crate) fn points(
 pub(crate) fn is_pivot(about: &str) -> PyResult<bool> {
     match about {
         "origin" => Ok(true),
-        "center_of_mass" => Ok(false),
+        word if CENTER.contains(&word) => Ok(false),
         _ => Err(PyValueError::new_err(format!(
             "about: expected \"center_of_mass\" or \"origin\", got \"{about}\"; to fix another point move the body with translated()"
         ))),

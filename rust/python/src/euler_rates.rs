@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{read, write};
 use crate::kinematics::parse_frame;
-use crate::rotations::{parse_sequence, raises_where_singular};
+use crate::rotations::{in_radians, out_of_radians, parse_sequence, raises_where_singular};
 use crate::stack::{Broadcast, Stack};
 
 /// Angular velocity from Euler angles and their rates.
@@ -16,11 +16,13 @@ use crate::stack::{Broadcast, Stack};
 /// Parameters
 /// ----------
 /// angles, rates : array_like, shape (..., 3)
-///     In radians, and their derivatives with respect to time, in the order of the sequence.
+///     In radians unless `degrees`, and their derivatives with respect to time, in the order of the sequence.
 /// sequence : str, optional
 ///     As in `to_quaternion`; the default is the (φ, θ, ψ) of Goldstein and Landau.
 /// frame : {"body", "space"}, optional
 ///     Whose axes the components of the result refer to.
+/// degrees : bool, optional
+///     Angles and rates are in degrees; the result is in radians per time all the same.
 ///
 /// Returns
 /// -------
@@ -42,17 +44,18 @@ use crate::stack::{Broadcast, Stack};
 /// >>> euler_angles.angular_velocity((0, np.pi / 3, 0), (2, 0, 9)).round(6)
 /// array([ 0.      ,  1.732051, 10.      ])
 #[pyfunction]
-#[pyo3(signature = (angles, rates, sequence="ZXZ", frame="body"))]
+#[pyo3(signature = (angles, rates, sequence="ZXZ", frame="body", *, degrees=false))]
 pub(crate) fn angular_velocity_from_euler_rates<'py>(
     py: Python<'py>,
     angles: &Bound<'py, PyAny>,
     rates: &Bound<'py, PyAny>,
     sequence: &str,
     frame: &str,
+    degrees: bool,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let (sequence, frame) = (parse_sequence(py, sequence)?, parse_frame(frame)?);
-    let angles: Stack<[f64; 3]> = read(angles, "angles")?;
-    let rates: Stack<[f64; 3]> = read(rates, "rates")?;
+    let angles: Stack<[f64; 3]> = in_radians(read(angles, "angles")?, degrees);
+    let rates: Stack<[f64; 3]> = in_radians(read(rates, "rates")?, degrees);
     let grid = Broadcast::of(["angles", "rates"], [&angles.shape, &rates.shape])?;
     let omega = grid.try_map(py, |[a, r]| {
         Ok(sequence.angular_velocity(&angles[a], &rates[r], frame))
@@ -65,7 +68,7 @@ pub(crate) fn angular_velocity_from_euler_rates<'py>(
 /// Parameters
 /// ----------
 /// angles : array_like, shape (..., 3)
-///     In radians, in the order of the sequence.
+///     In radians unless `degrees`, in the order of the sequence.
 /// omega : array_like, shape (..., 3)
 ///     Angular velocity of the body relative to space, components in `frame`.
 /// sequence : str, optional
@@ -75,6 +78,8 @@ pub(crate) fn angular_velocity_from_euler_rates<'py>(
 /// singular : {"raise", "nan"}, optional
 ///     What to do where the first and third angle turn about the same axis (sine of the middle angle, or
 ///     cosine for three different axes, below 1e-12): raise, or give NaN for the rates of these two.
+/// degrees : bool, optional
+///     The angles are in degrees, and so are the rates; `omega` is in radians per time all the same.
 ///
 /// Returns
 /// -------
@@ -94,7 +99,7 @@ pub(crate) fn angular_velocity_from_euler_rates<'py>(
 /// >>> euler_angles.rates(angles, omega).round(12)
 /// array([2., 0., 9.])
 #[pyfunction]
-#[pyo3(signature = (angles, omega, sequence="ZXZ", frame="body", singular="raise"))]
+#[pyo3(signature = (angles, omega, sequence="ZXZ", frame="body", singular="raise", *, degrees=false))]
 pub(crate) fn euler_rates<'py>(
     py: Python<'py>,
     angles: &Bound<'py, PyAny>,
@@ -102,10 +107,11 @@ pub(crate) fn euler_rates<'py>(
     sequence: &str,
     frame: &str,
     singular: &str,
+    degrees: bool,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let raises = raises_where_singular(singular)?;
     let (sequence, frame) = (parse_sequence(py, sequence)?, parse_frame(frame)?);
-    let angles: Stack<[f64; 3]> = read(angles, "angles")?;
+    let angles: Stack<[f64; 3]> = in_radians(read(angles, "angles")?, degrees);
     let omega: Stack<Vector3<f64>> = read(omega, "omega")?;
     let grid = Broadcast::of(["angles", "omega"], [&angles.shape, &omega.shape])?;
     let rates = grid.try_map(py, |[a, w]| {
@@ -117,5 +123,5 @@ pub(crate) fn euler_rates<'py>(
             result => result,
         }
     })?;
-    write(py, &rates)
+    write(py, &out_of_radians(rates, degrees))
 }

@@ -1,6 +1,6 @@
 //! The way out of mistakes that many make: what to write instead of an argument that cannot be read.
 
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyAttributeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -59,6 +59,30 @@ pub(crate) fn not_a_load(object: &Bound<'_, PyAny>) -> PyErr {
     let kind = object.get_type();
     PyTypeError::new_err(format!(
         "load: expected a Load from polhode.loads, got {kind}; {way_out}"
+    ))
+}
+
+/// A heavy top without its weight, whose size depends on the units.
+pub(crate) fn no_gravity() -> PyErr {
+    PyTypeError::new_err(
+        "gravity: a heavy top needs it, as gravity=(0, 0, -9.81) in metres and seconds; a motion without weight is free_motion()",
+    )
+}
+
+/// An attribute that a body does not have, with what people look for under its name.
+pub(crate) fn no_attribute(name: &str) -> PyErr {
+    let way_out = match name {
+        "energy" => "; kinetic_energy(omega) gives it, and its .total the sum",
+        "com" | "center" | "centre_of_mass" | "centroid" => "; center_of_mass is it",
+        "moments" => "; principal_moments are they",
+        "axes" | "principal_axes" => "; principal.axes are they",
+        "moment_of_inertia" | "inertia_tensor" | "tensor" | "I" => {
+            "; inertia is the tensor about the centre of mass, inertia_about(point) that about another"
+        }
+        _ => "",
+    };
+    PyAttributeError::new_err(format!(
+        "'RigidBody' object has no attribute '{name}'{way_out}"
     ))
 }
 

@@ -83,6 +83,8 @@ pub(crate) fn ring(
 ///     α that the arc spans, in radians, at most 2π.
 /// mass, density : array_like, shape (...)
 ///     Exactly one of the two; the density is mass per length.
+/// degrees : bool, optional
+///     The angle is in degrees, at most 360.
 ///
 /// Returns
 /// -------
@@ -98,17 +100,19 @@ pub(crate) fn ring(
 /// >>> half.inertia_about((-4 / math.pi, 0, 0)).diagonal().round(12)
 /// array([2., 2., 4.])
 #[pyfunction]
-#[pyo3(signature = (radius, angle, *, mass=None, density=None))]
+#[pyo3(signature = (radius, angle, *, mass=None, density=None, degrees=false))]
 pub(crate) fn arc(
     radius: &Bound<'_, PyAny>,
     angle: &Bound<'_, PyAny>,
     mass: Given<'_, '_>,
     density: Given<'_, '_>,
+    degrees: bool,
 ) -> PyResult<PyRigidBody> {
-    lengths(
-        ["radius", "angle"],
-        [radius, angle],
-        (mass, density),
-        &shape!(|&[r, angle]| 2, rods::arc, r, angle),
-    )
+    let (names, sizes) = (["radius", "angle"], [radius, angle]);
+    if degrees {
+        let turned = shape!(|&[r, angle]| 2, rods::arc, r, angle * 1.0_f64.to_radians());
+        return lengths(names, sizes, (mass, density), &turned);
+    }
+    let turned = shape!(|&[r, angle]| 2, rods::arc, r, angle);
+    lengths(names, sizes, (mass, density), &turned)
 }

@@ -20,6 +20,29 @@ pub(crate) fn parse_sequence(py: Python<'_>, sequence: &str) -> PyResult<Sequenc
     sequence.parse().map_err(|error: Error| to_py(py, &error))
 }
 
+/// Angles in radians, of which a caller may have given degrees.
+pub(crate) fn in_radians<const N: usize>(
+    mut angles: Stack<[f64; N]>,
+    degrees: bool,
+) -> Stack<[f64; N]> {
+    if degrees {
+        for angle in angles.rows.as_flattened_mut() {
+            *angle = angle.to_radians();
+        }
+    }
+    angles
+}
+
+/// Angles as a caller asked for them, from radians.
+pub(crate) fn out_of_radians(mut angles: Stack<[f64; 3]>, degrees: bool) -> Stack<[f64; 3]> {
+    if degrees {
+        for angle in angles.rows.as_flattened_mut() {
+            *angle = angle.to_degrees();
+        }
+    }
+    angles
+}
+
 /// What the argument `singular` asks for.
 pub(crate) fn raises_where_singular(word: &str) -> PyResult<bool> {
     match word {
@@ -36,10 +59,12 @@ pub(crate) fn raises_where_singular(word: &str) -> PyResult<bool> {
 /// Parameters
 /// ----------
 /// angles : array_like, shape (..., 3)
-///     In radians, in the order in which the sequence names its axes.
+///     In radians unless `degrees`, in the order in which the sequence names its axes.
 /// sequence : str, optional
 ///     Three axes: intrinsic in upper case (``"ZXZ"``: R_NB = Rz(φ) Rx(θ) Rz(ψ)), extrinsic in lower
 ///     case; or ``"goldstein"``, ``"landau"`` (ZXZ), ``"aerospace"`` (ZYX).
+/// degrees : bool, optional
+///     The angles are in degrees.
 ///
 /// Returns
 /// -------
@@ -52,15 +77,18 @@ pub(crate) fn raises_where_singular(word: &str) -> PyResult<bool> {
 /// >>> from polhode import euler_angles
 /// >>> euler_angles.to_quaternion((np.pi / 2, 0, 0)).round(6)
 /// array([0.      , 0.      , 0.707107, 0.707107])
+/// >>> euler_angles.to_quaternion((90, 0, 0), degrees=True).round(6)
+/// array([0.      , 0.      , 0.707107, 0.707107])
 #[pyfunction]
-#[pyo3(signature = (angles, sequence="ZXZ"))]
+#[pyo3(signature = (angles, sequence="ZXZ", *, degrees=false))]
 pub(crate) fn quaternion_from_euler_angles<'py>(
     py: Python<'py>,
     angles: &Bound<'py, PyAny>,
     sequence: &str,
+    degrees: bool,
 ) -> Array<'py> {
     let sequence = parse_sequence(py, sequence)?;
-    let angles: Stack<[f64; 3]> = read(angles, "angles")?;
+    let angles: Stack<[f64; 3]> = in_radians(read(angles, "angles")?, degrees);
     let attitudes = try_rows(py, &angles, |angles| sequence.to_quaternion(angles))?;
     write_of(py, &attitudes, components)
 }
@@ -76,11 +104,13 @@ pub(crate) fn quaternion_from_euler_angles<'py>(
 /// singular : {"raise", "nan"}, optional
 ///     What to do where the first and third angle are not defined (sine of the middle angle, or cosine
 ///     for three different axes, below 1e-12): raise, or give NaN for these two.
+/// degrees : bool, optional
+///     Give degrees.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray, shape (..., 3)
-///     In radians, first and third in [−π, π], the middle one in [0, π], or in [−π/2, π/2] for three
+///     In radians unless `degrees`, first and third in [−π, π], the middle one in [0, π], or in [−π/2, π/2] for three
 ///     different axes.
 ///
 /// Raises
@@ -99,12 +129,13 @@ pub(crate) fn quaternion_from_euler_angles<'py>(
 /// >>> euler_angles.from_quaternion(euler_angles.to_quaternion(angles)).round(12)
 /// array([ 0.1,  1.2, -0.4])
 #[pyfunction]
-#[pyo3(signature = (quaternion, sequence="ZXZ", singular="raise"))]
+#[pyo3(signature = (quaternion, sequence="ZXZ", singular="raise", *, degrees=false))]
 pub(crate) fn euler_angles_from_quaternion<'py>(
     py: Python<'py>,
     quaternion: &Bound<'py, PyAny>,
     sequence: &str,
     singular: &str,
+    degrees: bool,
 ) -> Array<'py> {
     let raises = raises_where_singular(singular)?;
     let sequence = parse_sequence(py, sequence)?;
@@ -120,7 +151,7 @@ pub(crate) fn euler_angles_from_quaternion<'py>(
             result => result,
         }
     })?;
-    write(py, &angles)
+    write(py, &out_of_radians(angles, degrees))
 }
 
 /// Unit quaternions (x, y, z, w), w ≥ 0, of rotation matrices (..., 3, 3).

@@ -165,10 +165,12 @@ pub(crate) fn nutation_damping<'py>(
 /// gravity : array_like, shape (..., 3)
 ///     Only its size matters.
 /// inclination : array_like, shape (...), optional
-///     θ, of the axis, from the pivot to the centre of mass, from the upward vertical.
+///     θ, of the axis, from the pivot to the centre of mass, from the upward vertical, in radians.
 /// rtol : float, optional
 ///     Moments closer than this times the largest count as equal, and the pivot as lying on the axis when it
 ///     is nearer to it than this times the radius of gyration.
+/// degrees : bool, optional
+///     The inclination is in degrees.
 ///
 /// Returns
 /// -------
@@ -190,8 +192,8 @@ pub(crate) fn nutation_damping<'py>(
 /// 399.265
 #[pyfunction]
 #[pyo3(
-    signature = (body, gravity, inclination=Argument::default(), *, rtol=TOP_RTOL),
-    text_signature = "(body, gravity, inclination=0.0, *, rtol=1e-06)"
+    signature = (body, gravity, inclination=Argument::default(), *, rtol=TOP_RTOL, degrees=false),
+    text_signature = "(body, gravity, inclination=0.0, *, rtol=1e-06, degrees=False)"
 )]
 pub(crate) fn least_spin<'py>(
     py: Python<'py>,
@@ -199,10 +201,11 @@ pub(crate) fn least_spin<'py>(
     gravity: &Bound<'py, PyAny>,
     inclination: Argument<'py>,
     rtol: f64,
+    degrees: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     let bodies = &body.get().bodies;
     let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
-    let inclination = read_or(&inclination, "inclination", 0.0)?;
+    let inclination = turned(read_or(&inclination, "inclination", 0.0)?, degrees);
     let shapes = [&bodies.shape[..], &gravity.shape, &inclination.shape];
     let grid = Broadcast::of(["body", "gravity", "inclination"], shapes)?;
     let spins = grid.try_map(py, |[b, g, i]| {
@@ -221,11 +224,13 @@ pub(crate) fn least_spin<'py>(
 /// spin : array_like, shape (...)
 ///     ω_s, the component of ω along the axis, from the pivot to the centre of mass.
 /// inclination : array_like, shape (...)
-///     θ, of the axis from the upward vertical.
+///     θ, of the axis from the upward vertical, in radians.
 /// gravity : array_like, shape (..., 3)
 ///     Only its size matters.
 /// rtol : float, optional
 ///     As in `least_spin`.
+/// degrees : bool, optional
+///     The inclination is in degrees.
 ///
 /// Returns
 /// -------
@@ -245,8 +250,8 @@ pub(crate) fn least_spin<'py>(
 /// array([ 3.443, 64.926])
 #[pyfunction]
 #[pyo3(
-    signature = (body, spin, inclination, gravity, *, rtol=TOP_RTOL),
-    text_signature = "(body, spin, inclination, gravity, *, rtol=1e-06)"
+    signature = (body, spin, inclination, gravity, *, rtol=TOP_RTOL, degrees=false),
+    text_signature = "(body, spin, inclination, gravity, *, rtol=1e-06, degrees=False)"
 )]
 pub(crate) fn steady_precession<'py>(
     py: Python<'py>,
@@ -255,10 +260,11 @@ pub(crate) fn steady_precession<'py>(
     inclination: &Bound<'py, PyAny>,
     gravity: &Bound<'py, PyAny>,
     rtol: f64,
+    degrees: bool,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let bodies = &body.get().bodies;
     let spin: Stack<f64> = read(spin, "spin")?;
-    let inclination: Stack<f64> = read(inclination, "inclination")?;
+    let inclination = turned(read(inclination, "inclination")?, degrees);
     let gravity: Stack<Vector3<f64>> = read(gravity, "gravity")?;
     let shapes = [
         &bodies.shape[..],
@@ -271,4 +277,14 @@ pub(crate) fn steady_precession<'py>(
         PivotedTop::of(&bodies[b], rtol)?.steady_precession(spin[s], inclination[i], &gravity[g])
     })?;
     write(py, &rates)
+}
+
+/// Inclinations in radians, of which a caller may have given degrees.
+pub(crate) fn turned(mut inclination: Stack<f64>, degrees: bool) -> Stack<f64> {
+    if degrees {
+        for angle in &mut inclination.rows {
+            *angle = angle.to_radians();
+        }
+    }
+    inclination
 }

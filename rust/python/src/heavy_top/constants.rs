@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::top::{Array, PyHeavyTop, Start};
 use crate::arrays::{Numbers, read, write, write_numbers, write_numbers_of, write_words_of};
-use crate::stack::Stack;
+use crate::tops::turned;
 
 impl PyHeavyTop {
     fn numbers<'py>(&self, py: Python<'py>, of: fn(&Nutation) -> f64) -> Array<'py> {
@@ -73,7 +73,9 @@ impl PyHeavyTop {
     /// Parameters
     /// ----------
     /// inclination : array_like, shape (n,) or ()
-    ///     θ, of the axis from the upward vertical.
+    ///     θ, of the axis from the upward vertical, in radians.
+    /// degrees : bool, optional
+    ///     It is in degrees.
     ///
     /// Returns
     /// -------
@@ -87,12 +89,14 @@ impl PyHeavyTop {
     /// >>> top = body.heavy_top((1, 0, 4), None, gravity=(0, 0, -10))
     /// >>> top.effective_potential([0.5, 1.0])
     /// array([8.84102512, 5.70146947])
+    #[pyo3(signature = (inclination, *, degrees=false))]
     fn effective_potential<'py>(
         &self,
         py: Python<'py>,
         inclination: &Bound<'py, PyAny>,
+        degrees: bool,
     ) -> Array<'py> {
-        let angles: Stack<f64> = read(inclination, "inclination")?;
+        let angles = turned(read(inclination, "inclination")?, degrees);
         let shape = [&self.motions.shape[..], &angles.shape].concat();
         let mut numbers = Numbers::of::<f64>(py, "inclination", &shape)?;
         for start in &self.starts.rows {

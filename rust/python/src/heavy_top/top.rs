@@ -13,6 +13,7 @@ use crate::attitudes::read_attitude_exactly;
 use crate::body::PyRigidBody;
 use crate::closed_form::trajectory;
 use crate::elsewhere::{handed_over, is_any};
+use crate::hints::no_gravity;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
@@ -144,9 +145,9 @@ impl PyRigidBody {
     ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
     /// attitude : array_like, shape (..., 4), rotation or Uncertain
     ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as SciPy's
-    ///     Rotation. None is the identity.
+    ///     Rotation. The identity by default.
     /// gravity : array_like, shape (..., 3)
-    ///     The acceleration of free fall, components in space, as ``(0, 0, -9.81)``.
+    ///     The acceleration of free fall, components in space, as ``(0, 0, -9.81)``. It must be given.
     /// rtol : float, optional
     ///     Moments closer than this times the largest count as equal, and the pivot as lying on the axis when it is
     ///     nearer to it than this times the radius of gyration.
@@ -174,16 +175,17 @@ impl PyRigidBody {
     /// >>> top = body.heavy_top(omega, euler_angles.to_quaternion(angles), gravity=(0, 0, -9.81))
     /// >>> top.at(4e4).euler_angles()[1].round(9)
     /// np.float64(0.6)
-    #[pyo3(signature = (omega, attitude, gravity, *, rtol=TOP_RTOL))]
-    #[pyo3(text_signature = "($self, omega, attitude, gravity, *, rtol=1e-06)")]
+    #[pyo3(signature = (omega, attitude=None, gravity=None, *, rtol=TOP_RTOL))]
+    #[pyo3(text_signature = "($self, omega, attitude=None, gravity=None, *, rtol=1e-06)")]
     fn heavy_top(
         slf: Py<Self>,
         py: Python<'_>,
         omega: &Bound<'_, PyAny>,
         attitude: Option<&Bound<'_, PyAny>>,
-        gravity: &Bound<'_, PyAny>,
+        gravity: Option<&Bound<'_, PyAny>>,
         rtol: f64,
     ) -> PyResult<PyHeavyTop> {
+        let gravity = gravity.ok_or_else(no_gravity)?;
         let given = StartGiven::read(omega, attitude)?;
         let (omega, gravity) = (read(&given.omega, "omega")?, read(gravity, "gravity")?);
         let attitude = read_attitude_exactly(given.attitude.as_ref(), "attitude")?;

@@ -11,6 +11,7 @@ use pyo3::types::{PyDict, PyIterator, PyList, PyTuple};
 
 use crate::arrays::{read, write_of};
 use crate::body::PyRigidBody;
+use crate::hints::no_attribute;
 use crate::indexing::{picked_by, to_index};
 use crate::interrupt::Beat;
 use crate::memory;
@@ -23,6 +24,12 @@ impl PyRigidBody {
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.bodies.shape)
+    }
+
+    /// Asked where there is no such attribute.
+    #[expect(clippy::unused_self, reason = "Python asks an instance")]
+    fn __getattr__(&self, name: &str) -> PyResult<Py<PyAny>> {
+        Err(no_attribute(name))
     }
 
     fn __len__(&self) -> PyResult<usize> {

@@ -1,0 +1,98 @@
+"""The letters of the formulas."""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple
+
+from polhode._extras import require
+
+__all__ = ["Symbols", "positive", "real", "symbols", "sympy"]
+
+sympy: Final[Any] = require("sympy", extra="symbolic", purpose="polhode.symbolic")
+
+
+def positive(names: str) -> Any:
+    """Give symbols of positive numbers."""
+    return sympy.symbols(names, positive=True)
+
+
+def real(names: str) -> Any:
+    """Give symbols of real numbers."""
+    return sympy.symbols(names, real=True)
+
+
+class Symbols(NamedTuple):
+    """The symbols that the theorems use where they are given no other.
+
+    Attributes
+    ----------
+    mass : Symbol
+        M.
+    moments : tuple of Symbol
+        I1, I2, I3: principal moments.
+    tensor : Matrix, shape (3, 3)
+        Symmetric, with the elements Ixx … Iyz.
+    center : Matrix, shape (3, 1)
+        c, from the reference point to the centre of mass.
+    displacement : Matrix, shape (3, 1)
+        d, from the centre of mass to a point.
+    omega, angular_acceleration, torque : Matrix, shape (3, 1)
+        ω, its derivative and N, components in the body.
+    velocity, position : Matrix, shape (3, 1)
+        Of the reference point, components in the body.
+    angles, rates : tuple of Symbol
+        φ, θ, ψ and their derivatives.
+    axial, transverse, gravity, arm : Symbol
+        Of a top: I_s along its axis and I_t across it, both about the pivot, g, and l from the pivot to the
+        centre of mass.
+    vertical_momentum, axial_momentum : Symbol
+        L_z about the upward vertical and L_s about the axis.
+    """
+
+    mass: Any
+    moments: Any
+    tensor: Any
+    center: Any
+    displacement: Any
+    omega: Any
+    angular_acceleration: Any
+    torque: Any
+    velocity: Any
+    position: Any
+    angles: Any
+    rates: Any
+    axial: Any
+    transverse: Any
+    gravity: Any
+    arm: Any
+    vertical_momentum: Any
+    axial_momentum: Any
+
+
+def _vector(names: str) -> Any:
+    return sympy.Matrix(real(names))
+
+
+_XX, _YY, _ZZ, _XY, _XZ, _YZ = real("I_xx I_yy I_zz I_xy I_xz I_yz")
+
+symbols: Final = Symbols(
+    mass=positive("M"),
+    moments=positive("I_1:4"),
+    tensor=sympy.Matrix([[_XX, _XY, _XZ], [_XY, _YY, _YZ], [_XZ, _YZ, _ZZ]]),
+    center=_vector("c_x c_y c_z"),
+    displacement=_vector("d_x d_y d_z"),
+    omega=_vector("omega_1:4"),
+    angular_acceleration=_vector(r"\dot{\omega}_1 \dot{\omega}_2 \dot{\omega}_3"),
+    torque=_vector("N_1:4"),
+    velocity=_vector("v_x v_y v_z"),
+    position=_vector("X Y Z"),
+    angles=real("varphi theta psi"),
+    rates=real(r"\dot{\varphi} \dot{\theta} \dot{\psi}"),
+    axial=positive("I_s"),
+    transverse=positive("I_t"),
+    gravity=positive("g"),
+    arm=positive("l"),
+    vertical_momentum=real("L_z"),
+    axial_momentum=real("L_s"),
+)
+"""The symbols of the theorems."""
