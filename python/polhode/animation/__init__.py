@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polhode._scene.scene import Scene
-from polhode.animation.page import page
+from polhode.animation._page import page
 from polhode.files.writing import write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from os import PathLike
 
-    from numpy.typing import ArrayLike
-
     from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
+    from polhode._scene.shape import GivenShape
 
 __all__ = ["ANIMATION_SUFFIXES", "animate"]
 
@@ -27,7 +26,7 @@ def animate(
     trajectory: Trajectory,
     path: str | PathLike[str],
     *,
-    shape: tuple[ArrayLike, ArrayLike] | None = None,
+    shape: GivenShape | None = None,
     frames: int | None = None,
     duration: float | None = None,
     title: str = "Motion of a rigid body",
@@ -83,6 +82,7 @@ def animate(
         title=title,
         time_unit=time_unit,
         is_film=file.suffix.lower() != ".html",
+        is_page=file.suffix.lower() == ".html",
     )
     for note in scene.notes:
         warnings.warn(note, stacklevel=3)  # where Trajectory.animate is called
@@ -95,7 +95,7 @@ def animate_motion(
     end: float,
     path: str | PathLike[str],
     *,
-    shape: tuple[ArrayLike, ArrayLike] | None = None,
+    shape: GivenShape | None = None,
     title: str = "Motion of a rigid body",
     progress: Callable[[float], object] | None = None,
 ) -> tuple[str, ...]:
@@ -116,7 +116,14 @@ def animate_motion(
         What the viewer does not see of the motion.
     """
     file = _checked(path)
-    scene = Scene.of_motion(motion, end, shape=shape, title=title, is_film=file.suffix.lower() != ".html")
+    scene = Scene.of_motion(
+        motion,
+        end,
+        shape=shape,
+        title=title,
+        is_film=file.suffix.lower() != ".html",
+        is_page=file.suffix.lower() == ".html",
+    )
     _write(scene, file, progress)
     return scene.notes
 
