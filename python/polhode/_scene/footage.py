@@ -66,6 +66,7 @@ def of_samples(
     time_unit: str,
     is_film: bool = False,
     is_page: bool = False,
+    fps: float | None = None,
 ) -> Footage:
     """Choose frames evenly among the samples of a motion of which no other states are known.
 
@@ -83,6 +84,8 @@ def of_samples(
         Whether each frame is one picture.
     is_page : bool
         Whether what shows them interpolates, so that fewer do.
+    fps : float, optional
+        Pictures of a film a second.
     """
     count = len(trajectory)
     if frames is not None and not 1 <= frames <= count:
@@ -105,7 +108,10 @@ def of_samples(
         )
         notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
     if is_film:
-        seconds = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
+        if fps is not None and duration is not None:
+            raise ValueError("fps: of samples each is one picture; give fps or duration, not both")
+        least = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
+        seconds = least if fps is None else len(chosen) / fps
         return Footage(trajectory, chosen, seconds, tuple(notes))
     seconds, told = _on_screen(whole, rate, duration, time_unit if is_page else None)
     return Footage(trajectory, chosen, seconds, (*notes, *told))
@@ -119,6 +125,7 @@ def of_motion(
     time_unit: str,
     is_film: bool = False,
     is_page: bool = False,
+    fps: float | None = None,
 ) -> Footage:
     """Choose frames for a motion whose state is known at every time.
 
@@ -129,13 +136,13 @@ def of_motion(
     samples : Trajectory
         Of the same motion. A page shows these and what is between them, a film the span from the first to the
         last.
-    duration, time_unit, is_film, is_page
+    duration, time_unit, is_film, is_page, fps
         As of `of_samples`.
     """
     t = samples.t
     rate, since = fastest(motion), t - t[0]
     if is_film and len(t) > 1:
-        pictures, seconds, notes = _pictures(float(since[-1]), rate, duration)
+        pictures, seconds, notes = _pictures(float(since[-1]), rate, duration, fps)
         span = motion_times(motion, pictures, most=_BETWEEN * len(pictures))
         chosen = np.flatnonzero(np.isin(span.t, pictures))
     else:
@@ -156,17 +163,23 @@ def of_motion(
     return Footage(shown, chosen, seconds, tuple(notes))
 
 
-def _pictures(length: float, rate: float, duration: float | None) -> tuple[Floats, float, list[str]]:
+def _pictures(
+    length: float, rate: float, duration: float | None, fps: float | None
+) -> tuple[Floats, float, list[str]]:
     """Choose evenly spaced times for the pictures of a film; also give its length in seconds, and notes."""
     needed = float(np.ceil(abs(length) * rate / TURN)) + 1.0
     if duration is None:
-        count = int(min(max(needed, _RATE * _SECONDS), _FILM))
+        count = int(min(max(needed, (fps or _RATE) * _SECONDS), _FILM))
         if needed > count:
             length = float(np.copysign((count - 1) * TURN / rate, length))
-        return np.linspace(0.0, length, count), count / _RATE, []
-    count = int(min(max(needed, _RATE * duration, 2.0), max(_FASTEST_RATE * duration, 2.0), _FILM))
-    where = f"duration: of {count} pictures, {_FASTEST_RATE:g} a second at most, from one to the next"
-    way_out = "give a longer one, or leave it out" if needed > _FASTEST_RATE * duration else "leave it out"
+        return np.linspace(0.0, length, count), count / (fps or _RATE), []
+    if fps is None:
+        count = int(min(max(needed, _RATE * duration, 2.0), max(_FASTEST_RATE * duration, 2.0), _FILM))
+    else:
+        count = int(min(max(round(fps * duration), 2.0), _FILM))
+    most = fps or _FASTEST_RATE
+    where = f"duration: of {count} pictures, {most:g} a second at most, from one to the next"
+    way_out = "give a longer one, or leave it out" if needed > most * duration else "leave it out"
     return (
         np.linspace(0.0, length, count),
         duration,

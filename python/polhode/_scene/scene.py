@@ -52,6 +52,8 @@ class Scene:
         Whether the motion is that of a free body, which its first frame determines.
     pivot : Pivot or None
         Of a body with a fixed point: what is drawn of that.
+    axis_path : numpy.ndarray, shape (T, 3), or None
+        Where its axis points at every sample, in space.
     shape : Shape
         The surface drawn.
     title, time_unit : str
@@ -74,6 +76,7 @@ class Scene:
     moments: Floats
     is_free: bool
     pivot: Pivot | None
+    axis_path: Floats | None
     shape: Shape
     title: str
     time_unit: str
@@ -92,6 +95,7 @@ class Scene:
         time_unit: str,
         is_film: bool = False,
         is_page: bool = False,
+        fps: float | None = None,
     ) -> Scene:
         """Choose the frames of a motion and work out what is drawn in them.
 
@@ -114,6 +118,7 @@ class Scene:
             "time_unit": time_unit,
             "is_film": is_film,
             "is_page": is_page,
+            "fps": fps,
         }
         if motion is not None and frames is None:
             footage = of_motion(motion, trajectory, **options)
@@ -133,6 +138,7 @@ class Scene:
         time_unit: str = "s",
         is_film: bool = False,
         is_page: bool = False,
+        fps: float | None = None,
     ) -> Scene:
         """Choose the frames of a motion in closed form from time 0 to its end."""
         check_one(motion.shape, "animate")
@@ -146,6 +152,7 @@ class Scene:
             time_unit=time_unit,
             is_film=is_film,
             is_page=is_page,
+            fps=fps,
         )
         return cls._of_footage(footage, motion, shape, title, time_unit, is_cut=not is_page)
 
@@ -162,6 +169,7 @@ class Scene:
     ) -> Scene:
         trajectory, chosen = footage.trajectory, footage.chosen
         about = trajectory.about
+        pivot = pivot_of(trajectory, motion)
         principal = trajectory.body.principal_about(about)
         in_axes = trajectory.omega[chosen] @ principal.axes
         momentum = trajectory.angular_momentum().spin[chosen]
@@ -183,7 +191,8 @@ class Scene:
             axes=principal.axes,
             moments=principal.moments,
             is_free=isinstance(motion, _core.FreeMotion),
-            pivot=pivot_of(trajectory, motion),
+            pivot=pivot,
+            axis_path=None if pivot is None else _core.rotate(trajectory.quaternion, pivot.axis),
             shape=equivalent_box(trajectory.body, about)
             if shape is None
             else shape_of(shape, about, is_cut=is_cut),
