@@ -6,12 +6,13 @@ from typing import Final
 
 import numpy as np
 
-__all__ = ["pace"]
+__all__ = ["SECONDS", "pace"]
 
-_SECONDS: Final = {
+SECONDS: Final = {
     "ns": 1e-9, "µs": 1e-6, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0,
     "day": 86400.0, "days": 86400.0, "yr": 31557600.0,
 }  # fmt: skip
+"""In the units of time whose length a page knows."""
 _REAL: Final = (2.0, 300.0)
 """Seconds of a motion that is shown in real time."""
 _FINEST: Final = np.array([1.0, 2.0, 5.0, 10.0])
@@ -31,7 +32,7 @@ def pace(length: float, wished: float, least: float, time_unit: str) -> float:
     time_unit : str
         One that is not known has no real time: the motion takes the seconds wished.
     """
-    unit = _SECONDS.get(time_unit)
+    unit = SECONDS.get(time_unit)
     if unit is None or not length > 0.0:
         return wished
     real = length * unit

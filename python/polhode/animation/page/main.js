@@ -151,6 +151,7 @@ document.addEventListener("keydown", (event) => {
 });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColors(); later(); });
 addEventListener("hashchange", () => { const word = asked(location.hash, start, end); if (word.t !== null) show(word.t); if (word.view) choose(word.view); });
+element("share").hidden = location.protocol === "about:"; // in a notebook there is no file
 const file = decodeURIComponent(location.pathname.split("/").pop() || "motion.html").replace(/["&<>]/g, "");
 element("frame").value = `<iframe src="${file}#embed" title="${given.title.replace(/["&<>]/g, "")}" width="640" height="420" loading="lazy" style="border:0"></iframe>`;
 element("copy").addEventListener("click", () => { element("frame").select(); navigator.clipboard?.writeText(element("frame").value).catch(() => document.execCommand("copy")); });
