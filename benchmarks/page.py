@@ -1,6 +1,6 @@
 """What a drawing of the moving page costs: ``python benchmarks/page.py`` in the environment of the tests.
 
-Prints the median and the 95th percentile of the CPU time of a draw, in milliseconds, for bodies of so many triangles.
+Prints the median and the 95th percentile of the time that a draw takes, for bodies of so many triangles.
 A page redraws both of its views; at sixty pictures a second it may take 16 ms.
 """
 
@@ -47,7 +47,7 @@ def main() -> None:
     motion = solids.ellipsoid((3.0, 2.0, 1.0), mass=1.0).free_motion((0.02, 6.0, 0.0)).at([0.0, 20.0])
     with tempfile.TemporaryDirectory() as folder, Browser(Path(folder)) as browser:
         browser.screen(1200, 820)
-        print(f"{'triangles':>9} {'drawn':>7} {'median':>8} {'95 %':>8}   ms of CPU a draw")
+        print(f"{'triangles':>9} {'drawn':>7} {'median':>8} {'95 %':>8}   ms a draw")
         for triangles in (12, 1000, 5000, 10_000):
             page = motion.animate(Path(folder) / "page.html", shape=ball(triangles))
             browser.open(page, "#t=0")
