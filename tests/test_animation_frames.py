@@ -215,6 +215,10 @@ class TestPages:
         attitude = euler_angles.to_quaternion((0.0, np.pi / 6, 0.0))
         motion = body.heavy_top((0.0, 0.0, 40.0), attitude, (0.0, 0.0, -9.81))
         check_page(motion, shown["t"])
+        # With its pivot, and what its axis draws.
+        assert shown["top"]["path"] == str(motion.path)
+        assert shown["top"]["limits"] == pytest.approx(list(motion.nutation_limits))
+        assert shown["top"]["down"] == [0.0, 0.0, -1.0]
 
     def test_frames_beyond_the_most_are_told(self, tmp_path: Path) -> None:
         words = ("spin", "--moments", "1 3 3.2", "--omega", 0.01, 6, 0, "--until", 1e6)

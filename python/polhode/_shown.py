@@ -64,6 +64,12 @@ def show(self: Trajectory, *, height: int = _HEIGHT, **options: Any) -> Shown:
     -------
     Shown
         Outside a notebook its ``path`` is the page, in the folder for temporary files.
+
+    Examples
+    --------
+    >>> from polhode import solids
+    >>> motion = solids.box((3, 2, 1), mass=1.0).simulate([0.0, 20.0], omega=(0.01, 3, 0))
+    >>> motion.show(title="The tennis racket")  # doctest: +SKIP
     """
     from polhode.animation import page_of
 
