@@ -11,6 +11,7 @@ import { Trail } from "./trail.js";
 import { conjugate, dot, length, rotate, sum, times } from "./vectors.js";
 import { drawBody, drawPoinsot, drawSpace } from "./views.js";
 
+const PATHS = { cusp: "with cusps", loop: "with loops", wave: "in waves" }; // of a top's axis
 const element = (id) => document.getElementById(id);
 const given = JSON.parse(element("motion").textContent);
 const unpack = (text, Kind) => (text === null ? null : numbers(text, Kind));
@@ -123,7 +124,7 @@ function choose(name) {
   if (name !== "space") second = name;
   document.body.dataset.view = name;
   for (const button of element("tabs").children) button.setAttribute("aria-pressed", String(button.dataset.view === (matchMedia("(max-width: 640px)").matches ? view : second)));
-  const path = given.top ? `, and the path of its axis${given.top.path ? ` (${given.top.path})` : ""}` : "";
+  const path = given.top ? `, and the path of its axis${given.top.path ? ` (${PATHS[given.top.path] ?? given.top.path})` : ""}` : "";
   element("space-caption").innerHTML = `In space: the body, ${key("omega", "\u03c9")}, ${key("momentum", "L")}${given.inside ? ` (with ${key("inside", "h")}, which the body carries along)` : ""}${path}`;
   element("second-caption").innerHTML = second === "poinsot"
     ? `Poinsot: the ellipsoid of inertia rolls on the plane that ${key("momentum", "L")} is normal to; the tip of ${key("omega", "\u03c9")} is where they touch`

@@ -19,9 +19,21 @@ export function drawSpace(view, now, motion, shown) {
   if (top) ground(view, top);
   if (shown.traces) {
     view.path(trail.space.map((w) => scaled(w, rate)).concat([scaled(rotate(q, omega), rate)]), colors.omega, 1.5, { alpha: 0.55 });
-    if (top) view.path(trail.axis.concat([rotate(q, top.axis)]), colors.axes[nearest(motion.axes, top.axis)], 2);
   }
+  const way = top && shown.traces ? trail.axis.concat([rotate(q, top.axis)]) : [];
+  const pathOf = (isNear) => { // before the body or behind it
+    let run = [];
+    way.forEach((point, i) => {
+      if ((dot(point, view.toward) >= 0) === isNear) run.push(point);
+      if (run.length && ((dot(point, view.toward) >= 0) !== isNear || i === way.length - 1)) {
+        view.path(run, colors.axes[nearest(motion.axes, top.axis)], 2, { alpha: isNear ? 1 : 0.5 });
+        run = [];
+      }
+    });
+  };
+  pathOf(false);
   motion.solid.draw(view, q, BODY / motion.solid.reach);
+  pathOf(true);
   if (shown.axes) {
     motion.axes.forEach((axis, i) => {
       const tip = scaled(rotate(q, axis), 1.05);
