@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import io
+import base64
 import itertools
 import json
 import re
-import shutil
 import subprocess
 import sys
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
+from oracles.bodies import matrix
 from PIL import Image
-from polhode import RigidBody, Trajectory, solids
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+from polhode import RigidBody, Trajectory, animation, euler_angles, solids
+from polhode.animation import animate
 
 
 @pytest.fixture(scope="module")
@@ -37,11 +33,24 @@ def slow() -> Trajectory:
     return box.simulate(np.linspace(0.0, 0.75, 31), omega=(0.05, 2.0, 0.02))
 
 
+KINDS = {"t": ("<f8", -1), "quaternion": ("<f4", 4), "omega": ("<f4", 3), "inside": ("<f4", 3)}
+KINDS |= {"vertices": ("<f4", 3), "faces": ("<u4", 3), "colors": ("u1", 3)}
+
+
 def data(page: Path) -> dict[str, Any]:
+    """What a page holds, its packed arrays unpacked; and L in space, as the page works it out."""
     found = re.search(r'<script type="application/json" id="motion">(.*?)</script>', page.read_text("utf-8"))
     assert found
     motion: dict[str, Any] = json.loads(found[1])
-    return motion
+    for name, (kind, width) in KINDS.items():
+        if motion[name] is not None:
+            numbers = np.frombuffer(base64.b64decode(motion[name]), dtype=kind)
+            motion[name] = numbers if width < 0 else numbers.reshape(-1, width)
+    axes = np.array(motion["axes"])
+    spin = motion["omega"] @ axes.T * motion["moments"] @ axes
+    spin = spin if motion["inside"] is None else spin + motion["inside"]
+    turned = [matrix(q) @ v for q, v in zip(motion["quaternion"].astype(float), spin, strict=True)]
+    return motion | {"momentum": np.array(turned)}
 
 
 class TestPage:
@@ -50,26 +59,37 @@ class TestPage:
     ) -> None:
         page = racket.animate(tmp_path / "racket.html", title='A <b>"racket"</b> & </script>')
         text = page.read_text("utf-8")
-        assert not re.search(r"https?://|//cdn|<link|src=|import\(|fetch\(|XMLHttpRequest", text)
+        assert not re.search(
+            r"https?://|//cdn|<link|src=(?!.\$\{file\}#embed)|import\(|fetch\(|XMLHttpRequest", text
+        )
         assert "<title>A &lt;b&gt;" in text
         motion = data(page)
         assert motion["title"] == 'A <b>"racket"</b> & </script>'
-        fastest = np.linalg.norm(racket.omega, axis=1).max()
-        np.testing.assert_allclose(np.array(motion["omega"]) * fastest, racket.omega, atol=1e-6)
-        np.testing.assert_allclose(motion["quaternion"], racket.quaternion, atol=1e-7)
-        np.testing.assert_array_equal(motion["t"], racket.t)
-        momentum = np.array(motion["momentum"])  # of a free body: one direction
-        np.testing.assert_allclose(momentum, np.broadcast_to(momentum[0], momentum.shape), atol=1e-6)
+        assert (motion["t"][0], motion["t"][-1]) == (racket.t[0], racket.t[-1])
+        exact = racket.body.free_motion(racket.omega[0]).at(motion["t"])
+        np.testing.assert_allclose(motion["omega"], exact.omega, atol=1e-6)
+        np.testing.assert_allclose(motion["quaternion"], exact.quaternion, atol=1e-6)
+        momentum = motion["momentum"]  # of a free body: one vector
+        np.testing.assert_allclose(momentum, np.broadcast_to(momentum[0], momentum.shape), atol=1e-5)
 
-    def test_omega_lies_on_the_ellipsoid_that_is_drawn(self, racket: Trajectory, tmp_path: Path) -> None:
-        motion = data(racket.animate(tmp_path / "racket.html", frames=60))
-        along = np.array(motion["omega"]) @ np.array(motion["axes"]).T
-        np.testing.assert_allclose(((along / np.array(motion["ellipsoid"])) ** 2).sum(axis=1), 1.0, atol=1e-5)
+    def test_it_is_small(self, racket: Trajectory, tmp_path: Path) -> None:
+        """Below 300 kB with as many frames as a page has."""
+        long = racket.body.free_motion((0.05, 2.0, 0.02)).at([0.0, 1e5])
+        with pytest.warns(UserWarning, match="shown is the beginning"):
+            page = long.animate(tmp_path / "long.html")
+        assert len(data(page)["t"]) == 3600
+        assert page.stat().st_size < 300_000
+
+    def test_its_modules_are_one_without_a_name_twice(self, racket: Trajectory, tmp_path: Path) -> None:
+        text = racket.animate(tmp_path / "racket.html").read_text("utf-8")
+        script = text.split('<script type="module">')[1]
+        names = re.findall(r"(?m)^(?:const|let|class|function) (\w+)", script)
+        assert len(names) == len(set(names)) > 50
+        assert not re.search(r"(?m)^(import|export) ", script)
 
     def test_the_box_has_the_body_s_inertia(self, racket: Trajectory, tmp_path: Path) -> None:
-        shape = data(racket.animate(tmp_path / "racket.html"))["shape"]
-        assert isinstance(shape, dict)
-        sides = np.sort(np.ptp(np.array(shape["vertices"]), axis=0))
+        vertices = data(racket.animate(tmp_path / "racket.html"))["vertices"]
+        sides = np.sort(np.ptp(vertices, axis=0))
         np.testing.assert_allclose(sides / sides[0], (1.0, 2.0, 3.0), rtol=1e-5)
 
     def test_a_rod_and_a_disk_have_a_page(self, tmp_path: Path) -> None:
@@ -77,53 +97,178 @@ class TestPage:
             body = RigidBody.from_principal(1.0, moments)
             motion = body.simulate(np.linspace(0, 1, 11), omega=(0.0, 1.0, 0.5))
             page = motion.animate(tmp_path / "page.html")
-            assert np.isfinite(np.array(data(page)["ellipsoid"], dtype=float)).all()
+            assert all(np.isfinite(data(page)[name]).all() for name in ("omega", "quaternion", "vertices"))
+            assert (data(page)["free"] is None) == (moments[0] == 0.0)
 
 
-@pytest.mark.skipif(BROWSER is None, reason="no Chromium: apt install chromium")
-@pytest.mark.timeout(300)
-class TestInTheBrowser:
-    def test_it_moves_between_two_moments(self, racket: Trajectory, tmp_path: Path) -> None:
-        """At rest at t = 3 and at t = 7 the pictures differ; the same moment is the same."""
-        page = racket.animate(tmp_path / "racket.html")
-        early, again, late = (screenshot(page, tmp_path, at) for at in (3.0, 3.0, 7.0))
-        assert np.ptp(early) > 100  # something is drawn
-        assert np.array_equal(early, again)
-        left, right = np.array_split(np.abs(late - early).max(axis=-1) > 40, 2, axis=1)
-        assert left.mean() > 0.01  # the body in space
-        assert right.mean() > 0.0005  # ω on the ellipsoid
-
-    def test_the_clock_runs_by_itself(self, racket: Trajectory, tmp_path: Path) -> None:
-        page = racket.animate(tmp_path / "racket.html")
-        # On a busy machine the browser may draw no frame within its time.
-        assert any(0.0 < clock(page, tmp_path) <= 12.0 for _ in range(4))
-        assert clock(page, tmp_path, at=7.0) == 7.0
+BAR = solids.box((0.080, 0.012, 0.012), density=7850.0)
+STEM = solids.box((0.012, 0.012, 0.048), density=7850.0).translated((0.0, 0.0, -0.030))
 
 
-def browse(page: Path, folder: Path, *action: str, at: float | None = None) -> str:
-    assert BROWSER is not None
-    url = page.as_uri() + ("" if at is None else f"#t={at}")
-    arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder / 'profile'}"]
-    arguments += ["--virtual-time-budget=3000", "--window-size=1100,760", *action, url]
-    done = subprocess.run([BROWSER, *arguments], capture_output=True, text=True, timeout=120, check=True)
-    return done.stdout
+class TestShapes:
+    def test_parts_are_drawn_where_they_are(self, tmp_path: Path) -> None:
+        """The T-handle of two boxes: its surface has the volume and the centre of mass of the body."""
+        handle = BAR + STEM
+        page = handle.simulate([0.0, 1.0], (0.01, 0.0, 6.28)).animate(tmp_path / "a.html", shape=[BAR, STEM])
+        shown = data(page)
+        vertices = shown["vertices"].astype(float) + handle.center_of_mass
+        drawn = RigidBody.from_mesh(vertices, shown["faces"].astype(int), density=7850.0, check=False)
+        np.testing.assert_allclose(drawn.inertia, handle.inertia, rtol=1e-5, atol=1e-12)
+        assert len(np.unique(shown["colors"], axis=0)) == 2
+
+    def test_a_mesh_among_parts(self, tmp_path: Path) -> None:
+        mesh = (np.eye(3), [(0, 1, 2)])
+        page = BAR.simulate([0.0, 1.0], (1.0, 0.0, 0.0)).animate(tmp_path / "a.html", shape=[BAR, mesh])
+        assert len(data(page)["faces"]) == 13
+
+    def test_no_parts_and_stacks(self, tmp_path: Path) -> None:
+        motion = BAR.simulate([0.0, 1.0], (1.0, 0.0, 0.0))
+        with pytest.raises(ValueError, match="shape: the list has no parts"):
+            motion.animate(tmp_path / "a.html", shape=[])
+        with pytest.raises(ValueError, match=r"shape: expected one body, got a stack of shape \(2,\)"):
+            motion.animate(tmp_path / "a.html", shape=[RigidBody.stack([BAR, STEM])])
 
 
-def screenshot(page: Path, folder: Path, at: float) -> NDArray[np.int64]:
-    picture = folder / "screen.png"
-    picture.unlink(missing_ok=True)
-    browse(page, folder, f"--screenshot={picture}", at=at)
-    return np.asarray(Image.open(io.BytesIO(picture.read_bytes())).convert("RGB")).astype(np.int64)
+class TestClosedForms:
+    """Motions that have no times of their own are shown to an end."""
+
+    BRICK = RigidBody.from_principal(1.0, (1.0, 3.0, 3.2))
+
+    def test_they_need_an_end(self, tmp_path: Path) -> None:
+        motion = self.BRICK.free_motion((0.01, 6.0, 0.0))
+        shown = data(animate(motion, tmp_path / "a.html", end=-5.0))
+        assert (shown["t"][0], shown["t"][-1]) == (0.0, -5.0)
+        assert shown["free"]["omega"] == pytest.approx([0.01, 6.0, 0.0])
+        assert len(data(animate(motion, tmp_path / "a.html", end=5.0, frames=201))["t"]) == 201
+        with pytest.raises(ValueError, match="end: a motion in closed form has no end of its own"):
+            animate(motion, tmp_path / "a.html")
+        with pytest.raises(ValueError, match="end: a trajectory has its own times"):
+            animate(motion.at([0.0, 1.0]), tmp_path / "a.html", end=5.0)
+        with pytest.raises(ValueError, match="end: inf is not a finite time"):
+            animate(motion, tmp_path / "a.html", end=np.inf)
+
+    def test_a_top_and_its_trajectory(self, tmp_path: Path) -> None:
+        """From two samples of it the same page as from the top itself: pivot, axis, limits, kind of path."""
+        cone = solids.cone(radius=0.03, height=0.06, mass=0.1).rotated((1.0, 0.0, 0.0, 0.0))
+        body = cone.translated((0.0, 0.0, 0.045))
+        attitude = euler_angles.to_quaternion((0.0, 0.5, 0.0))
+        top = body.heavy_top((0.3, 0.0, 160.0), attitude, (0.0, 0.0, -9.81))
+        first = data(animate(top, tmp_path / "a.html", end=1.0))
+        second = data(top.at([0.0, 1.0]).animate(tmp_path / "b.html"))
+        assert first["top"]["path"] == second["top"]["path"] == str(top.path)
+        assert first["top"]["limits"] == pytest.approx(list(top.nutation_limits), abs=1e-9)
+        assert first["top"]["weight"] == pytest.approx(0.1 * 9.81 * 0.045)
+        assert first["top"]["axis"] == pytest.approx([0.0, 0.0, 1.0])
+        np.testing.assert_allclose(first["t"], second["t"])
+        np.testing.assert_allclose(first["quaternion"], second["quaternion"], atol=1e-6)
+
+    def test_a_pivot_without_gravity(self, tmp_path: Path) -> None:
+        box = solids.box((3.0, 2.0, 1.0), mass=1.0).translated((0.0, 0.0, 1.0))
+        run = box.simulate(np.linspace(0.0, 1.0, 101), (0.3, 0.2, 3.0), about="origin")
+        shown = data(run.animate(tmp_path / "a.html"))
+        assert (shown["top"]["weight"], shown["top"]["limits"], shown["free"]) == (0.0, [], None)
 
 
-def clock(page: Path, folder: Path, at: float | None = None) -> float:
-    dom = browse(page, folder, "--dump-dom", at=at)
-    found = re.search(r'<output id="clock">t = ([0-9.]+) s</output>', dom)
-    assert found
-    return float(found[1])
+class TestTime:
+    """Speed 1 is real time; where that cannot be watched, a round part or multiple of it."""
+
+    @pytest.mark.parametrize(
+        ("rate", "end", "unit", "factor"),
+        [
+            (6.0, 20.0, "s", 1.0),
+            (10.4, 20.0, "s", 1.0),
+            (10.6, 20.0, "s", 0.5),
+            (600.0, 3.0, "s", 0.01),
+            (6.0, 0.5, "s", 0.05),
+            (0.001, 3600.0, "s", 200.0),
+            (0.5, 30.0, "h", 10000.0),
+            (6.0, 20.0, "turns", None),
+        ],
+    )
+    def test_paces(self, rate: float, end: float, unit: str, factor: float | None, tmp_path: Path) -> None:
+        motion = RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).free_motion((0.0, 0.0, rate))
+        seconds = data(animate(motion, tmp_path / "a.html", end=end, time_unit=unit))["duration"]
+        unit_seconds = {"s": 1.0, "h": 3600.0, "turns": 1.0}[unit]
+        if factor is None:
+            assert seconds == pytest.approx(max(10.0, end * rate / 30.0 / np.deg2rad(20.0)))
+        else:
+            assert end * unit_seconds / seconds == pytest.approx(factor)
+            assert rate * end / seconds / 30.0 <= np.deg2rad(20.0) * (1.0 + 1e-9)
+
+    def test_the_page_knows_the_same_units(self) -> None:
+        from polhode._scene.clock import SECONDS
+
+        text = (Path(animation.__file__).parent / "page/clock.js").read_text("utf-8")
+        found = re.search(r"const SECONDS = \{(.*)\};", text)
+        assert found
+        pairs = dict(part.replace('"', "").split(":") for part in found[1].split(","))
+        assert {
+            name.strip().replace("\\u00b5", "µ"): float(value) for name, value in pairs.items()
+        } == SECONDS
 
 
 class TestFilm:
+    @pytest.mark.parametrize(("size", "pixels"), [(200, (200, 200)), ((320, 180), (320, 180))])
+    def test_sizes_and_speeds(
+        self, slow: Trajectory, tmp_path: Path, size: Any, pixels: tuple[int, int]
+    ) -> None:
+        pytest.importorskip("matplotlib")
+        path = slow.animate(tmp_path / "a.gif", frames=6, size=size, fps=20, labels=False)
+        with Image.open(path) as film:
+            assert film.size == pixels
+            assert film.info["duration"] == 50
+            bare = np.asarray(film.convert("RGB")).astype(int)
+        with Image.open(slow.animate(tmp_path / "b.gif", frames=6, size=size, fps=20)) as film:
+            named = np.asarray(film.convert("RGB")).astype(int)
+        assert (np.abs(named - bare).max(axis=-1) > 60).sum() > 60  # title, time and the names of the axes
+
+    def test_pictures_a_second(self, slow: Trajectory, tmp_path: Path) -> None:
+        pytest.importorskip("matplotlib")
+        path = slow.animate(tmp_path / "a.gif", size=64, fps=10, duration=1.5)
+        with Image.open(path) as film:
+            assert (getattr(film, "n_frames", 1), film.info["duration"]) == (15, 100)
+
+    def test_a_top_s_axis_leaves_its_path(self, tmp_path: Path) -> None:
+        pytest.importorskip("matplotlib")
+        cone = solids.cone(radius=0.03, height=0.06, mass=0.1).rotated((1.0, 0.0, 0.0, 0.0))
+        top = cone.translated((0.0, 0.0, 0.045)).heavy_top(
+            (0.3, 0.0, 30.0), euler_angles.to_quaternion((0.0, 0.9, 0.0)), (0.0, 0.0, -9.81)
+        )
+        motion = top.at(np.linspace(0.0, 0.3, 41))
+        path = motion.animate(tmp_path / "a.gif", frames=41, fps=20, size=200, labels=False)
+        seen = []
+        with warnings.catch_warnings(), Image.open(path) as film:
+            for number in (0, 40):
+                film.seek(number)
+                pixels = np.asarray(film.convert("RGB")).astype(int)
+                seen.append((np.abs(pixels - 0x55).max(axis=-1) < 8).sum())
+        assert seen[1] > seen[0] + 20
+
+    @pytest.mark.parametrize(
+        ("options", "message"),
+        [
+            ({"size": 63}, "size: 63 is not a number of pixels from 64 to 4096"),
+            ({"size": 4097}, "size: 4097 is not"),
+            ({"size": (200.0, 200)}, "size: "),
+            ({"size": (200, 200, 200)}, "size: "),
+            ({"fps": 0.5}, "fps: 0.5 is not from 1"),
+            ({"fps": 51}, "fps: 51 is not from 1 to 240 pictures a second, or 50 of a GIF"),
+            ({"fps": float("nan")}, "fps: nan is not"),
+            ({"fps": 20, "duration": 1.0, "frames": 6}, "fps: of samples each is one picture"),
+        ],
+    )
+    def test_what_is_no_film(
+        self, slow: Trajectory, tmp_path: Path, options: dict[str, Any], message: str
+    ) -> None:
+        pytest.importorskip("matplotlib")
+        with pytest.raises(ValueError, match=message):
+            slow.animate(tmp_path / "a.gif", **options)
+
+    def test_an_mp4_has_even_sizes(self, slow: Trajectory, tmp_path: Path) -> None:
+        pytest.importorskip("imageio_ffmpeg")
+        with pytest.raises(ValueError, match=r"size: \(201, 200\): an MP4 has even .* such as \(202, 200\)"):
+            slow.animate(tmp_path / "a.mp4", frames=4, size=(201, 200))
+
     def test_a_gif_has_its_frames_and_they_differ(self, slow: Trajectory, tmp_path: Path) -> None:
         pytest.importorskip("matplotlib")
         told: list[float] = []

@@ -57,9 +57,9 @@ def test_frames_follow_a_gyrostat(
     page = few.animate(tmp_path / "page.html")
     shown = data(page)
     exact = motion.at(shown["t"])
-    np.testing.assert_allclose(shown["quaternion"], exact.quaternion, atol=1e-7)
+    np.testing.assert_allclose(shown["quaternion"], exact.quaternion, atol=1e-6)
     momentum, _ = arrows(page)
-    np.testing.assert_allclose(momentum, momentum[:1] + np.zeros_like(momentum), atol=3e-7)
+    np.testing.assert_allclose(momentum, momentum[:1] + np.zeros_like(momentum), atol=3e-6)
 
 
 def test_free_wheels_too(tmp_path: Path) -> None:
@@ -71,10 +71,10 @@ def test_free_wheels_too(tmp_path: Path) -> None:
     motion = BODY.gyrostat((0.1, 0.0, 0.0), wheels=wheels).free_motion((0.3, 0.2, 1.1))
     page = motion.at([2.0, 12.0]).animate(tmp_path / "page.html")
     np.testing.assert_allclose(
-        data(page)["quaternion"], motion.at(data(page)["t"]).quaternion, atol=1e-7, rtol=0
+        data(page)["quaternion"], motion.at(data(page)["t"]).quaternion, atol=1e-6, rtol=0
     )
     momentum, _ = arrows(page)
-    np.testing.assert_allclose(momentum, momentum[:1] + np.zeros_like(momentum), atol=3e-7)
+    np.testing.assert_allclose(momentum, momentum[:1] + np.zeros_like(momentum), atol=3e-6)
 
 
 def test_on_the_separatrix() -> None:
@@ -95,17 +95,16 @@ def test_a_motion_that_only_knows_its_samples(tmp_path: Path) -> None:
     shown.save(saved)
     for one in (shown, Trajectory.from_file(saved)):
         found = data(one.animate(tmp_path / "page.html"))
-        np.testing.assert_allclose(found["quaternion"], motion.at(found["t"]).quaternion, atol=1e-7)
+        np.testing.assert_allclose(found["quaternion"], motion.at(found["t"]).quaternion, atol=1e-6)
 
 
 def test_a_wheel_with_a_motor(tmp_path: Path) -> None:
     motor = loads.wheel((0, 0, 1), 0.05, 1.0, torque=[0.2, -0.2, 0.0], times=[0, 5, 10])
     run = BODY.simulate(np.linspace(0.0, 10.0, 201), omega=(0.3, 0.2, 1.1), load=motor)
     momentum, inside = arrows(run.animate(tmp_path / "page.html"))
-    np.testing.assert_allclose(momentum, momentum[:1] + np.zeros_like(momentum), atol=3e-7)
-    size = np.linalg.norm(run.angular_momentum().spin[0])
+    np.testing.assert_allclose(momentum, momentum[:1] + np.zeros_like(momentum), atol=3e-6)
     wheel = run.states["wheel"][:, 0] - 0.05 * run.omega[:, 2]
-    np.testing.assert_allclose(np.linalg.norm(inside, axis=1) * size, wheel, atol=3e-7)
+    np.testing.assert_allclose(np.linalg.norm(inside, axis=1), wheel, atol=3e-6)
 
 
 def test_both_in_a_film(tmp_path: Path) -> None:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import html
+import re
+import sys
+import webbrowser
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
-from polhode import RigidBody, solids
+import pytest
+from polhode import RigidBody, loads, solids
 from polhode._notebook import ellipsoid_svg
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
@@ -44,6 +49,72 @@ def test_rods_points_and_stacks() -> None:
     assert "<svg" not in RigidBody.from_principal(1.0, (0.0, 0.0, 0.0))._repr_html_()
     stack = solids.cube(np.ones(3), mass=1.0)._repr_html_()
     assert stack.startswith("<pre>&lt;RigidBody stack of shape (3,)")
+
+
+BRICK = RigidBody.from_principal(1.0, (1.0, 3.0, 3.2))
+MOTION = BRICK.free_motion((0.01, 6.0, 0.0))
+
+
+def framed(text: str) -> str:
+    """The page in the frame that a notebook displays."""
+    found = re.search(r'srcdoc="([^"]*)"', text)
+    assert found
+    return html.unescape(found[1])
+
+
+def test_a_motion_shows_itself() -> None:
+    """ω over time as a drawing, and the same page as a file's, in a frame; below 300 kB together."""
+    shown = MOTION.at(np.linspace(0.0, 20.0, 401))
+    text = shown._repr_html_()
+    assert len(text.encode()) < 300_000
+    page = framed(text)
+    assert page.startswith("<!DOCTYPE html>")
+    assert page.endswith("</html>\n")
+    drawing = ElementTree.fromstring(text[text.index("<svg") : text.index("</svg>") + 6])
+    curves = [line.get("points", "") for line in drawing.iter(f"{NAMESPACE}polyline")]
+    assert len(curves) == 3
+    heights = np.array([[float(pair.split(",")[1]) for pair in curve.split()] for curve in curves])
+    assert len(heights[0]) == 400
+    chosen = np.unique(np.linspace(0, 400, 400).round().astype(int))
+    drawn = (75.0 - heights.T) / 63.0 * np.abs(shown.omega).max()
+    np.testing.assert_allclose(drawn, shown.omega[chosen], atol=0.006)
+
+
+def test_motions_without_a_page() -> None:
+    many = solids.cube(np.ones(3), mass=1.0).simulate([0.0, 1.0], (1.0, 0.0, 0.0))
+    assert many._repr_html_().startswith("<pre>Trajectory(3 bodies")
+    assert (
+        "iframe"
+        not in MOTION.at([])._repr_html_() + MOTION.at([1.0])._repr_html_() + MOTION.at(1.0)._repr_html_()
+    )
+    pull = loads.constant_torque((0.0, 0.0, 0.1))
+    few = BRICK.simulate(np.linspace(0.0, 40.0, 51), (0.01, 6.0, 0.0), load=pull)._repr_html_()
+    assert "<svg" in few
+    assert "past the half turn" in few
+    assert "iframe" not in few
+
+
+def test_show_in_a_notebook_and_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", opened.append)
+    shown = MOTION.at([0.0, 5.0]).show(title="A racket", height=300)
+    assert shown.path is not None
+    assert opened == [shown.path.as_uri()]
+    assert shown.path.read_text("utf-8") == shown.page == framed(shown._repr_html_())
+    assert "<title>A racket</title>" in shown.page
+    assert 'height="300"' in shown._repr_html_()
+    assert str(shown.path) in repr(shown)
+    shown.path.unlink()
+    shown.path.parent.rmdir()
+    monkeypatch.setitem(sys.modules, "ipykernel", sys)
+    there = MOTION.at([0.0, 5.0]).show()
+    assert (there.path, repr(there), len(opened)) == (None, "<page of a motion>", 1)
+
+
+@pytest.mark.parametrize("height", [239, 460.0, True, "460"])
+def test_heights_that_are_none(height: object) -> None:
+    with pytest.raises(ValueError, match=r"height: .* is not a whole number of pixels from 240 on"):
+        MOTION.at([0.0, 5.0]).show(height=height)  # type: ignore[arg-type]
 
 
 def _drawing(body: RigidBody) -> ElementTree.Element:

@@ -90,3 +90,24 @@ def test_what_cannot_be_drawn_is_told() -> None:
     load = loads.torque_callback(lambda *_: np.array([0.1, 0.0, 0.0]))
     with pytest.raises(ValueError, match="keeps neither"):
         plot.invariants(BODY.simulate([0.0, 1.0], (0.0, 0.0, 1.0), load=load))
+
+
+@pytest.mark.parametrize("motion", [FREE, TOP, BODY.gyrostat((0.0, 0.2, 1.0)).free_motion((0.3, 0.2, 1.1))])
+def test_motions_in_closed_form_are_drawn_to_an_end(motion: Any) -> None:
+    """Through as many states as the curves need, each as the closed form has it."""
+    ax = plot.angular_velocity(motion, Figure().add_subplot(), end=2.0)
+    t, drawn = (np.asarray(part) for part in ax.lines[0].get_data())
+    assert (t[0], t[-1]) == (0.0, 2.0)
+    assert len(t) > 3
+    np.testing.assert_allclose(drawn, motion.at(t).omega[:, 0], atol=1e-12)
+
+
+def test_ends_that_are_missing_or_too_many() -> None:
+    ax = Figure().add_subplot()
+    with pytest.raises(ValueError, match="end: a motion in closed form has none of its own"):
+        plot.angular_velocity(FREE, ax)
+    with pytest.raises(ValueError, match="end: a trajectory has its own times"):
+        plot.angular_velocity(MOTION, ax, end=2.0)
+    many = BODY.free_motion([(1.0, 0.2, 0.5), (0.3, 0.2, 0.1)])
+    with pytest.raises(ValueError, match=r"angular_velocity: expected one body, got a stack of shape \(2,\)"):
+        plot.angular_velocity(many, ax, end=2.0)

@@ -14,6 +14,7 @@ from oracles.meshes import box, cube, icosphere
 from PIL import Image
 from polhode import samples
 from polhode.cli import brick
+from test_animation import data
 
 
 @pytest.fixture
@@ -88,10 +89,8 @@ def test_spin_saves_by_suffix(slab: Path, tmp_path: Path) -> None:
 
 def drawn(page: Path) -> np.ndarray:
     """The triangles in an animation's page, shape (m, 3, 3)."""
-    found = re.search(r'id="motion">(.*?)</script>', page.read_text("utf-8"))
-    assert found
-    shape = json.loads(found[1])["shape"]
-    return np.asarray(np.array(shape["vertices"])[np.array(shape["faces"])])
+    shape = data(page)
+    return np.asarray(shape["vertices"].astype(float)[shape["faces"]])
 
 
 def volume(triangles: np.ndarray) -> float:
@@ -125,8 +124,8 @@ def test_a_large_mesh_is_drawn_coarser_and_said_to_be(tmp_path: Path) -> None:
     triangles = drawn(tmp_path / "ball.html")
     assert 5000 < len(triangles) == int(found[1]) <= 10_000
     extent = np.ptp(triangles.reshape(-1, 3), axis=0)
-    np.testing.assert_allclose(extent, (1.6, 1.6 * 2 / 3, 1.6 / 3), atol=2 * float(found[2]))
-    assert volume(triangles) == pytest.approx(0.8**3 * 4 * np.pi / 3 * 2 / 9, rel=0.02)
+    np.testing.assert_allclose(extent, (6.0, 4.0, 2.0), atol=2 * float(found[2]))
+    assert volume(triangles) == pytest.approx(4 * np.pi / 3 * 6, rel=0.02)
 
 
 def test_an_open_mesh_is_drawn_from_both_sides(tmp_path: Path) -> None:

@@ -140,7 +140,7 @@ def animate(self: Trajectory, path: str | PathLike[str], **options: Any) -> Path
         ``.html``: an interactive page that needs nothing else; ``.gif``: needs matplotlib;
         ``.mp4``: needs also the program ffmpeg, which the extra ``film`` brings.
     **options
-        `shape`, `frames`, `duration`, `title`, `time_unit` and `progress`, see
+        `shape`, `frames`, `duration`, `title`, `time_unit`, `size`, `fps`, `labels` and `progress`, see
         :func:`polhode.animation.animate`.
 
     Returns

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _acting, _angles, _carried, _core, _doubts, _going_on, _outlets
+from polhode import _acting, _angles, _carried, _core, _doubts, _going_on, _outlets, _shown
 from polhode._drift import drift
 from polhode._hints import no_attribute
 from polhode._lengths import lengths
@@ -110,6 +110,8 @@ class Trajectory:
     plot = _outlets.plot
     view = _outlets.view
     animate = _outlets.animate
+    show = _shown.show
+    _repr_html_ = _shown.repr_html
     _carried_now = _carried.now
     _acting = _carried.acting
     _exact = _carried.exact

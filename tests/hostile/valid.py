@@ -31,7 +31,7 @@ NO_TEST = {
     *(f"RigidBody.{name}" for name in ("from_file", "load", "save", "plot", "view")),
     *(
         f"Trajectory.{name}"
-        for name in ("from_file", "save", "plot", "view", "animate", "to_pandas", "to_xarray")
+        for name in ("from_file", "save", "plot", "view", "animate", "show", "to_pandas", "to_xarray")
     ),
     *("read_stl", "read_plates", "stream_solid", "compiled"),
     "machine",  # takes nothing

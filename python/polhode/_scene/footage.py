@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from polhode._scene.clock import pace
 from polhode._scene.sampling import COARSE, MOST, TURN, fastest, motion_times, turns
 
 if TYPE_CHECKING:
@@ -26,6 +27,11 @@ _FASTEST_RATE: Final = 50.0
 """Pictures a second that every viewer of GIFs keeps to."""
 _FILM: Final = 1800
 """Pictures of a film: a minute of it, and a few minutes of drawing."""
+_PAGE_TURN: Final = float(np.deg2rad(40.0))
+"""From one frame of a page to the next, between which it interpolates, on the turns and on ω."""
+_PAGE_CHORD: Final = 0.02
+_PAGE_FRAMES: Final = 3600
+"""Of a page: 48 bytes each."""
 _BETWEEN: Final = 20
 """Points of the path of ω for each picture of a film, at most."""
 
@@ -53,7 +59,14 @@ class Footage:
 
 
 def of_samples(
-    trajectory: Trajectory, *, frames: int | None, duration: float | None, is_film: bool, time_unit: str
+    trajectory: Trajectory,
+    *,
+    frames: int | None,
+    duration: float | None,
+    time_unit: str,
+    is_film: bool = False,
+    is_page: bool = False,
+    fps: float | None = None,
 ) -> Footage:
     """Choose frames evenly among the samples of a motion of which no other states are known.
 
@@ -65,16 +78,23 @@ def of_samples(
         How many; all samples by default.
     duration : float or None
         Seconds on the screen; by default as the rate of turning needs.
-    is_film : bool
-        Whether each frame is one picture; between those of a page the browser interpolates.
     time_unit : str
-        For messages.
+        For messages, and for what real time is.
+    is_film : bool
+        Whether each frame is one picture.
+    is_page : bool
+        Whether what shows them interpolates, so that fewer do.
+    fps : float, optional
+        Pictures of a film a second.
     """
     count = len(trajectory)
     if frames is not None and not 1 <= frames <= count:
         raise ValueError(f"frames: {frames} is not between 1 and the {count} samples of the motion")
-    chosen = np.unique(np.linspace(0, count - 1, frames or count).round().astype(int))
     angles = turns(trajectory.t, trajectory.omega)
+    shown = frames or count
+    if is_page and frames is None:
+        shown = min(count, max(_PAGE_FRAMES, int(np.ceil(angles.sum() / TURN)) + 1))
+    chosen = np.unique(np.linspace(0, count - 1, shown).round().astype(int))
     whole = float(abs(trajectory.t[-1] - trajectory.t[0]))
     rate = float(np.linalg.norm(trajectory.omega, axis=-1).max())
     notes: list[str] = []
@@ -88,9 +108,12 @@ def of_samples(
         )
         notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
     if is_film:
-        seconds = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
+        if fps is not None and duration is not None:
+            raise ValueError("fps: of samples each is one picture; give fps or duration, not both")
+        least = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
+        seconds = least if fps is None else len(chosen) / fps
         return Footage(trajectory, chosen, seconds, tuple(notes))
-    seconds, told = _on_screen(whole, rate, duration)
+    seconds, told = _on_screen(whole, rate, duration, time_unit if is_page else None)
     return Footage(trajectory, chosen, seconds, (*notes, *told))
 
 
@@ -99,8 +122,10 @@ def of_motion(
     samples: Trajectory,
     *,
     duration: float | None,
-    is_film: bool,
     time_unit: str,
+    is_film: bool = False,
+    is_page: bool = False,
+    fps: float | None = None,
 ) -> Footage:
     """Choose frames for a motion whose state is known at every time.
 
@@ -111,19 +136,23 @@ def of_motion(
     samples : Trajectory
         Of the same motion. A page shows these and what is between them, a film the span from the first to the
         last.
-    duration, is_film, time_unit
+    duration, time_unit, is_film, is_page, fps
         As of `of_samples`.
     """
     t = samples.t
     rate, since = fastest(motion), t - t[0]
     if is_film and len(t) > 1:
-        pictures, seconds, notes = _pictures(float(since[-1]), rate, duration)
+        pictures, seconds, notes = _pictures(float(since[-1]), rate, duration, fps)
         span = motion_times(motion, pictures, most=_BETWEEN * len(pictures))
         chosen = np.flatnonzero(np.isin(span.t, pictures))
     else:
-        span = motion_times(motion, since, most=max(MOST, 2 * len(t)))
+        if is_page:
+            ends = np.unique([0, len(t) - 1])
+            span = motion_times(motion, since[ends], most=_PAGE_FRAMES, turn=_PAGE_TURN, chord=_PAGE_CHORD)
+        else:
+            span = motion_times(motion, since, most=max(MOST, 2 * len(t)))
         chosen = np.arange(len(span.t))
-        seconds, notes = _on_screen(float(span.t[-1]), rate, duration)
+        seconds, notes = _on_screen(float(span.t[-1]), rate, duration, time_unit if is_page else None)
     if span.t[chosen[-1]] != since[-1]:
         notes.append(
             f"shown is the beginning, to {span.t[chosen[-1]] + t[0]:.6g} of {t[-1]:.6g} {time_unit}: "
@@ -134,17 +163,23 @@ def of_motion(
     return Footage(shown, chosen, seconds, tuple(notes))
 
 
-def _pictures(length: float, rate: float, duration: float | None) -> tuple[Floats, float, list[str]]:
+def _pictures(
+    length: float, rate: float, duration: float | None, fps: float | None
+) -> tuple[Floats, float, list[str]]:
     """Choose evenly spaced times for the pictures of a film; also give its length in seconds, and notes."""
     needed = float(np.ceil(abs(length) * rate / TURN)) + 1.0
     if duration is None:
-        count = int(min(max(needed, _RATE * _SECONDS), _FILM))
+        count = int(min(max(needed, (fps or _RATE) * _SECONDS), _FILM))
         if needed > count:
             length = float(np.copysign((count - 1) * TURN / rate, length))
-        return np.linspace(0.0, length, count), count / _RATE, []
-    count = int(min(max(needed, _RATE * duration, 2.0), max(_FASTEST_RATE * duration, 2.0), _FILM))
-    where = f"duration: of {count} pictures, {_FASTEST_RATE:g} a second at most, from one to the next"
-    way_out = "give a longer one, or leave it out" if needed > _FASTEST_RATE * duration else "leave it out"
+        return np.linspace(0.0, length, count), count / (fps or _RATE), []
+    if fps is None:
+        count = int(min(max(needed, _RATE * duration, 2.0), max(_FASTEST_RATE * duration, 2.0), _FILM))
+    else:
+        count = int(min(max(round(fps * duration), 2.0), _FILM))
+    most = fps or _FASTEST_RATE
+    where = f"duration: of {count} pictures, {most:g} a second at most, from one to the next"
+    way_out = "give a longer one, or leave it out" if needed > most * duration else "leave it out"
     return (
         np.linspace(0.0, length, count),
         duration,
@@ -167,11 +202,16 @@ def _judged(angle: float, where: str, way_out: str) -> list[str]:
     ]
 
 
-def _on_screen(length: float, rate: float, duration: float | None) -> tuple[float, list[str]]:
-    """Give the seconds that a page takes, with no turn above `TURN` between pictures; and notes."""
+def _on_screen(
+    length: float, rate: float, duration: float | None, time_unit: str | None
+) -> tuple[float, list[str]]:
+    """Give the seconds that a page or a window takes, with no turn above `TURN` between pictures; and notes.
+
+    A page, which names its speed, runs at one that has a name, in real time where that can be watched.
+    """
     turned = abs(length) * rate / _RATE
     needed = max(_SECONDS, turned / TURN)
     if duration is None:
-        return needed, []
+        return (needed if time_unit is None else pace(abs(length), needed, turned / TURN, time_unit)), []
     where = f"duration: at {_RATE:g} pictures a second from one to the next"
     return duration, _judged(turned / duration, where, f"give duration={np.ceil(needed):.6g} or more")

@@ -120,7 +120,9 @@ def _quickest(motion: GyrostatMotion) -> float:
     return float(np.sqrt(np.abs(motion.equilibria.squared_rate).max()))
 
 
-def follow(curve: Callable[[Floats], Floats], t: Floats, *, step: float, most: int = MOST) -> Span:
+def follow(
+    curve: Callable[[Floats], Floats], t: Floats, *, step: float, most: int = MOST, chord: float = CHORD
+) -> Span:
     """Put times between those given, so that the chords of curves stay near them.
 
     Parameters
@@ -133,11 +135,12 @@ def follow(curve: Callable[[Floats], Floats], t: Floats, *, step: float, most: i
         Times are never farther from each other; the curves have to be smooth over it.
     most : int
         How many times at most.
+    chord : float
+        Between two of them no curve strays farther from its chord.
 
     Returns
     -------
     Span
-        Between two of them no curve strays from its chord by more than `CHORD`.
     """
     t, is_whole = _divided(t, step, most)
     points = curve(t)
@@ -149,7 +152,7 @@ def follow(curve: Callable[[Floats], Floats], t: Floats, *, step: float, most: i
         between = curve(middle)
         off = np.linalg.norm(between - 0.5 * (points[asked] + points[asked + 1]), axis=-1).max(axis=-1)
         # Neighbouring floats have nothing between them.
-        far = (off > CHORD) & (middle != low) & (middle != high)
+        far = (off > chord) & (middle != low) & (middle != high)
         split = asked[far]
         checked[:] = True
         checked[split] = False
@@ -177,7 +180,14 @@ def _divided(t: Floats, step: float, most: int) -> Span:
     return Span(divided, is_whole=bool(count == ends[-1]))
 
 
-def motion_times(motion: FreeMotion | HeavyTop | GyrostatMotion, t: Floats, *, most: int = MOST) -> Span:
+def motion_times(
+    motion: FreeMotion | HeavyTop | GyrostatMotion,
+    t: Floats,
+    *,
+    most: int = MOST,
+    turn: float = TURN,
+    chord: float = CHORD,
+) -> Span:
     """Put times between those given, so that the turns of one body and the paths of its ω are followed."""
     size = fastest(motion)
     if size == 0.0:
@@ -192,8 +202,8 @@ def motion_times(motion: FreeMotion | HeavyTop | GyrostatMotion, t: Floats, *, m
         on_sphere = np.divide(on_ellipsoid, radius, out=np.zeros_like(on_ellipsoid), where=radius > 0.0)
         return np.stack([on_sphere, _core.rotate(found.quaternion, found.omega) / size], axis=-2)
 
-    step = min(TURN / size, _nutation_step(motion))
-    return follow(curve, t, step=step, most=most)
+    step = min(turn / size, _nutation_step(motion))
+    return follow(curve, t, step=step, most=most, chord=chord)
 
 
 def _ellipsoid(motion: FreeMotion | HeavyTop | GyrostatMotion) -> tuple[Floats, Floats]:

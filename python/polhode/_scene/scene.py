@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _core
 from polhode._scene.footage import of_motion, of_samples
-from polhode._scene.shape import Shape, equivalent_box, given_shape
+from polhode._scene.pivot import Pivot, pivot_of, top_of
+from polhode._scene.shape import Shape, check_one, equivalent_box, shape_of
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
     from polhode._scene.footage import Footage
+    from polhode._scene.shape import GivenShape
 
     Floats = NDArray[np.float64]
 
@@ -44,6 +46,14 @@ class Scene:
         Semi-axes of ω·Iω = 2T, along the principal axes about the point of reference.
     axes : numpy.ndarray, shape (3, 3)
         Those axes, as columns in the body frame.
+    moments : numpy.ndarray, shape (3,)
+        The moments about them.
+    is_free : bool
+        Whether the motion is that of a free body, which its first frame determines.
+    pivot : Pivot or None
+        Of a body with a fixed point: what is drawn of that.
+    axis_path : numpy.ndarray, shape (T, 3), or None
+        Where its axis points at every sample, in space.
     shape : Shape
         The surface drawn.
     title, time_unit : str
@@ -63,6 +73,10 @@ class Scene:
     inside: Floats | None
     ellipsoid: Floats
     axes: Floats
+    moments: Floats
+    is_free: bool
+    pivot: Pivot | None
+    axis_path: Floats | None
     shape: Shape
     title: str
     time_unit: str
@@ -76,15 +90,18 @@ class Scene:
         *,
         frames: int | None,
         duration: float | None,
-        shape: tuple[ArrayLike, ArrayLike] | None,
+        shape: GivenShape | None,
         title: str,
         time_unit: str,
         is_film: bool = False,
+        is_page: bool = False,
+        fps: float | None = None,
     ) -> Scene:
         """Choose the frames of a motion and work out what is drawn in them.
 
-        Where nothing acts on the body its motion is known between the samples too, and the frames are as many
-        as it needs; else, or where `frames` says how many, they are samples.
+        Where nothing acts on the body, or gravity alone on a symmetric top, its motion is known between the
+        samples too, and the frames are as many as it needs; else, or where `frames` says how many, they are
+        samples.
         """
         trajectory._check_series("animate")
         if trajectory.omega.ndim != 2:
@@ -95,14 +112,19 @@ class Scene:
         if not np.isfinite(trajectory.omega).all() or not np.isfinite(trajectory.quaternion).all():
             raise ValueError("animate: the motion holds states that are not numbers; it ended early")
         _check_duration(duration)
-        motion = trajectory._exact() if frames is None else None
-        if motion is not None:
-            footage = of_motion(motion, trajectory, duration=duration, is_film=is_film, time_unit=time_unit)
+        motion = trajectory._exact() or top_of(trajectory)
+        options: dict[str, Any] = {
+            "duration": duration,
+            "time_unit": time_unit,
+            "is_film": is_film,
+            "is_page": is_page,
+            "fps": fps,
+        }
+        if motion is not None and frames is None:
+            footage = of_motion(motion, trajectory, **options)
         else:
-            footage = of_samples(
-                trajectory, frames=frames, duration=duration, is_film=is_film, time_unit=time_unit
-            )
-        return cls._of_footage(footage, shape, title, time_unit)
+            footage = of_samples(trajectory, frames=frames, **options)
+        return cls._of_footage(footage, motion, shape, title, time_unit, is_cut=not is_page)
 
     @classmethod
     def of_motion(
@@ -110,21 +132,44 @@ class Scene:
         motion: FreeMotion | HeavyTop | GyrostatMotion,
         end: float,
         *,
-        shape: tuple[ArrayLike, ArrayLike] | None,
+        shape: GivenShape | None,
         title: str,
-        is_film: bool,
+        duration: float | None = None,
+        time_unit: str = "s",
+        is_film: bool = False,
+        is_page: bool = False,
+        fps: float | None = None,
     ) -> Scene:
-        """Choose the frames of a motion in closed form from 0 s to its end."""
-        ends = motion.at([0.0, end])
-        footage = of_motion(motion, ends, duration=None, is_film=is_film, time_unit="s")
-        return cls._of_footage(footage, shape, title, "s")
+        """Choose the frames of a motion in closed form from time 0 to its end."""
+        check_one(motion.shape, "animate")
+        if not np.isfinite(end):
+            raise ValueError(f"end: {end} is not a finite time")
+        _check_duration(duration)
+        footage = of_motion(
+            motion,
+            motion.at([0.0, end]),
+            duration=duration,
+            time_unit=time_unit,
+            is_film=is_film,
+            is_page=is_page,
+            fps=fps,
+        )
+        return cls._of_footage(footage, motion, shape, title, time_unit, is_cut=not is_page)
 
     @classmethod
     def _of_footage(
-        cls, footage: Footage, shape: tuple[ArrayLike, ArrayLike] | None, title: str, time_unit: str
+        cls,
+        footage: Footage,
+        motion: FreeMotion | HeavyTop | GyrostatMotion | None,
+        shape: GivenShape | None,
+        title: str,
+        time_unit: str,
+        *,
+        is_cut: bool,
     ) -> Scene:
         trajectory, chosen = footage.trajectory, footage.chosen
         about = trajectory.about
+        pivot = pivot_of(trajectory, motion)
         principal = trajectory.body.principal_about(about)
         in_axes = trajectory.omega[chosen] @ principal.axes
         momentum = trajectory.angular_momentum().spin[chosen]
@@ -144,7 +189,13 @@ class Scene:
             inside=None if trajectory.carried is None else trajectory.carried[0][chosen],
             ellipsoid=ellipsoid,
             axes=principal.axes,
-            shape=equivalent_box(trajectory.body, about) if shape is None else given_shape(*shape, about),
+            moments=principal.moments,
+            is_free=isinstance(motion, _core.FreeMotion),
+            pivot=pivot,
+            axis_path=None if pivot is None else _core.rotate(trajectory.quaternion, pivot.axis),
+            shape=equivalent_box(trajectory.body, about)
+            if shape is None
+            else shape_of(shape, about, is_cut=is_cut),
             title=title,
             time_unit=time_unit,
             duration=footage.duration,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -16,12 +16,15 @@ if TYPE_CHECKING:
     from polhode import RigidBody
 
     Floats = NDArray[np.float64]
+    Mesh: TypeAlias = tuple[ArrayLike, ArrayLike]
+    GivenShape: TypeAlias = Mesh | list[RigidBody | Mesh]
 
-__all__ = ["Shape", "check_one", "equivalent_box", "given_shape", "longest"]
+__all__ = ["Shape", "check_one", "equivalent_box", "given_shape", "longest", "shape_of"]
 
 _LIGHT_TINTS = ((158, 197, 224), (240, 190, 150), (158, 214, 196))
 _DARK_TINTS = ((110, 160, 200), (222, 150, 96), (98, 178, 150))
 _PLAIN = (199, 212, 230)
+_PART_TINTS = ((158, 197, 224), (240, 190, 150), (158, 214, 196), (214, 186, 214), (226, 214, 150))
 _PIECES = 24
 """Of the size of a mesh: triangles are cut to that, for their order by depth."""
 _MOST = 10_000
@@ -90,7 +93,40 @@ def equivalent_box(body: RigidBody, about: Floats) -> Shape:
     return Shape(np.concatenate(vertices) + body.center_of_mass - about, np.array(faces), np.array(colors))
 
 
-def given_shape(vertices: ArrayLike, faces: ArrayLike, about: Floats) -> Shape:
+def shape_of(given: GivenShape, about: Floats, *, is_cut: bool = True) -> Shape:
+    """Take what the user gives as the surface of a body: a mesh, or a list of its parts.
+
+    Parameters
+    ----------
+    given : (vertices, faces) or list
+        Of parts, each a mesh or a body; a body is drawn as the box of its inertia, which a box itself is.
+    about : numpy.ndarray, shape (3,)
+        The point that the vertices are counted from.
+    is_cut : bool
+        Whether large triangles are cut for whoever sorts them by their depth.
+    """
+    if not isinstance(given, list):
+        return given_shape(*given, about, is_cut=is_cut)
+    if not given:
+        raise ValueError("shape: the list has no parts")
+    parts: list[Shape] = []
+    for part in given:
+        if isinstance(part, _core.RigidBody):
+            check_one(part.shape, "shape")
+            box = equivalent_box(part, np.zeros(3))
+            parts.append(given_shape(box.vertices, box.faces, about, is_cut=is_cut))
+        else:
+            parts.append(given_shape(*part, about, is_cut=is_cut))
+    corners = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    tints = [np.tile(_PART_TINTS[k % len(_PART_TINTS)], (len(part.faces), 1)) for k, part in enumerate(parts)]
+    return Shape(
+        np.concatenate([part.vertices for part in parts]),
+        np.concatenate([part.faces + first for part, first in zip(parts, corners, strict=False)]),
+        np.concatenate(tints),
+    )
+
+
+def given_shape(vertices: ArrayLike, faces: ArrayLike, about: Floats, *, is_cut: bool = True) -> Shape:
     """Take the user's mesh, in the body frame."""
     points = _core.real_numbers(vertices, "shape")
     _core.real_numbers(faces, "shape")  # neither masked nor with a unit
@@ -102,6 +138,8 @@ def given_shape(vertices: ArrayLike, faces: ArrayLike, about: Floats) -> Shape:
     if corners.size and not 0 <= corners.min() <= corners.max() < len(points):
         wrong = corners.min() if corners.min() < 0 else corners.max()
         raise ValueError(f"shape: a face names vertex {wrong}, but they run from 0 to {len(points) - 1}")
+    if not is_cut:
+        return Shape(points - about, corners.astype(np.int64), np.tile(_PLAIN, (len(corners), 1)))
     size = max(float(np.ptp(points, axis=0).max(initial=0.0)), float(np.finfo(float).tiny))
     pieces, _ = cut(points[corners.astype(np.int64)], size / _PIECES, at_most=max(_MOST, len(corners)))
     corner, index = np.unique(pieces.reshape(-1, 3), axis=0, return_inverse=True)

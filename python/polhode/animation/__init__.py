@@ -4,58 +4,77 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from polhode._scene.scene import Scene
-from polhode.animation.page import page
+from polhode.animation._page import page
 from polhode.files.writing import write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from os import PathLike
 
-    from numpy.typing import ArrayLike
-
     from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
+    from polhode._scene.shape import GivenShape
 
 __all__ = ["ANIMATION_SUFFIXES", "animate"]
 
 ANIMATION_SUFFIXES = (".html", ".gif", ".mp4")
+_GIF_RATE = 50.0
 
 
 def animate(
-    trajectory: Trajectory,
+    trajectory: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
     path: str | PathLike[str],
     *,
-    shape: tuple[ArrayLike, ArrayLike] | None = None,
+    end: float | None = None,
+    shape: GivenShape | None = None,
     frames: int | None = None,
     duration: float | None = None,
     title: str = "Motion of a rigid body",
     time_unit: str = "s",
+    size: int | tuple[int, int] | None = None,
+    fps: float | None = None,
+    labels: bool = True,
     progress: Callable[[float], object] | None = None,
 ) -> Path:
     """Write the motion of one body as a moving picture: what ``Trajectory.animate`` does.
 
     Parameters
     ----------
-    trajectory : Trajectory
+    trajectory : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
         The motion of one body.
     path : str or os.PathLike
         ``.html`` is an interactive page that needs no network: the body, its principal axes, ω, L (with that
-        of wheels, and theirs as h) and their paths in space, and the path of ω on the ellipsoid of inertia in
-        the body; with a slider for time, and views that turn with the pointer. ``.gif`` and ``.mp4`` need
+        of wheels, and theirs as h) and their paths in space; the path of ω on the ellipsoid of inertia in the
+        body; of a free body also that ellipsoid rolling on its plane, and sliders for another start, whose
+        motion the page computes itself; of a top the path of its axis. ``.gif`` and ``.mp4`` need
         matplotlib, the latter also ffmpeg, which the extra ``film`` brings.
-    shape : (vertices, faces), optional
-        A mesh of the body in its frame, (n, 3) and (m, 3). By default the uniform box that has its inertia.
+    end : float, optional
+        Of a motion in closed form, which has no times of its own: it is shown from 0 to this time.
+    shape : (vertices, faces) or list, optional
+        A mesh of the body in its frame, (n, 3) and (m, 3); or a list of parts, each a mesh or a body, where a
+        body stands for the box of its inertia: ``[bar, stem]`` of two boxes draws both. By default the
+        uniform box that has the inertia of the whole.
     frames : int, optional
         Number of samples shown, evenly chosen. By default as many as the motion needs: where nothing acts on
-        the body, the states between its samples are those of its exact motion, and from one frame to the next
-        the body turns by 20 degrees at most and ω keeps to its ellipsoid to 0.2 %. Otherwise all samples.
+        the body, or gravity alone on a heavy top, the states between its samples are those of its exact
+        motion; from one picture to the next the body turns by 20 degrees at most, and from one frame of a
+        page, which interpolates between them, by 40. Otherwise the samples.
     duration : float, optional
-        Seconds that the motion takes on the screen; by default 10, and more where at 30 pictures a second the
-        body would turn by more than 20 degrees from one to the next.
+        Seconds that the motion takes on the screen. A page shows it in real time by default, or in slow or
+        fast motion by a round number, which it names; a film takes 10 seconds, and more where at 30 pictures
+        a second the body would turn by more than 20 degrees from one to the next.
     title, time_unit : str, optional
-        As the viewer reads them.
+        As the viewer reads them. Of the units ns, us, ms, s, min, h, d and yr a page knows the length.
+    size : int or (int, int), optional
+        Of a film: width and height in pixels; 480 by default.
+    fps : float, optional
+        Of a film: pictures a second, at most 50 of a GIF; 30 by default.
+    labels : bool, optional
+        Of a film: whether the axes are named, and title and time written.
     progress : callable, optional
         Is told the fraction of a film that is drawn; an exception it raises ends the drawing.
 
@@ -75,19 +94,54 @@ def animate(
         If it turns by more than 30 degrees, or the end of the motion is not shown.
     """
     file = _checked(path)
-    scene = Scene.of(
+    if fps is not None and not 1.0 <= fps <= (_GIF_RATE if file.suffix.lower() == ".gif" else 240.0):
+        raise ValueError(f"fps: {fps} is not from 1 to 240 pictures a second, or 50 of a GIF")
+    scene = scene_of(
         trajectory,
+        end,
         frames=frames,
         duration=duration,
         shape=shape,
         title=title,
         time_unit=time_unit,
-        is_film=file.suffix.lower() != ".html",
+        fps=fps,
+        is_page=file.suffix.lower() == ".html",
     )
     for note in scene.notes:
         warnings.warn(note, stacklevel=3)  # where Trajectory.animate is called
-    _write(scene, file, progress)
+    _write(scene, file, progress, size=size, labels=labels)
     return file
+
+
+def scene_of(
+    motion: Any, end: float | None = None, *, is_page: bool, frames: int | None = None, **options: Any
+) -> Scene:
+    """Choose the frames of a trajectory, or of a motion in closed form, for a page or a film."""
+    kind: dict[str, Any] = {"is_page": is_page, "is_film": not is_page}
+    if hasattr(motion, "t"):
+        if end is not None:
+            raise ValueError("end: a trajectory has its own times; leave it out")
+        return Scene.of(motion, frames=frames, **kind, **options)
+    if end is None:
+        raise ValueError(
+            "end: a motion in closed form has no end of its own; give the time to which it is shown"
+        )
+    if frames is not None:
+        ends = motion.at(np.linspace(0.0, end, frames))
+        return Scene.of(ends, frames=frames, **kind, **options)
+    return Scene.of_motion(motion, end, **kind, **options)
+
+
+def page_of(motion: Any, end: float | None = None, **options: Any) -> tuple[str, tuple[str, ...]]:
+    """Give the page of a motion as a text, and what it does not show of it."""
+    given: dict[str, Any] = {
+        "duration": None,
+        "shape": None,
+        "title": "Motion of a rigid body",
+        "time_unit": "s",
+    }
+    scene = scene_of(motion, end, is_page=True, **(given | options))
+    return page(scene), scene.notes
 
 
 def animate_motion(
@@ -95,7 +149,7 @@ def animate_motion(
     end: float,
     path: str | PathLike[str],
     *,
-    shape: tuple[ArrayLike, ArrayLike] | None = None,
+    shape: GivenShape | None = None,
     title: str = "Motion of a rigid body",
     progress: Callable[[float], object] | None = None,
 ) -> tuple[str, ...]:
@@ -116,7 +170,8 @@ def animate_motion(
         What the viewer does not see of the motion.
     """
     file = _checked(path)
-    scene = Scene.of_motion(motion, end, shape=shape, title=title, is_film=file.suffix.lower() != ".html")
+    is_page = file.suffix.lower() == ".html"
+    scene = Scene.of_motion(motion, end, shape=shape, title=title, is_film=not is_page, is_page=is_page)
     _write(scene, file, progress)
     return scene.notes
 
@@ -131,10 +186,10 @@ def _checked(path: str | PathLike[str]) -> Path:
     return file
 
 
-def _write(scene: Scene, file: Path, progress: Callable[[float], object] | None) -> None:
+def _write(scene: Scene, file: Path, progress: Callable[[float], object] | None, **options: Any) -> None:
     if file.suffix.lower() == ".html":
         write_bytes(file, page(scene).encode())
     else:
         from polhode.animation.film import film
 
-        film(scene, file, progress)
+        film(scene, file, progress, **options)

@@ -26,13 +26,23 @@ if TYPE_CHECKING:
 
 __all__ = ["film"]
 
-_SIZE: Final = 4.8
+_SIZE: Final = 480
+_SIZES: Final = (64, 4096)
 _DPI: Final = 100
 _BODY: Final = 0.8
 _AXIS_DASHES: Final = ("--", "-", ":")
+_PATH_COLOR: Final = "#555555"
+"""Of the path of a top's axis."""
 
 
-def film(scene: Scene, file: Path, progress: Callable[[float], object] | None = None) -> None:
+def film(
+    scene: Scene,
+    file: Path,
+    progress: Callable[[float], object] | None = None,
+    *,
+    size: int | tuple[int, int] | None = None,
+    labels: bool = True,
+) -> None:
     """Draw every frame and write them as a film.
 
     Parameters
@@ -43,7 +53,12 @@ def film(scene: Scene, file: Path, progress: Callable[[float], object] | None = 
         Ends in ``.gif`` or ``.mp4``; the latter needs the program ffmpeg, which the extra ``film`` brings.
     progress : callable, optional
         Is told the fraction of the frames that are drawn.
+    size : int or (int, int), optional
+        Width and height in pixels.
+    labels : bool
+        Whether the axes are named, and title and time written.
     """
+    width, height = _pixels(size, file)
     animation: Any = require("matplotlib.animation", extra="plot", purpose="a film")
     figures: Any = require("matplotlib.figure", extra="plot", purpose="a film")
     rate = max(1.0, len(scene.t) / scene.duration)
@@ -53,7 +68,7 @@ def film(scene: Scene, file: Path, progress: Callable[[float], object] | None = 
     else:
         program = _ffmpeg(file)
         writer = animation.FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
-    figure = figures.Figure(figsize=(_SIZE, _SIZE), dpi=_DPI)
+    figure = figures.Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI)
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", computed_zorder=False)
     settings: Any = require("matplotlib", extra="plot", purpose="a film")
     with settings.rc_context({"animation.ffmpeg_path": program or "ffmpeg"}), replacing(file) as new:
@@ -61,7 +76,7 @@ def film(scene: Scene, file: Path, progress: Callable[[float], object] | None = 
         try:
             for frame in range(len(scene.t)):
                 ax.clear()
-                _draw(ax, scene, frame)
+                _draw(ax, scene, frame, labels)
                 writer.grab_frame()
                 if progress is not None:
                     progress((frame + 1) / len(scene.t))
@@ -100,7 +115,23 @@ def _ffmpeg(file: Path) -> str:
         ) from None
 
 
-def _draw(ax: Any, scene: Scene, frame: int) -> None:
+def _pixels(size: int | tuple[int, int] | None, file: Path) -> tuple[int, int]:
+    """Check the size of a film."""
+    given: Any = _SIZE if size is None else size
+    both = given if isinstance(given, tuple | list) else (given, given)
+    least, most = _SIZES
+    whole = len(both) == 2 and all(isinstance(x, int) and not isinstance(x, bool) for x in both)
+    if not (whole and all(least <= x <= most for x in both)):
+        raise ValueError(
+            f"size: {size!r} is not a number of pixels from {least} to {most}, or two: (width, height)"
+        )
+    if file.suffix.lower() == ".mp4" and any(x % 2 for x in both):
+        even = tuple(x + x % 2 for x in both)
+        raise ValueError(f"size: {size!r}: an MP4 has even numbers of pixels, such as {even}")
+    return both[0], both[1]
+
+
+def _draw(ax: Any, scene: Scene, frame: int, labels: bool) -> None:
     art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="a film")
     to_space = _core.rotate(scene.quaternion[frame], np.eye(3)).T
     for name, direction in zip("xyz", np.eye(3), strict=True):
@@ -114,9 +145,15 @@ def _draw(ax: Any, scene: Scene, frame: int) -> None:
     ax.add_collection3d(
         art3d.Poly3DCollection(triangles[near], facecolors=colors, edgecolors=colors, zorder=2)
     )
-    for axis, color, dash in zip(scene.axes.T, AXIS_COLORS, _AXIS_DASHES, strict=True):
+    for k, (axis, color, dash) in enumerate(zip(scene.axes.T, AXIS_COLORS, _AXIS_DASHES, strict=True)):
         ends = np.stack([-1.05 * axis, 1.05 * axis], axis=-1)
         ax.plot(*(to_space @ ends), color=color, linestyle=dash, linewidth=1.2, zorder=3)
+        if labels:
+            ax.text(
+                *(1.13 * to_space @ axis), f"e{'₁₂₃'[k]}", color=color, ha="center", va="center", zorder=5
+            )
+    if scene.axis_path is not None:
+        ax.plot(*scene.axis_path[: scene.sample[frame] + 1].T, color=_PATH_COLOR, linewidth=1.4, zorder=3)
     tips = scene.path[: scene.sample[frame] + 1] / longest(scene.path)
     ax.plot(*tips.T, color=OMEGA_COLOR, alpha=0.5, linewidth=1.0, zorder=3)
     arrows = [(scene.momentum[frame], MOMENTUM_COLOR, "L")]
@@ -128,8 +165,9 @@ def _draw(ax: Any, scene: Scene, frame: int) -> None:
     arrows = [(1.25 * vector / strongest, color, name) for vector, color, name in arrows]
     for tip, color, name in (*arrows, (tips[-1], OMEGA_COLOR, "ω")):
         arrow(ax, tip, color, name, order=4, ha="left", va="baseline", weight="bold", zorder=5)
-    ax.text2D(0.03, 0.95, scene.title, transform=ax.transAxes, fontsize=11, weight="bold")
-    ax.text2D(0.03, 0.03, f"t = {scene.t[frame]:.4g} {scene.time_unit}", transform=ax.transAxes)
+    if labels:
+        ax.text2D(0.03, 0.95, scene.title, transform=ax.transAxes, fontsize=11, weight="bold")
+        ax.text2D(0.03, 0.03, f"t = {scene.t[frame]:.4g} {scene.time_unit}", transform=ax.transAxes)
     show_around(ax, np.zeros(3), 0.95)
     ax.set_box_aspect((1.0, 1.0, 1.0))
     ax.set_axis_off()

@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from polhode import _core
 from polhode._drift import changes
 from polhode._lengths import lengths
+from polhode._scene.sampling import drawn_times
+from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, AXIS_DASHES
 from polhode.plot import _bands
 from polhode.plot._style import axes_2d, tidy
@@ -16,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop
     from polhode.trajectory import Trajectory
 
     Floats = NDArray[np.float64]
@@ -23,10 +27,21 @@ if TYPE_CHECKING:
 __all__ = ["angular_momentum", "angular_velocity", "euler_angles", "invariants"]
 
 
+def _until(motion: FreeMotion | HeavyTop | GyrostatMotion, end: float | None) -> Trajectory:
+    """Give as many states of one motion in closed form as its curves need."""
+    check_one(motion.shape, "angular_velocity")
+    if end is None:
+        raise ValueError(
+            "end: a motion in closed form has none of its own; give the time to which it is drawn"
+        )
+    return motion.at(drawn_times(motion, [0.0, end]))
+
+
 def angular_velocity(
-    trajectory: Trajectory,
+    trajectory: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
     ax: Axes | None = None,
     *,
+    end: float | None = None,
     frame: Literal["body", "principal"] = "body",
     degrees: bool = False,
     time_unit: str = "s",
@@ -36,10 +51,12 @@ def angular_velocity(
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The motion; of a stack, every body is drawn.
+    trajectory : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
+        The motion; of a stack of trajectories, every body is drawn.
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
+    end : float, optional
+        Of a motion in closed form, which has no times of its own: it is drawn from 0 to this time.
     frame : {"body", "principal"}
         Components along the body's axes or along its principal axes (ascending moments).
     degrees : bool
@@ -56,6 +73,10 @@ def angular_velocity(
     -------
     matplotlib.axes.Axes
     """
+    if isinstance(trajectory, _core.FreeMotion | _core.HeavyTop | _core.GyrostatMotion):
+        trajectory = _until(trajectory, end)
+    elif end is not None:
+        raise ValueError("end: a trajectory has its own times; leave it out")
     trajectory._check_series("angular_velocity")
     ax = axes_2d(ax)
     omega = trajectory.omega

@@ -1,0 +1,29 @@
+// Places for names, so that none is written over another.
+
+const HEIGHT = 18;
+const AROUND = [0, 45, -45, 90, -90, 135, -135, 180].map((degrees) => degrees * Math.PI / 180);
+
+const overlap = (a, b) => Math.abs(a.at[0] - b.at[0]) < (a.width + b.width) / 2 && Math.abs(a.at[1] - b.at[1]) < HEIGHT;
+
+/** For names at (x, y), pointing outward along (ux, uy): each beyond its point, or where there is room nearby. */
+export function placed(names, width, height) {
+  const done = [];
+  for (const one of names) {
+    let best = null, least = Infinity;
+    for (const far of [14, 26, 40]) {
+      for (const turn of AROUND) {
+        const c = Math.cos(turn), s = Math.sin(turn), size = far + one.width / 4;
+        const at = [
+          Math.min(width - one.width / 2 - 2, Math.max(one.width / 2 + 2, one.x + size * (c * one.ux - s * one.uy))),
+          Math.min(height - HEIGHT / 2, Math.max(HEIGHT / 2, one.y + size * (s * one.ux + c * one.uy))),
+        ];
+        const cost = done.filter((other) => overlap({ ...one, at }, other)).length;
+        if (cost < least) { least = cost; best = at; }
+        if (!cost) break;
+      }
+      if (!least) break;
+    }
+    done.push({ ...one, at: best });
+  }
+  return done;
+}

@@ -1,0 +1,166 @@
+// The page: what it was given, what it shows now, and what its controls do.
+
+import { View } from "./camera.js";
+import { asked, speedName, speeds } from "./clock.js";
+import { Frames, numbers } from "./frames.js";
+import { FreeBody, quaternionOf } from "./free.js";
+import { buildSliders } from "./live.js";
+import { Solid, boxOf } from "./solid.js";
+import { colors, key, readColors } from "./theme.js";
+import { Trail } from "./trail.js";
+import { conjugate, dot, length, rotate, sum, times } from "./vectors.js";
+import { drawBody, drawPoinsot, drawSpace } from "./views.js";
+
+const PATHS = { cusp: "with cusps", loop: "with loops", wave: "in waves" }; // of a top's axis
+const element = (id) => document.getElementById(id);
+const given = JSON.parse(element("motion").textContent);
+const unpack = (text, Kind) => (text === null ? null : numbers(text, Kind));
+const frames = new Frames(unpack(given.t, Float64Array), unpack(given.quaternion, Float32Array), unpack(given.omega, Float32Array), unpack(given.inside, Float32Array));
+const solid = new Solid(unpack(given.vertices, Float32Array), unpack(given.faces, Uint32Array), unpack(given.colors, Uint8Array));
+const start = frames.t[0], end = frames.t[frames.count - 1], span = end - start;
+const toBodyAxes = quaternionOf(given.axes);
+if (given.free) given.free.attitude = times(given.free.quaternion, toBodyAxes);
+const wanted = asked(location.hash, start, end);
+
+// The motion that is shown: the given one, or that of another start.
+const motion = { axes: given.axes, top: given.top };
+function follow(another) {
+  const begin = another ?? given.free, body = begin && new FreeBody(begin.moments, begin.omega, given.free.attitude);
+  const closed = (since) => {
+    const { omega, attitude } = body.at(since);
+    return { q: times(attitude, conjugate(toBodyAxes)), omega: rotate(toBodyAxes, omega), inside: null };
+  };
+  const stateAt = body ? closed : (since) => frames.at(start + since);
+  motion.moments = begin ? begin.moments : given.moments;
+  const isOther = another && another.moments.some((m, i) => Math.abs(m / given.free.moments[i] - 1) > 1e-9);
+  motion.solid = isOther ? boxOf(another.moments, given.axes) : solid;
+  motion.body = body;
+  const samples = another ? Array.from({ length: 48 }, (_, k) => closed(Math.min(2 * body.halfPeriod, Math.abs(span) || 1) * k / 48))
+    : Array.from({ length: frames.count }, (_, k) => ({ omega: frames.row(frames.omega, k, 3), inside: frames.inside && frames.row(frames.inside, k, 3) }));
+  const along = (w) => given.axes.map((axis) => dot(axis, w));
+  const spin = (w) => along(w).reduce((v, x, i) => sum(v, given.axes[i].map((a) => a * x * motion.moments[i])), [0, 0, 0]);
+  const momentum = ({ omega, inside }) => sum(spin(omega), inside ?? [0, 0, 0]);
+  const most = (values) => values.reduce((a, b) => Math.max(a, b), 0) || 1;
+  motion.fastest = most(samples.map(({ omega }) => length(omega)));
+  motion.strongest = most(samples.map((s) => Math.max(length(momentum(s)), s.inside ? length(s.inside) : 0)));
+  const energies = samples.map(({ omega }) => dot(omega, spin(omega)));
+  const widest = Math.min(2.5 * motion.fastest, Math.sqrt(most(energies) / (Math.min(...motion.moments) || 1e-300)));
+  motion.scale = 1.05 / Math.max(motion.fastest, widest);
+  motion.trail = new Trail(stateAt, motion.fastest, span, given.top && given.top.axis);
+  motion.at = (t) => {
+    const state = stateAt(t - start);
+    return { ...state, t, since: t - start, along: along(state.omega), momentum: rotate(state.q, momentum(state)) };
+  };
+}
+
+readColors();
+follow(null);
+let now = wanted.t ?? start, playing = wanted.t === null && !matchMedia("(prefers-reduced-motion: reduce)").matches, last = null, waiting = false;
+let second = given.free ? wanted.view === "poinsot" ? "poinsot" : "body" : "body", view = wanted.view ?? "space";
+const views = { space: new View(element("space"), 0.9, 0.35, later), second: new View(element("second"), 0.9, 0.4, later) };
+if (given.top) { views.space.center = given.top.down.map((x) => -0.3 * x); views.space.reach = 1.35; }
+const rate = (Math.abs(span) || 1) / given.duration;
+let speed = rate;
+
+/** The numbers of a state: the energy, |L|, |ω| and when the body turns over next; those of the nearest frame where no more is known. */
+function readouts(now) {
+  const state = motion.body ? now : motion.at(frames.nearest(now.t));
+  const kinetic = 0.5 * state.along.reduce((total, w, i) => total + motion.moments[i] * w * w, 0);
+  const rows = [];
+  if (given.top?.weight) rows.push(["E = T + V", (kinetic - given.top.weight * dot(rotate(state.q, given.top.axis), given.top.down)).toPrecision(6)]);
+  else rows.push(["T", kinetic.toPrecision(6)]);
+  rows.push(["|L|", length(state.momentum).toPrecision(6)], ["|\u03c9|", `${length(state.omega).toPrecision(5)} rad/${given.time_unit}`]);
+  if (motion.body && span >= 0) {
+    const flip = motion.body.nextFlip(state.since);
+    rows.push(["next flip", Number.isFinite(flip) ? `in ${flip.toPrecision(4)} ${given.time_unit}` : "never"]);
+  }
+  return rows;
+}
+const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(Math.abs(span) || 1))));
+const clockText = (t) => `${t.toFixed(digits)} ${given.time_unit}`;
+const cells = new Map();
+
+function draw() {
+  const state = motion.at(now), shown = { traces: element("traces").checked, axes: element("axes").checked };
+  drawSpace(views.space, state, motion, shown);
+  (second === "poinsot" ? drawPoinsot : drawBody)(views.second, state, motion, shown);
+  element("slider").value = span ? (now - start) / span : 0;
+  element("slider").setAttribute("aria-valuetext", clockText(now));
+  element("clock").textContent = `t = ${clockText(now)}`;
+  for (const [name, text] of readouts(state)) {
+    if (!cells.has(name)) {
+      const row = document.createElement("div"), term = document.createElement("dt"), cell = document.createElement("dd");
+      term.textContent = name; row.append(term, cell); element("readouts").append(row); cells.set(name, cell);
+    }
+    cells.get(name).textContent = text;
+  }
+}
+function later() {
+  if (waiting || playing) return;
+  waiting = true;
+  requestAnimationFrame(() => { waiting = false; draw(); });
+}
+function tick(clock) {
+  if (playing) {
+    if (last !== null && span) {
+      now += Math.sign(span) * speed * Math.min(0.25, (clock - last) / 1000);
+      if ((now - end) * span > 0) now = start;
+    }
+    draw();
+    requestAnimationFrame(tick);
+  }
+  last = playing ? clock : null;
+}
+function play(on) {
+  const was = playing;
+  playing = on; element("play").textContent = on ? "Pause" : "Play";
+  if (on && !was) requestAnimationFrame(tick);
+}
+function show(t) { play(false); now = t; draw(); }
+
+/** Chooses what is seen: on a narrow screen one view, on a wide one what stands beside space. */
+function choose(name) {
+  view = name;
+  if (name !== "space") second = name;
+  document.body.dataset.view = name;
+  for (const button of element("tabs").children) button.setAttribute("aria-pressed", String(button.dataset.view === (matchMedia("(max-width: 640px)").matches ? view : second)));
+  const path = given.top ? `, and the path of its axis${given.top.path ? ` (${PATHS[given.top.path] ?? given.top.path})` : ""}` : "";
+  element("space-caption").innerHTML = `In space: the body, ${key("omega", "\u03c9")}, ${key("momentum", "L")}${given.inside ? ` (with ${key("inside", "h")}, which the body carries along)` : ""}${path}`;
+  element("second-caption").innerHTML = second === "poinsot"
+    ? `Poinsot: the ellipsoid of inertia rolls on the plane that ${key("momentum", "L")} is normal to; the tip of ${key("omega", "\u03c9")} is where they touch`
+    : `In the body: ${key("omega", "\u03c9")} on the ellipsoid of inertia; its path, the polhode${given.moments[0] < given.moments[1] && given.moments[1] < given.moments[2] ? `; ${key("ink", "dark")}, the separatrix` : ""}`;
+  for (const one of Object.values(views)) one.fit();
+  draw();
+}
+
+document.title = element("title").textContent = given.title;
+document.body.classList.toggle("is-embedded", wanted.isEmbedded);
+for (const one of speeds(rate, given.time_unit)) element("speed").append(new Option(speedName(one, given.time_unit), String(one), false, one === rate));
+element("speed").addEventListener("change", (event) => { speed = Number(event.target.value); });
+element("play").addEventListener("click", () => play(!playing));
+element("slider").addEventListener("input", (event) => show(start + span * event.target.value));
+element("reset").addEventListener("click", () => { for (const one of Object.values(views)) one.reset(); later(); });
+element("full").addEventListener("click", () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.()));
+element("full").hidden = !document.fullscreenEnabled;
+for (const id of ["traces", "axes"]) element(id).addEventListener("change", later);
+for (const button of element("tabs").children) button.addEventListener("click", () => choose(button.dataset.view));
+element("tabs").lastElementChild.hidden = !given.free;
+document.addEventListener("keydown", (event) => {
+  if (event.key !== " " || event.target.closest("button, input, select, textarea, summary")) return;
+  event.preventDefault();
+  play(!playing);
+});
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColors(); later(); });
+addEventListener("hashchange", () => { const word = asked(location.hash, start, end); if (word.t !== null) show(word.t); if (word.view) choose(word.view); });
+element("share").hidden = location.protocol === "about:"; // in a notebook there is no file
+const file = decodeURIComponent(location.pathname.split("/").pop() || "motion.html").replace(/["&<>]/g, "");
+element("frame").value = `<iframe src="${file}#embed" title="${given.title.replace(/["&<>]/g, "")}" width="640" height="420" loading="lazy" style="border:0"></iframe>`;
+element("copy").addEventListener("click", () => { element("frame").select(); navigator.clipboard?.writeText(element("frame").value).catch(() => document.execCommand("copy")); });
+if (given.free) {
+  element("live").hidden = false;
+  buildSliders(element("sliders"), given.free, element("given"), element("mode"), (begin) => { follow(begin); draw(); });
+}
+play(playing);
+choose(wanted.view === "poinsot" && !given.free ? "body" : view);
+if (playing) requestAnimationFrame(tick);
+globalThis.polhode = { FreeBody, frames, motion, views, show, play, draw, colors, stateAt: (t) => motion.at(t), get now() { return now; }, get playing() { return playing; } };
