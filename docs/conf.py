@@ -1,13 +1,18 @@
 """The site of the pages in this folder: Markdown by MyST, the interface from the docstrings by numpydoc."""
 
+import sys
+from pathlib import Path
+
 import polhode
+
+sys.path.insert(0, str(Path(__file__).parent / "site"))
 
 project = "polhode"
 author = "The polhode developers"
 copyright = author
 release = version = polhode.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "numpydoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "maths", "interface"]
 exclude_patterns = ["_build"]
 source_suffix = {".md": "markdown"}
 
@@ -29,4 +34,7 @@ html_theme_options = {
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
-html_static_path: list[str] = []
+html_static_path = ["static"]
+html_css_files = ["polhode.css"]
+html_js_files = ["copy.js"]
+html_math_renderer_name = "mathml"
