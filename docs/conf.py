@@ -12,7 +12,7 @@ author = "The polhode developers"
 copyright = author
 release = version = polhode.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "maths", "interface"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "maths", "interface", "gallery", "measured"]
 exclude_patterns = ["_build"]
 source_suffix = {".md": "markdown"}
 
@@ -29,6 +29,7 @@ html_title = "polhode"
 html_show_sourcelink = False
 html_theme_options = {
     "logo": {"text": "polhode"},
+    "header_links_before_dropdown": 7,
     "secondary_sidebar_items": ["page-toc"],
     "show_prev_next": True,
     "pygments_light_style": "a11y-high-contrast-light",
@@ -36,5 +37,5 @@ html_theme_options = {
 }
 html_static_path = ["static"]
 html_css_files = ["polhode.css"]
-html_js_files = ["copy.js"]
+html_js_files = ["page.js"]
 html_math_renderer_name = "mathml"

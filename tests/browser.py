@@ -1,4 +1,4 @@
-"""The site in a browser: Chromium opens a page of ours that loads each page in a frame and posts what it measures."""
+"""The site in a browser: a page of ours loads each page of it in a frame and posts what it measures."""
 
 from __future__ import annotations
 
@@ -38,7 +38,9 @@ const AXE = async (view) => {
   if (!view.axe) {
     const script = view.document.createElement("script");
     script.src = "/axe.min.js";
-    await new Promise((done, failed) => { script.onload = done; script.onerror = failed; view.document.head.append(script); });
+    const loaded = new Promise((done, failed) => { script.onload = done; script.onerror = failed; });
+    view.document.head.append(script);
+    await loaded;
   }
   return view.axe;
 };
@@ -46,7 +48,7 @@ addEventListener("load", async () => run(await (await fetch("/tasks")).json()));
 </script><body></body>"""
 
 Task = tuple[str, int, int, str]
-"""Address, width, height, and the body of a function of ``page``, ``view``, ``wait``, ``axe`` that gives JSON."""
+"""Address, width, height, and the body of a function of ``page``, ``view``, ``wait`` and ``axe``."""
 
 
 def answers(site: Path, tasks: list[Task], axe: Path | None = None, timeout: float = 100.0) -> list[Any]:

@@ -51,8 +51,8 @@ def pages(table: Table) -> Iterator[tuple[str, str]]:
 
 INTRODUCTION = """# Interface
 
-Arguments broadcast over leading axes: a body may be a stack of bodies, a vector an array of shape (…, 3). Arrays come back in
-the same shape."""
+Arguments broadcast over leading axes: a body may be a stack of bodies, a vector an array of shape (…, 3).
+Arrays come back in the same shape."""
 
 
 def page(name: str, value: object, table: Table, parts: dict[str, list[str]]) -> str:
@@ -101,7 +101,9 @@ def of_class(name: str, cls: type, apart: set[str]) -> list[str]:
         for k, v in vars(cls).items()
         if not k.startswith("_")
         and k not in fields | apart
-        and (callable(v) or inspect.isdatadescriptor(v) or isinstance(v, property | staticmethod | classmethod))
+        and (
+            callable(v) or inspect.isdatadescriptor(v) or isinstance(v, property | staticmethod | classmethod)
+        )
     ]
     lines = [f".. autoclass:: {name}"]
     if members:

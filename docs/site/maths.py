@@ -1,13 +1,11 @@
-"""Formulas as MathML, which browsers draw themselves: by docutils, without a script or a font to load."""
+"""Formulas as MathML, which browsers draw themselves: by math-core, without a script or a font to load."""
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from docutils import nodes
-from docutils.utils.math import MathError
-from docutils.utils.math.latex2mathml import tex2mathml
+from math_core import LatexError, LatexToMathML
 from sphinx.errors import ExtensionError
 from sphinx.util.math import get_node_equation_number
 
@@ -15,8 +13,7 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.writers.html5 import HTML5Translator
 
-SIZES = re.compile(r"\\[bB]igg?[lr]?(?![A-Za-z])")
-"""Sizes of brackets, which docutils does not know and MathML has no need of."""
+CONVERTER = LatexToMathML()
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -28,8 +25,8 @@ def setup(app: Sphinx) -> dict[str, bool]:
 def mathml(source: str, as_block: bool) -> str:
     """Give the element ``<math>`` of a formula."""
     try:
-        return tex2mathml(SIZES.sub("", source).strip(), as_block=as_block)
-    except MathError as error:
+        return CONVERTER.convert_with_local_state(source.strip(), displaystyle=as_block)
+    except LatexError as error:
         raise ExtensionError(f"no MathML of {source!r}: {error}") from error
 
 

@@ -1,4 +1,4 @@
-"""Pages that the site makes itself: written where they differ, so that Sphinx reads again only what is new."""
+"""Pages that the site makes itself, written where they differ: Sphinx reads again only what is new."""
 
 from __future__ import annotations
 

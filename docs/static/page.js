@@ -1,3 +1,4 @@
+// What scrolls or folds has a name and can be reached by keys.
 // A button at each block of code that copies it: of a console the commands without their "$", of an interpreter
 // the lines behind ">>>" and "...".
 function copied(text) {
@@ -14,6 +15,13 @@ function copied(text) {
 }
 
 document.addEventListener("DOMContentLoaded", () => {
+  for (const summary of document.querySelectorAll(".toctree-toggle")) {
+    const name = summary.closest("li")?.querySelector("a")?.textContent.trim() ?? "";
+    summary.closest("summary")?.setAttribute("aria-label", `pages of ${name}`); // which the theme leaves empty
+  }
+  for (const formula of document.querySelectorAll("span.math")) {
+    if (formula.scrollWidth > formula.clientWidth) formula.tabIndex = 0; // it scrolls, by keys too
+  }
   for (const block of document.querySelectorAll("div.highlight")) {
     if (block.closest(".highlight-text, .output")) continue;
     const pre = block.querySelector("pre");
