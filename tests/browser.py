@@ -23,15 +23,20 @@ async function opened(url, width, height) {
 }
 async function run(tasks) {
   const answers = [];
-  for (const [url, width, height, code] of tasks) {
+  const queue = tasks.map((task, k) => [k, ...task]);
+  const worker = async () => {
+    while (queue.length) await one(...queue.shift());
+  };
+  async function one(k, url, width, height, code) {
     const frame = await opened(url, width, height);
     const page = frame.contentDocument;
     try {
       const measure = new Function("page", "view", "wait", "axe", "return (async () => {" + code + "})()");
-      answers.push(await measure(page, frame.contentWindow, wait, AXE));
-    } catch (error) { answers.push({error: String(error)}); }
+      answers[k] = await measure(page, frame.contentWindow, wait, AXE);
+    } catch (error) { answers[k] = {error: String(error)}; }
     frame.remove();
   }
+  await Promise.all([worker(), worker(), worker(), worker()]);
   await fetch("/answers", {method: "POST", body: JSON.stringify(answers)});
 }
 const AXE = async (view) => {

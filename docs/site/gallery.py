@@ -13,7 +13,9 @@ import os
 import runpy
 import shutil
 import tomllib
+import warnings
 from concurrent.futures import ProcessPoolExecutor
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,8 +61,8 @@ def copy(site: Path) -> None:
 
 
 def of_package() -> str:
-    """Give a mark that changes with the package: its files and their times."""
-    mark = hashlib.sha256()
+    """Give a mark that changes with the package, its files and their times, and with what draws."""
+    mark = hashlib.sha256(f"{version('numpy')} {version('matplotlib')}".encode())
     package = ROOT / "python" / "polhode"
     for file in sorted(
         [*package.rglob("*.py"), *package.rglob("*.html"), *package.glob("*.so"), Path(__file__)]
@@ -90,9 +92,9 @@ def run(name: str, stamp: str) -> None:
     folder = KEPT / name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    made = runpy.run_path(str(script(name)))
     printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
+    with contextlib.redirect_stdout(printed), warnings.catch_warnings(action="error"):
+        made = runpy.run_path(str(script(name)))
         made["draw"]().savefig(folder / f"{name}.png", dpi=96)
     (folder / "printed.txt").write_text(printed.getvalue(), "utf-8")
     if "animate" in made:
