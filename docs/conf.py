@@ -12,7 +12,16 @@ author = "The polhode developers"
 copyright = author
 release = version = polhode.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "maths", "interface", "gallery", "measured"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "numpydoc",
+    "maths",
+    "interface",
+    "gallery",
+    "measured",
+    "written",
+]
 exclude_patterns = ["_build"]
 source_suffix = {".md": "markdown"}
 

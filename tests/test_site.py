@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
+import subprocess
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -26,9 +28,9 @@ SOURCES = [
     and "_build" not in path.parts
     and path.parent not in {ROOT / "docs" / name for name in ("interface", "gallery", "measured")}
 ]
-INDEX = SITE / "searchindex.js"
+BUILT = SITE / "built"
 pytestmark = pytest.mark.skipif(
-    not INDEX.exists() or INDEX.stat().st_mtime < max(path.stat().st_mtime for path in SOURCES),
+    not BUILT.exists() or BUILT.stat().st_mtime < max(path.stat().st_mtime for path in SOURCES),
     reason="the site is not built, or older than its pages: make docs",
 )
 in_a_browser = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
@@ -161,6 +163,17 @@ def test_a_button_copies_commands_without_their_dollar() -> None:
     (found,) = answers(SITE, [("/command_line.html", *DESK, code)])
     assert found.startswith("polhode report part.stl")
     assert "$" not in found
+
+
+@in_a_browser
+def test_the_cheat_sheet_is_two_pages_on_paper(tmp_path: Path) -> None:
+    assert CHROMIUM
+    file = tmp_path / "sheet.pdf"
+    options = ["--headless=new", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"]
+    options += [f"--user-data-dir={tmp_path / 'profile'}", f"--print-to-pdf={file}"]
+    page = (SITE / "cheat_sheet.html").as_uri()
+    subprocess.run([CHROMIUM, *options, page], check=True, capture_output=True, timeout=60)
+    assert len(re.findall(rb"/Type\s*/Page[^s]", file.read_bytes())) <= 2
 
 
 def axe() -> Path | None:

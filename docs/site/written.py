@@ -7,6 +7,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from sphinx.application import Sphinx
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Leave a mark of the last build without an error, for the tests of the site."""
+    app.connect("build-finished", lambda app, error: error or (app.outdir / "built").touch())
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
 
 def keep(folder: Path, texts: dict[str, str]) -> None:
     """Make the Markdown files of a folder these."""
