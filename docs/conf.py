@@ -1,13 +1,27 @@
 """The site of the pages in this folder: Markdown by MyST, the interface from the docstrings by numpydoc."""
 
+import sys
+from pathlib import Path
+
 import polhode
+
+sys.path.insert(0, str(Path(__file__).parent / "site"))
 
 project = "polhode"
 author = "The polhode developers"
 copyright = author
 release = version = polhode.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "numpydoc"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "numpydoc",
+    "maths",
+    "interface",
+    "gallery",
+    "measured",
+    "written",
+]
 exclude_patterns = ["_build"]
 source_suffix = {".md": "markdown"}
 
@@ -24,9 +38,13 @@ html_title = "polhode"
 html_show_sourcelink = False
 html_theme_options = {
     "logo": {"text": "polhode"},
+    "header_links_before_dropdown": 7,
     "secondary_sidebar_items": ["page-toc"],
     "show_prev_next": True,
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
-html_static_path: list[str] = []
+html_static_path = ["static"]
+html_css_files = ["polhode.css"]
+html_js_files = ["page.js"]
+html_math_renderer_name = "mathml"

@@ -35,5 +35,13 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of one month."""
+    toutatis = RigidBody.from_principal(1.0, MOMENTS)
+    motion = toutatis.free_motion_from_periods(ROTATION, PRECESSION, mode="long-axis")
+    motion.at(np.linspace(0.0, 37.0, 601)).animate(file, title="Toutatis", time_unit="d", duration=30)
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "asteroid.png", dpi=130)
+    animate("asteroid.html")

@@ -32,5 +32,12 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page."""
+    racket = RigidBody.from_principal(330 * GRAMS, (0.00121, 0.01638, 0.01748))
+    racket.simulate(np.linspace(0.0, 4.0, 801), (0.02, 12.0, 0.02)).animate(file, title="Tennis racket")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "tennis_racket.png", dpi=130)
+    animate("tennis_racket.html")

@@ -12,6 +12,15 @@ from typing import Any
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
+MADE = ("_build", "interface", "gallery", "measured")
+"""Folders of pages that the site makes itself."""
+
+
+def pages_of(docs: Path) -> list[Path]:
+    """The pages that stand in Git."""
+    return sorted(page for page in docs.rglob("*.md") if not set(page.relative_to(docs).parts) & set(MADE))
+
+
 def blocks(page: Path) -> list[tuple[str, str]]:
     """Language and content of every fenced block; directives such as ``{math}`` are not code."""
     return FENCE.findall(page.read_text("utf-8"))

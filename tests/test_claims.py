@@ -32,7 +32,10 @@ PROMISES = [
     "README.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
-    *(f"docs/{name}.md" for name in ("index", "command_line", "conventions")),
+    *(
+        f"docs/{name}.md"
+        for name in ("index", "guides", "tutorial", "why_others_disagree", "command_line", "conventions")
+    ),
 ]
 
 NO_SENTENCE = re.compile(

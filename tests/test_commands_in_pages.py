@@ -9,21 +9,31 @@ from pathlib import Path
 
 import pytest
 from command_line import run
-from markdown_code import blocks
+from markdown_code import blocks, pages_of
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = [ROOT / "README.md", *sorted(p for p in (ROOT / "docs").rglob("*.md") if "_build" not in p.parts)]
+PAGES = [ROOT / "README.md", *pages_of(ROOT / "docs")]
+LANGUAGES = {"python", "text", "console", "sh", "bash", "toml", "{toctree}", "{eval-rst}", "{literalinclude}"}
 
 
 def commands(page: Path) -> list[str]:
-    """What stands behind a ``$`` in the console blocks of a page."""
+    """What stands behind a ``$`` in the console blocks of a page, and each line of those of ``sh``."""
     return [
         line.removeprefix("$ ").partition("  #")[0].strip()
         for language, code in blocks(page)
-        if language == "console"
+        if language in {"console", "sh"}
         for line in code.splitlines()
-        if line.startswith("$ ")
+        if line.startswith("$ ") or language == "sh"
     ]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_every_block_is_run_or_says_why_not(page: Path) -> None:
+    """Python runs, with what it prints; commands run; ``bash`` and ``toml`` are for what tests cannot do."""
+    for language, code in blocks(page):
+        assert language.split(" ")[0] in LANGUAGES, language
+        if language == "bash":
+            assert code.startswith("#"), f"why is this not run?\n{code}"
 
 
 @pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: p.name)

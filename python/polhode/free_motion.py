@@ -102,7 +102,7 @@ class Periods(_Periods):
         Parameters
         ----------
         order : int
-            The greatest |j| and |m|.
+            The greatest ``|j|`` and ``|m|``.
 
         Returns
         -------

@@ -1,0 +1,159 @@
+"""The gallery: each script of ``examples`` is run once; its picture, moving page and code are a page.
+
+What a script has drawn is kept in ``docs/_build/gallery`` for as long as script and package stay as they are.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import hashlib
+import io
+import os
+import runpy
+import shutil
+import tomllib
+import warnings
+from concurrent.futures import ProcessPoolExecutor
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from written import keep
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from sphinx.application import Sphinx
+
+ROOT = Path(__file__).resolve().parents[2]
+KEPT = ROOT / "docs" / "_build" / "gallery"
+PICTURES = ROOT / "docs" / "gallery"
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Write the pages before Sphinx looks for them, and copy the moving pages beside them."""
+    app.connect("builder-inited", lambda app: write(Path(app.srcdir)))
+    app.connect("build-finished", lambda app, error: error or copy(Path(app.outdir)))
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def write(docs: Path) -> None:
+    """Run what is not kept, and write the pages."""
+    groups = tomllib.loads((docs / "gallery.toml").read_text("utf-8"))
+    names = [name for group in groups.values() for name in group]
+    stamp = of_package()
+    missing = [name for name in names if not done(name, stamp)]
+    if missing:
+        with ProcessPoolExecutor(min(len(missing), os.cpu_count() or 1)) as pool:
+            for _ in pool.map(run, missing, [stamp] * len(missing)):
+                pass
+    keep(docs / "gallery", dict(pages(groups)))
+    for name in names:
+        shutil.copy2(KEPT / name / f"{name}.png", PICTURES)
+
+
+def copy(site: Path) -> None:
+    """Put the moving pages where the pages of the gallery look for them."""
+    if (site / "gallery").is_dir():
+        for page in KEPT.glob("*/live.html"):
+            shutil.copy2(page, site / "gallery" / f"{page.parent.name}.live.html")
+
+
+def of_package() -> str:
+    """Give a mark that changes with the package, its files and their times, and with what draws."""
+    mark = hashlib.sha256(f"{version('numpy')} {version('matplotlib')}".encode())
+    package = ROOT / "python" / "polhode"
+    for file in sorted(
+        [*package.rglob("*.py"), *package.rglob("*.html"), *package.glob("*.so"), Path(__file__)]
+    ):
+        mark.update(f"{file.name}{file.stat().st_mtime_ns}".encode())
+    return mark.hexdigest()
+
+
+def done(name: str, stamp: str) -> bool:
+    """Whether what is kept is of this script and this package."""
+    mark = KEPT / name / "mark"
+    return mark.exists() and mark.read_text() == stamp + text_mark(name)
+
+
+def text_mark(name: str) -> str:
+    """Give a mark of the text of a script."""
+    return hashlib.sha256(script(name).read_bytes()).hexdigest()
+
+
+def script(name: str) -> Path:
+    """Give the file of an entry."""
+    return ROOT / "examples" / f"{name}.py"
+
+
+def run(name: str, stamp: str) -> None:
+    """Draw the picture of an entry and its moving page, and keep what it prints."""
+    folder = KEPT / name
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed), warnings.catch_warnings(action="error"):
+        made = runpy.run_path(str(script(name)))
+        made["draw"]().savefig(folder / f"{name}.png", dpi=96)
+    (folder / "printed.txt").write_text(printed.getvalue(), "utf-8")
+    if "animate" in made:
+        made["animate"](str(folder / "live.html"))
+    (folder / "mark").write_text(stamp + text_mark(name))
+
+
+def title(name: str) -> str:
+    """Give the heading of an entry: the name of its file."""
+    return name.replace("_", " ").capitalize().replace("T handle", "T-handle").replace("lagrange", "Lagrange")
+
+
+def says(name: str) -> str:
+    """Give what a script says of itself, on one line."""
+    return " ".join((ast.get_docstring(ast.parse(script(name).read_text("utf-8"))) or "").split())
+
+
+def pages(groups: dict[str, list[str]]) -> Iterator[tuple[str, str]]:
+    """Give the name and the text of each page."""
+    listing = [
+        "# Gallery\n",
+        "Each picture leads to its code; where ▶ stands, also to the motion, which runs in the browser.\n",
+    ]
+    for group, names in groups.items():
+        listing += [f"## {group}\n", '<div class="gallery">']
+        for name in names:
+            live = " ▶" if (KEPT / name / "live.html").exists() else ""
+            listing.append(
+                f'<a class="entry" href="{name}.html"><img src="../_images/{name}.png" alt="" loading="lazy">'
+                f"<span><b>{title(name)}{live}</b>{says(name)}</span></a>"
+            )
+            yield f"{name}.md", entry(name)
+        listing.append("</div>\n")
+    listing += ["```{toctree}\n:hidden:\n", *(name for group in groups.values() for name in group), "```\n"]
+    yield "index.md", "\n".join(listing)
+
+
+def entry(name: str) -> str:
+    """Give the page of an entry."""
+    lines = [f"# {title(name)}\n", f"{says(name)}\n"]
+    if (KEPT / name / "live.html").exists():
+        lines.append(
+            f'<iframe class="live" src="{name}.live.html" title="{title(name)}, moving"'
+            ' loading="lazy"></iframe>\n\n'
+            f'<p><a href="{name}.live.html">The moving page by itself</a></p>\n'
+        )
+    drawn = made_of(name, "draw") or f"Picture of {title(name)}"
+    lines += [
+        f"![{drawn}]({name}.png)\n",
+        f"```{{literalinclude}} ../../examples/{name}.py\n:language: python\n```\n",
+    ]
+    printed = (KEPT / name / "printed.txt").read_text("utf-8").rstrip()
+    lines += [f"It prints\n\n```text\n{printed}\n```\n"] if printed else []
+    return "\n".join(lines)
+
+
+def made_of(name: str, function: str) -> str:
+    """Give the first line of the docstring of a function of an entry."""
+    for node in ast.parse(script(name).read_text("utf-8")).body:
+        if isinstance(node, ast.FunctionDef) and node.name == function:
+            return (ast.get_docstring(node) or "").partition("\n")[0].rstrip(".")
+    return ""

@@ -1,0 +1,150 @@
+"""The pages of the interface: one for each class and module that ``docs/interface.toml`` names."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import tomllib
+import types
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from written import keep
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from sphinx.application import Sphinx
+
+Table = dict[str, Any]
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Write the pages before Sphinx looks for them."""
+    app.connect("builder-inited", lambda app: write(Path(app.srcdir)))
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def write(docs: Path) -> None:
+    """Write all pages into ``docs/interface``, and take away those of names that are gone."""
+    keep(docs / "interface", dict(pages(tomllib.loads((docs / "interface.toml").read_text("utf-8")))))
+
+
+def pages(table: Table) -> Iterator[tuple[str, str]]:
+    """Give the name and the text of each page."""
+    listing = [INTRODUCTION]
+    for group, names in table["groups"].items():
+        listing += [f"\n## {group}\n", "| page | what |", "|---|---|"]
+        for name in names:
+            value = found(name)
+            short = name.removeprefix("polhode.")
+            listing.append(f"| [{short}]({short}.md) | {summary(value)} |")
+            parts = table["parts"].get(name, {})
+            yield f"{short}.md", page(name, value, table, parts)
+            for title, members in parts.items():
+                stem = f"{short}.{title.lower().replace(' ', '_')}"
+                listing.append(f"| [{short}: {title.lower()}]({stem}.md) | {listed(members)} |")
+                yield f"{stem}.md", part(name, value, title, members)
+    listing += ["\n```{toctree}\n:hidden:\n:glob:\n", "*\n```\n"]
+    yield "index.md", "\n".join(listing)
+
+
+INTRODUCTION = """# Interface
+
+Arguments broadcast over leading axes: a body may be a stack of bodies, a vector an array of shape (…, 3).
+Arrays come back in the same shape."""
+
+
+def page(name: str, value: object, table: Table, parts: dict[str, list[str]]) -> str:
+    """Give the page of a class or of a module."""
+    short = name.removeprefix("polhode.")
+    lines = [f"# {short}\n"]
+    if name in table["pictures"]:
+        file, shows = table["pictures"][name]
+        lines.append(f"![{shows}](../{file})\n")
+    for title, members in parts.items():
+        lines.append(f"- [{title}]({short}.{title.lower().replace(' ', '_')}.md): {listed(members)}")
+    lines.append("\n```{eval-rst}")
+    apart = {member for members in parts.values() for member in members}
+    if inspect.isclass(value):
+        lines += of_class(name, value, apart)
+    else:
+        assert isinstance(value, types.ModuleType)
+        lines.append(f".. automodule:: {name}\n   :no-members:\n")
+        for export in table["names"].get(name, value.__all__):
+            if export not in apart:
+                lines += of_name(f"{name}.{export}", getattr(value, export))
+    for function in table["beside"].get(name, ()):
+        lines.append(f"\n.. autofunction:: polhode.{function}\n")
+    return "\n".join([*lines, "```\n"])
+
+
+def part(name: str, value: object, title: str, members: list[str]) -> str:
+    """Give the page of some members of a class or of a module."""
+    short = name.removeprefix("polhode.")
+    lines = [f"# {short}: {title.lower()}\n", f"Of [{short}]({short}.md).\n", "```{eval-rst}"]
+    for member in members:
+        if inspect.isclass(value):
+            kind = "method" if inspect.isroutine(getattr(value, member)) else "attribute"
+            lines.append(f".. auto{kind}:: {name}.{member}\n")
+        else:
+            lines += of_name(f"{name}.{member}", getattr(value, member))
+    return "\n".join([*lines, "```\n"])
+
+
+def of_class(name: str, cls: type, apart: set[str]) -> list[str]:
+    """Give the directive of a class; of one without methods its fields are described by the class."""
+    fields = {k for k, v in vars(cls).items() if type(v).__name__ in {"member_descriptor", "_tuplegetter"}}
+    fields |= set(getattr(cls, "__dataclass_fields__", ()))
+    members = [
+        k
+        for k, v in vars(cls).items()
+        if not k.startswith("_")
+        and k not in fields | apart
+        and (
+            callable(v) or inspect.isdatadescriptor(v) or isinstance(v, property | staticmethod | classmethod)
+        )
+    ]
+    lines = [f".. autoclass:: {name}"]
+    if members:
+        lines.append(f"   :members: {', '.join(members)}")
+    return [*lines, ""]
+
+
+def of_name(name: str, value: object) -> list[str]:
+    """Give the directive of what a module holds."""
+    if inspect.isclass(value):
+        return of_class(name, value, set())
+    if callable(value):
+        return [f".. autofunction:: {name}", ""]
+    return DATA.get(name, [f".. autodata:: {name}", "   :no-value:", ""])
+
+
+DATA = {
+    f"polhode.files.{kind}_SCHEMA": [
+        f".. py:data:: polhode.files.{kind}_SCHEMA",
+        "",
+        f"   What a {what}'s JSON file holds, as JSON Schema.",
+        "",
+    ]
+    for kind, what in (("BODY", "body"), ("TRAJECTORY", "motion"))
+}
+
+
+def found(name: str) -> object:
+    """Give the class or the module of a dotted name."""
+    home, _, last = name.rpartition(".")
+    if last[0].isupper():
+        return getattr(importlib.import_module(home), last)
+    return importlib.import_module(name)
+
+
+def summary(value: object) -> str:
+    """Give the first sentence of what it says of itself, on one line."""
+    text = " ".join((inspect.getdoc(value) or "").split("\n\n")[0].split())
+    return text.replace("|", "\\|").replace("``", "`")
+
+
+def listed(members: list[str]) -> str:
+    """Give names as code, with commas between them."""
+    return ", ".join(f"`{member}`" for member in members)

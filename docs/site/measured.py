@@ -1,0 +1,150 @@
+"""Pages of measured numbers: tables of ``benchmarks/pages.json`` and ``benchmarks/ratios.json``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from written import keep
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Write the pages before Sphinx looks for them."""
+    app.connect("builder-inited", lambda app: keep(Path(app.srcdir) / "measured", pages()))
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def pages() -> dict[str, str]:
+    """Give the names and the texts of the pages."""
+    found = json.loads((BENCHMARKS / "pages.json").read_text("utf-8"))
+    ratios = json.loads((BENCHMARKS / "ratios.json").read_text("utf-8"))
+    return {
+        "elsewhere.md": elsewhere(found),
+        "validation.md": validation(found),
+        "performance.md": performance(ratios),
+    }
+
+
+def where(found: dict[str, Any]) -> str:
+    """Say when and on what the numbers were measured."""
+    machine = found["machine"]
+    return (
+        f"Measured on {found['date']} with polhode {machine['polhode']}, Python {machine['python']}, "
+        f"{machine['cpu']}, one thread. "
+        "`python benchmarks/pages.py` measures anew."
+    )
+
+
+def elsewhere(found: dict[str, Any]) -> str:
+    """Give the page of the same problems in other programs."""
+    lines = [
+        "# The same elsewhere\n",
+        "Two problems, in polhode and in other programs: how many lines it takes, how long, and how far "
+        "the answer is from the exact "
+        "one. *First* is a call in a fresh interpreter with what it imports, *again* one after it. The "
+        "other programs can do much that "
+        "polhode does not; this is about what it is made for.\n",
+        where(found) + "\n",
+    ]
+    for problem, title, text in PROBLEMS:
+        rows = sorted(found["elsewhere"][problem], key=lambda row: row["program"] != "polhode")
+        lines += [
+            f"## {title}\n",
+            text,
+            "",
+            "| program | lines | first | again | error |",
+            "|---|---|---|---|---|",
+        ]
+        lines += [
+            f"| {row['program']} {row['version']} | {row['lines']} | {seconds(row['first'])} | "
+            f"{seconds(row['again'])} "
+            f"| {power(row['error'])} |"
+            for row in rows
+        ]
+        for row in rows:
+            lines += [
+                f"\n### {row['program']}: {title[0].lower()}{title[1:]}\n",
+                "```{literalinclude} ../../benchmarks/elsewhere.py",
+                f":language: python\n:pyobject: {row['function']}\n```",
+            ]
+        lines.append("")
+    return "\n".join(lines)
+
+
+PROBLEMS = (
+    (
+        "motion",
+        "A body that flips",
+        "Angular velocity of a free body at 601 times of a minute, held against Jacobi's functions in 45 "
+        "digits. The integrators have "
+        "tolerances of 1e-12, heyoka its own default, MuJoCo steps of a millisecond.",
+    ),
+    (
+        "tensor",
+        "The tensor of a mesh",
+        "A torus of 20 000 triangles, held against rational numbers. polhode checks that the mesh is "
+        "closed and wound one way "
+        "and refuses it otherwise; trimesh tells on request; the sum by NumPy does not look.",
+    ),
+)
+
+
+def validation(found: dict[str, Any]) -> str:
+    """Give the page of what numbers are held against."""
+    lines = [
+        "# How it is checked\n",
+        "Each formula is held against something that is not polhode: a closed form, rational numbers, "
+        "many digits, published figures or "
+        "another engine. The tests do that at each change; here are some of the errors, relative to the "
+        "largest number of the answer. "
+        "The spacing of floating-point numbers is 2.2e-16.\n",
+        where(found) + "\n",
+        "| what | against | error |",
+        "|---|---|---|",
+        *(f"| {row['what']} | {row['against']} | {power(row['error'])} |" for row in found["validation"]),
+        "\nThe oracles are in `tests/oracles`; `tests/claims.toml` names for each promise of these pages "
+        "the test that keeps it.\n",
+    ]
+    return "\n".join(lines)
+
+
+def performance(ratios: dict[str, Any]) -> str:
+    """Give the page of times beside the peers."""
+    lines = [
+        "# How fast it is\n",
+        "The time that a peer takes for the same answer, over that of polhode: above 1, polhode is "
+        "faster. Both ran in turn in one process, "
+        "on one thread. `make bench` measures anew; `python benchmarks/run.py --keep RELEASE` keeps what "
+        "this table shows.\n",
+    ]
+    for release, found in ratios.items():
+        machine = found["machine"]
+        lines += [
+            f"## Release {release}\n",
+            f"{machine['cpu']}, {machine['cores']} cores, Python {machine['python']}.\n",
+            "| what | beside | ratio |",
+            "|---|---|---|",
+        ]
+        for name, ratio in found["ratios"].items():
+            what, _, peer = name.partition(", beside ")
+            lines.append(f"| {what} | {peer} | {ratio:g} |".replace("Π(n; φ|m)", "Π(n; φ, m)"))
+    return "\n".join([*lines, ""])
+
+
+def seconds(value: float) -> str:
+    """Give a time with two digits and its unit."""
+    for scale, unit in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")):
+        if value >= scale:
+            return f"{value / scale:.2g} {unit}" if value < 99.5 * scale else f"{value / scale:.0f} {unit}"
+    return f"{value / 1e-9:.2g} ns"
+
+
+def power(value: float) -> str:
+    """Give a relative error; what is below half the spacing of numbers is rounding."""
+    return "0" if value == 0.0 else f"{value:.0e}" if value >= 1e-16 else "below 1e-16"

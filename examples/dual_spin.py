@@ -1,0 +1,40 @@
+"""A wheel inside holds what no body alone can: a steady turn about the middle axis."""
+
+import sys
+
+import numpy as np
+from matplotlib.figure import Figure
+from polhode import RigidBody, plot
+
+SATELLITE = RigidBody.from_principal(150.0, (20.0, 25.0, 30.0))
+SPIN = (0.002, 0.1, 0.002)  # rad/s, nearly about the middle axis
+
+
+def draw() -> Figure:
+    """Draw the angular velocity without the wheel and with it, and the paths of L with it."""
+    figure = Figure(figsize=(12.0, 3.8), layout="constrained")
+    t = np.linspace(0.0, 600.0, 1201)
+    for k, momentum in enumerate((0.0, 1.0), 1):
+        motion = SATELLITE.gyrostat((0.0, momentum, 0.0)).free_motion(SPIN)
+        states = motion.at(t)
+        print(f"h = {momentum:g} N m s: off the axis by up to {off(states.omega):.1f}°")
+        ax = plot.angular_velocity(states, figure.add_subplot(1, 3, k))
+        ax.set_title(f"wheel with {momentum:g} N m s", pad=22)
+    plot.portrait(motion, ax=figure.add_subplot(1, 3, 3, projection="3d", computed_zorder=False))
+    return figure
+
+
+def off(omega: np.ndarray) -> float:
+    """Give the greatest angle of ω from the middle axis, in degrees."""
+    return float(np.degrees(np.arccos(omega[:, 1] / np.linalg.norm(omega, axis=1))).max())
+
+
+def animate(file: str) -> None:
+    """Write the moving page."""
+    motion = SATELLITE.gyrostat((0.0, 1.0, 0.0)).free_motion((0.05, 0.1, 0.03))
+    motion.at(np.linspace(0.0, 300.0, 901)).animate(file, title="A satellite with a wheel")
+
+
+if __name__ == "__main__":
+    draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "dual_spin.png", dpi=130)
+    animate("dual_spin.html")

@@ -1,0 +1,39 @@
+"""A loaded die: a little lead in one corner moves the centre of mass and turns the principal axes."""
+
+import sys
+
+import numpy as np
+from matplotlib.figure import Figure
+from polhode import RigidBody, solids
+
+SIDE = 16.0  # mm
+
+
+def die(lead: float) -> RigidBody:
+    """Give a die of 5 g with so many grams of lead close to a corner."""
+    plain = solids.cube(SIDE, mass=5.0)
+    return plain + solids.sphere(radius=1.5, mass=lead).translated((5.5, 5.0, 4.0)) if lead else plain
+
+
+def draw() -> Figure:
+    """Draw the centre of mass and the principal moments against the mass of the lead."""
+    grams = np.linspace(0.0, 1.0, 41)
+    loaded = RigidBody.stack([die(lead) for lead in grams])
+    last = loaded[-1]
+    print(f"one gram: centre of mass {last.center_of_mass.round(3)} mm, {last.principal.top} top")
+    figure = Figure(figsize=(10.0, 3.8), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    colors = ("#0072B2", "#D55E00", "#009E73")
+    for k, color in enumerate(colors):
+        left.plot(grams, loaded.center_of_mass[:, k], color=color, label="xyz"[k])
+        right.plot(grams, loaded.principal_moments[:, k], color=color, label=f"$I_{k + 1}$")
+    left.set(xlabel="lead (g)", ylabel="centre of mass (mm)")
+    right.set(xlabel="lead (g)", ylabel="principal moments (g mm²)")
+    for ax in (left, right):
+        ax.legend(frameon=False)
+        ax.grid(color="0.9")
+    return figure
+
+
+if __name__ == "__main__":
+    draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "loaded_die.png", dpi=130)
