@@ -17,6 +17,14 @@ use super::wrench::Wrench;
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::state::Phase;
 
+/// The places of its numbers among its parameters: of a wheel whose speed is given, the speed stands where the others have their rate.
+const AXIS: usize = 0;
+const INERTIA: usize = 3;
+const RATE: usize = 4;
+const SPEED: usize = 4;
+const FRICTION: usize = 5;
+const DRIVE: usize = 6;
+
 /// What turns a wheel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
@@ -148,7 +156,13 @@ impl Wheel {
 
     /// a of unit length, in principal axes.
     fn direction<X: Exact>(&self, axes: &Axes<'_, X>) -> Vector3<X> {
-        let scaled = exact::<X>(&(self.axis / self.axis.amax().log2().floor().exp2()));
+        let scale = self.axis.amax().log2().floor().exp2();
+        let mut scaled = exact::<X>(&(self.axis / scale));
+        if axes.varies(AXIS, 3) {
+            for i in 0..3 {
+                scaled[i] += axes.variation(self.axis[i], AXIS + i) / X::from(scale);
+            }
+        }
         axes.principal(&(scaled / scaled.dot(&scaled).root()))
     }
 }
@@ -173,15 +187,21 @@ impl Law for Wheel {
         }
     }
 
-    /// Names alone: derivatives of a motion under a load with states are refused, and [`Self::add_to`] asks for no varied
-    /// numbers.
+    /// Those of a feedback that its motor follows are the last; a limit and dry friction have no series, and are left out.
     fn parameters(&self) -> Vec<Parameter> {
-        vec![
-            Parameter::new("axis", &[3]),
-            Parameter::new("inertia", &[]),
-            Parameter::new("rate", &[]),
-            Parameter::new("friction", &[]),
-        ]
+        let mut all = vec![Parameter::new("axis", &[3]), Parameter::new("inertia", &[])];
+        if let Drive::Speed(speed) = &self.drive {
+            all.push(speed.parameter("speed"));
+            return all;
+        }
+        all.push(Parameter::new("rate", &[]));
+        all.push(Parameter::new("friction", &[]));
+        match &self.drive {
+            Drive::Torque(torque) => all.push(torque.parameter("torque")),
+            Drive::Feedback(law) | Drive::Limited(law, _) => all.extend(law.parameters()),
+            Drive::Speed(_) => {}
+        }
+        all
     }
 
     fn scaled(&self, _: f64) -> Result<Self, Error> {
@@ -245,7 +265,12 @@ impl Law for Wheel {
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
         let a = self.direction(axes);
-        let (inertia, friction) = (X::from(self.inertia), X::from(self.friction));
+        let inertia = axes.number(self.inertia, INERTIA);
+        let friction = if self.has_speed() {
+            X::zero()
+        } else {
+            axes.number(self.friction, FRICTION)
+        };
         let mut own = Own {
             momentum: a,
             size: self.inertia,
@@ -253,13 +278,14 @@ impl Law for Wheel {
         };
         match &self.drive {
             Drive::Speed(speed) => {
-                own.constant = inertia * X::from(speed.line(axes.middle)[1]);
+                own.constant = inertia * speed.slope(axes.middle, axes, SPEED);
+                own.reported_on_omega = a * inertia;
             }
-            Drive::Torque(torque) => own.constant = X::from(torque.value(axes.middle)),
+            Drive::Torque(torque) => own.constant = torque.number(axes.middle, axes, DRIVE),
             // With a limit it has no series, nor with dry friction: the law without them.
             Drive::Feedback(law) | Drive::Limited(law, _) => {
                 let mut asked = Linear::default();
-                law.add_to(&mut asked, axes, side);
+                law.add_to(&mut asked, &axes.part(DRIVE), side);
                 own.on_omega = -asked.on_omega.tr_mul(&a);
                 own.on_attitude = -asked.on_attitude.tr_mul(&a);
             }
@@ -286,7 +312,7 @@ impl Law for Wheel {
     }
 
     fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
-        self.feedback()?.switching(axes)
+        self.feedback()?.switching(&axes.part(DRIVE))
     }
 
     fn carried(&self) -> Option<&dyn Carried> {
@@ -310,6 +336,29 @@ impl Carried for Wheel {
                 self.inertia * (self.rate + self.unit.dot(omega))
             }
         }]
+    }
+
+    fn beginning(&self, t: f64, omega: &Vector3<f64>) -> Vec<(Vector3<f64>, Vec<f64>)> {
+        let count = self.parameters().iter().map(Parameter::count).sum();
+        let mut by_numbers = vec![0.0; count];
+        let (a, inertia) = (self.unit, self.inertia);
+        if let Drive::Speed(speed) = &self.drive {
+            by_numbers[INERTIA] = speed.line(t)[0];
+            for (index, [share, _]) in speed.shares(t) {
+                by_numbers[SPEED + index] = inertia * share;
+            }
+            return vec![(Vector3::zeros(), by_numbers)];
+        }
+        // Of a of unit length, by a of any.
+        let across = (omega - a * a.dot(omega)) * (inertia / self.axis.norm());
+        by_numbers[AXIS..AXIS + 3].copy_from_slice(across.as_slice());
+        by_numbers[INERTIA] = self.rate + a.dot(omega);
+        by_numbers[RATE] = inertia;
+        vec![(a * inertia, by_numbers)]
+    }
+
+    fn is_known(&self) -> bool {
+        self.has_speed()
     }
 
     fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
@@ -338,6 +387,19 @@ impl Carried for Wheel {
             self.inertia,
             self.dry_friction,
         ))
+    }
+
+    fn has_limit(&self) -> bool {
+        matches!(self.drive, Drive::Limited(..))
+    }
+
+    fn over_limit(&self, now: &Now<'_>) -> f64 {
+        let Drive::Limited(law, limit) = &self.drive else {
+            return -1.0;
+        };
+        // Smooth where nothing is asked for.
+        let share = self.asked(law, now) / limit;
+        (share - 1.0) * (share + 1.0)
     }
 
     fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64> {
