@@ -4,8 +4,8 @@ use nalgebra::{Vector3, Vector4};
 
 use super::axes::{Axes, Exact, exact};
 use super::carried::Carried;
+use super::drive::Drive;
 use super::feedback::Feedback;
-use super::held::Held;
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::{Linear, Own};
 use super::now::Now;
@@ -24,19 +24,6 @@ const RATE: usize = 4;
 const SPEED: usize = 4;
 const FRICTION: usize = 5;
 const DRIVE: usize = 6;
-
-/// What turns a wheel.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Drive {
-    /// A motor whose torque τ on the wheel, about its axis, is known; no motor where it is zero.
-    Torque(Held),
-    /// A motor that exerts on the body, about the wheel's axis, what a feedback asks for: `τ = −a·N`.
-    Feedback(Feedback),
-    /// The same, as far as the motor can: `|τ|` is at most the limit.
-    Limited(Feedback, f64),
-    /// A motor that gives the wheel a speed Ω relative to the body that is known: straight lines between times.
-    Speed(Held),
-}
 
 /// A wheel that turns about an axis a fixed in the body with the rate Ω relative to it: J is its moment about that axis, and the
 /// tensor I of the body includes it as if it were locked.
@@ -118,10 +105,7 @@ impl Wheel {
 
     /// The feedback that its motor follows.
     fn feedback(&self) -> Option<&Feedback> {
-        match &self.drive {
-            Drive::Feedback(law) | Drive::Limited(law, _) => Some(law),
-            Drive::Torque(_) | Drive::Speed(_) => None,
-        }
+        self.drive.feedback()
     }
 
     /// Whether its speed is given.
@@ -216,10 +200,7 @@ impl Law for Wheel {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        match &self.drive {
-            Drive::Torque(held) | Drive::Speed(held) => held.times().to_vec(),
-            Drive::Feedback(law) | Drive::Limited(law, _) => law.breaks(),
-        }
+        self.drive.breaks()
     }
 
     fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
@@ -230,11 +211,7 @@ impl Law for Wheel {
                 value: to,
             });
         }
-        match &self.drive {
-            Drive::Torque(held) => held.covers("torque", from, to, false),
-            Drive::Speed(held) => held.covers("speed", from, to, true),
-            Drive::Feedback(law) | Drive::Limited(law, _) => law.check(subject, from, to),
-        }
+        self.drive.check(subject, from, to)
     }
 
     /// At a start; of a wheel at rest without what its bearing holds, which follows from all loads on the body.
@@ -339,8 +316,7 @@ impl Carried for Wheel {
     }
 
     fn beginning(&self, t: f64, omega: &Vector3<f64>) -> Vec<(Vector3<f64>, Vec<f64>)> {
-        let count = self.parameters().iter().map(Parameter::count).sum();
-        let mut by_numbers = vec![0.0; count];
+        let mut by_numbers = vec![0.0; self.parameters().iter().map(Parameter::count).sum()];
         let (a, inertia) = (self.unit, self.inertia);
         if let Drive::Speed(speed) = &self.drive {
             by_numbers[INERTIA] = speed.line(t)[0];
