@@ -285,3 +285,99 @@ def test_in_a_stack_some_wheels_may_have_none(friction: list[float]) -> None:
         np.testing.assert_allclose(together.states["wheel"][row], alone.states["wheel"], atol=1e-10)
     with pytest.raises(PolhodeError, match="no dry friction"):
         BODY.simulate(t, omega, load=loads.wheel(ALONG, J, rate=1.0, dry_friction=friction), method="taylor")
+
+
+@METHODS
+def test_the_stop_is_told(method: Method) -> None:
+    """At Ω₀ over the friction times 1/J + 1/(I − J), with h = J ω of the locked body."""
+    wheel = loads.wheel(ALONG, J, rate=10.0, dry_friction=0.25)
+    events = [Event.stop(), Event.slip()]
+    run = PLAIN.simulate([0.0, 40.0], (0, 0, 0), load=wheel, events=events, method=method, rtol=1e-12)
+    assert run.events.event.tolist() == [0]
+    assert run.events.t[0] == pytest.approx(10.0 / (0.25 * BETWEEN), rel=1e-13)
+    assert run.events.states["wheel"][0, 0] == pytest.approx(J * 10.0 * J / I3, rel=1e-13)
+    assert run.events.omega[0, 2] == pytest.approx(10.0 * J / I3, rel=1e-13)
+    plain = PLAIN.simulate([0.0, 40.0], (0, 0, 0), load=wheel, method=method, rtol=1e-12)
+    assert np.array_equal(run.omega, plain.omega)
+
+
+def test_a_run_may_end_at_a_stop_or_a_slip() -> None:
+    wheel = loads.wheel(
+        ALONG, J, rate=2.0, torque=[0.0, -0.5], times=[0.0, 12.0], dry_friction=0.25, name="w"
+    )
+    stop = 2.0 / (0.25 * BETWEEN)
+    t = [0.0, 1.0, stop + 1.0, 20.0]
+    ended = PLAIN.simulate(t, (0, 0, 0), load=wheel, events=Event.stop("w", terminal=True), rtol=1e-12)
+    assert ended.status == "event"
+    assert np.isfinite(ended.omega[:2]).all()
+    assert np.isnan(ended.omega[2:]).all()
+    both = [Event.stop("w"), Event.slip("w", terminal=1)]
+    ended = PLAIN.simulate(t, (0, 0, 0), load=wheel, events=both, rtol=1e-12)
+    np.testing.assert_allclose(ended.events.t, [stop, 12.0], rtol=1e-12)
+    assert ended.events.event.tolist() == [0, 1]
+    assert ended.status == "event"
+    assert np.isfinite(ended.omega[2]).all()
+    # A motor that is stronger turns it on at once.
+    through = loads.wheel(ALONG, J, rate=2.0, torque=-0.5, dry_friction=0.25)
+    run = PLAIN.simulate([0.0, 9.0], (0, 0, 0), load=through, events=[Event.stop(), Event.slip()], rtol=1e-12)
+    np.testing.assert_allclose(run.events.t, [2.0 / (0.75 * BETWEEN)] * 2, rtol=1e-12)
+    assert run.events.event.tolist() == [0, 1]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_stops_and_slips_are_those_of_the_model(seed: int) -> None:
+    """All of them, of several wheels, against SciPy from one to the next."""
+    run, _, changes = random_case(seed)
+    wheels = [name for name in run.states if name.startswith("wheel")]
+    events = [make(name) for name in wheels for make in (Event.stop, Event.slip)]
+    again = run.body.simulate(
+        run.t, run.omega[0], run.quaternion[0], load=run.load, events=events, method="dop853", rtol=1e-12
+    )
+    found = again.events.t[again.events.t > run.t[0]]
+    once = found[np.append(True, np.diff(found) > 1e-9)] if len(found) else found
+    told = np.array(changes)
+    told = told[np.append(True, np.diff(told) > 1e-9)] if len(told) else told
+    np.testing.assert_allclose(once, told, atol=1e-7)
+
+
+def test_saturation_is_told() -> None:
+    """About one axis from rest at the target: the motor saturates while K sin(φ/2) is beyond its limit."""
+    feedback = loads.feedback(K=1.0, D=0.0)
+    wheel = loads.wheel(ALONG, J, torque=feedback, limit=0.3)
+    less, speed_at_zero = I3 - J, 0.4
+    run = PLAIN.simulate(
+        [0.0, 30.0], (0, 0, speed_at_zero), load=wheel, events=[Event.limit()], rtol=1e-12, method="dop853"
+    )
+    # Up to sin(φ/2) = 0.3 the motion is that of a pendulum; beyond it the torque is constant.
+    edge = 2 * np.arcsin(0.3)
+    phi = 2 * np.arctan2(run.events.quaternion[:, 2], run.events.quaternion[:, 3])
+    np.testing.assert_allclose(np.abs(phi), edge, rtol=1e-9)
+    square = speed_at_zero**2 - 4 / less * (1 - np.cos(edge / 2))
+    np.testing.assert_allclose(np.abs(run.events.omega[:, 2]), np.sqrt(square), rtol=1e-8)
+    # Out and back under the constant torque.
+    back = 2 * np.sqrt(square) * less / 0.3
+    assert run.events.t[1] - run.events.t[0] == pytest.approx(back, rel=1e-8)
+    only = [Event.limit(direction=1.0, terminal=2)]
+    ended = PLAIN.simulate([0.0, 30.0], (0, 0, speed_at_zero), load=wheel, events=only, rtol=1e-12)
+    np.testing.assert_allclose(ended.events.t, run.events.t[[0, 2]], rtol=1e-8)
+    assert ended.status == "event"
+
+
+def test_events_of_wheels_that_cannot_be() -> None:
+    wheel = loads.wheel(ALONG, J, rate=2.0)
+
+    def run(event: Event, load: Load = wheel) -> None:
+        PLAIN.simulate([0.0, 1.0], (0, 0, 0), load=load, events=event)
+
+    with pytest.raises(
+        ValueError, match=r'Event\.stop asks for a wheel with dry friction, which "wheel" is not'
+    ):
+        run(Event.stop())
+    with pytest.raises(ValueError, match=r"Event\.limit asks for a wheel with a motor with a limit"):
+        run(Event.limit())
+    with pytest.raises(ValueError, match=r'Event\.slip asks for the wheel "w"; the load carries "wheel"'):
+        run(Event.slip("w"))
+    with pytest.raises(ValueError, match="the load carries nothing"):
+        run(Event.slip("w"), loads.constant_torque((0, 0, 1)))
+    with pytest.raises(TypeError, match="found by simulate"):
+        Event.stop()(0.0, np.zeros(3), np.zeros(4), np.zeros(3), np.zeros(3))

@@ -242,7 +242,7 @@ def test_what_cannot_be_varied_says_so() -> None:
         return -0.1 * omega
 
     run = BRICK.simulate([0.0, 1.0], OMEGA, load=loads.torque_callback(torque))
-    with pytest.raises(PolhodeError, match=r"call a function.*rtol=1e-13"):
+    with pytest.raises(PolhodeError, match=r'call a function.*method="differences"'):
         run.sensitivity()
 
 

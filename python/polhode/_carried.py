@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+ROUNDING = 1e-12
+"""A moment that small, relative to the largest, is that of no wheel."""
+
 __all__ = ["acting", "exact", "now", "of_rotor"]
 
 
@@ -32,8 +35,8 @@ def now(self: Trajectory) -> tuple[Floats, Floats] | None:
     return self._over_time(self.load).carried(self.t, self.omega, self._own_states())
 
 
-def acting(self: Trajectory, what: str) -> _core.Load | None:
-    """Give the load under which a simulation finds this motion; of a gyrostat a rotor."""
+def acting(self: Trajectory, what: str, index: int = 0) -> _core.Load | None:
+    """Give the load under which a simulation finds this motion; of a gyrostat from one of its times on."""
     if self.load is None and self._is_loaded() and self.carried is None:
         raise ValueError(f"{what}: a load acted on this motion, which its file does not hold")
     if self.load is not None or self.carried is None:
@@ -44,12 +47,30 @@ def acting(self: Trajectory, what: str) -> _core.Load | None:
             f"{what}: the body carries something along of which these states tell the momentum alone, "
             "not the load; a file does not hold it"
         )
-    if np.any(free):
+    return _inside(self, what, index) if np.any(free) else _core.rotor(momentum)
+
+
+def _inside(self: Trajectory, what: str, index: int) -> _core.Load:
+    """Give what turns freely in a gyrostat as wheels along the axes of Σ J a aᵀ, and the rest as a rotor."""
+    momentum, free = self.__dict__["_rotor"]
+    inertias, axes = np.linalg.eigh(free)
+    turning = inertias > ROUNDING * inertias[..., -1:]
+    rows = turning.reshape(-1, 3)
+    if (rows != rows[0]).any():
         raise ValueError(
-            f"{what}: a simulation follows free wheels under loads.wheel; of this motion "
-            "GyrostatMotion.at gives the state at any time"
+            f"{what}: the gyrostats have free wheels along one, two or three axes; ask one by one"
         )
-    return _core.rotor(momentum)
+    start = self.omega[..., index, :]
+    load, rest = None, momentum
+    for k in np.flatnonzero(rows[0]):
+        axis, inertia = axes[..., k], inertias[..., k]
+        held = np.einsum("...i,...i->...", axis, momentum)
+        rest = rest - held[..., None] * axis
+        rate = held / inertia - np.einsum("...i,...i->...", axis, start)
+        one = _core.wheel(axis, inertia, rate)
+        load = one if load is None else load + one
+    assert load is not None
+    return load + _core.rotor(rest)
 
 
 def exact(self: Trajectory) -> _core.FreeMotion | _core.GyrostatMotion | None:

@@ -88,7 +88,7 @@ def covariance(self: Trajectory) -> Floats | None:
     forms, _ = _forms(self)
     if forms is None:
         return None
-    found = _squares(forms)
+    found = _squares(forms[..., :6, :])
     found[np.isnan(self.omega).any(axis=-1)] = np.nan  # after the end of a run
     return found
 
@@ -116,7 +116,10 @@ def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats
         return None
     body = self.body
     tensor = body.inertia_about(self._about_word())[..., None, :, :]
-    changes: Floats = tensor @ forms[..., 3:, :]
+    changes: Floats = tensor @ forms[..., 3:6, :]
+    if self.states:
+        by_omega, by_states = _of_carried(self)
+        changes = changes + by_omega @ forms[..., 3:6, :] + by_states @ forms[..., 6:, :]
     doubts, stack = body._doubts(), self.omega.shape[:-2]
     if doubts is not None:
         by_numbers = _tensors(self).reshape(-1, 10, 3, 3)
@@ -139,13 +142,35 @@ def spin_covariance(self: Trajectory, frame: Literal["space", "body"]) -> Floats
     return _squares(changes)
 
 
+def _of_carried(self: Trajectory) -> tuple[Floats, Floats]:
+    """Give the derivatives of the momentum carried along by ω and by the states; it is linear in both."""
+    load = self._acting("covariance")
+    assert load is not None
+    stack = self.omega.shape[:-2]
+    over_time = self._over_time(load)
+    own = {name: np.zeros((*stack, len(self.t), values.shape[-1])) for name, values in self.states.items()}
+
+    def carried(omega: Floats) -> Floats:
+        return over_time.carried(self.t, np.broadcast_to(omega, self.omega.shape), own)[0]
+
+    columns = [carried(axis) for axis in np.eye(3)]
+    for values in own.values():
+        for k in range(values.shape[-1]):
+            values[..., k] = 1.0
+            columns.append(carried(np.zeros(3)))
+            values[..., k] = 0.0
+    still = carried(np.zeros(3))  # of rotors, and of wheels whose speed is given
+    found = np.stack([column - still for column in columns], axis=-1)
+    return found[..., :3], found[..., 3:]
+
+
 def _squares(forms: Floats) -> Floats:
     """Give the covariance of numbers that depend on independent variables."""
     return np.asarray(np.einsum("...ik,...jk->...ij", forms, forms))
 
 
 def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
-    """Give what each variable does to (δ, ω) per deviation, shape (..., T, 6, k), and the columns of all."""
+    """Give what each variable does to (δ, ω, states) per deviation, (..., T, 6 + n, k), and their columns."""
     if not isinstance(self.uncertain_start, tuple):
         return _forms_from_zero(self)
     omega, attitude = self.uncertain_start
@@ -153,24 +178,29 @@ def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]
     if doubts is None and omega is None and attitude is None:
         return None, {}
     slopes = self.sensitivity()
+    count = slopes.state.shape[-1]  # of (δ, ω) and of the states of the load
     stack, times = self.omega.shape[:-2], self.omega.shape[-2]
     columns: dict[tuple[int, ...], int] = {}
-    terms: list[tuple[int, int, Floats]] = []  # row of the stack, column, change of (δ, ω) at every time
+    terms: list[tuple[int, int, Floats]] = []  # row of the stack, column, change at every time
     if doubts is not None:
-        by_numbers = _by_numbers(self, slopes).reshape(-1, times, 6, 10)
+        by_numbers = _by_numbers(self, slopes).reshape(-1, times, count, 10)
         ends = np.cumsum(doubts["counts"]).tolist()
         for k, row in enumerate(rows_of(self.body.shape, stack)):
             for entry in range(ends[row] - int(doubts["counts"][row]), ends[row]):
                 column = columns.setdefault(tuple(doubts["variables"][entry].tolist()), len(columns))
                 terms.append((k, column, by_numbers[k] @ doubts["tangents"][entry]))
-    by_state = slopes.state.reshape(-1, times, 6, 6)
+    by_state = slopes.state.reshape(-1, times, count, count)
+    # The states that begin with ω go with it.
+    by_omega = by_state[..., 3:6]
+    if count > 6:
+        by_omega = by_omega + by_state[..., 6:] @ slopes.begins.reshape(-1, 1, count - 6, 3)
     if omega is not None:
         forms, shape = omega._forms(), np.shape(omega.value)
         for k, row in enumerate(rows_of(shape[:-1], stack)):
             for place, form in enumerate(forms[3 * row : 3 * row + 3]):
                 for words, step in form:
                     column = columns.setdefault(tuple(words), len(columns))
-                    terms.append((k, column, by_state[k][:, :, 3 + place] * step))
+                    terms.append((k, column, by_omega[k][:, :, place] * step))
     if attitude is not None:
         # Its small angles are about fixed axes; those of the derivatives about the body's.
         starts = self.quaternion[..., 0, :].reshape(-1, 4)
@@ -179,10 +209,10 @@ def _forms(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]
                 local = by_state[k][:, :, :3] @ _core.rotate(start, axis, inverse=True)
                 for words, step in form:
                     terms.append((k, columns.setdefault(tuple(words), len(columns)), local * step))
-    out = np.zeros((int(np.prod(stack, dtype=int)), times, 6, len(columns)))
+    out = np.zeros((int(np.prod(stack, dtype=int)), times, count, len(columns)))
     for k, column, term in terms:
         out[k, :, :, column] += term
-    return out.reshape(*stack, times, 6, len(columns)), columns
+    return out.reshape(*stack, times, count, len(columns)), columns
 
 
 def _forms_from_zero(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, ...], int]]:
@@ -201,7 +231,7 @@ def _forms_from_zero(self: Trajectory) -> tuple[Floats | None, dict[tuple[int, .
 
 
 def _by_numbers(self: Trajectory, slopes: MotionSensitivity) -> Floats:
-    """Give the derivatives of (δ, ω) by the body's ten numbers, shape (..., T, 6, 10).
+    """Give the derivatives of (δ, ω, states) by the body's ten numbers, shape (..., T, 6 + n, 10).
 
     The sensitivities are by the tensor about the reference point P, in its principal axes:
     ``I_P = I_C + m (d² 1 − d dᵀ)``, d from P to C.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -17,19 +17,28 @@ if TYPE_CHECKING:
 __all__ = ["resume", "sensitivity"]
 
 
-def sensitivity(self: Trajectory) -> MotionSensitivity:
+def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "series") -> MotionSensitivity:
     """Tell how the motion depends on its start, on the body and on the numbers of the load.
+
+    Parameters
+    ----------
+    method : {"series", "differences"}
+        By the linearised equations, or by differences of order six of motions that are simulated anew, for
+        loads without series, such as functions, a motor with a limit and dry friction: nine digits or so.
 
     Returns
     -------
     MotionSensitivity
-        Derivatives of attitude and angular velocity at every time: by attitude and angular velocity at
-        the first, by moments, products, centre of mass and mass, and by every argument of the load.
+        Derivatives of attitude and angular velocity at every time, and of the states that the load has of its
+        own: by all of these at the first, by moments, products, centre of mass and mass, and by every
+        argument of the load.
 
     Raises
     ------
     PolhodeError
-        For a load with callbacks or compiled functions.
+        Of series, for a load that has none: callbacks and compiled functions, a magnetic field along an
+        orbit, B-dot, a motor with a limit, dry friction, a feedback on a target that moves. Of differences,
+        where those of order four and six differ.
     IntegrationError
         Where motion or derivatives cannot go on.
 
@@ -39,6 +48,15 @@ def sensitivity(self: Trajectory) -> MotionSensitivity:
     carries its derivatives, to the last digits whatever method and tolerance found this motion. Where a
     feedback turns its torque round, half a turn from its target, they jump as they must. For free bodies
     :meth:`FreeMotion.sensitivity` is exact at any time.
+
+    The states of a load that were not given to `simulate` follow from its numbers: a wheel begins with
+    ``h = J (Ω + a·ω)``. The derivatives by its inertia, its axis and its rate include that; those by ω at the
+    first time hold the states, and `begins` has what they add where the rate is held in place of them.
+
+    Differences follow the motion through every change of the law, since each neighbour finds its own: a wheel
+    that stops in its bearing, a motor that saturates. The numbers of functions are not known to them, and a
+    target is not varied; those of stacks of loads, of scaled and scheduled ones and beside compiled functions
+    are not either.
 
     Examples
     --------
@@ -55,9 +73,22 @@ def sensitivity(self: Trajectory) -> MotionSensitivity:
     ((2, 6, 6), (2, 6, 3))
     """
     self._check_series("sensitivity", "; FreeMotion.sensitivity(t) has those of a free body at any times")
-    start = self.state(0)
+    if method == "differences":
+        from polhode._differences import by_differences
+
+        return by_differences(self)
+    if method != "series":
+        raise ValueError(f"method: {method!r} is not 'series' or 'differences'")
+    start, load = self.state(0), self._acting("sensitivity")
     return _core.motion_sensitivity(
-        self.body, self.t, start.omega, start.attitude, self._acting("sensitivity"), self._about_word()
+        self.body,
+        self.t,
+        start.omega,
+        start.attitude,
+        load,
+        self._about_word(),
+        start.states if load is self.load else None,
+        self.__dict__.get("_given", ()),
     )
 
 
@@ -94,7 +125,7 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     if "load" in options:
         del given["states"]  # another load has others
     else:
-        load = self._acting("resume")
+        load = self._acting("resume", -1)
         if load is not None:
             options["load"] = load.anchored(float(self.t.flat[0]))
     options.setdefault("about", self._about_word())

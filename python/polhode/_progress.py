@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -14,12 +15,14 @@ if TYPE_CHECKING:
     Tell: TypeAlias = Callable[[float], object]
     Progress: TypeAlias = bool | Tell | None
 
-__all__ = ["duration", "watched"]
+__all__ = ["bar_of_core", "duration", "watched"]
 
 _SILENT: Final = 2.0
 """Seconds within which nothing is shown: most work is over by then."""
 _BETWEEN: Final = 0.2
 _WIDTH: Final = 30
+_under_way: Final[list[_Bar]] = []
+"""The bars of loops in Python, beneath which the core shows none."""
 
 
 @contextmanager
@@ -54,10 +57,23 @@ def watched(what: str, progress: Progress = None) -> Iterator[Tell | None]:
     if bar is None:
         yield None
         return
+    _under_way.append(bar)
     try:
         yield bar.tell
     finally:
+        _under_way.remove(bar)
         bar.clear()
+
+
+def bar_of_core() -> _Bar | None:
+    """Give the bar of a long run of the core; None where nobody would see it.
+
+    That is where stderr is no terminal, in a thread, and beneath a bar of a loop in Python.
+    """
+    is_main = threading.current_thread() is threading.main_thread()
+    if _under_way or not is_main or sys.stderr is None or not sys.stderr.isatty():
+        return None
+    return _Bar("polhode", sys.stderr, 0.0)
 
 
 def duration(seconds: float) -> str:

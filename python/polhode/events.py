@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -49,6 +49,59 @@ class Event:
     function: Callable[..., float]
     direction: float = 0.0
     terminal: bool | int = False
+    _of_wheel: tuple[str, str] | None = field(default=None, init=False, repr=False)
+
+    @classmethod
+    def stop(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
+        """Tell when a wheel with dry friction comes to rest in its bearing.
+
+        The run finds these times for its own sake, so that they are known to the last digits; the state of
+        the event is that of the wheel at rest. A motor that is stronger than the friction may turn it on at
+        once: then there is a :meth:`slip` at the same time.
+
+        Parameters
+        ----------
+        wheel : str
+            The name of its state in `states` of the trajectory.
+        terminal : bool or int
+            As of an event.
+
+        Examples
+        --------
+        >>> from polhode import Event, RigidBody, loads
+        >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 3.0))
+        >>> wheel = loads.wheel((0, 0, 1), inertia=0.5, rate=10.0, dry_friction=0.25)
+        >>> motion = body.simulate([0, 100], (0, 0, 0), load=wheel, events=Event.stop("wheel"))
+        >>> motion.events.t.round(9), motion.events.states["wheel"][0].round(9)
+        (array([16.66666667]), array([0.83333333]))
+        """
+        return cls._told("stop", wheel, 0.0, terminal)
+
+    @classmethod
+    def slip(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
+        """Tell when a wheel at rest in its bearing begins to turn; arguments as of :meth:`stop`."""
+        return cls._told("slip", wheel, 0.0, terminal)
+
+    @classmethod
+    def limit(cls, wheel: str = "wheel", *, direction: float = 0.0, terminal: bool | int = False) -> Event:
+        """Tell when what a motor with a limit is asked for passes that limit.
+
+        Parameters
+        ----------
+        wheel : str
+            The name of its state in `states` of the trajectory.
+        direction : float
+            Positive: only where the motor saturates; negative: only where it no longer does; zero: both.
+        terminal : bool or int
+            As of an event.
+        """
+        return cls._told("limit", wheel, direction, terminal)
+
+    @classmethod
+    def _told(cls, kind: str, wheel: str, direction: float, terminal: bool | int) -> Event:
+        event = cls(_never_called, direction, terminal)
+        object.__setattr__(event, "_of_wheel", (kind, str(wheel)))
+        return event
 
     def __call__(
         self,
@@ -61,6 +114,10 @@ class Event:
     ) -> float:
         """Evaluate the function."""
         return self.function(t, omega, quaternion, position, velocity, *states)
+
+
+def _never_called(*_: Any) -> float:
+    raise TypeError("an event of a wheel is found by simulate, and has no function to call")
 
 
 class _Events(NamedTuple):

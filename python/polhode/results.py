@@ -317,11 +317,14 @@ class MotionSensitivity(NamedTuple):
     """How a motion depends on what it is computed from: the derivatives of (δ, ω) at every time.
 
     δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
+    Where the load has k states of its own, they come after ω, in the order of `states` of the trajectory:
+    every 6 below is then 6 + k.
 
     Attributes
     ----------
     state : numpy.ndarray, shape (..., T, 6, 6)
-        By (δ, ω) at the first time: the state-transition matrix.
+        By (δ, ω) and the load's states at the first time, each with the others held: the state-transition
+        matrix. By the momentum of a wheel whose speed is given, which follows from ω, it is zero.
     moments : numpy.ndarray, shape (..., T, 6, 3)
         By the principal moments about the point `about` of the motion, ascending, with principal axes, mass
         and centre of mass held; not a number, as are `products`, for a body with a zero moment.
@@ -335,7 +338,12 @@ class MotionSensitivity(NamedTuple):
         For each term of the load: by each argument of the function of :mod:`polhode.loads` that makes it,
         under its name, shape (..., T, 6) and then that of the argument, a matrix in full. A target is varied
         by a small rotation of it, a term that was multiplied by a factor as it is after that; frames, times
-        of samples, windows and epochs are held.
+        of samples, windows and epochs are held. Of a wheel whose motor follows a feedback the arguments of
+        both.
+    begins : numpy.ndarray, shape (..., k, 3)
+        Of the states that the load begins with, by ω at the first time; of a wheel ``J a``. With its rate
+        held in place of its momentum, the motion depends on ω by
+        ``state[..., 3:6] + state[..., 6:] @ begins[..., None, :, :]``. Zero for states that were given.
     """
 
     state: Floats
@@ -344,6 +352,7 @@ class MotionSensitivity(NamedTuple):
     center_of_mass: Floats
     mass: Floats
     load: tuple[dict[str, Floats], ...]
+    begins: Floats
 
     def __repr__(self) -> str:
         # Of the load the names of what varies.

@@ -97,7 +97,9 @@ def _row(run: Trajectory, stack: tuple[int, ...], row: int) -> NDArray[np.bool_]
         omega = np.array([one[0] for one in neighbours])
     if of_attitude is not None:
         attitude = _product(_exponential(np.array([one[-1] for one in neighbours])), attitude)
-    at_start = {} if run.pivoted else {"velocity": run.velocity[place][0]}
+    at_start: dict[str, Any] = {} if run.pivoted else {"velocity": run.velocity[place][0]}
+    if "_given" in run.__dict__:
+        at_start["states"] = {name: run.states[name][place][0] for name in run.__dict__["_given"]}
     try:
         beside = bodies.simulate(
             run.t,

@@ -139,7 +139,7 @@ pub fn simulated(body: &RigidBody, mut draw: Draw<'_>) -> Result<()> {
             let direction = draw.one_of(&directions)?;
             let last = draw.one_of(&[0, 1, 2])?;
             let mut passages = Passages {
-                rules: vec![Rule { direction, last }; events],
+                rules: vec![Rule { direction, last, ..Rule::default() }; events],
                 levels: if draw.coin()? {
                     [0.0; 3]
                 } else {

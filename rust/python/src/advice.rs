@@ -75,7 +75,7 @@ fn of_motion(fault: &MotionFault) -> &'static str {
             ": body.simulate(times, omega, load=polhode.loads.rotor(momentum)), or polhode.loads.wheel for wheels that are free"
         }
         MotionFault::TooManySteps { .. } => " with resume",
-        MotionFault::NoSeries => ": rtol=1e-13",
+        MotionFault::NoSeries => ": sensitivity(method=\"differences\")",
         _ => "",
     }
 }

@@ -2,13 +2,14 @@
 
 use numpy::PyArray1;
 use polhode::motion::attitude::components;
-use polhode::motion::loads::Term;
-use polhode::motion::simulate::{Direction, Events, Rule};
+use polhode::motion::loads::{Carried, Term};
+use polhode::motion::simulate::{Direction, Events, Rule, Watched};
 use polhode::motion::state::Phase;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::loads::{Fault, Named, Slot};
+use crate::loads::{Fault, Named, PyLoad, Slot};
+use crate::stack::Stack;
 
 /// The functions of an argument `events`.
 #[derive(Default)]
@@ -18,14 +19,18 @@ pub(crate) struct Functions {
 }
 
 impl Functions {
-    /// One function or a sequence of them; attributes `direction` and `terminal` as in SciPy.
-    pub(crate) fn read(events: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+    /// One function or a sequence of them; attributes `direction` and `terminal` as in SciPy. Some are told by the load.
+    pub(crate) fn read(
+        events: Option<&Bound<'_, PyAny>>,
+        load: &PyLoad,
+        terms: &Stack<Vec<Term>>,
+    ) -> PyResult<Self> {
         let mut all = Self::default();
         let Some(events) = events.filter(|events| !events.is_none()) else {
             return Ok(all);
         };
         if events.is_callable() {
-            all.push(events)?;
+            all.push(events, load, terms)?;
             return Ok(all);
         }
         let items = events.try_iter().map_err(|_| {
@@ -35,12 +40,17 @@ impl Functions {
             ))
         })?;
         for item in items {
-            all.push(&item?)?;
+            all.push(&item?, load, terms)?;
         }
         Ok(all)
     }
 
-    fn push(&mut self, function: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn push(
+        &mut self,
+        function: &Bound<'_, PyAny>,
+        load: &PyLoad,
+        terms: &Stack<Vec<Term>>,
+    ) -> PyResult<()> {
         let number = self.functions.len();
         if !function.is_callable() {
             return Err(PyTypeError::new_err(format!(
@@ -84,6 +94,7 @@ impl Functions {
                 reason = "checked above to be a count"
             )]
             last: terminal as u64,
+            watched: watched(function, load, terms)?,
         });
         Ok(())
     }
@@ -104,6 +115,60 @@ impl Functions {
             states,
         }
     }
+}
+
+/// What an event looks for: its function, or what becomes of a wheel of the load.
+fn watched(event: &Bound<'_, PyAny>, load: &PyLoad, terms: &Stack<Vec<Term>>) -> PyResult<Watched> {
+    let Some(of) = event
+        .getattr_opt("_of_wheel")?
+        .filter(|given| !given.is_none())
+    else {
+        return Ok(Watched::Function);
+    };
+    let (kind, name): (String, String) = of.extract()?;
+    let slots = load.slots();
+    let Some(slot) = slots.iter().find(|slot| slot.name == name) else {
+        let known: Vec<_> = slots
+            .iter()
+            .map(|slot| format!("{:?}", slot.name))
+            .collect();
+        let known = if known.is_empty() {
+            "nothing".to_owned()
+        } else {
+            known.join(", ")
+        };
+        return Err(PyValueError::new_err(format!(
+            "events: Event.{kind} asks for the wheel {name:?}; the load carries {known}"
+        )));
+    };
+    let (watched, has, lack): (_, fn(&dyn Carried) -> bool, _) = match kind.as_str() {
+        "stop" => (Watched::Stop(slot.first), has_bearing, "dry friction"),
+        "slip" => (Watched::Slip(slot.first), has_bearing, "dry friction"),
+        _ => (
+            Watched::Limit(slot.first),
+            |carried| carried.has_limit(),
+            "a motor with a limit",
+        ),
+    };
+    let is_able = |row: &Vec<Term>| {
+        let mut index = 0;
+        let mut all = row.iter().filter_map(Term::carried);
+        all.any(|carried| {
+            let is_it = index == slot.first && carried.count() > 0;
+            index += carried.count();
+            is_it && has(carried)
+        })
+    };
+    if !terms.rows.iter().any(is_able) {
+        return Err(PyValueError::new_err(format!(
+            "events: Event.{kind} asks for a wheel with {lack}, which {name:?} is not"
+        )));
+    }
+    Ok(watched)
+}
+
+fn has_bearing(carried: &dyn Carried) -> bool {
+    carried.bearing().is_some()
 }
 
 /// Functions that are called while a body is simulated.

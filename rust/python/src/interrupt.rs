@@ -13,6 +13,8 @@ use pyo3::prelude::*;
 const INTERVAL: u64 = 20;
 /// How often a progress callback is told, in milliseconds.
 const TELLING: u64 = 50;
+/// For how long a run is silent on a terminal: most are over by then.
+const SILENT: Duration = Duration::from_secs(2);
 /// How long a pass over many rows holds Python alone.
 const HOLD: Duration = Duration::from_millis(20);
 
@@ -49,6 +51,14 @@ impl<'py> Beat<'py> {
     }
 }
 
+/// The bar that shows on a terminal how far a run is.
+enum Bar {
+    Unasked,
+    /// Nobody would see it.
+    Nowhere,
+    Shown(Py<PyAny>),
+}
+
 /// A run that Python may stop: by Ctrl-C, or by an exception from its progress callback.
 pub(crate) struct Interrupt {
     start: Instant,
@@ -59,6 +69,8 @@ pub(crate) struct Interrupt {
     stopped: AtomicBool,
     error: Mutex<Option<PyErr>>,
     progress: Option<Py<PyAny>>,
+    /// The bar of a long run without such a callback.
+    bar: Mutex<Bar>,
     /// The thread that called: signals of Python are seen by its main thread alone, so no other one may ask in its place.
     caller: ThreadId,
 }
@@ -77,6 +89,7 @@ impl Interrupt {
             stopped: AtomicBool::new(false),
             error: Mutex::new(None),
             progress,
+            bar: Mutex::new(Bar::Unasked),
         }
     }
 
@@ -99,14 +112,34 @@ impl Interrupt {
     fn ask(&self, fraction: Option<f64>) {
         let answer = Python::attach(|py| {
             py.check_signals()?;
-            if let (Some(progress), Some(fraction)) = (&self.progress, fraction) {
-                progress.call1(py, (fraction,))?;
+            match (&self.progress, fraction) {
+                (Some(progress), Some(fraction)) => progress.call1(py, (fraction,)).map(|_| ()),
+                (None, Some(fraction)) if self.start.elapsed() >= SILENT => self.show(py, fraction),
+                _ => Ok(()),
             }
-            Ok(())
         });
         if let Err(error) = answer {
             self.stop(error);
         }
+    }
+
+    /// Shows how far a long run is, where stderr is a terminal.
+    fn show(&self, py: Python<'_>, fraction: f64) -> PyResult<()> {
+        let mut bar = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
+        if matches!(*bar, Bar::Unasked) {
+            let made = py
+                .import("polhode._progress")?
+                .call_method0("bar_of_core")?;
+            *bar = if made.is_none() {
+                Bar::Nowhere
+            } else {
+                Bar::Shown(made.unbind())
+            };
+        }
+        if let Bar::Shown(bar) = &*bar {
+            bar.call_method1(py, "tell", (fraction,))?;
+        }
+        Ok(())
     }
 
     /// Ends the run by this exception, unless another one has done so.
@@ -125,6 +158,10 @@ impl Interrupt {
 
     /// The end of the run: the exception that stopped it, or a last word to the progress callback when it is complete.
     pub(crate) fn finish(self, py: Python<'_>, complete: bool) -> PyResult<()> {
+        let bar = self.bar.into_inner();
+        if let Bar::Shown(bar) = bar.unwrap_or_else(PoisonError::into_inner) {
+            bar.call_method0(py, "clear")?;
+        }
         if let Some(error) = self
             .error
             .into_inner()

@@ -1,8 +1,9 @@
 //! The derivatives of a motion under a load.
 
 use std::convert::Infallible;
+use std::ops::Range;
 
-use nalgebra::{Matrix6, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use numpy::PyArrayDyn;
 use polhode::RigidBody;
 use polhode::motion::integrate::variation::{Variation, variations};
@@ -14,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::about::is_pivot;
-use crate::arrays::{Numbers, read, write_of};
+use crate::arrays::{Numbers, read};
 use crate::attitudes::read_attitude;
 use crate::body::PyRigidBody;
 use crate::errors::{at_row, new, to_py};
@@ -24,9 +25,11 @@ use crate::memory;
 use crate::stack::{Broadcast, Stack};
 use crate::times::read_times;
 
-/// The derivatives of motions from states at the first of the times.
+/// The derivatives of motions from states at the first of the times; `given` names the states of the load that do not follow from its
+/// numbers.
 #[pyfunction]
-#[pyo3(signature = (body, t, omega, quaternion, load, about))]
+#[pyo3(signature = (body, t, omega, quaternion, load, about, states=None, given=Vec::new()))]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub(crate) fn motion_sensitivity<'py>(
     py: Python<'py>,
     body: &Bound<'py, PyRigidBody>,
@@ -35,12 +38,14 @@ pub(crate) fn motion_sensitivity<'py>(
     quaternion: &Bound<'py, PyAny>,
     load: Option<&Bound<'py, PyLoad>>,
     about: &str,
+    states: Option<&Bound<'py, PyAny>>,
+    given: Vec<String>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let nothing = PyLoad::default();
     let load = load.map_or(&nothing, Bound::get);
     if !load.is_analytic() {
-        let message = "sensitivity: the load has parts that call a function, of which no derivatives are known; take \
-             differences of motions simulated at rtol=1e-13 from states and loads a little apart"
+        let message = "sensitivity: the load has parts that call a function, of which no derivatives are known; \
+             sensitivity(method=\"differences\") takes differences of motions from states and loads a little apart"
             .to_owned();
         return Err(new(py, "PolhodeError", message));
     }
@@ -50,23 +55,43 @@ pub(crate) fn motion_sensitivity<'py>(
         omega: read(omega, "omega")?,
         attitude: read_attitude(Some(quaternion), "quaternion")?,
         terms: load.terms(py)?,
+        states: load.read_states(states, false)?,
+        given: load
+            .slots()
+            .iter()
+            .flat_map(|slot| vec![given.contains(&slot.name); slot.count])
+            .collect(),
+        load,
         times: &times,
         pivoted: is_pivot(about)?,
         tolerance: Tolerance::new(1e-10, 0.0).map_err(|error| to_py(py, &error))?,
     };
     let found = motions.vary(py)?;
+    let own = motions.given.len();
+    let numbers = motions.terms.rows.first().into_iter().flatten();
+    let first = LOAD + numbers.map(Term::count).sum::<usize>();
+    let [state, moments, products, center, mass] = Variation::COLUMNS;
+    let of = |columns: Range<usize>| {
+        let shape = [columns.len()];
+        columns_of(py, &found, own, &columns.collect::<Vec<_>>(), &shape)
+    };
+    let both: Vec<usize> = state.chain(first..first + own).collect();
     let parts = (
-        write_of(py, &found, |slopes| Matrix6::from(slopes.state))?,
-        write_of(py, &found, |slopes| slopes.moments)?,
-        write_of(py, &found, |slopes| slopes.products)?,
-        write_of(py, &found, |slopes| slopes.center_of_mass)?,
-        write_of(py, &found, |slopes| slopes.mass)?,
-        by_load(py, &motions.terms, &found)?,
+        columns_of(py, &found, own, &both, &[both.len()])?,
+        of(moments)?,
+        of(products)?,
+        of(center)?,
+        columns_of(py, &found, own, &mass.collect::<Vec<_>>(), &[])?,
+        by_load(py, &motions.terms, &found, own)?,
+        begins(py, &found, own)?,
     );
     py.import("polhode.results")?
         .getattr("MotionSensitivity")?
         .call1(parts)
 }
+
+/// The column of the first number of a load.
+const LOAD: usize = Variation::COLUMNS[4].end;
 
 /// Bodies, states at the start and loads.
 struct Motions<'a> {
@@ -74,6 +99,11 @@ struct Motions<'a> {
     omega: Stack<Vector3<f64>>,
     attitude: Stack<UnitQuaternion<f64>>,
     terms: Stack<Vec<Term>>,
+    load: &'a PyLoad,
+    /// As they are reported.
+    states: Stack<Vec<f64>>,
+    /// Whether each of them does not follow from the numbers of the load.
+    given: Vec<bool>,
     times: &'a [f64],
     pivoted: bool,
     tolerance: Tolerance,
@@ -87,8 +117,9 @@ impl Motions<'_> {
             &self.omega.shape,
             &self.attitude.shape,
             &self.terms.shape,
+            &self.states.shape,
         ];
-        let grid = Broadcast::of(["body", "omega", "quaternion", "load"], shapes)?;
+        let grid = Broadcast::of(["body", "omega", "quaternion", "load", "states"], shapes)?;
         let shape = [&grid.shape[..], &[self.times.len()]].concat();
         let mut found = memory::vector("sensitivity", &shape, 2)?;
         let mut rows = memory::vector("sensitivity", &grid.shape, 0)?;
@@ -113,13 +144,15 @@ impl Motions<'_> {
 
     fn of(
         &self,
-        [b, w, q, l]: [usize; 4],
+        [b, w, q, l, s]: [usize; 5],
         interrupt: &Interrupt,
     ) -> Result<Vec<Variation>, polhode::Error> {
-        let initial = Phase::in_place(&State {
+        let mut initial = Phase::in_place(&State {
             attitude: self.attitude[q],
             omega: self.omega[w],
         });
+        let terms = &self.terms[l];
+        initial.own = (self.load).begun(terms, self.times[0], &self.omega[w], &self.states[s]);
         let of = if self.pivoted {
             Task::pivoted
         } else {
@@ -127,7 +160,7 @@ impl Motions<'_> {
         };
         let body = &self.bodies[b];
         let task = of(body, initial, self.times, Method::Taylor, self.tolerance);
-        variations(&task, &self.terms[l], &mut |_| interrupt.poll(None))
+        variations(&task, terms, &self.given, &mut |_| interrupt.poll(None))
     }
 }
 
@@ -136,36 +169,54 @@ fn by_load<'py>(
     py: Python<'py>,
     terms: &Stack<Vec<Term>>,
     found: &Stack<Variation>,
+    own: usize,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let mut first = 0;
+    let mut first = LOAD;
     let mut dictionaries = Vec::new();
     for term in terms.rows.first().into_iter().flatten() {
         let dictionary = PyDict::new(py);
         for parameter in term.parameters() {
-            let columns = first..first + parameter.count();
-            let slopes = columns_of(py, found, columns.clone(), &parameter.shape)?;
+            let end = first + parameter.count();
+            let columns: Vec<usize> = (first..end).collect();
+            let slopes = columns_of(py, found, own, &columns, &parameter.shape)?;
             dictionary.set_item(parameter.name, slopes)?;
-            first = columns.end;
+            first = end;
         }
         dictionaries.push(dictionary);
     }
     PyTuple::new(py, dictionaries)
 }
 
-/// Columns as an array, shape (..., 6) and then `shape`.
+/// Columns as an array, shape (..., 6 + own) and then `shape`.
 fn columns_of<'py>(
     py: Python<'py>,
     found: &Stack<Variation>,
-    columns: std::ops::Range<usize>,
+    own: usize,
+    columns: &[usize],
     shape: &[usize],
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let shape = [&found.shape[..], &[6], shape].concat();
+    let shape = [&found.shape[..], &[6 + own], shape].concat();
     let mut numbers = Numbers::of::<f64>(py, "sensitivity", &shape)?;
     numbers.put(&found.rows, |slopes, out| {
-        let columns = &slopes.load[columns.clone()];
-        for row in 0..6 {
-            out.extend(columns.iter().map(|column| column[row]));
+        for row in 0..6 + own {
+            out.extend(columns.iter().map(|&column| slopes.slope(row, column)));
         }
+    })?;
+    numbers.finish::<f64>(&shape)
+}
+
+/// By ω at the start the states there that follow from it, shape (..., own, 3).
+fn begins<'py>(
+    py: Python<'py>,
+    found: &Stack<Variation>,
+    own: usize,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let times = found.shape.last().copied().unwrap_or(1);
+    let shape = [&found.shape[..found.shape.len() - 1], &[own, 3]].concat();
+    let mut numbers = Numbers::of::<f64>(py, "sensitivity", &shape)?;
+    let firsts: Vec<_> = found.rows.iter().step_by(times).collect();
+    numbers.put(&firsts, |slopes, out| {
+        out.extend(slopes.begins.iter().flatten());
     })?;
     numbers.finish::<f64>(&shape)
 }

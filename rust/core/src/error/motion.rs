@@ -211,10 +211,10 @@ pub enum MotionFault {
         /// What is allowed.
         allowed: f64,
     },
-    /// Derivatives of a motion under a law that has states of its own, or whose series is not known.
+    /// Derivatives of a motion under a law whose series is not known.
     #[error(
-        "sensitivity: a part of the load has states of its own, or no series from which derivatives come, as a magnetic field \
-         along an orbit and B-dot; take differences of motions from states and loads a little apart, simulated tightly"
+        "sensitivity: a part of the load has no series from which derivatives come, as a magnetic field along an orbit, B-dot, a \
+         motor with a limit and dry friction; take differences of motions from states and loads a little apart, simulated tightly"
     )]
     NoSeries,
     /// A gyrostat of which the closed form loses too many digits.

@@ -151,6 +151,10 @@ impl Load for Acting<'_, '_> {
         self.analytic.bearings()
     }
 
+    fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
+        self.analytic.over_limit(state, t, phase)
+    }
+
     #[inline]
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Fault> {
         self.act(t, phase, &mut [])

@@ -195,7 +195,7 @@ impl PyRigidBody {
             terms: acts.terms(py)?,
             states: acts.read_states(states, false)?,
         };
-        let events = Functions::read(events)?;
+        let events = Functions::read(events, acts, &start.terms)?;
         let of_one = most_demanding(&start.terms.rows, pivoted);
         let interrupt = Interrupt::new(progress);
         let plan = Plan::new(
@@ -228,6 +228,11 @@ impl PyRigidBody {
         if given.uncertain.is_any() {
             let known = trajectory.getattr("__dict__")?;
             known.set_item("uncertain_start", given.uncertain.to_python(py)?)?;
+        }
+        if let Some(Ok(states)) = states.map(|states| states.cast::<PyDict>()) {
+            // Those of the load that do not follow from its numbers.
+            let known = trajectory.getattr("__dict__")?;
+            known.set_item("_given", states.keys())?;
         }
         let failure = raises && has_failures;
         if let Err(stop) = interrupt.finish(py, !failure) {

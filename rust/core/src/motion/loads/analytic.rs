@@ -149,6 +149,27 @@ impl Load for Analytic<'_> {
         self.bearings.as_deref().unwrap_or_default()
     }
 
+    fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
+        let mut index = 0;
+        for term in self.terms {
+            if let Some(carried) = term.carried() {
+                if index == state && carried.count() > 0 {
+                    let side = (term.switch(&self.subject, t, phase)).map_or(1.0, |it| it.side);
+                    let now = Now {
+                        subject: &self.subject,
+                        t,
+                        middle: self.middle,
+                        phase,
+                        side,
+                    };
+                    return carried.over_limit(&now);
+                }
+                index += carried.count();
+            }
+        }
+        -1.0
+    }
+
     #[inline]
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, Error> {
         self.act(t, phase, &mut [])

@@ -103,6 +103,25 @@ impl<X: Exact> Axes<'_, X> {
         self.variables.matrix(value, self.first + index)
     }
 
+    /// What a number of the term differs by from its value: zero, but its derivative is not.
+    pub(super) fn variation(&self, value: f64, index: usize) -> X {
+        self.number(value, index) - X::from(value)
+    }
+
+    /// Whether one of `count` numbers of the term from `index` on is varied.
+    pub(super) fn varies(&self, index: usize, count: usize) -> bool {
+        let first = self.first + index;
+        self.variables.varies(first..first + count)
+    }
+
+    /// Those of the part of the term whose first number is its number `index`.
+    pub(super) fn part(&self, index: usize) -> Self {
+        Self {
+            first: self.first + index,
+            ..*self
+        }
+    }
+
     /// m.
     pub(super) fn mass(&self) -> X {
         self.variables.number(self.subject.mass, MASS)

@@ -17,6 +17,14 @@ pub trait Carried {
     /// Its states where a motion starts at time `t` with `omega`, unless others are given.
     fn begin(&self, t: f64, omega: &Vector3<f64>) -> Vec<f64>;
 
+    /// How these states depend on what they are made of: by ω (in B), and by the numbers of the law, for each state.
+    fn beginning(&self, t: f64, omega: &Vector3<f64>) -> Vec<(Vector3<f64>, Vec<f64>)>;
+
+    /// Whether its states follow from the law alone at any time, so that none can be given.
+    fn is_known(&self) -> bool {
+        false
+    }
+
     /// The states as they are reported, of the same number: those of a wheel are its momentum `h = J (Ω + a·ω)`.
     fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64>;
 
@@ -31,6 +39,17 @@ pub trait Carried {
     /// wheel's momentum; [`Self::torque`] and [`Self::rates`] leave the friction out.
     fn bearing(&self) -> Option<(Vector3<f64>, f64, f64)> {
         None
+    }
+
+    /// Whether its motor has a limit.
+    fn has_limit(&self) -> bool {
+        false
+    }
+
+    /// By how much more than its limit its motor is asked for: `(τ/limit)² − 1`; less than zero of one without.
+    fn over_limit(&self, now: &Now<'_>) -> f64 {
+        let _ = now;
+        -1.0
     }
 
     /// The torque about the reference point that stands beside that tensor.

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::axes::{Axes, Exact};
+use super::parameter::Parameter;
 use crate::error::{Error, MotionFault, all_finite, finite};
 
 /// A number that changes at known times.
@@ -79,8 +81,55 @@ impl Held {
     /// The value at time `t`, held since the last of its times up to it.
     #[must_use]
     pub fn value(&self, t: f64) -> f64 {
+        self.values[self.index(t)]
+    }
+
+    /// The value at time `t` in numbers of any kind, those that it is made of being numbers of the term from `first` on.
+    pub(super) fn number<X: Exact>(&self, t: f64, axes: &Axes<'_, X>, first: usize) -> X {
+        let index = self.index(t);
+        axes.number(self.values[index], first + index)
+    }
+
+    fn index(&self, t: f64) -> usize {
         let passed = self.times.partition_point(|&time| time <= t);
-        self.values[passed.saturating_sub(1)]
+        passed.saturating_sub(1)
+    }
+
+    /// How fast the straight lines change after `t`, likewise.
+    pub(super) fn slope<X: Exact>(&self, t: f64, axes: &Axes<'_, X>, first: usize) -> X {
+        let mut slope = X::from(self.line(t)[1]);
+        if axes.varies(first, self.values.len()) {
+            for (index, [_, share]) in self.shares(t) {
+                slope += axes.variation(self.values[index], first + index) * X::from(share);
+            }
+        }
+        slope
+    }
+
+    /// The values that the straight lines are made of at time `t`, and the share of each in the value there and in the slope.
+    pub(super) fn shares(&self, t: f64) -> Vec<(usize, [f64; 2])> {
+        if self.times.len() < 2 {
+            return vec![(0, [1.0, 0.0])];
+        }
+        let k = self.stretch(t);
+        let (from, to) = (self.times[k - 1], self.times[k]);
+        let (part, rate) = ((t - from) / (to - from), 1.0 / (to - from));
+        vec![(k - 1, [1.0 - part, -rate]), (k, [part, rate])]
+    }
+
+    /// The line that holds at time `t`, by the number of the time at which it ends.
+    fn stretch(&self, t: f64) -> usize {
+        let passed = self.times.partition_point(|&time| time <= t);
+        passed.clamp(1, self.times.len() - 1)
+    }
+
+    /// Its numbers as those of a load.
+    pub(super) fn parameter(&self, name: &'static str) -> Parameter {
+        if self.times.is_empty() {
+            Parameter::new(name, &[])
+        } else {
+            Parameter::new(name, &[self.values.len()])
+        }
     }
 
     /// The value at time `t` of the straight lines between its times, and how fast it changes after `t`.
@@ -89,8 +138,7 @@ impl Held {
         if self.times.len() < 2 {
             return [self.values[0], 0.0];
         }
-        let passed = self.times.partition_point(|&time| time <= t);
-        let k = passed.clamp(1, self.times.len() - 1);
+        let k = self.stretch(t);
         let (from, to) = (self.times[k - 1], self.times[k]);
         let slope = (self.values[k] - self.values[k - 1]) / (to - from);
         [self.values[k - 1] + slope * (t - from), slope]

@@ -67,6 +67,8 @@ pub struct Own<X: Exact> {
     pub turned: Option<(usize, usize)>,
     /// What counts as large is that times the largest |ω|, or what it has come to.
     pub size: f64,
+    /// What is reported of it is the state itself and that times ω.
+    pub reported_on_omega: Vector3<X>,
 }
 
 impl<X: Exact> Default for Own<X> {
@@ -80,6 +82,7 @@ impl<X: Exact> Default for Own<X> {
             on_attitude: Vector4::zeros(),
             turned: None,
             size: 1.0,
+            reported_on_omega: Vector3::zeros(),
         }
     }
 }

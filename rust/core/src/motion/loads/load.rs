@@ -56,6 +56,13 @@ pub trait Load {
         &[]
     }
 
+    /// Of the wheel whose momentum is the state of that number, by how much more than its limit the motor is asked for; see
+    /// [`Carried::over_limit`].
+    fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
+        let _ = (state, t, phase);
+        -1.0
+    }
+
     /// Force in N and torque in B about the reference point.
     ///
     /// # Errors

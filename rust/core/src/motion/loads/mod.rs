@@ -11,7 +11,7 @@
 //! | a torque sampled in time | cubic spline | [`sampled`] |
 //! | a magnetic field | `N = (d − k Ḃ) × B` | [`magnetic`] |
 //! | a rotor | `N = −ω × h` | [`rotor`] |
-//! | a wheel with motor and friction | `ḣ = τ − c Ω − c₀ sign(Ω)` | [`wheel`], [`held`], `bearing`, `resting` |
+//! | a wheel with motor and friction | `ḣ = τ − c Ω − c₀ sign(Ω)` | [`wheel`], `drive`, [`held`], `bearing`, `resting` |
 //! | a spherical damper | `N = k (σ − ω)` | [`slug`] |
 //! | any of them on and off | windows of time | [`schedule`] |
 //! | what the caller knows | a closure of time and state | `callback` |
@@ -27,6 +27,7 @@ mod carried;
 pub mod constant_force;
 pub mod constant_torque;
 pub mod damping;
+mod drive;
 pub mod feedback;
 mod forcing;
 pub mod gravity_gradient;
@@ -64,6 +65,7 @@ pub use self::carried::Carried;
 pub use self::constant_force::ConstantForce;
 pub use self::constant_torque::ConstantTorque;
 pub use self::damping::Damping;
+pub use self::drive::Drive;
 pub use self::feedback::Feedback;
 pub use self::forcing::{Forcing, OnOrbit, Timed, When};
 pub use self::gravity_gradient::GravityGradient;
@@ -86,6 +88,6 @@ pub use self::subject::Subject;
 pub use self::switch::{Change, Switch};
 pub use self::term::Term;
 pub use self::uniform_gravity::UniformGravity;
-pub use self::wheel::{Drive, Wheel};
+pub use self::wheel::Wheel;
 pub use self::wrench::Wrench;
 pub use super::kinematics::Frame;

@@ -107,6 +107,10 @@ impl Carried for Rotor {
         Vec::new()
     }
 
+    fn beginning(&self, _: f64, _: &Vector3<f64>) -> Vec<(Vector3<f64>, Vec<f64>)> {
+        Vec::new()
+    }
+
     fn reported(&self, _: &[f64], _: &Vector3<f64>) -> Vec<f64> {
         Vec::new()
     }

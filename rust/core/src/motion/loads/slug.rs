@@ -135,6 +135,13 @@ impl Carried for Slug {
         omega.as_slice().to_vec()
     }
 
+    fn beginning(&self, _: f64, _: &Vector3<f64>) -> Vec<(Vector3<f64>, Vec<f64>)> {
+        let identity = Matrix3::identity();
+        (0..3)
+            .map(|i| (identity.column(i).into(), vec![0.0; 2]))
+            .collect()
+    }
+
     fn reported(&self, own: &[f64], _: &Vector3<f64>) -> Vec<f64> {
         own.to_vec()
     }

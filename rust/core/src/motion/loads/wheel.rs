@@ -4,8 +4,8 @@ use nalgebra::{Vector3, Vector4};
 
 use super::axes::{Axes, Exact, exact};
 use super::carried::Carried;
+use super::drive::Drive;
 use super::feedback::Feedback;
-use super::held::Held;
 use super::law::{Character, Kept, Law, Parts};
 use super::linear::{Linear, Own};
 use super::now::Now;
@@ -17,18 +17,13 @@ use super::wrench::Wrench;
 use crate::error::{Error, MotionFault, finite};
 use crate::motion::state::Phase;
 
-/// What turns a wheel.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Drive {
-    /// A motor whose torque τ on the wheel, about its axis, is known; no motor where it is zero.
-    Torque(Held),
-    /// A motor that exerts on the body, about the wheel's axis, what a feedback asks for: `τ = −a·N`.
-    Feedback(Feedback),
-    /// The same, as far as the motor can: `|τ|` is at most the limit.
-    Limited(Feedback, f64),
-    /// A motor that gives the wheel a speed Ω relative to the body that is known: straight lines between times.
-    Speed(Held),
-}
+/// The places of its numbers among its parameters: of a wheel whose speed is given, the speed stands where the others have their rate.
+const AXIS: usize = 0;
+const INERTIA: usize = 3;
+const RATE: usize = 4;
+const SPEED: usize = 4;
+const FRICTION: usize = 5;
+const DRIVE: usize = 6;
 
 /// A wheel that turns about an axis a fixed in the body with the rate Ω relative to it: J is its moment about that axis, and the
 /// tensor I of the body includes it as if it were locked.
@@ -110,10 +105,7 @@ impl Wheel {
 
     /// The feedback that its motor follows.
     fn feedback(&self) -> Option<&Feedback> {
-        match &self.drive {
-            Drive::Feedback(law) | Drive::Limited(law, _) => Some(law),
-            Drive::Torque(_) | Drive::Speed(_) => None,
-        }
+        self.drive.feedback()
     }
 
     /// Whether its speed is given.
@@ -148,7 +140,13 @@ impl Wheel {
 
     /// a of unit length, in principal axes.
     fn direction<X: Exact>(&self, axes: &Axes<'_, X>) -> Vector3<X> {
-        let scaled = exact::<X>(&(self.axis / self.axis.amax().log2().floor().exp2()));
+        let scale = self.axis.amax().log2().floor().exp2();
+        let mut scaled = exact::<X>(&(self.axis / scale));
+        if axes.varies(AXIS, 3) {
+            for i in 0..3 {
+                scaled[i] += axes.variation(self.axis[i], AXIS + i) / X::from(scale);
+            }
+        }
         axes.principal(&(scaled / scaled.dot(&scaled).root()))
     }
 }
@@ -173,15 +171,21 @@ impl Law for Wheel {
         }
     }
 
-    /// Names alone: derivatives of a motion under a load with states are refused, and [`Self::add_to`] asks for no varied
-    /// numbers.
+    /// Those of a feedback that its motor follows are the last; a limit and dry friction have no series, and are left out.
     fn parameters(&self) -> Vec<Parameter> {
-        vec![
-            Parameter::new("axis", &[3]),
-            Parameter::new("inertia", &[]),
-            Parameter::new("rate", &[]),
-            Parameter::new("friction", &[]),
-        ]
+        let mut all = vec![Parameter::new("axis", &[3]), Parameter::new("inertia", &[])];
+        if let Drive::Speed(speed) = &self.drive {
+            all.push(speed.parameter("speed"));
+            return all;
+        }
+        all.push(Parameter::new("rate", &[]));
+        all.push(Parameter::new("friction", &[]));
+        match &self.drive {
+            Drive::Torque(torque) => all.push(torque.parameter("torque")),
+            Drive::Feedback(law) | Drive::Limited(law, _) => all.extend(law.parameters()),
+            Drive::Speed(_) => {}
+        }
+        all
     }
 
     fn scaled(&self, _: f64) -> Result<Self, Error> {
@@ -196,10 +200,7 @@ impl Law for Wheel {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        match &self.drive {
-            Drive::Torque(held) | Drive::Speed(held) => held.times().to_vec(),
-            Drive::Feedback(law) | Drive::Limited(law, _) => law.breaks(),
-        }
+        self.drive.breaks()
     }
 
     fn check(&self, subject: &Subject, from: f64, to: f64) -> Result<(), Error> {
@@ -210,11 +211,7 @@ impl Law for Wheel {
                 value: to,
             });
         }
-        match &self.drive {
-            Drive::Torque(held) => held.covers("torque", from, to, false),
-            Drive::Speed(held) => held.covers("speed", from, to, true),
-            Drive::Feedback(law) | Drive::Limited(law, _) => law.check(subject, from, to),
-        }
+        self.drive.check(subject, from, to)
     }
 
     /// At a start; of a wheel at rest without what its bearing holds, which follows from all loads on the body.
@@ -245,7 +242,12 @@ impl Law for Wheel {
 
     fn add_to<'a, X: Exact>(&'a self, linear: &mut Linear<'a, X>, axes: &Axes<'_, X>, side: f64) {
         let a = self.direction(axes);
-        let (inertia, friction) = (X::from(self.inertia), X::from(self.friction));
+        let inertia = axes.number(self.inertia, INERTIA);
+        let friction = if self.has_speed() {
+            X::zero()
+        } else {
+            axes.number(self.friction, FRICTION)
+        };
         let mut own = Own {
             momentum: a,
             size: self.inertia,
@@ -253,13 +255,14 @@ impl Law for Wheel {
         };
         match &self.drive {
             Drive::Speed(speed) => {
-                own.constant = inertia * X::from(speed.line(axes.middle)[1]);
+                own.constant = inertia * speed.slope(axes.middle, axes, SPEED);
+                own.reported_on_omega = a * inertia;
             }
-            Drive::Torque(torque) => own.constant = X::from(torque.value(axes.middle)),
+            Drive::Torque(torque) => own.constant = torque.number(axes.middle, axes, DRIVE),
             // With a limit it has no series, nor with dry friction: the law without them.
             Drive::Feedback(law) | Drive::Limited(law, _) => {
                 let mut asked = Linear::default();
-                law.add_to(&mut asked, axes, side);
+                law.add_to(&mut asked, &axes.part(DRIVE), side);
                 own.on_omega = -asked.on_omega.tr_mul(&a);
                 own.on_attitude = -asked.on_attitude.tr_mul(&a);
             }
@@ -286,7 +289,7 @@ impl Law for Wheel {
     }
 
     fn switching<X: Exact>(&self, axes: &Axes<'_, X>) -> Option<Vector4<X>> {
-        self.feedback()?.switching(axes)
+        self.feedback()?.switching(&axes.part(DRIVE))
     }
 
     fn carried(&self) -> Option<&dyn Carried> {
@@ -310,6 +313,28 @@ impl Carried for Wheel {
                 self.inertia * (self.rate + self.unit.dot(omega))
             }
         }]
+    }
+
+    fn beginning(&self, t: f64, omega: &Vector3<f64>) -> Vec<(Vector3<f64>, Vec<f64>)> {
+        let mut by_numbers = vec![0.0; self.parameters().iter().map(Parameter::count).sum()];
+        let (a, inertia) = (self.unit, self.inertia);
+        if let Drive::Speed(speed) = &self.drive {
+            by_numbers[INERTIA] = speed.line(t)[0];
+            for (index, [share, _]) in speed.shares(t) {
+                by_numbers[SPEED + index] = inertia * share;
+            }
+            return vec![(Vector3::zeros(), by_numbers)];
+        }
+        // Of a of unit length, by a of any.
+        let across = (omega - a * a.dot(omega)) * (inertia / self.axis.norm());
+        by_numbers[AXIS..AXIS + 3].copy_from_slice(across.as_slice());
+        by_numbers[INERTIA] = self.rate + a.dot(omega);
+        by_numbers[RATE] = inertia;
+        vec![(a * inertia, by_numbers)]
+    }
+
+    fn is_known(&self) -> bool {
+        self.has_speed()
     }
 
     fn reported(&self, own: &[f64], omega: &Vector3<f64>) -> Vec<f64> {
@@ -338,6 +363,19 @@ impl Carried for Wheel {
             self.inertia,
             self.dry_friction,
         ))
+    }
+
+    fn has_limit(&self) -> bool {
+        matches!(self.drive, Drive::Limited(..))
+    }
+
+    fn over_limit(&self, now: &Now<'_>) -> f64 {
+        let Drive::Limited(law, limit) = &self.drive else {
+            return -1.0;
+        };
+        // Smooth where nothing is asked for.
+        let share = self.asked(law, now) / limit;
+        (share - 1.0) * (share + 1.0)
     }
 
     fn torque(&self, now: &Now<'_>, own: &[f64]) -> Vector3<f64> {

@@ -14,6 +14,20 @@ pub enum Direction {
     Falling,
 }
 
+/// What is looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Watched {
+    /// The passages of a function through zero.
+    #[default]
+    Function,
+    /// The wheel whose momentum is the state of the load of that number comes to rest in its bearing.
+    Stop(usize),
+    /// It begins to turn.
+    Slip(usize),
+    /// What its motor is asked for comes to the most that it can, or back from there.
+    Limit(usize),
+}
+
 /// What to do with the passages of one function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rule {
@@ -21,6 +35,8 @@ pub struct Rule {
     pub direction: Direction,
     /// The run ends at the passage of this number; 0 for never.
     pub last: u64,
+    /// Of what.
+    pub watched: Watched,
 }
 
 /// A passage through zero.

@@ -16,7 +16,7 @@ mod outcome;
 mod task;
 mod tolerance;
 
-pub use self::crossing::{Crossing, Direction, Rule};
+pub use self::crossing::{Crossing, Direction, Rule, Watched};
 pub use self::limits::{MOST_STEPS, check_scales, check_times};
 pub use self::method::Method;
 pub use self::outcome::{Effort, End, Run};

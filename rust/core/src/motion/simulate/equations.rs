@@ -147,6 +147,11 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
         self.load.changes()
     }
 
+    /// As of the load.
+    pub(super) fn over_limit(&self, state: usize, t: f64, phase: &Phase) -> f64 {
+        self.load.over_limit(state, t, phase)
+    }
+
     /// The torque that a bearing at rest takes.
     pub(super) fn held(
         &mut self,

@@ -4,7 +4,8 @@ use super::along::{Look, View, sign};
 use super::events::Events;
 use super::stepper::Dense;
 use crate::error::{Error, MotionFault};
-use crate::motion::problem::{Crossing, Direction, Rule};
+use crate::motion::loads::Change;
+use crate::motion::problem::{Crossing, Direction, Rule, Watched};
 use crate::motion::state::Phase;
 
 /// How far the body turns in a part of a step, in radians.
@@ -30,10 +31,15 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
         t: f64,
         phase: &Phase,
         forward: bool,
+        over_limit: &dyn Fn(usize) -> f64,
     ) -> Result<Self, E> {
         let rules = events.rules().to_vec();
         let values = (0..rules.len())
-            .map(|event| events.value(event, t, phase))
+            .map(|event| match rules[event].watched {
+                Watched::Function => events.value(event, t, phase),
+                Watched::Limit(state) => Ok(over_limit(state)),
+                Watched::Stop(_) | Watched::Slip(_) => Ok(f64::NAN),
+            })
             .collect::<Result<Vec<_>, E>>()?;
         Ok(Self {
             events,
@@ -69,9 +75,15 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
         let turn = stepper.turn(to - from);
         let mut found = Vec::new();
         for event in 0..self.rules.len() {
-            let events = &mut *self.events;
+            let (events, watched) = (&mut *self.events, self.rules[event].watched);
+            if matches!(watched, Watched::Stop(_) | Watched::Slip(_)) {
+                continue; // told by the load
+            }
             let mut view = View {
-                function: &mut |_, at, phase| events.value(event, start + at, phase),
+                function: &mut |stepper, at, phase| match watched {
+                    Watched::Limit(state) => Ok(stepper.over_limit(state, at, phase)),
+                    _ => events.value(event, start + at, phase),
+                },
                 stepper: &mut *stepper,
                 start,
                 end: to,
@@ -122,16 +134,37 @@ impl<'a, E: From<Error>> Lookout<'a, E> {
             if !phase.is_finite() {
                 return Err(Error::Motion(MotionFault::NotFiniteMotion { time }).into());
             }
-            self.crossings.push(Crossing {
-                event,
-                time,
-                phase: phase.clone(),
-            });
-            self.counts[event] += 1;
-            if self.counts[event] == self.rules[event].last {
+            if self.count(event, time, &phase) {
                 return Ok(Some((place, phase)));
             }
         }
         Ok(None)
+    }
+
+    /// Counts an event; whether the run is to end there.
+    fn count(&mut self, event: usize, time: f64, phase: &Phase) -> bool {
+        self.crossings.push(Crossing {
+            event,
+            time,
+            phase: phase.clone(),
+        });
+        self.counts[event] += 1;
+        self.counts[event] == self.rules[event].last
+    }
+
+    /// A change of the law of the load, at this time and state; whether the run is to end there.
+    pub(super) fn note(&mut self, change: &Change, time: f64, phase: &Phase) -> bool {
+        let watched = match change {
+            Change::Stop(bearing) => Watched::Stop(bearing.index()),
+            Change::Slip(bearing) => Watched::Slip(bearing.index()),
+            Change::Sign(_) => return false,
+        };
+        let mut is_last = false;
+        for event in 0..self.rules.len() {
+            if self.rules[event].watched == watched {
+                is_last |= self.count(event, time, phase);
+            }
+        }
+        is_last
     }
 }

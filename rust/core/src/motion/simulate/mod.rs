@@ -38,6 +38,6 @@ pub use self::one::simulate;
 pub use self::plan::{Ask, Plan, Refusal};
 pub use super::problem::{
     Crossing, Direction, Effort, End, Footing, MOST_STEPS, Method, Rule, Run, TIGHTEST,
-    TIGHTEST_TWOFOLD, Task, Tolerance, check_scales, check_times,
+    TIGHTEST_TWOFOLD, Task, Tolerance, Watched, check_scales, check_times,
 };
 pub use super::state::{Phase, State};

@@ -51,6 +51,10 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for Solved<'_, L, M, N> {
         Ok(self.equations.phase(self.start + elapsed, &y))
     }
 
+    fn over_limit(&self, state: usize, elapsed: f64, phase: &Phase) -> f64 {
+        (self.equations).over_limit(state, self.start + elapsed, phase)
+    }
+
     fn held(&mut self, bearing: &Bearing, elapsed: f64, phase: &Phase) -> Result<f64, L::Error> {
         self.equations.held(bearing, self.start + elapsed, phase)
     }

@@ -27,6 +27,13 @@ pub(super) trait Dense {
         Ok(0.0)
     }
 
+    /// By how much more than its limit a motor is asked for at a time since the start of the span and the state then; only what carries
+    /// wheels has motors.
+    fn over_limit(&self, state: usize, elapsed: f64, phase: &Phase) -> f64 {
+        let _ = (state, elapsed, phase);
+        -1.0
+    }
+
     /// How far the body turns in the step, which was as long as `length`: about, in radians.
     fn turn(&self, length: f64) -> f64 {
         self.phase().omega.norm() * length.abs()

@@ -32,7 +32,8 @@ impl<E> Run<E> {
             load.enter(pair[0], pair[1])?; // refused before anything is computed
         }
         let (start, end) = (task.times[0], bounds[bounds.len() - 1]);
-        let mut lookout = Lookout::new(events, start, &task.initial, end > start)?;
+        let over_limit = |state| load.over_limit(state, start, &task.initial);
+        let mut lookout = Lookout::new(events, start, &task.initial, end > start, &over_limit)?;
         let mut next = 1;
         let mut carry = Carry::default();
         for pair in bounds.windows(2) {
@@ -76,6 +77,10 @@ impl<E> Run<E> {
                         match flip.take() {
                             Some((change, time)) => {
                                 self.change(&change, task, load);
+                                if lookout.note(&change, time, &self.phase) {
+                                    self.crossings = lookout.crossings;
+                                    return Ok(End::Event);
+                                }
                                 from = time;
                             }
                             None => break,
@@ -86,6 +91,10 @@ impl<E> Run<E> {
                         if from == time {
                             // Here and now. A law that changes back each time holds the body where it changes.
                             self.change(&change, task, load);
+                            if lookout.note(&change, time, &self.phase) {
+                                self.crossings = lookout.crossings;
+                                return Ok(End::Event);
+                            }
                             flips_at_once += 1;
                             // Several wheels may stop and slip at once.
                             let most = HELD as usize * (1 + load.bearings().len());

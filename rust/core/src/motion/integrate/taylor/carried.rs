@@ -1,11 +1,13 @@
 //! The states that a load has of its own: wheels and slugs.
 
 use super::frame::Precision;
+use super::pace::Pace;
 use super::pack::{Pack, cross_term};
 use super::series::Series;
 use super::step::compensate;
 use super::twin::COUNT;
 use crate::motion::loads::Own;
+use crate::motion::loads::variables::WIDTH;
 use crate::numerics::number::Number;
 
 /// The states z of a load, and their series in a step:
@@ -41,6 +43,8 @@ struct State<T> {
     /// What counts as large beside the fastest ω, and the largest it has been.
     size: T,
     largest: T,
+    /// With derivatives the same of each, for the whole vector in its first component.
+    pace: Pace,
 }
 
 impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
@@ -60,6 +64,7 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
             turned: None,
             size: Pack::new(1.0),
             largest: zero,
+            pace: Pace::default(),
         };
         Self {
             states: vec![none; count],
@@ -74,6 +79,13 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
             state.value.put(row, value);
             state.rest.set(row, 0.0);
             state.largest.set(row, 0.0);
+        }
+    }
+
+    /// Other values of the states of one row, which go on.
+    pub(super) fn put(&mut self, row: usize, values: &[L::Real]) {
+        for (state, &value) in self.states.iter_mut().zip(values) {
+            state.value.put(row, value);
         }
     }
 
@@ -181,12 +193,15 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
     /// Keeps each step so short that the last two terms of the states are `tolerance` at most, relative to what counts as large.
     #[inline(always)]
     pub(super) fn limit(
-        &self,
+        &mut self,
         order: usize,
         tolerance: f64,
         fastest: &[f64; R],
         steps: &mut [f64; R],
     ) {
+        if L::VARIES {
+            return self.keep_pace(steps);
+        }
         for state in &self.states {
             for row in 0..R {
                 let natural = state.size.get(row) * fastest[row];
@@ -201,6 +216,37 @@ impl<L: Number<Real: Precision>, const R: usize> Carried<Pack<L, R>> {
                     }
                 }
             }
+        }
+    }
+
+    /// The same with derivatives, of which each is as good.
+    #[inline(never)]
+    fn keep_pace(&mut self, steps: &mut [f64; R]) {
+        let mut first = 0;
+        while first < self.states.len() {
+            let count = if self.states[first].turned.is_some() {
+                3
+            } else {
+                1
+            };
+            let mut pace = self.states[first].pace;
+            for (row, h) in steps.iter_mut().enumerate() {
+                let sizes = |k: usize| {
+                    let mut sum = [0.0; WIDTH + 1];
+                    for state in &self.states[first..first + count] {
+                        let magnitudes = state.series[k].real(row).magnitudes();
+                        for (sum, magnitude) in sum.iter_mut().zip(magnitudes) {
+                            *sum += magnitude;
+                        }
+                    }
+                    sum
+                };
+                let most = pace.longest_of(&sizes);
+                // Not a number wherever one of them is not.
+                *h = if most >= *h { *h } else { most };
+            }
+            self.states[first].pace = pace;
+            first += count;
         }
     }
 

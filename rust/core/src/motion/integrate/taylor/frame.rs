@@ -4,8 +4,9 @@ use nalgebra::Matrix3;
 
 use crate::mass::refined::RefinedPrincipal;
 use crate::motion::attitude::{components, from_axes};
+use crate::motion::euler_equations::EulerEquations;
 use crate::motion::loads::Exact;
-use crate::motion::loads::variables::{Block, Fixed, MOMENTS, PRODUCTS, Variables, Varied};
+use crate::motion::loads::variables::{Block, Fixed, MOMENTS, PRODUCTS, Variables, Varied, WIDTH};
 use crate::motion::problem::Task;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;
@@ -35,6 +36,21 @@ pub(super) trait Precision: Exact {
     const STILL: f64;
     /// The principal frame of what is simulated.
     fn principal(task: &Task<'_>, variables: Self::Variables) -> Principal<Self>;
+
+    /// The frame where derivatives of the tensor of what turns freely, in these axes, take part.
+    fn less(
+        principal: Principal<Self>,
+        _turning: impl FnOnce(&Principal<Self>) -> Matrix3<Self>,
+    ) -> Principal<Self> {
+        principal
+    }
+
+    /// The magnitudes of the value and of each derivative.
+    fn magnitudes(self) -> [f64; WIDTH + 1] {
+        let mut magnitudes = [0.0; WIDTH + 1];
+        magnitudes[0] = self.rounded().abs();
+        magnitudes
+    }
 }
 
 impl Precision for f64 {
@@ -90,19 +106,56 @@ impl Precision for Varied {
                 block.number(value, column)
             }
         };
-        let moments = [0, 1, 2].map(|n| variable(plain.moments[n], MOMENTS + n));
-        let [i1, i2, i3] = moments;
-        let [d1, d2, d3] = plain.differences;
-        let exact = |value: f64, difference: Self| Self {
-            value,
-            ..difference
-        };
-        Principal {
-            moments,
-            differences: [exact(d1, i2 - i3), exact(d2, i3 - i1), exact(d3, i1 - i2)],
-            products: [0, 1, 2].map(|n| variable(0.0, PRODUCTS + n)),
+        let mut principal = Principal {
+            moments: plain.moments.map(Self::constant),
+            differences: plain.differences.map(Self::constant),
+            products: [Self::constant(0.0); 3],
             axes: plain.axes.map(Self::constant),
             q_bp: plain.q_bp.map(Self::constant),
+        };
+        // Zero, but its derivatives are not.
+        let along = [0, 1, 2].map(|n| variable(0.0, MOMENTS + n));
+        let [yz, zx, xy] = [0, 1, 2].map(|n| variable(0.0, PRODUCTS + n));
+        let [x, y, z] = along;
+        let mut tensor = Matrix3::new(x, xy, zx, xy, y, yz, zx, yz, z);
+        if task.casing.is_some() {
+            // The variables are of the body with its wheels locked, in its axes.
+            let whole = EulerEquations::refined_about(task.body, &task.subject.point);
+            let turn = (whole.axes().transpose() * plain.axes).map(Self::constant);
+            tensor = turn.transpose() * tensor * turn;
+        }
+        principal.add(&tensor);
+        principal
+    }
+
+    fn less(
+        mut principal: Principal<Self>,
+        turning: impl FnOnce(&Principal<Self>) -> Matrix3<Self>,
+    ) -> Principal<Self> {
+        let turning = turning(&principal);
+        principal.add(&(-turning));
+        principal
+    }
+
+    fn magnitudes(self) -> [f64; WIDTH + 1] {
+        let mut magnitudes = [self.value.abs(); WIDTH + 1];
+        for (magnitude, slope) in magnitudes[1..].iter_mut().zip(&self.slopes) {
+            *magnitude = slope.abs();
+        }
+        magnitudes
+    }
+}
+
+impl Principal<Varied> {
+    /// Adds the derivatives of a tensor in these axes.
+    fn add(&mut self, tensor: &Matrix3<Varied>) {
+        let slopes = |x: Varied| Varied { value: 0.0, ..x };
+        for n in 0..3 {
+            self.moments[n] += slopes(tensor[(n, n)]);
+        }
+        for (n, (i, j)) in [(1, 2), (2, 0), (0, 1)].into_iter().enumerate() {
+            self.differences[n] += slopes(tensor[(i, i)] - tensor[(j, j)]);
+            self.products[n] += slopes(tensor[(i, j)]);
         }
     }
 }

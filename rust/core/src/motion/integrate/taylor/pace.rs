@@ -28,11 +28,16 @@ impl Pace {
     /// What counts as large is what has been so far, or will be within the step: so that is found in a few rounds.
     /// Source: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
     pub(super) fn longest(&mut self, rows: &[Row]) -> f64 {
-        let first: [_; FIRST] = std::array::from_fn(|k| sizes(rows, k));
+        self.longest_of(&|k| sizes(rows, k))
+    }
+
+    /// The same, from the sums of magnitudes of the coefficients of each order.
+    pub(super) fn longest_of(&mut self, sizes: &dyn Fn(usize) -> [f64; WIDTH + 1]) -> f64 {
+        let first: [_; FIRST] = std::array::from_fn(sizes);
         for (most, size) in self.sizes.iter_mut().zip(first[0]) {
             *most = most.max(size);
         }
-        let last = [ORDER - 1, ORDER].map(|k| (k, sizes(rows, k)));
+        let last = [ORDER - 1, ORDER].map(|k| (k, sizes(k)));
         if last
             .iter()
             .any(|(_, sizes)| sizes.iter().any(|size| !size.is_finite()))

@@ -5,15 +5,16 @@ use std::ops::ControlFlow;
 
 use super::course::{Course, parts_of};
 use super::derived::Derived;
-use super::drive::{Job, Settings, drive};
+use super::drive::{Job, Settings, Tell, drive};
 use super::row::ORDER;
 use crate::error::{Error, MotionFault};
 use crate::motion::loads::Term;
 use crate::motion::loads::variables::{Block, Varied};
 use crate::motion::problem::{End, Run, Task};
 
-/// Runs `task` under `terms` to its last time; `tell` gets ω and (x, y, z, w) in B at each time after the first, by the number of
-/// the time. Tolerances do not matter. `watch` gets the fraction done and may stop it.
+/// Runs `task`, which carries what `terms` carry along, under these to its last time; `tell` gets ω and (x, y, z, w) in B and the
+/// states of the load at each time, by the number of the time. Tolerances do not matter. `watch` gets the fraction done and may
+/// stop it.
 ///
 /// # Errors
 /// When a term cannot act, the motion cannot go on, or [`Error::Stopped`].
@@ -21,22 +22,26 @@ pub(in crate::motion::integrate) fn run_varied(
     task: &Task<'_>,
     terms: &[Term],
     block: Block,
-    tell: &mut dyn FnMut(usize, &[Varied; 7]),
+    tell: Tell<'_, Varied>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(), Error> {
     let mut run = Run::at_start(task, End::Stopped);
+    let course = Course::new(task, terms, block)?;
+    let start = course.start();
+    let own = course.own_reported(&start, &course.own_at_start());
+    tell(0, &course.in_body(&start), &own);
     if run.samples.len() == 1 {
         return Ok(());
     }
     let mut next = 1;
-    let mut tell = |k: usize, state: &[Varied; 7]| {
+    let mut tell = |k: usize, state: &[Varied; 7], own: &[Varied]| {
         next = k + 1;
-        tell(k, state);
+        tell(k, state, own);
     };
     let parts = parts_of(terms, task.subject.pivoted, block);
     let settings = Settings::of_derivatives(ORDER, parts);
     let job = Job {
-        course: Course::new(task, terms, block)?,
+        course,
         run: &mut run,
         tell: Some(&mut tell),
     };

@@ -1,8 +1,8 @@
 //! The derivatives of a motion at the times of a task, put together from runs of eight variables each.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
-use nalgebra::{Matrix6, Matrix6x3, Quaternion, Vector6};
+use nalgebra::{Matrix6, Matrix6x3, Quaternion, Vector3, Vector6};
 
 use crate::error::{Error, MotionFault};
 use crate::motion::integrate::taylor::run_varied;
@@ -29,9 +29,18 @@ pub struct Variation {
     pub mass: Vector6<f64>,
     /// By the numbers of the load's terms, one after the other, in the order of [`Term::parameters`].
     pub load: Vec<Vector6<f64>>,
+    /// By the states that the load has of its own at the start, each with the others held.
+    pub own: Vec<Vector6<f64>>,
+    /// The derivatives of these states, by all of that in this order.
+    pub of_own: Vec<Vec<f64>>,
+    /// Those of the states at the start by ω there, of states that begin with it and are not given. By ω the others hold them.
+    pub begins: Vec<Vector3<f64>>,
 }
 
 /// The derivatives of the motion of `task` under `terms` at the times of the task; its method and tolerance do not matter.
+///
+/// `given` tells of each state of the load whether it is what the task says, whatever the numbers of the load are; the states that
+/// it leaves out are what the load begins with.
 ///
 /// `watch` gets the fraction done and may stop it.
 ///
@@ -41,13 +50,16 @@ pub struct Variation {
 pub fn variations(
     task: &Task<'_>,
     terms: &[Term],
+    given: &[bool],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Vec<Variation>, Error> {
     check_times(task.times)?;
-    let is_known = |term: &Term| term.character(task.subject.pivoted).has_series && term.own() == 0;
+    let is_known = |term: &Term| term.character(task.subject.pivoted).has_series;
     if !terms.iter().all(is_known) {
         return Err(MotionFault::NoSeries.into());
     }
+    let task = &(task.clone()).carrying(terms.iter().filter_map(Term::carried))?;
+    let states = task.initial.own.len();
     let numbers: usize = terms.iter().map(Term::count).sum();
     let start = Variation {
         state: Matrix6::identity(),
@@ -56,20 +68,36 @@ pub fn variations(
         center_of_mass: Matrix6x3::zeros(),
         mass: Vector6::zeros(),
         load: vec![Vector6::zeros(); numbers],
+        own: vec![Vector6::zeros(); states],
+        of_own: vec![vec![0.0; LOAD + numbers + states]; states],
+        begins: vec![Vector3::zeros(); states],
     };
     let mut found = vec![start; task.times.len()];
-    let blocks = (LOAD + numbers).div_ceil(WIDTH);
+    let all = LOAD + numbers + states;
+    let blocks = all.div_ceil(WIDTH);
     for index in 0..blocks {
         let block = Block {
             first: index * WIDTH,
         };
         let mut watch = |part| watch((index as f64 + part) / blocks as f64);
-        let mut tell = |k: usize, state: &[Varied; 7]| {
-            for (column, slopes) in (block.first..LOAD + numbers).zip(columns(state)) {
-                found[k].set(column, &slopes);
+        let mut tell = |k: usize, state: &[Varied; 7], own: &[Varied]| {
+            for (column, slopes) in (block.first..all).zip(columns(state)) {
+                if k > 0 {
+                    found[k].set(column, &slopes);
+                }
+                for (row, own) in found[k].of_own.iter_mut().zip(own) {
+                    row[column] = own.slopes[column - block.first];
+                }
             }
         };
         run_varied(task, terms, block, &mut tell, &mut watch)?;
+    }
+    for (state, row) in found[0].of_own.iter_mut().enumerate() {
+        row[LOAD + numbers..].fill(0.0);
+        row[LOAD + numbers + state] = 1.0; // but for rounding in principal axes
+    }
+    for variation in &mut found {
+        variation.begin(task, terms, given);
     }
     let has_neighbours = !task.euler.moments().contains(&0.0);
     for (variation, &time) in found.iter_mut().zip(task.times) {
@@ -79,6 +107,9 @@ pub fn variations(
         if !has_neighbours {
             variation.moments.fill(f64::NAN);
             variation.products.fill(f64::NAN);
+            for row in &mut variation.of_own {
+                row[MOMENTS..CENTER].fill(f64::NAN);
+            }
         }
     }
     Ok(found)
@@ -88,7 +119,10 @@ impl Variation {
     /// Whether all are numbers, those by the tensor among them where it has neighbours.
     fn is_finite(&self, has_neighbours: bool) -> bool {
         let of_tensor = self.moments.iter().chain(&self.products);
-        let of_load = self.load.iter().flat_map(|slopes| slopes.iter());
+        let of_load = (self.load.iter().chain(&self.own)).flat_map(|slopes| slopes.iter());
+        let tensor = if has_neighbours { CENTER } else { MOMENTS };
+        let of_own =
+            (self.of_own.iter()).flat_map(|row| row[..MOMENTS].iter().chain(&row[tensor..]));
         (self
             .state
             .iter()
@@ -96,6 +130,7 @@ impl Variation {
             .chain(&self.mass))
         .chain(of_tensor.filter(|_| has_neighbours))
         .chain(of_load)
+        .chain(of_own)
         .all(|x| x.is_finite())
     }
 
@@ -106,7 +141,76 @@ impl Variation {
             PRODUCTS..CENTER => self.products.set_column(column - PRODUCTS, slopes),
             CENTER..MASS => self.center_of_mass.set_column(column - CENTER, slopes),
             MASS => self.mass = *slopes,
-            _ => self.load[column - LOAD] = *slopes,
+            _ => match (column - LOAD).checked_sub(self.load.len()) {
+                None => self.load[column - LOAD] = *slopes,
+                Some(state) => self.own[state] = *slopes,
+            },
+        }
+    }
+
+    /// Lets the states of the load begin as they do: by the numbers of the load, unless they are given.
+    fn begin(&mut self, task: &Task<'_>, terms: &[Term], given: &[bool]) {
+        let (mut state, mut number) = (0, 0);
+        for term in terms {
+            let carried = term.carried().into_iter();
+            for carried in carried.filter(|carried| carried.count() > 0) {
+                let beginning = carried.beginning(task.times[0], &task.initial.omega);
+                for (by_omega, by_numbers) in beginning {
+                    let is_known = carried.is_known();
+                    if is_known || !given.get(state).is_some_and(|&given| given) {
+                        self.begins[state] = by_omega;
+                        self.follow(state, number, &by_numbers, is_known);
+                    }
+                    state += 1;
+                }
+            }
+            number += term.count();
+        }
+    }
+
+    /// Lets a state at the start follow from the numbers of the load from `first` on; one that is known can be nothing else.
+    fn follow(&mut self, state: usize, first: usize, by_numbers: &[f64], is_known: bool) {
+        let column = LOAD + self.load.len() + state;
+        for (number, &slope) in (first..).zip(by_numbers) {
+            self.load[number] += self.own[state] * slope;
+            for row in &mut self.of_own {
+                row[LOAD + number] += row[column] * slope;
+            }
+        }
+        if is_known {
+            self.own[state].fill(0.0);
+            for row in &mut self.of_own {
+                row[column] = 0.0;
+            }
+        }
+    }
+
+    /// The columns of [`Self::slope`] by the start of (δ, ω), and by the moments, the products, the centre of mass and the mass.
+    pub const COLUMNS: [Range<usize>; 5] = [
+        ATTITUDE..MOMENTS,
+        MOMENTS..PRODUCTS,
+        PRODUCTS..CENTER,
+        CENTER..MASS,
+        MASS..LOAD,
+    ];
+
+    /// The derivative of number `row` of (δ, ω) and the states of the load by what stands in a column: the start of (δ, ω), the
+    /// moments, products, centre of mass and mass, the numbers of the load, the start of its states.
+    #[must_use]
+    pub fn slope(&self, row: usize, column: usize) -> f64 {
+        if let Some(state) = row.checked_sub(MOMENTS) {
+            return self.of_own[state][column];
+        }
+        match column {
+            ATTITUDE..MOMENTS => self.state[(row, column)],
+            MOMENTS..PRODUCTS => self.moments[(row, column - MOMENTS)],
+            PRODUCTS..CENTER => self.products[(row, column - PRODUCTS)],
+            CENTER..MASS => self.center_of_mass[(row, column - CENTER)],
+            MASS => self.mass[row],
+            _ => match (column - LOAD).checked_sub(self.load.len()) {
+                None => self.load[column - LOAD][row],
+                Some(state) => self.own[state][row],
+            },
         }
     }
 }

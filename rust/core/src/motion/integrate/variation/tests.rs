@@ -31,7 +31,7 @@ fn varied(body: &RigidBody, start: &State, times: &[f64], terms: &[Term]) -> Vec
         Method::Taylor,
         tolerance,
     );
-    variations(&task, terms, &mut |_| ControlFlow::Continue(())).expect("goes on")
+    variations(&task, terms, &[], &mut |_| ControlFlow::Continue(())).expect("goes on")
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn derivatives_beyond_all_numbers_are_refused() {
         Method::Taylor,
         tolerance,
     );
-    let beyond = variations(&task, &terms, &mut |_| ControlFlow::Continue(()));
+    let beyond = variations(&task, &terms, &[], &mut |_| ControlFlow::Continue(()));
     assert_eq!(
         beyond,
         Err(MotionFault::NotFiniteDerivative { time: -360.0 }.into())

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix3x4, Vector3, Vector4};
 
 use crate::error::{Error, MotionFault};
 use crate::mass::validity::ROUNDING;
-use crate::motion::integrate::taylor::frame::Precision;
+use crate::motion::integrate::taylor::frame::{Precision, Principal};
 use crate::motion::loads::variables::Variables;
 use crate::motion::loads::{Axes, Linear, Term};
 use crate::motion::problem::Task;
@@ -13,12 +13,14 @@ use crate::numerics::quaternion::product;
 
 /// The scalar part w of a feedback's error, which is linear in the attitude (x, y, z, w), and the sign of it that the torques
 /// are made for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Switch<X> {
     scalar: Vector4<X>,
     side: f64,
     /// What the torque is of the attitude.
     torque: Matrix3x4<X>,
+    /// What the rates of states of the load are of it, by their numbers.
+    own: Vec<(usize, Vector4<X>)>,
 }
 
 impl<X: Real> Switch<X> {
@@ -44,7 +46,7 @@ pub(in crate::motion::integrate::taylor) struct Course<'a, X: Precision> {
     pub(super) terms: &'a [Term],
     /// Which numbers are varied, and the first column of each term.
     pub(super) variables: X::Variables,
-    firsts: Vec<usize>,
+    pub(super) firsts: Vec<usize>,
     pub(super) axes: Matrix3<X>,
     pub(super) q_bp: [X; 4],
     pub(super) kappa: Vector3<X>,
@@ -70,7 +72,11 @@ impl<'a, X: Precision> Course<'a, X> {
         terms: &'a [Term],
         variables: X::Variables,
     ) -> Result<Self, Error> {
-        let principal = X::principal(task, variables);
+        // After those of all terms stand the states of the load.
+        let firsts = variables.columns(&mut terms.iter().map(Term::count).chain([0]));
+        let principal = X::less(X::principal(task, variables), |principal| {
+            turning(task, terms, principal, variables, &firsts)
+        });
         let ([i1, i2, i3], [d1, d2, d3]) = (principal.moments, principal.differences);
         let one = X::one();
         let (start, end) = (task.times[0], task.times[task.times.len() - 1]);
@@ -86,7 +92,7 @@ impl<'a, X: Precision> Course<'a, X> {
             task: task.clone(),
             terms,
             variables,
-            firsts: variables.columns(&mut terms.iter().map(Term::count)),
+            firsts,
             axes: principal.axes,
             q_bp: principal.q_bp,
             kappa: Vector3::new(over(d1, i1), over(d2, i2), over(d3, i3)),
@@ -131,12 +137,15 @@ impl<'a, X: Precision> Course<'a, X> {
                     scalar,
                     side,
                     torque,
+                    own: Vec::new(),
                 };
                 switch.side = switch.sign(state);
                 side = switch.side;
                 let mut own = Linear::default();
                 term.add_to(&mut own, &axes, side);
                 switch.torque = own.on_attitude;
+                let states = (linear.own.len()..).zip(&own.own);
+                switch.own = states.map(|(i, state)| (i, state.on_attitude)).collect();
                 switches.push(switch);
             }
             term.add_to(&mut linear, &axes, side);
@@ -249,13 +258,15 @@ impl<'a, X: Precision> Course<'a, X> {
     }
 
     /// Takes the torques of the feedbacks for the signs in `state`. Neighbours that come to a change of sign later have been longer
-    /// under the law before it: ω, of which they are the derivatives, becomes what it is for the law after it.
+    /// under the law before it: ω and the states of the load, of which they are the derivatives, become what they are for the law
+    /// after it.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub(in crate::motion::integrate::taylor) fn flip(
         &mut self,
         state: &mut [X; 7],
+        own: &mut [X],
     ) -> Result<(), Error> {
         let [w1, w2, w3, x, y, z, w] = *state;
         let attitude = Vector4::new(x, y, z, w);
@@ -270,6 +281,12 @@ impl<'a, X: Precision> Course<'a, X> {
             for (omega, more) in state.iter_mut().zip(&more.component_mul(&over_moment)) {
                 *omega += more.until_later(switch.scalar.dot(&attitude), rate);
             }
+            for (number, on_attitude) in &switch.own {
+                let more = on_attitude.dot(&attitude) * X::from(2.0) / X::from(self.unit);
+                if let Some(own) = own.get_mut(*number) {
+                    *own += more.until_later(switch.scalar.dot(&attitude), rate);
+                }
+            }
         }
         self.linearize(&before)
     }
@@ -282,6 +299,31 @@ impl<'a, X: Precision> Course<'a, X> {
             1.0
         }
     }
+}
+
+/// Σ J a aᵀ of the wheels that turn freely, in principal axes.
+fn turning<X: Precision>(
+    task: &Task<'_>,
+    terms: &[Term],
+    principal: &Principal<X>,
+    variables: X::Variables,
+    firsts: &[usize],
+) -> Matrix3<X> {
+    let mut linear = Linear::default();
+    for (k, term) in terms.iter().enumerate() {
+        if term.carried().is_some() {
+            let axes = Axes {
+                subject: &task.subject,
+                columns: &principal.axes,
+                q_bp: &principal.q_bp,
+                variables,
+                first: firsts.get(k).copied().unwrap_or(0),
+                middle: task.times[0],
+            };
+            term.add_to(&mut linear, &axes, 1.0);
+        }
+    }
+    linear.turning
 }
 
 fn over<X: Real>(number: X, moment: X) -> X {

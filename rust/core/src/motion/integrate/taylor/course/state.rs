@@ -70,13 +70,30 @@ impl<X: Precision> Course<'_, X> {
 
     /// The load's own states at the start, vectors among them in principal axes.
     pub(in crate::motion::integrate::taylor) fn own_at_start(&self) -> Vec<X> {
-        let given: Vec<X> = self.task.initial.own.iter().map(|&x| X::from(x)).collect();
+        let first = self.firsts.get(self.terms.len()).copied().unwrap_or(0);
+        let given = self.task.initial.own.iter().enumerate();
+        let given: Vec<X> = given
+            .map(|(i, &x)| self.variables.number(x, first + i))
+            .collect();
         self.own_turned(&given, |vector| self.axes.tr_mul(&vector))
     }
 
     /// The load's own states, or coefficients of their series, vectors among them in body axes.
     pub(in crate::motion::integrate::taylor) fn own_in_body(&self, own: &[X]) -> Vec<X> {
         self.own_turned(own, |vector| self.axes * vector)
+    }
+
+    /// What is reported of the load's own states, in body axes.
+    pub(in crate::motion::integrate::taylor) fn own_reported(
+        &self,
+        state: &[X; 7],
+        own: &[X],
+    ) -> Vec<X> {
+        let omega = Vector3::from_column_slice(&state[..3]) * X::from(self.unit);
+        let states = self.own_in_body(own).into_iter().zip(&self.linear.own);
+        states
+            .map(|(value, state)| value + state.reported_on_omega.dot(&omega))
+            .collect()
     }
 
     fn own_turned(&self, own: &[X], turn: impl Fn(Vector3<X>) -> Vector3<X>) -> Vec<X> {

@@ -22,13 +22,14 @@ pub(super) const OUTGROWN: f64 = 65_536.0;
 const JUDGED_EVERY: u64 = 64;
 
 /// Gets the samples of a motion in the numbers of its run.
-pub(in crate::motion::integrate::taylor) type Tell<'a, X> = &'a mut dyn FnMut(usize, &[X; 7]);
+pub(in crate::motion::integrate::taylor) type Tell<'a, X> = &'a mut dyn FnMut(usize, &[X; 7], &[X]);
 
 /// A motion to be run, and its run, which is at its start.
 pub(in crate::motion::integrate::taylor) struct Job<'a, X: Precision> {
     pub(in crate::motion::integrate::taylor) course: Course<'a, X>,
     pub(in crate::motion::integrate::taylor) run: &'a mut Run<Error>,
-    /// Gets each sample by its number: ω and (x, y, z, w) in body axes and real units, as the run has them.
+    /// Gets each sample by its number: ω and (x, y, z, w) in body axes and real units, as the run has them, and what is reported of
+    /// the states of the load.
     pub(in crate::motion::integrate::taylor) tell: Option<Tell<'a, X>>,
 }
 

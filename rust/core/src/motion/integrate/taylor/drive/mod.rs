@@ -20,7 +20,7 @@ mod shown;
 mod stepping;
 mod stops;
 
-pub(super) use lanes::Job;
+pub(super) use lanes::{Job, Tell};
 pub(super) use run::drive;
 pub(super) use settings::Settings;
 pub(super) use shown::See;

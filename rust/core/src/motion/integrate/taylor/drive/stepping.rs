@@ -29,7 +29,7 @@ where
         self.extras
             .limit(&self.series, &self.field, &self.fastest, &mut h);
         self.series.limit(&mut h);
-        if let Some(carried) = &self.carried {
+        if let Some(carried) = &mut self.carried {
             carried.limit(order, last_term, &self.fastest, &mut h);
         }
         let mut eventful = self.settings.parts.may_flip();

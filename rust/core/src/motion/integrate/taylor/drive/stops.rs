@@ -74,7 +74,9 @@ where
         }
         run.samples[lead.next] = phase.clone();
         if let Some(tell) = &mut lead.job.tell {
-            tell(lead.next, &lead.job.course.in_body(state));
+            let course = &lead.job.course;
+            let own = course.own_reported(state, &besides.own);
+            tell(lead.next, &course.in_body(state), &own);
         }
         lead.next += 1;
         if lead.next == run.samples.len() {
@@ -93,6 +95,10 @@ where
     #[inline(never)]
     pub(super) fn settle(&mut self, row: usize, landing: Landing) {
         let mut state = self.state.now(row);
+        let mut own = match &self.carried {
+            Some(carried) if L::VARIES => carried.now(row),
+            _ => Vec::new(),
+        };
         let Some(lead) = &mut self.leads[row] else {
             return;
         };
@@ -104,11 +110,14 @@ where
                 self.extras.restart(row);
                 course.pass_break(&state)
             }
-            Landing::Flip => course.flip(&mut state),
+            Landing::Flip => course.flip(&mut state, &mut own),
         };
         if L::VARIES && landing == Landing::Flip {
             for i in 0..3 {
                 self.state.value[i].put(row, state[i]);
+            }
+            if let Some(carried) = &mut self.carried {
+                carried.put(row, &own);
             }
         }
         if let Err(error) = changed {

@@ -1,0 +1,254 @@
+"""The derivatives of a motion by differences of motions: for loads without series, such as functions."""
+
+from __future__ import annotations
+
+import inspect
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
+
+import numpy as np
+
+from polhode import _core
+from polhode.errors import PolhodeError
+from polhode.results import MotionSensitivity
+from polhode.uncertainty.runs import _exponential, _logarithm, _product, _taken
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from polhode.trajectory import Trajectory
+
+    Floats = NDArray[np.float64]
+    Recipe = tuple[str, tuple[Any, ...]]
+
+__all__ = ["by_differences"]
+
+STEP: Final = 2e-3
+"""Relative to what counts as large of a number."""
+STEPS: Final = np.array([1.0, 2.0, 3.0, -1.0, -2.0, -3.0])
+SIX: Final = np.array([45.0, -9.0, 1.0, -45.0, 9.0, -1.0]) / 60.0
+FOUR: Final = np.array([8.0, -1.0, 0.0, -8.0, 1.0, 0.0]) / 12.0
+"""Differences of order six, and of order four from the same motions."""
+SETTLED: Final = 1e-5
+"""What the two may differ by, relative to the largest derivative by the same number."""
+NOISE: Final = 1e-9
+"""What may be wrong in a motion, relative to what is large in it."""
+RTOL: Final = 1e-13
+HELD: Final = ("times", "t", "epoch", "target")
+"""Arguments of loads that are not varied."""
+
+
+class _Starts(NamedTuple):
+    """What motions are computed from, one along the first axis of each array."""
+
+    mass: Floats
+    center: Floats
+    tensor: Floats
+    turn: Floats
+    omega: Floats
+    states: dict[str, Floats]
+
+
+def by_differences(self: Trajectory) -> MotionSensitivity:
+    """Give the derivatives by differences of order six of motions simulated tightly."""
+    stack = self.omega.shape[:-2]
+    rows = [_Row(self, stack, row).sensitivity() for row in range(int(np.prod(stack, dtype=int)))]
+
+    def stacked(parts: list[Floats]) -> Floats:
+        return np.array(parts).reshape(*stack, *np.shape(parts[0]))
+
+    load = tuple({name: stacked([row.load[k][name] for row in rows]) for name in part}
+                 for k, part in enumerate(rows[0].load))  # fmt: skip
+    fields = [name for name in MotionSensitivity._fields if name != "load"]
+    return MotionSensitivity(
+        load=load, **{name: stacked([getattr(r, name) for r in rows]) for name in fields}
+    )
+
+
+class _Row:
+    """One motion of a stack, and its neighbours."""
+
+    def __init__(self, run: Trajectory, stack: tuple[int, ...], row: int) -> None:
+        place = np.unravel_index(row, stack)
+        self.run, self.place = run, place
+        self.body = _taken(run.body, stack, row)
+        self.load = _taken(run._acting("sensitivity"), stack, row)
+        self.recipes = _recipes(self.load)
+        self.omega, self.quaternion = run.omega[place], run.quaternion[place]
+        self.states = {name: values[place][0] for name, values in run.states.items()}
+        # Those that do not follow from the numbers of the load, and those that can be anything.
+        self.given = {name: self.states[name] for name in run.__dict__.get("_given", ())}
+        known = _known(self.load, self.recipes)
+        self.free = {name: values for name, values in self.states.items() if name not in known}
+        self.tensor = self.body.inertia_about("origin") if run.pivoted else self.body.inertia
+
+    def sensitivity(self) -> MotionSensitivity:
+        """Give all derivatives."""
+        run, body = self.run, self.body
+        axes = (body.principal_about("origin") if run.pivoted else body.principal).axes
+        moments = np.linalg.eigvalsh(self.tensor)
+        length = float(np.sqrt(moments[-1] / body.mass))
+        speed = float(np.nanmax(np.linalg.norm(self.omega, axis=-1))) or 1.0 / float(np.ptp(run.t))
+        state = [self.by("turn", k, 1.0, self.free) for k in range(3)]
+        state += [self.by("omega", k, speed, self.free) for k in range(3)]
+        for name, values in self.states.items():
+            size = float(np.nanmax(np.abs(run.states[name][self.place]))) or 1.0
+            for k in range(len(values)):
+                is_free = name in self.free
+                state.append(self.by(name, k, size, self.free) if is_free else np.zeros_like(state[0]))
+        tensor = []
+        for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1)):
+            along = np.zeros((3, 3))
+            along[i, j] = along[j, i] = 1.0
+            has_neighbours = moments[0] > 0.0
+            tensor.append(self.by_tensor(axes @ along @ axes.T, float(moments[0])) if has_neighbours
+                          else np.full_like(state[0], np.nan))  # fmt: skip
+        center = [self.by("center", k, length, self.given) for k in range(3)]
+        mass = self.by("mass", 0, float(body.mass), self.given)
+        return MotionSensitivity(
+            np.stack(state, axis=-1),
+            np.stack(tensor[:3], axis=-1),
+            np.stack(tensor[3:], axis=-1),
+            np.stack(center, axis=-1),
+            mass,
+            tuple(self.by_load()),
+            self.begins(speed),
+        )
+
+    def ends(self, starts: _Starts, load: _core.Load | None) -> Floats:
+        """Run; (δ, ω, states) at every time, shape (n, T, 6 + k), δ from the attitude of this motion."""
+        run = self.run
+        about = "inertia_about_origin" if run.pivoted else "inertia"
+        options: dict[str, Any] = {about: starts.tensor, "center_of_mass": starts.center, "rtol": 0.1}
+        at_start: dict[str, Any] = {} if run.pivoted else {"velocity": run.velocity[self.place][0]}
+        moved = _core.RigidBody(starts.mass, **options).simulate(
+            run.t, starts.omega, _product(self.quaternion[0], _exponential(starts.turn)), load=load,
+            position=run.position[self.place][0], about=run._about_word(), rtol=RTOL,
+            states=starts.states or None, **at_start,
+        )  # fmt: skip
+        back = self.quaternion * np.array([-1.0, -1.0, -1.0, 1.0])
+        tilt = _logarithm(_product(back, moved.quaternion))
+        return np.concatenate([tilt, moved.omega, *moved.states.values()], axis=-1)
+
+    def starts(self, held: dict[str, Floats], count: int = len(STEPS)) -> _Starts:
+        """Give the start so many times, with these states."""
+        body, many = self.body, np.ones((count, 1))
+        states = {name: many * values for name, values in held.items()}
+        tensor = np.tile(self.tensor, (count, 1, 1))
+        center, turn = many * body.center_of_mass, np.zeros((count, 3))
+        return _Starts(np.full(count, body.mass), center, tensor, turn, many * self.omega[0], states)
+
+    def by(self, name: str, k: int, size: float, held: dict[str, Floats]) -> Floats:
+        """By one number that counts as large where it is `size`, with these states held, shape (T, 6 + k)."""
+        starts = self.starts(held)
+        values = starts.states[name] if name in starts.states else getattr(starts, name)
+        values.reshape(len(STEPS), -1)[:, k] += STEPS * STEP * size  # they are new
+        return self.combined(self.ends(starts, self.load), STEP * size, name)
+
+    def by_tensor(self, along: Floats, size: float) -> Floats:
+        """By the tensor along another."""
+        starts = self.starts(self.given)
+        starts.tensor[:] += (STEPS * STEP * size)[:, None, None] * along
+        return self.combined(self.ends(starts, self.load), STEP * size, "tensor")
+
+    def by_load(self) -> Iterator[dict[str, Floats]]:
+        """By the numbers of each part of the load."""
+        one = self.starts(self.given, 1)
+        for place, recipe in enumerate(self.recipes):
+            found: dict[str, Floats] = {}
+            for name, values, changed in _numbers(recipe):
+                size = float(np.max(np.abs(values))) or 1.0
+                columns = []
+                for index in np.ndindex(values.shape):
+                    ends = []
+                    for step in STEPS * STEP * size:
+                        moved = values.copy()
+                        moved[index] += step
+                        parts = [*self.recipes[:place], changed(moved), *self.recipes[place + 1 :]]
+                        ends.append(self.ends(one, _core.Load._from_parts(parts))[0])
+                    columns.append(self.combined(np.array(ends), STEP * size, name))
+                found[name] = np.moveaxis(np.array(columns), 0, -1).reshape(*columns[0].shape, *values.shape)
+            yield found
+
+    def begins(self, speed: float) -> Floats:
+        """By ω at the first time, the states there that are not given; they are linear in it."""
+        columns = []
+        for axis in np.eye(3):
+            starts = self.starts(self.given)
+            starts.omega[:2] = self.omega[0] + speed * np.outer((1.0, -1.0), axis)
+            there = self.body.simulate(
+                self.run.t[:1], starts.omega[:2], load=self.load, about=self.run._about_word(),
+                states={name: values[:2] for name, values in starts.states.items()} or None,
+            )  # fmt: skip
+            parts = [
+                values[:, 0] if name in self.free else np.zeros_like(values[:, 0])
+                for name, values in there.states.items()
+            ]
+            states = np.concatenate([np.zeros((2, 0)), *parts], axis=-1)
+            columns.append((states[0] - states[1]) / (2 * speed))
+        return np.stack(columns, axis=-1)
+
+    def combined(self, ends: Floats, step: float, name: str) -> Floats:
+        """Combine six motions; both orders agree where the motion is smooth in the number."""
+        found = np.asarray(np.tensordot(SIX, ends, 1) / step)
+        off = np.abs(found - np.tensordot(FOUR, ends, 1) / step)
+        # Attitudes, rates and each state have units of their own.
+        size, noise = np.abs(found).max(axis=0), np.abs(ends).max(axis=(0, 1))
+        for part in (slice(0, 3), slice(3, 6)):
+            size[part], noise[part] = size[part].max(), noise[part].max()
+        noise[:3] = 1.0
+        late = np.flatnonzero(~(off <= SETTLED * size + NOISE * noise / step).all(axis=-1))
+        if len(late):
+            raise PolhodeError(
+                f"sensitivity: differences by {name} of order four and six do not agree at "
+                f"t = {float(self.run.t[late[0]])!r}: a change of the law is too close to that time, or the "
+                "motion too sensitive; ask for other or earlier times"
+            )
+        return found
+
+
+def _recipes(load: _core.Load | None) -> list[Recipe]:
+    """Give the functions that made the parts of a load with their arguments; of compiled ones nothing."""
+    if load is None:
+        return []
+    try:
+        _, (parts,) = cast("tuple[Any, tuple[list[Recipe]]]", load.__reduce__())
+    except TypeError:
+        return []
+    return list(parts)
+
+
+def _known(load: _core.Load | None, recipes: list[Recipe]) -> set[str]:
+    """Name the states that can be nothing else: the wheels whose speed is given."""
+    names = iter(load.states if load is not None else ())
+    own = [(recipe, next(names, "")) for recipe in recipes if recipe[0] in ("wheel", "slug")]
+    return {name for (kind, given), name in own if kind == "wheel" and given[-1]["speed"] is not None}
+
+
+def _numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Callable[[Floats], Recipe]]]:
+    """Give the numbers among the arguments of a part by name, and the recipe with others in their place."""
+    made_by, arguments = recipe
+    function = getattr(_core, made_by, None)
+    if function is None or made_by in ("callback", "torque_callback", "with_states"):
+        return
+    keywords = dict(arguments[-1]) if arguments and isinstance(arguments[-1], dict) else {}
+    plain = arguments[:-1] if keywords else arguments
+    named = dict(zip(inspect.signature(function).parameters, plain, strict=False)) | keywords
+    for name, value in named.items():
+        if isinstance(value, _core.Load):
+            (inner,) = _recipes(value)
+            for deeper, values, changed in _numbers(inner):
+                yield deeper, values, _with_load(made_by, named, name, changed)
+        elif name not in HELD and isinstance(value, float | np.ndarray):
+            yield name, np.array(value, dtype=float), _with(made_by, named, name)
+
+
+def _with(made_by: str, named: dict[str, Any], name: str) -> Callable[[Floats], Recipe]:
+    return lambda values: (made_by, (named | {name: values if values.ndim else float(values)},))
+
+
+def _with_load(
+    made_by: str, named: dict[str, Any], name: str, changed: Callable[[Floats], Recipe]
+) -> Callable[[Floats], Recipe]:
+    return lambda values: (made_by, (named | {name: _core.Load._from_parts([changed(values)])},))
