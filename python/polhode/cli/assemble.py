@@ -34,10 +34,12 @@ _SAVED: Final = (*_PICTURES, ".json", ".npz", ".csv")
 def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) -> tuple[Report, Assembly]:
     """Report on an assembly; give it too."""
     if options.depth < 0:
-        raise PolhodeError(f"--depth: a number of levels cannot be negative, got {options.depth}")
+        raise PolhodeError(f"--depth: expected a number of levels, 0 or more, got {options.depth}")
     for path in options.save:
         if path.suffix.lower() not in _SAVED:
-            raise PolhodeError(f"--save: {path} does not end in one of {', '.join(_SAVED)}")
+            raise PolhodeError(
+                f"--save: {path} has a suffix that is not written; use one of {', '.join(_SAVED)}"
+            )
     if extra.mass_unit is not None:
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
     about = vector(extra.about, "m", "--about") if extra.about else None

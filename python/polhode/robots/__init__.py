@@ -125,7 +125,7 @@ def parse_robot(
     [('arm', 2.0)]
     """
     if not source.strip():
-        raise FileFormatError(f"{name}: the file is empty")
+        raise FileFormatError(f"{name}: the file is empty; check the file")
     body_format, _ = content_format(source[:4096], len(source))
     if body_format is not None:
         way_out = "unpack it with gunzip" if "gzip" in body_format else "polhode report reads it"
