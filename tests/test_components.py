@@ -94,6 +94,19 @@ class TestParts:
         (part,) = parts_of(*at((1, 2, 3), (5, 5, 5)))
         assert part.volume == pytest.approx(6.0, rel=1e-14)
 
+    def test_rays_tell_what_solid_angles_tell(self, rng: np.random.Generator) -> None:
+        """Around a cube with an offset cavity; points askew, and on the planes of its faces and edges."""
+        vertices, faces = joined(at((2, 2, 2), (0, 0, 0)), at((1, 1, 1), (0.25, 0.5, 0), inward=True))
+        points = np.concatenate([rng.uniform(-1.5, 1.5, (300, 3)), rng.integers(-6, 7, (300, 3)) / 4.0])
+        for turned in (np.eye(3), components._ASKEW):
+            triangles = vertices[faces] @ turned
+            boxes = components._boxes(triangles)
+            for point in points @ turned:
+                expected = abs(winding(point[None], triangles)[0])
+                if abs(expected - 0.5) < 0.4:  # on a face, an edge or a corner it is neither
+                    continue
+                assert components._is_inside(point, triangles, *boxes) == (expected > 0.5)
+
     def test_a_winding_number_is_one_within(self) -> None:
         vertices, faces = at((1, 2, 3), (5, 5, 5))
         points = np.array([(5, 5, 5), (5.49, 5.99, 6.49), (5.51, 5, 5), (0, 0, 0)])
