@@ -114,11 +114,12 @@ def unpacked(git: Path, repository: str, commit: str, scratch: Path) -> Path:
         with subprocess.Popen(
             command, stdin=names, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
         ) as batch:
+            assert batch.stdout is not None  # it is a pipe
             for mode, _, _, name in wanted:
-                told = batch.stdout.readline().split()  # type: ignore[union-attr]
+                told = batch.stdout.readline().split()
                 if len(told) < 3:
                     continue
-                content = batch.stdout.read(int(told[2]) + 1)[:-1]  # type: ignore[union-attr]
+                content = batch.stdout.read(int(told[2]) + 1)[:-1]
                 path = half / name
                 path.parent.mkdir(parents=True, exist_ok=True)
                 if mode == "120000":

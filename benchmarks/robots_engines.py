@@ -68,7 +68,9 @@ def idle_in_pinocchio(path: Path) -> tuple[list[str], bool]:
     import pinocchio as pin
 
     root = urdf_without_shapes(path)
-    children = {j.get("name"): j.find("child").get("link", "") for j in root.findall("joint")}  # type: ignore[union-attr]
+    children = {
+        j.get("name"): child.get("link", "") for j in root.findall("joint") for child in j.findall("child")
+    }
     model = pin.buildModelFromXML(ET.tostring(root, encoding="unicode"))
     data = model.createData()
     if not model.nv:

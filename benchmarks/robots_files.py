@@ -92,7 +92,8 @@ def numbers(text: str | None, count: int) -> Array:
 
 def pose_of(xyz: Array, rpy: Array) -> Array:
     """Give the matrix of a pose."""
-    return trimesh.transformations.compose_matrix(translate=xyz, angles=rpy)  # type: ignore[no-any-return]
+    matrix: Array = trimesh.transformations.compose_matrix(translate=xyz, angles=rpy)
+    return matrix
 
 
 def symmetric(values: dict[str, float]) -> Array:
@@ -201,9 +202,9 @@ def _urdf(root: ET.Element, path: Path, meshes: Meshes) -> Robot:
                     link.shapes.append((role, shape(form.tag, dict(form.attrib), pose, meshes, path)))
         links.append(link)
     joints = [
-        (j.find("parent").get("link", ""), j.find("child").get("link", ""), j.get("type") == "fixed")  # type: ignore[union-attr]
+        (parent.get("link", ""), child.get("link", ""), j.get("type") == "fixed")
         for j in root.findall("joint")
-        if j.find("parent") is not None and j.find("child") is not None
+        for parent, child in zip(j.findall("parent")[:1], j.findall("child")[:1], strict=False)
     ]
     return Robot("URDF", links, joints)
 
@@ -219,8 +220,11 @@ def _urdf_inertial(link: Link, inertial: ET.Element | None) -> None:
         return
     link.is_declared = True
     pose = _urdf_pose(inertial.find("origin"))
-    tensor = symmetric({k: float(v) for k, v in inertial.find("inertia").attrib.items()})  # type: ignore[union-attr]
-    link.mass, link.center = float(inertial.find("mass").attrib["value"]), pose[:3, 3]  # type: ignore[union-attr]
+    inertia, mass = inertial.find("inertia"), inertial.find("mass")
+    if inertia is None or mass is None:
+        raise ValueError("<inertial> without <mass> or <inertia>")
+    tensor = symmetric({k: float(v) for k, v in inertia.attrib.items()})
+    link.mass, link.center = float(mass.attrib["value"]), pose[:3, 3]
     link.tensor = pose[:3, :3] @ tensor @ pose[:3, :3].T
     numbers(" ".join(map(str, [link.mass, *link.tensor.ravel()])), 10)
 

@@ -122,7 +122,8 @@ def filled(link: Link) -> Array | None:
             for solid in solids
         )
         tensor = (np.trace(second) * np.eye(3) - second) / volume
-        return np.linalg.eigvalsh(tensor)  # type: ignore[no-any-return]
+        moments: Array = np.linalg.eigvalsh(tensor)
+        return moments
     return None
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,30 @@ def shared_data() -> Path:
 def eight_molecules(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the eight molecules of `molecule_files`."""
     return write_molecules(tmp_path_factory.mktemp("molecules"))
+
+
+@pytest.fixture
+def two_workers() -> Iterator[None]:
+    """A dask cluster of two worker processes, which computes meanwhile."""
+    dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=":0", host="127.0.0.1"
+        ) as cluster,
+        distributed.Client(cluster),
+        dask.config.set(scheduler=None),
+    ):
+        yield
+
+
+@pytest.fixture(params=[True, False], ids=["with manifold3d", "without"])
+def has_union(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Whether manifold3d is there: once with it, once as if it were not."""
+    if request.param:
+        pytest.importorskip("manifold3d")
+    else:
+        monkeypatch.setattr("polhode.files.components.has_union", lambda: False)
+    return bool(request.param)
 
 
 @pytest.fixture

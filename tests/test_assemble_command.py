@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +71,23 @@ class TestCommand:
         code, out, _ = run("ledger", files[2], "--overwrite", "--format", "json")
         assert code == 0
         assert json.loads(out)["nodes"][0]["mass"]["value"] == pytest.approx(34.21436948, rel=1e-12)
+
+    @pytest.mark.parametrize(("count", "left"), [(38, 0), (39, 1), (300, 262)])
+    def test_long_ones_are_cut(self, count: int, left: int, tmp_path: Path) -> None:
+        path = tmp_path / "row.toml"
+        path.write_text(
+            f"[[part]]\nname = 'a'\nsolid = 'cube'\nside = 1\nmass = 1\ncount = {count}\nstep = [2, 0, 0]\n"
+        )
+        code, out, _ = run("assemble", path)
+        assert code == 0
+        assert ("more; --all shows them" in out) == (left > 0)
+        assert out.count(f"  and {left} more; --all shows them") == (2 if left else 0)
+        assert len(out.splitlines()) < 150
+        assert re.search(rf"^  parts +{count}$", out, re.MULTILINE)
+        _, whole, _ = run("assemble", path, "--all")
+        assert "more; --all" not in whole
+        _, told, _ = run("assemble", path, "--format", "json")
+        assert len(json.loads(told)["parts"]) == count + 2  # the whole, and the row of copies
 
     def test_depth_expect_and_units(self, cart: Path, tmp_path: Path) -> None:
         code, out, _ = run("assemble", cart, "--depth", "1", "--mass-unit", "lbm", "--about", "0 0 10 mm")

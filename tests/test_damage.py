@@ -269,7 +269,7 @@ class TestJson:
         with pytest.raises(ValueError, match=r"position is infinite somewhere.*\.npz"):
             motion.save(tmp_path / "motion.json")
         empty = solids.box(np.ones((2, 0, 3)), mass=1.0).free_motion((0.1, 1.0, 0.2)).at([0.0, 1.0])
-        with pytest.raises(ValueError, match=r"shape of an empty stack; \.npz does"):
+        with pytest.raises(ValueError, match=r"shape of an empty stack; save it as \.npz"):
             empty.save(tmp_path / "motion.json")
         assert list(tmp_path.iterdir()) == []
 

@@ -99,22 +99,15 @@ def test_generated_chunks_are_made_once_each_and_never_all_at_once(scheduler: st
     assert body == total.finish()
 
 
+@pytest.mark.usefixtures("two_workers")
 def test_two_workers_have_the_bits_of_this_process(cloud: Any, whole: RigidBody) -> None:
-    distributed = pytest.importorskip("distributed")
     arrays = [da.from_array(array, chunks=5000) for array in cloud]
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=":0", host="127.0.0.1"
-        ) as cluster,
-        distributed.Client(cluster),
-        dask.config.set(scheduler=None),
+    assert MADE.from_particles(*arrays) == whole
+    spoilt = arrays[0].map_blocks(lambda m: m - 1.9)
+    with pytest.raises(
+        errors.InvalidInertiaError, match=r"^particles \d+ to \d+: masses must not be negative"
     ):
-        assert MADE.from_particles(*arrays) == whole
-        spoilt = arrays[0].map_blocks(lambda m: m - 1.9)
-        with pytest.raises(
-            errors.InvalidInertiaError, match=r"^particles \d+ to \d+: masses must not be negative"
-        ):
-            MADE.from_particles(spoilt, arrays[1])
+        MADE.from_particles(spoilt, arrays[1])
 
 
 def test_an_accumulator_takes_them_between_others(cloud: Any, whole: RigidBody) -> None:

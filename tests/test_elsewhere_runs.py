@@ -177,22 +177,15 @@ def test_each_chunk_is_run_once() -> None:
     assert runs == [5, 5]
 
 
+@pytest.mark.usefixtures("two_workers")
 def test_two_workers_have_the_bits_of_this_process() -> None:
-    distributed = pytest.importorskip("distributed")
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=":0", host="127.0.0.1"
-        ) as cluster,
-        distributed.Client(cluster),
-        dask.config.set(scheduler=None),
-    ):
-        same(
-            STACK.simulate(T, lazily(OMEGA, 3), load=GRADIENT).compute(),
-            STACK.simulate(T, OMEGA, load=GRADIENT),
-        )
-        times = da.from_array(T, chunks=2)
-        found = STACK.free_motion(OMEGA).at(times).compute()
-        assert np.array_equal(found.omega, STACK.free_motion(OMEGA).at(T).omega)
+    same(
+        STACK.simulate(T, lazily(OMEGA, 3), load=GRADIENT).compute(),
+        STACK.simulate(T, OMEGA, load=GRADIENT),
+    )
+    times = da.from_array(T, chunks=2)
+    found = STACK.free_motion(OMEGA).at(times).compute()
+    assert np.array_equal(found.omega, STACK.free_motion(OMEGA).at(T).omega)
 
 
 def test_an_error_tells_its_chunk() -> None:

@@ -41,7 +41,7 @@ class TestBodies:
         empty = solids.box(np.ones((2, 0, 3)), mass=1.0)
         empty.save(tmp_path / "body.npz")
         assert RigidBody.load(tmp_path / "body.npz").shape == (2, 0)
-        with pytest.raises(ValueError, match=r"shape of an empty stack; \.npz does"):
+        with pytest.raises(ValueError, match=r"shape of an empty stack; save it as \.npz"):
             empty.save(tmp_path / "body.json")
 
     def test_json_is_readable_and_after_its_schema(self, tmp_path: Path) -> None:

@@ -304,9 +304,9 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("words", "told"),
         [
-            (("--of", "weight"), "--of: 'weight' is none of mass"),
+            (("--of", "weight"), "--of: 'weight' is none of the numbers; give one of mass"),
             (("--at", "x"), "--at: no part has the id 'x'"),
-            (("--depth", "-1"), "--depth: a number of levels cannot be negative"),
+            (("--depth", "-1"), "--depth: expected a number of levels, 0 or more"),
             (("--tree", "none.csv"), "none.csv"),
             (("--output", "no/where.csv"), "create it first"),
         ],

@@ -147,11 +147,11 @@ def test_rings_are_refused() -> None:
         ({"bonds": [(0, np.inf)]}, "whole number"),
         ({"bonds": [0, 1]}, "pairs of indices"),
         ({"bonds": [(0, 1)], "sigma": [0.1, 0.1]}, "one for each of 1 bonds"),
-        ({"sigma": -0.1}, "not negative"),
+        ({"sigma": -0.1}, "expected finite standard deviations"),
         ({"sigma": np.nan}, "finite"),
         ({"positions": WATER[:2]}, r"expected shape \(3, 3\)"),
         ({"positions": WATER * 0.0, "bonds": [(0, 1)]}, "no direction"),
-        ({"positions": WATER + np.inf}, "not finite"),
+        ({"positions": WATER + np.inf}, "expected finite coordinates"),
         ({"labels": ["O", "H", "Xx"]}, "not an element"),
     ],
 )

@@ -96,7 +96,7 @@ def test_sigmas_of_constants(rng: np.random.Generator) -> None:
 
 def test_sigmas_of_constants_that_are_none() -> None:
     for wrong in (-0.1, np.nan):
-        with pytest.raises(PolhodeError, match="negative"):
+        with pytest.raises(PolhodeError, match="0 or more"):
             rotational_constants_sigma((1.0, 2.0, 3.0), (wrong, 0.1, 0.1))
 
 

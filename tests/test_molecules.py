@@ -97,7 +97,7 @@ def test_zero_moment_is_an_infinite_constant() -> None:
 def test_arguments_are_checked() -> None:
     with pytest.raises(ValueError, match=r"expected shape \(\.\.\., 3\), got \(2,\)"):
         rotational_constants([1.0, 2.0])
-    with pytest.raises(ValueError, match="'GHz' is not 'MHz'"):
+    with pytest.raises(ValueError, match=r"expected 'MHz' or 'cm\^-1', got 'GHz'"):
         rotational_constants([1.0, 1.0, 1.0], "GHz")  # type: ignore[arg-type]
 
 

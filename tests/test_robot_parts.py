@@ -290,3 +290,36 @@ class TestSdfInclude:
         main = write(tmp_path, main_sdf=sdf("<include><uri>main.sdf</uri></include>"))
         with pytest.raises(FileFormatError, match=r"line 1 of main\.sdf: main\.sdf is read within itself"):
             judged(main)
+
+
+class TestSdf12:
+    """SDF 1.2 has the root <gazebo>, and <filename> where later versions have <uri>."""
+
+    def test_it_is_read_as_later_ones(self, tmp_path: Path) -> None:
+        later = sdf(LINK.format("own", 0.02, SPHERE))
+        old = later.replace('<sdf version="1.9">', '<gazebo version="1.2">').replace("</sdf>", "</gazebo>")
+        assert old != later
+        (verdict,) = judged(write(tmp_path, old_world=old)).values()
+        (same,) = judged(write(tmp_path, later_sdf=later)).values()
+        assert (verdict.verdict, verdict.mass) == (same.verdict, same.mass) == ("good", same.mass)
+
+    def test_meshes_by_filename(self, tmp_path: Path) -> None:
+        (tmp_path / "cube.obj").write_bytes(obj(*cube()))
+        shape = "<mesh><{0}>cube.obj</{0}><scale>0.1 0.1 0.1</scale></mesh>"
+        volumes = []
+        for tag in ("uri", "filename"):
+            text = sdf(LINK.format("own", 0.02, shape.format(tag)))
+            (verdict,) = judged(write(tmp_path, main_sdf=text)).values()
+            volumes.append(moments(verdict))
+        np.testing.assert_array_equal(volumes[0], volumes[1])
+
+    @pytest.mark.parametrize("version", ["", ' version="1.0"'])
+    def test_older_ones_are_refused(self, tmp_path: Path, version: str) -> None:
+        old = f"<gazebo{version}><model name='m'><link name='a'/></model></gazebo>"
+        path = write(tmp_path, old_sdf=old)
+        with pytest.raises(FileFormatError, match=r"is SDF before 1\.2, .*; export it as SDF 1\.2 or later"):
+            robots.read_robot(path)
+        include = "<include><uri>old.sdf</uri></include>"
+        main = write(tmp_path, main_sdf=sdf(LINK.format("own", 0.02, SPHERE), include))
+        _, lost = judged(main).values()
+        assert "old.sdf: is SDF before 1.2" in lost.reason

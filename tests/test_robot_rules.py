@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 import pytest
 from polhode import robots
+from polhode.robots.verdict import Word
 from robot_rules import ROWS
 from test_robots import there
 
@@ -12,19 +15,7 @@ from test_robots import there
 def test_there_is_a_robot_for_each_rule() -> None:
     assert len(ROWS) >= 60
     words = {word for row in ROWS.values() for word in row.words.values()}
-    assert words == {
-        *(
-            "good",
-            "suspect",
-            "coarse",
-            "placeholder",
-            "impossible",
-            "missing",
-            "unreadable",
-            "none",
-            "inferred",
-        )
-    }
+    assert words == set(get_args(Word))
 
 
 @pytest.mark.parametrize("name", ROWS)

@@ -208,7 +208,7 @@ class TestCommand:
         assert "state --length-unit" in err
 
     def test_python_refuses(self) -> None:
-        with pytest.raises(PolhodeError, match="there is no form for 'onshape'; there are urdf"):
+        with pytest.raises(PolhodeError, match="there is no form for 'onshape'; give one of urdf"):
             forms.to_text(bodies()[0], "onshape")
         with pytest.raises(PolhodeError, match="expected one body, got a stack of shape"):
             forms.to_text(RigidBody.stack(bodies()), "urdf")

@@ -134,7 +134,7 @@ def _places(positions: ArrayLike, atoms: int) -> Floats:
         message = f"positions: expected shape ({atoms}, 3) for {atoms} labels, got {places.shape}"
         raise ValueError(message)
     if not np.isfinite(places).all():
-        raise PolhodeError("positions: a coordinate is not finite")
+        raise PolhodeError("positions: expected finite coordinates")
     return places
 
 
@@ -186,7 +186,7 @@ def _moved_along(
         message = f"sigma: expected one or one for each of {len(pairs)} bonds, got shape {sigma.shape}"
         raise ValueError(message)
     if not (np.isfinite(sigma).all() and (sigma >= 0.0).all()):
-        raise PolhodeError("sigma: a standard deviation is finite and not negative")
+        raise PolhodeError("sigma: expected finite standard deviations of 0 or more")
     neighbours: list[list[int]] = [[] for _ in names]
     for i, j in pairs:
         neighbours[i].append(j)
@@ -213,19 +213,19 @@ def _checked(names: Sequence[str], bonds: ArrayLike) -> list[tuple[int, int]]:
         message = f"bonds: expected pairs of indices of atoms, shape (n, 2), got {array.shape}"
         raise ValueError(message)
     if not (np.isfinite(array).all() and (array == np.floor(array)).all()):
-        raise PolhodeError("bonds: an index of an atom is a whole number")
+        raise PolhodeError("bonds: expected whole numbers as indices of atoms")
     pairs: list[tuple[int, int]] = []
     known: set[frozenset[int]] = set()
     for i, j in ((int(one), int(other)) for one, other in array.tolist()):
         for end in (i, j):
             if not 0 <= end < len(names):
                 raise PolhodeError(
-                    f"bonds: there is no atom {end} in ({i}, {j}); atoms are 0 to {len(names) - 1}"
+                    f"bonds: there is no atom {end} in ({i}, {j}); give atoms from 0 to {len(names) - 1}"
                 )
         if i == j:
-            raise PolhodeError(f"bonds: ({i}, {j}) joins an atom to itself")
+            raise PolhodeError(f"bonds: ({i}, {j}) joins an atom to itself; leave it out")
         if frozenset((i, j)) in known:
-            raise PolhodeError(f"bonds: ({i}, {j}) stands twice")
+            raise PolhodeError(f"bonds: ({i}, {j}) stands twice; leave one of them out")
         known.add(frozenset((i, j)))
         pairs.append((i, j))
     return pairs

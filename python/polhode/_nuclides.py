@@ -106,7 +106,9 @@ def _isotope(table: Any, label: str, masses: Masses) -> Isotope:
                 f"write the mass number too, as in {usual}{element.symbol}"
             )
     elif mass_number not in element.isotopes:
-        raise PolhodeError(f"{label!r}: no isotope {mass_number} of {element.symbol} is on record")
+        raise PolhodeError(
+            f"{label!r}: no isotope {mass_number} of {element.symbol} is on record; check the number"
+        )
     nuclide = element[mass_number]
     is_the_unit = (element.symbol, mass_number) == ("C", 12)  # u is a twelfth of it
     sigma = 0.0 if is_the_unit else _sigma(nuclide)

@@ -69,9 +69,9 @@ def from_printout(
     array([0.161126, 0.513865, 0.663032])
     """
     if products is not None and products not in _PRODUCTS:
-        raise PolhodeError(f"products: {products!r} is neither {' nor '.join(_PRODUCTS)}")
+        raise PolhodeError(f"products: expected {' or '.join(_PRODUCTS)}, got {products!r}")
     if about not in (*_ABOUT, "com"):
-        raise PolhodeError(f"about: {about!r} is neither {' nor '.join(_ABOUT)}")
+        raise PolhodeError(f"about: expected {' or '.join(_ABOUT)}, got {about!r}")
     matrix = _matrix(tensor, name)
     off = ~np.eye(3, dtype=np.bool_)
     if products is None and matrix[off].any():
@@ -79,8 +79,8 @@ def from_printout(
         value = matrix[(0, 0, 1), (1, 2, 2)][k]
         x, y = _NAMES[k][1], _NAMES[k][2]
         raise PolhodeError(
-            f"{name}: nothing says which sign {_NAMES[k]} = {value:g} has; products is positive for the "
-            f"integral of {x} {y} dm, negative for minus that, the element of the tensor"
+            f"{name}: nothing says which sign {_NAMES[k]} = {value:g} has; state products as positive "
+            f"for the integral of {x} {y} dm, or as negative for minus that, the element of the tensor"
         )
     if products == "positive":
         matrix[off] = 0.0 - matrix[off]

@@ -68,7 +68,7 @@ def to_text(body: RigidBody, program: str) -> str:
     if not isinstance(body, RigidBody):
         raise TypeError(f"body: expected a RigidBody, got {type(body).__name__}")
     if not isinstance(program, str) or program not in _WRITERS:
-        raise PolhodeError(f"program: there is no form for {program!r}; there are {', '.join(PROGRAMS)}")
+        raise PolhodeError(f"program: there is no form for {program!r}; give one of {', '.join(PROGRAMS)}")
     if body.shape:
         raise PolhodeError(f"body: expected one body, got a stack of shape {body.shape}; index it")
     principal = body.principal

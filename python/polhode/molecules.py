@@ -109,7 +109,7 @@ def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MH
     elif unit == "cm^-1":
         scale = 1e-2 / SPEED_OF_LIGHT
     else:
-        raise ValueError(f"unit: {unit!r} is not 'MHz' or 'cm^-1'")
+        raise ValueError(f"unit: expected 'MHz' or 'cm^-1', got {unit!r}")
     inertia = np.moveaxis(_components(moments), 0, -1)
     numerator = scale * PLANCK_CONSTANT / (8.0 * np.pi**2 * ATOMIC_MASS_CONSTANT * _ANGSTROM**2)
     with np.errstate(divide="ignore"):
@@ -157,7 +157,7 @@ def rotational_constants_sigma(
     if deviations.shape[-1:] != (3,):
         raise ValueError(f"sigma: expected shape (..., 3), got {deviations.shape}")
     if not (deviations >= 0.0).all():
-        raise PolhodeError("sigma: a standard deviation is not negative, and a number")
+        raise PolhodeError("sigma: expected standard deviations of 0 or more")
     with np.errstate(divide="ignore", invalid="ignore"):
         found: Floats = constants * np.hypot(deviations / inertia, _SIGMA_OF_U)
     return np.where(np.isfinite(constants), found, np.nan)

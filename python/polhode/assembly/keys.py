@@ -10,7 +10,18 @@ from polhode.errors import PolhodeError
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
-__all__ = ["COMMON", "FILE", "KINDS", "PRINTED", "REPEATED", "TOP", "check_keys", "text_of", "unknown"]
+__all__ = [
+    "COMMON",
+    "FILE",
+    "KINDS",
+    "PRINTED",
+    "REPEATED",
+    "TOP",
+    "check_keys",
+    "meant",
+    "text_of",
+    "unknown",
+]
 
 TOP: Final = ("name", "comment", "length_unit", "part")
 KINDS: Final = ("solid", "file", "assembly", "inertia")
@@ -18,6 +29,7 @@ KINDS: Final = ("solid", "file", "assembly", "inertia")
 REPEATED: Final = ("count", "step", "turn")
 COMMON: Final = ("name", "comment", *KINDS, "length_unit", "position", "rotation", *REPEATED)
 FILE: Final = ("mass", "density", "weld", "closure", "orient", "union", "repair", "index_base")
+_MOST_NAMES: Final = 30
 PRINTED: Final = ("mass", "com", "tensor", "products", "about", "rtol")
 """Of `inertia`, as CAD programs print it."""
 
@@ -31,14 +43,22 @@ def check_keys(table: Mapping[str, Any], known: Collection[str], where: str) -> 
 
 def unknown(key: str, known: Collection[str]) -> str:
     """Say that a key is not known, and which are."""
-    near = difflib.get_close_matches(key, known, n=1)
-    way_out = f"is {near[0]!r} meant?" if near else f"there are {', '.join(known)}"
-    return f"{key[:40]!r} is not a known key; {way_out}"
+    return f"{key[:40]!r} is not a known key; {meant(key, known)}"
+
+
+def meant(name: str, known: Collection[str]) -> str:
+    """Ask for the nearest of the names that there are, or tell them."""
+    near = difflib.get_close_matches(name, known, n=1)
+    names = [*known][:_MOST_NAMES]
+    more = f" and {len(known) - len(names)} more" if len(known) > len(names) else ""
+    return f"is {near[0]!r} meant?" if near else f"give one of {', '.join(names)}{more}"
 
 
 def text_of(table: Mapping[str, Any], key: str, where: str) -> str:
     """Give a text; "" where it is absent."""
     value = table.get(key, "")
     if not isinstance(value, str) or not value.isprintable():
-        raise PolhodeError(f"{where}: {key}: {repr(value)[:60]} is not a line of text")
+        raise PolhodeError(
+            f"{where}: {key}: {repr(value)[:60]} is not a line of text; write one between quotes"
+        )
     return value

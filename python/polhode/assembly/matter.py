@@ -52,8 +52,8 @@ def kind_of(table: Mapping[str, Any], where: str) -> str:
             ),
         }
         check_keys(table, sorted(every), where)
-    found = f"it has {' and '.join(kinds)}" if kinds else "it has none"
-    raise PolhodeError(f"{where}: a part is one of {', '.join(KINDS)}; {found}")
+    found = f"got {' and '.join(kinds)}" if kinds else "got none"
+    raise PolhodeError(f"{where}: expected one of {', '.join(KINDS)}, {found}")
 
 
 def body_of_part(
@@ -83,7 +83,10 @@ def body_of_part(
         kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
         raise kind_of_error(f"{scope.where}: {what}") from error
     if body.shape:
-        raise PolhodeError(f"{scope.where}: its numbers are of {body.shape[0]} bodies, not of one")
+        raise PolhodeError(
+            f"{scope.where}: its numbers are of {body.shape[0]} bodies, not of one; give numbers, not "
+            "rows of them"
+        )
     return body, arguments, metres
 
 
@@ -95,7 +98,7 @@ def _in_keys(message: str) -> str:
 
 def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]:
     if ("mass" in table) == ("density" in table):
-        raise PolhodeError(f"{scope.where}: {what} needs its mass or its density, one of the two")
+        raise PolhodeError(f"{scope.where}: {what} needs its mass or its density; state one of the two")
     if "mass" in table:
         return {"mass": scope.amount("mass", table["mass"], "kg")}
     return {"density": scope.amount("density", table["density"], "kg/m^3")}
@@ -105,7 +108,7 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> tuple[RigidBody, dict[str,
     name = text_of(table, "solid", scope.where)
     if name not in _SHAPES:
         raise PolhodeError(
-            f"{scope.where}: solid: there is no {name!r}; there are {', '.join(sorted(_SHAPES))}"
+            f"{scope.where}: solid: there is no {name!r}; write one of {', '.join(sorted(_SHAPES))}"
         )
     shape: Callable[..., RigidBody] = _SHAPES[name]
     taken = [key for key in inspect.signature(shape).parameters if key != "degrees"]  # numbers have units
@@ -113,7 +116,7 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> tuple[RigidBody, dict[str,
     own = [key for key in taken if key not in ("mass", "density")]
     missing = [key for key in own if key not in table]
     if missing:
-        raise PolhodeError(f"{scope.where}: a {name} takes {', '.join(own)}; {missing[0]} is missing")
+        raise PolhodeError(f"{scope.where}: a {name} takes {', '.join(own)}; state {missing[0]}")
     options = {
         key: scope.numbers(key, table[key], _NO_LENGTHS[key])
         if key in _NO_LENGTHS
@@ -139,7 +142,7 @@ def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
     check_keys(given, PRINTED, where)
     for name in ("mass", "tensor"):
         if name not in given:
-            raise PolhodeError(f"{where}: {name} is missing")
+            raise PolhodeError(f"{where}: it has no {name}; state it")
     inner = type(scope)(where, scope.length_unit)
     rows = given["tensor"]
     flat = (
@@ -183,13 +186,17 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBo
         body = RigidBody.load(path) if reported is None else reported
         if body.shape:
             raise PolhodeError(
-                f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one"
+                f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one; "
+                "save one of them alone"
             )
         return body, scope.metres
     options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
     for key in (key for key in _SWITCHES if key in table):
         if not isinstance(table[key], bool):
-            raise PolhodeError(f"{scope.where}: {key}: {repr(table[key])[:60]} is neither true nor false")
+            raise PolhodeError(
+                f"{scope.where}: {key}: {repr(table[key])[:60]} is neither true nor false; write one of "
+                "them, without quotes"
+            )
     if is_molecule(path):
         unit = str(table.get("length_unit", "angstrom"))
         options |= {key: table[key] for key in ("mass", "density", "weld") if key in table}

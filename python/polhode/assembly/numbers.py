@@ -43,7 +43,9 @@ class Scope:
         if length_unit is None:
             return Scope(where, self.length_unit)
         if not isinstance(length_unit, str):
-            raise PolhodeError(f"{where}: length_unit: {_shown(length_unit)} is not the name of a unit")
+            raise PolhodeError(
+                f"{where}: length_unit: {_shown(length_unit)} is not the name of a unit; write one, as 'mm'"
+            )
         try:
             metres_per(length_unit)
         except PolhodeError as error:
@@ -99,13 +101,13 @@ class Scope:
         if isinstance(value, str):
             return quantity(value, unit, option) * (1.0 if has_unit(value) else bare)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise PolhodeError(f"{option}: {_shown(value)} is not a number")
+            raise PolhodeError(f"{option}: {_shown(value)} is not a number; write one, as in 2.5")
         try:
             number = float(value) * bare
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise PolhodeError(f"{option}: {_shown(value)} is not finite")
+            raise PolhodeError(f"{option}: {_shown(value)} is not finite; write one that is")
         return number
 
 

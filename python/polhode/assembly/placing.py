@@ -61,7 +61,8 @@ def copies(table: Mapping[str, Any], scope: Scope) -> list[Place]:
     count = table.get("count", 1)
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_COPIES:
         raise PolhodeError(
-            f"{scope.where}: count: {str(count)[:40]!r} is not a whole number from 1 to {MOST_COPIES}"
+            f"{scope.where}: count: {str(count)[:40]!r} is not a whole number from 1 to {MOST_COPIES}; "
+            "write one"
         )
     moved = next((key for key in ("step", "turn") if key in table), None)
     if moved is not None and count == 1:
@@ -110,8 +111,8 @@ def _rotation(given: Any, key: str, scope: Scope) -> Floats:
     letters = sequence if isinstance(sequence, str) else ""
     if len(letters) != 3 or letters.upper().strip("XYZ") or letters not in (letters.upper(), letters.lower()):
         raise PolhodeError(
-            f"{where}: sequence: {str(sequence)[:40]!r} is not three letters of XYZ (about the axes of the "
-            "turning part) or of xyz (about those that stand)"
+            f"{where}: sequence: expected three letters of XYZ (about the axes of the turning part) or of "
+            f"xyz (about those that stand), got {str(sequence)[:40]!r}"
         )
     turns = [
         _turn(np.eye(3)["xyz".index(letter.lower())], angle)

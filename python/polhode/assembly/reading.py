@@ -118,7 +118,7 @@ def _file(path: Path, known: dict[Path, _Unit], inside: tuple[Path, ...]) -> _Un
         try:
             table = tomllib.loads(text)
         except (tomllib.TOMLDecodeError, RecursionError) as error:
-            raise FileFormatError(f"{path}: not TOML: {error}") from None
+            raise FileFormatError(f"{path}: not TOML: {error}; correct the line") from None
         known[real] = _tree(table, path.parent, Scope(str(path)), known, (*inside, real))
     return known[real]
 

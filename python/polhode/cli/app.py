@@ -31,7 +31,7 @@ from polhode.cli.standard_output import ReaderLeft, standard_output
 from polhode.cli.text import in_options, note, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from rich.console import Console
 
@@ -99,16 +99,8 @@ def report(
             told = file_report(file, body, extra)
     check_outputs([("--output", output.output)], read)
     if extra.program is not None:
-        _write_text(text, output)
-        note(notes)
-        return GOOD
-    differing = []
-    if extra.expect is not None:
-        from polhode.cli.compare import held_against
-
-        differing = held_against(told, extra.expect, extra.rtol)
-    _show(told, output)
-    return BAD_VERDICT if differing else GOOD
+        return _printed(text, notes, output)
+    return _held_and_shown(told, extra, output)
 
 
 @app.command
@@ -243,18 +235,9 @@ def assemble(
             told, made = assembly_report(file, assemble, extra)
     check_outputs(places, read)
     if extra.program is not None:
-        _write_text(text, output)
-        note(notes)
-        return GOOD
-    differing = []
-    if extra.expect is not None:
-        from polhode.cli.compare import held_against
-
-        differing = held_against(told, extra.expect, extra.rtol)
-    for path in assemble.save:
-        told.notes += save_assembly(made, path)
-    _show(told, output)
-    return BAD_VERDICT if differing else GOOD
+        return _printed(text, notes, output)
+    saved = (line for path in assemble.save for line in save_assembly(made, path))
+    return _held_and_shown(told, extra, output, saved)
 
 
 @app.command
@@ -399,6 +382,27 @@ def _fail(message: str, code: int = BAD_INPUT) -> int:
         with suppress(OSError):  # nobody reads it: the exit code remains
             print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
     return code
+
+
+def _printed(text: str, notes: list[str], output: OutputOptions) -> int:
+    """Write the numbers for another program, and beside them what has to be noted."""
+    _write_text(text, output)
+    note(notes)
+    return GOOD
+
+
+def _held_and_shown(
+    told: Report, extra: ReportOptions, output: OutputOptions, saved: Iterable[str] = ()
+) -> int:
+    """Hold a report against what was expected, then save what is to be saved, and show it."""
+    differing = []
+    if extra.expect is not None:
+        from polhode.cli.compare import held_against
+
+        differing = held_against(told, extra.expect, extra.rtol)
+    told.notes += saved
+    _show(told, output)
+    return BAD_VERDICT if differing else GOOD
 
 
 def _write_text(text: str, options: OutputOptions) -> None:

@@ -28,16 +28,19 @@ if TYPE_CHECKING:
 __all__ = ["assembly_for_program", "assembly_report", "save_assembly"]
 
 _PICTURES: Final = (".png", ".pdf", ".svg")
+_MOST_ROWS: Final = 40
 _SAVED: Final = (*_PICTURES, ".json", ".npz", ".csv")
 
 
 def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) -> tuple[Report, Assembly]:
     """Report on an assembly; give it too."""
     if options.depth < 0:
-        raise PolhodeError(f"--depth: a number of levels cannot be negative, got {options.depth}")
+        raise PolhodeError(f"--depth: expected a number of levels, 0 or more, got {options.depth}")
     for path in options.save:
         if path.suffix.lower() not in _SAVED:
-            raise PolhodeError(f"--save: {path} does not end in one of {', '.join(_SAVED)}")
+            raise PolhodeError(
+                f"--save: {path} has a suffix that is not written; use one of {', '.join(_SAVED)}"
+            )
     if extra.mass_unit is not None:
         quantity(f"1 {extra.mass_unit}", "kg", "--mass-unit")
     about = vector(extra.about, "m", "--about") if extra.about else None
@@ -53,10 +56,11 @@ def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) 
         Field("part_count", "parts", len(made)),
     )
     nodes = list(made.ledger.walk(options.depth))
+    most = None if options.every else _MOST_ROWS
     columns = [Column("id", "part"), Column("mass", "mass", "kg")]
     columns += [Column(name, name, "m") for name in NUMBERS[1:4]]
     rows = [node_row(node, whole) | {"id": _named(node.id, node.depth)} for node in nodes]
-    report.section("parts, centres from the origin of the whole", Table("parts", columns, rows))
+    report.section("parts, centres from the origin of the whole", Table("parts", columns, rows, most))
     tensors = [Column("id", "part"), *(Column(name, name, "kg m^2") for name in NUMBERS[4:])]
     report.section(
         "their tensors about the own centres, elements",
@@ -64,6 +68,7 @@ def assembly_report(file: Path, options: AssembleOptions, extra: ReportOptions) 
             "part_tensors",
             tensors,
             [tensor_row(node, whole) | {"id": _named(node.id, node.depth)} for node in nodes],
+            most,
         ),
     )
     loaded = LoadedBody(made.body, [], "kg", "m", notes=made.notes, kind="assembly")

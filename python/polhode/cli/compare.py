@@ -134,7 +134,9 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         list(_leaves(document))
     except RecursionError:
-        raise FileFormatError(f"--expect: {path}: its fields are nested beyond reason") from None
+        raise FileFormatError(
+            f"--expect: {path}: its fields are nested beyond reason; save one with --format json"
+        ) from None
     return document
 
 

@@ -56,7 +56,13 @@ def components_of(
         return Components(
             [], [], ["components were joined (--union): how far that moves corners is in no bound"]
         )
-    if loaded.cad is not None or solid.faces > _MOST_FACES or options.closure is not None:
+    if loaded.cad is not None:
+        from polhode.files.cad_overlaps import overlaps_told
+
+        return (
+            Components([], [], overlaps_told(loaded.cad, loaded.path)) if len(loaded.cad.parts) > 1 else None
+        )
+    if solid.faces > _MOST_FACES or options.closure is not None:
         return None
     parts = _parts(loaded, scale, weld, mended=options.repair)
     if len(parts) < 2:
@@ -76,7 +82,10 @@ def components_of(
 def weighed(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float) -> MeshSolid:
     """Give each component its own density."""
     if loaded.cad is not None:
-        raise PolhodeError("--density: the solids of a CAD file take one density, or those of its materials")
+        raise PolhodeError(
+            "--density: components of CAD have the densities of their materials; give one number for "
+            "those without, or leave it out"
+        )
     for name, is_given in (
         ("union", options.union),
         ("closure", options.closure is not None),

@@ -94,7 +94,9 @@ def _run(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[F
         raise PolhodeError("flyby: give a file, or principal moments with --moments")
     for path in options.save:
         if path.suffix.lower() not in PICTURES:
-            raise PolhodeError(f"--save: {path.name!r} ends in none of {', '.join(PICTURES)}")
+            raise PolhodeError(
+                f"--save: {path.name!r} has a suffix that is not written; use one of {', '.join(PICTURES)}"
+            )
     if options.clones < 1:
         raise PolhodeError(f"--clones: expected a positive number, got {options.clones}")
     if not options.periods:
@@ -107,9 +109,9 @@ def _run(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[F
     rotation, precession = quantities(options.periods, 2, "s", "--periods")
     span = quantity(options.span, "s", "--span")
     if not span > 0.0:
-        raise PolhodeError(f"--span: must be positive, got {span:g}")
+        raise PolhodeError(f"--span: expected a positive time, got {span:g}")
     if options.eccentricity < 0.0:
-        raise PolhodeError(f"--eccentricity: must not be negative, got {options.eccentricity:g}")
+        raise PolhodeError(f"--eccentricity: expected 0 or more, got {options.eccentricity:g}")
     orbit = orbits.from_elements(
         quantity(options.mu, "m^3/s^2", "--mu"),
         eccentricity=options.eccentricity,

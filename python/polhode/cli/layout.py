@@ -94,11 +94,14 @@ class Table:
     rows : sequence of mapping
         Values by the keys of the columns: text, numbers, lists of numbers; absent or None where there is
         none. Other keys are for JSON alone.
+    most : int, optional
+        So many rows are shown to people, and the rest counted; JSON has them all.
     """
 
     key: str
     columns: Sequence[Column]
     rows: Sequence[Mapping[str, Any]]
+    most: int | None = None
 
 
 @dataclass(frozen=True)
@@ -194,10 +197,13 @@ def _lines(item: Field) -> Iterator[str]:
 
 def _table_lines(table: Table) -> Iterator[str]:
     headings = [f"{c.heading}, {c.unit}" if c.unit else c.heading for c in table.columns]
-    texts = [[_cell(row.get(c.key), c.decimals) for c in table.columns] for row in table.rows]
+    texts = [[_cell(row.get(c.key), c.decimals) for c in table.columns] for row in table.rows[: table.most]]
     widths = [max(len(line[i]) for line in [headings, *texts]) for i in range(len(headings))]
     for line in [headings, *texts]:
         yield "  " + "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+    left = len(table.rows) - len(texts)
+    if left:
+        yield f"  and {left} more; --all shows them, --depth fewer levels"
 
 
 def _cell(value: Any, decimals: int | None) -> str:

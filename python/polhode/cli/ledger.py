@@ -10,6 +10,7 @@ import numpy as np
 
 from polhode._extras import require
 from polhode._rounding import with_sigma
+from polhode.assembly.keys import meant
 from polhode.cli.layout import ROUNDING, Cell, Column, Field, Report, Table
 from polhode.cli.source import STDIN, shown
 from polhode.errors import FileFormatError, PolhodeError
@@ -30,9 +31,9 @@ _CONTRIBUTORS: Final = 10
 def ledger_report(file: Path, options: LedgerOptions) -> tuple[Report, Ledger]:
     """Report on the ledger in a file; give the ledger too."""
     if options.of not in NUMBERS:
-        raise PolhodeError(f"--of: {options.of!r} is none of {', '.join(NUMBERS)}")
+        raise PolhodeError(f"--of: {options.of!r} is none of the numbers; give one of {', '.join(NUMBERS)}")
     if options.depth < 0:
-        raise PolhodeError(f"--depth: a number of levels cannot be negative, got {options.depth}")
+        raise PolhodeError(f"--depth: expected a number of levels, 0 or more, got {options.depth}")
     made = ledger(_table(file), options.tree, overwrite=options.overwrite, ignore=options.ignore)
     top = _top(made, options)
     report = Report()
@@ -88,14 +89,14 @@ def _table(file: Path) -> Any:
         return table_of_text(data.decode(), "-", Path())
     except UnicodeDecodeError as error:
         raise FileFormatError(
-            f"-: not a text file, so not a table: byte {error.start} is not UTF-8"
+            f"-: not a text file, so not a table: byte {error.start} is not UTF-8; save it as CSV"
         ) from None
 
 
 def _top(made: Ledger, options: LedgerOptions) -> Part:
     name = made.root if options.at is None else options.at
     if name not in made:
-        raise PolhodeError(f"--at: no part has the id {name!r}")
+        raise PolhodeError(f"--at: no part has the id {name!r}; {meant(name, made.ids)}")
     return made[name]
 
 

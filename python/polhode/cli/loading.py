@@ -132,9 +132,10 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
         solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
     notes = [*_taken(options, unit), *_of_unit(loaded, asked), *loaded.notes]
-    if len(solid.parts) > 1:
+    if len(solid.parts) > 1 and solid.components is None:
         notes.append(
-            "solids of a CAD file are taken as they stand: where two overlap, what they share counts twice"
+            "solids of a CAD file are taken as they stand: where two overlap, what they share counts twice; "
+            "polhode report looks for that"
         )
     notes += _unusual(solid.volume, unit, loaded)
     if weld != 0.0 and not options.repair:
@@ -336,5 +337,5 @@ def bond_sigma(text: str | None, unit: str) -> float | None:
         return None
     sigma = in_file_unit(text, "--bond-sigma", unit) * (metres_per(unit) / METRES["angstrom"])
     if sigma < 0.0:
-        raise PolhodeError(f"--bond-sigma: {text!r} is negative; a standard deviation is not")
+        raise PolhodeError(f"--bond-sigma: expected a sigma of 0 or more, got {text.strip()!r}")
     return sigma

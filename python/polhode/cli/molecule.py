@@ -122,6 +122,10 @@ def _head(report: Report, file: Path, atoms: list[Isotope], loaded: LoadedBody) 
     )
 
 
+def _elements(atoms: list[Isotope]) -> str:
+    return ", ".join(dict.fromkeys(atom.name.lstrip("0123456789") for atom in atoms))
+
+
 def _formula(atoms: list[Isotope]) -> str:
     return ", ".join(f"{n} {atom.name}" for atom, n in Counter(atoms).items())
 
@@ -139,14 +143,23 @@ def _substituted(atoms: list[Isotope], text: str) -> list[Isotope]:
         if by_number is None:
             where = [i for i, atom in enumerate(atoms) if atom.name.lstrip("0123456789") == symbol]
             if not where:
-                raise PolhodeError(f"--isotopes: {part.strip()!r}: no atom of the molecule is {symbol}")
+                raise PolhodeError(
+                    f"--isotopes: {part.strip()!r}: no atom of the molecule is {symbol}; give an isotope "
+                    f"of {_elements(atoms)}"
+                )
         else:
             index = int(by_number["atom"])
             if not 1 <= index <= len(atoms):
-                raise PolhodeError(f"--isotopes: {part.strip()!r}: the molecule has atoms 1 to {len(atoms)}")
+                raise PolhodeError(
+                    f"--isotopes: {part.strip()!r}: the molecule has atoms 1 to {len(atoms)}; give one "
+                    "of them"
+                )
             held = atoms[index - 1].name.lstrip("0123456789")
             if held != symbol:
-                raise PolhodeError(f"--isotopes: {part.strip()!r}: atom {index} of the file is {held}")
+                raise PolhodeError(
+                    f"--isotopes: {part.strip()!r}: atom {index} of the file is {held}; give an isotope "
+                    f"of {held}, or another atom"
+                )
             where = [index - 1]
         for i in where:
             changed[i] = isotope

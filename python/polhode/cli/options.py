@@ -154,12 +154,15 @@ class AssembleOptions:
     ----------
     depth
         How many levels below the whole are shown.
+    every
+        Show every part of these levels, instead of the first 40; --format json always does.
     save
         Where to draw the parts and their masses (.png, .pdf, .svg), or write the whole as one body (.json,
         .npz), or its tree as a ledger (.csv). May be repeated.
     """
 
     depth: Annotated[int, Parameter(name="--depth")] = 2
+    every: Annotated[bool, Parameter(name="--all", negative="")] = False
     save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()
 
 

@@ -59,9 +59,9 @@ def for_program(
     loaded = any_body(file, options, with_components=True)
     if loaded.mass_unit != "kg" or loaded.length != "m":
         reason = "is a molecule, in u and angstrom" if loaded.mass_unit == "u" else "does not say its unit"
-        way_out = "" if loaded.mass_unit == "u" else "; state --length-unit"
+        way_out = "leave --as out" if loaded.mass_unit == "u" else "state --length-unit"
         raise PolhodeError(
-            f"--as: other programs take kg and m, and {shown(file or STDIN)} {reason}{way_out}"
+            f"--as: other programs take kg and m, and {shown(file or STDIN)} {reason}; {way_out}"
         )
     if loaded.assumed:
         raise PolhodeError("--as: neither density nor mass is given; state --density or --mass")

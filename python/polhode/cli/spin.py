@@ -149,13 +149,13 @@ def _checked(file: Path | None, spin: SpinOptions, options: BodyOptions) -> floa
     if spin.save and spin.until is None:
         raise PolhodeError('--save: state the time of the end with --until, as in "20 s"')
     if spin.samples < 2:
-        raise PolhodeError(f"--samples: {spin.samples} is less than 2, the start and the end")
+        raise PolhodeError(f"--samples: {spin.samples} is less than 2, the start and the end; give 2 or more")
     check_paths(spin.save)
     if spin.until is None:
         return None
     until = quantity(spin.until, "s", "--until")
     if until == 0.0:
-        raise PolhodeError(f"--until: {until:g} is not a time other than 0")
+        raise PolhodeError(f"--until: expected a time other than 0, got {until:g}")
     return until
 
 

@@ -41,7 +41,9 @@ def check_paths(paths: Sequence[Path]) -> None:
     """Refuse what cannot be written before anything is computed."""
     for path in paths:
         if path.suffix.lower() not in _SUFFIXES:
-            raise PolhodeError(f"--save: {path} does not end in one of {', '.join(_SUFFIXES)}")
+            raise PolhodeError(
+                f"--save: {path} has a suffix that is not written; use one of {', '.join(_SUFFIXES)}"
+            )
 
 
 def drawable(loaded: LoadedBody, options: BodyOptions) -> tuple[Part | None, str]:

@@ -18,7 +18,6 @@ _WAYS_OUT: Final = (
     ('closure="caps" or "hull"', "--closure caps or --closure hull"),
     ("pass orient=True", "pass --orient"),
     ("repair=True mends it", "--repair mends it"),
-    ('closure="hull" takes', "--closure hull takes"),
     ("repair closes and orients by itself", "--repair closes and orients by itself"),
     ("leave index_base out", "leave --index-base out"),
     ("leave length_unit out", "leave --length-unit out"),
@@ -37,6 +36,7 @@ _WAYS_OUT: Final = (
 )
 _NAMED: Final = re.compile(r"^(weld|closure|orient|union|repair|index_base|length_unit|mass|density)(?=: )")
 """Of arguments that are options by the same names."""
+_CLOSURE: Final = re.compile(r'\bclosure="(caps|hull)"(?=\)| takes)')
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")
 
 
@@ -45,6 +45,7 @@ def in_options(message: str) -> str:
     for argument, option in _WAYS_OUT:
         message = message.replace(argument, option)
     message = _NAMED.sub(lambda found: f"--{found[1].replace('_', '-')}", message)
+    message = _CLOSURE.sub(r"--closure \1", message)
     return _WELD.sub("--weld ", message)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final
 import numpy as np
 
 from polhode.errors import FileFormatError
+from polhode.files.reading import with_way_out
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -78,10 +79,11 @@ def read_ascii_stl(stream: BinaryIO, file: Path) -> NDArray[np.float64]:
         if name is not None or words:
             raise ValueError("the last solid has no 'endsolid'; is the file cut short?")
     except ValueError as error:
-        raise FileFormatError(f"{file}: not a whole ASCII STL file: up to line {number}: {error}") from None
+        fault = with_way_out(error, "export it again")
+        raise FileFormatError(f"{file}: not a whole ASCII STL file: up to line {number}: {fault}") from None
     corners = np.concatenate(blocks)
     if not len(corners):
-        raise FileFormatError(f"{file}: holds no triangles")
+        raise FileFormatError(f"{file}: holds no triangles; check the file")
     return corners
 
 

@@ -12,6 +12,7 @@ from polhode.files.content import unread
 from polhode.files.glb import check_glb
 from polhode.files.mesh import Mesh, weld
 from polhode.files.promises import check_off, check_ply, check_ply_lists, check_ply_size
+from polhode.files.reading import with_way_out
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,14 +62,17 @@ def read_by_trimesh(stream: BinaryIO, file: Path, readable: tuple[str, ...]) -> 
         raise
     except Exception as error:  # a damaged file can raise anything in there, from KeyError to struct.error
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileFormatError(f"{file}: not a readable {kind.upper()} file: {reason[:200]}") from error
+        fault = with_way_out(reason[:200], "export it again")
+        raise FileFormatError(f"{file}: not a readable {kind.upper()} file: {fault}") from error
     vertices, faces = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)]
     offset = placed_faces = 0
     for node in scene.graph.nodes_geometry:
         transform, name = scene.graph[node]
         geometry = scene.geometry[name]
         if not isinstance(geometry, trimesh.Trimesh):
-            raise FileFormatError(f"{file}: holds points or lines ({name}) where triangles are needed")
+            raise FileFormatError(
+                f"{file}: holds points or lines ({name}) where triangles are needed; export triangles"
+            )
         placed_faces += len(geometry.faces)
         if placed_faces > _MOST_TRIANGLES:
             raise FileFormatError(
@@ -79,10 +83,14 @@ def read_by_trimesh(stream: BinaryIO, file: Path, readable: tuple[str, ...]) -> 
         if corners.size == 0:
             corners = np.empty((0, 3), dtype=np.int64)
         if corners.shape[1:] != (3,) or placed.shape[1:] != (3,):
-            raise FileFormatError(f"{file}: its faces or vertices are not rows of three numbers")
+            raise FileFormatError(
+                f"{file}: its faces or vertices are not rows of three numbers; export triangles"
+            )
         if corners.size and not (corners.min() >= 0 and corners.max() < len(placed)):
             row = int(np.flatnonzero((corners < 0).any(axis=1) | (corners >= len(placed)).any(axis=1))[0])
-            raise FileFormatError(f"{file}: face {row} names a vertex that the file does not hold")
+            raise FileFormatError(
+                f"{file}: face {row} names a vertex that the file does not hold; is it cut short?"
+            )
         # A reflection turns every triangle inside out; the opposite winding turns it back.
         if np.linalg.det(transform[:3, :3]) < 0.0:
             corners = corners[:, ::-1]
@@ -93,13 +101,14 @@ def read_by_trimesh(stream: BinaryIO, file: Path, readable: tuple[str, ...]) -> 
         offset += len(placed)
     mesh = weld(np.concatenate(vertices), np.concatenate(faces), kind.upper())
     if not len(mesh.faces):
-        raise FileFormatError(f"{file}: holds no triangles")
+        raise FileFormatError(f"{file}: holds no triangles; export it with them")
     if kind in _PROMISING:
         try:
             stream.seek(0)
             _PROMISING[kind](stream, len(mesh.faces))
         except (ValueError, IndexError) as error:
-            raise FileFormatError(f"{file}: not a whole {kind.upper()} file: {error}") from None
+            fault = with_way_out(error, "export it again")
+            raise FileFormatError(f"{file}: not a whole {kind.upper()} file: {fault}") from None
     return mesh
 
 

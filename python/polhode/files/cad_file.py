@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["CAD_SUFFIXES", "CadFile", "CadPart", "read_cad"]
+__all__ = ["CAD_SUFFIXES", "CadFile", "CadPart", "box_of", "faces_of", "read_cad", "solids_in", "within"]
 
 CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _IGES: Final = (".igs", ".iges")
@@ -118,6 +118,34 @@ def read_cad(path: Path) -> CadFile:
     MeshError
         If a solid is open or inside out.
     """
+    kind, names, document = _document(path)
+    is_iges = kind == "IGES"
+    units = {_UNITS.get(name, "m") for name in names}
+    unit = units.pop() if len(units) == 1 else "m"
+    walk = _Walk(path, kind, document)
+    parts = tuple(walk.parts())
+    if not parts:
+        way_out = "export STEP" if is_iges else "export solids, not surfaces or meshes"
+        raise FileFormatError(f"{path}: holds no solid ({walk.left_out} faces bound none); {way_out}")
+    raw = sorted({part.density for part in parts if part.density is not None})
+    stated = densities_of(read_bytes(path).decode("latin-1")) if raw else []
+    if stated is None or len(stated) != len(raw):
+        parts = tuple(replace(part, density=None) for part in parts)
+        return CadFile(kind, unit, parts, walk.left_out, unread_densities=True, names_of_units=names)
+    known: dict[float | None, float | None] = {None: None, **dict(zip(raw, stated, strict=True))}
+    parts = tuple(replace(part, density=known[part.density]) for part in parts)
+    return CadFile(kind, unit, parts, walk.left_out, names_of_units=names)
+
+
+def solids_in(path: Path) -> list[tuple[CadPart, Any]]:
+    """Read the solids of a file as :func:`read_cad` does, each with its shape of OCCT at its place."""
+    kind, _, document = _document(path)
+    walk = _Walk(path, kind, document)
+    return list(zip(walk.parts(), walk.placed, strict=True))
+
+
+def _document(path: Path) -> tuple[str, tuple[str, ...], Any]:
+    """Read a file into a document of OCCT; with it what the format is and what units the file names."""
     messenger = occt("Message").Message.DefaultMessenger_s()
     messenger.ChangePrinters().Clear()  # it would speak on standard output
     is_iges = path.suffix.lower() in _IGES
@@ -135,23 +163,9 @@ def read_cad(path: Path) -> CadFile:
     if reader.ReadFile(str(path)) != done:
         raise FileFormatError(f"{path}: not a readable {kind} file; export it again")
     names = _iges_units(reader) if is_iges else _step_units(reader, path)
-    units = {_UNITS.get(name, "m") for name in names}
-    unit = units.pop() if len(units) == 1 else "m"
     if not reader.Transfer(document):
         raise FileFormatError(f"{path}: its {kind} shapes could not be read; export it again")
-    walk = _Walk(path, kind, document)
-    parts = tuple(walk.parts())
-    if not parts:
-        way_out = "export STEP" if is_iges else "export solids, not surfaces or meshes"
-        raise FileFormatError(f"{path}: holds no solid ({walk.left_out} faces bound none); {way_out}")
-    raw = sorted({part.density for part in parts if part.density is not None})
-    stated = densities_of(read_bytes(path).decode("latin-1")) if raw else []
-    if stated is None or len(stated) != len(raw):
-        parts = tuple(replace(part, density=None) for part in parts)
-        return CadFile(kind, unit, parts, walk.left_out, unread_densities=True, names_of_units=names)
-    known: dict[float | None, float | None] = {None: None, **dict(zip(raw, stated, strict=True))}
-    parts = tuple(replace(part, density=known[part.density]) for part in parts)
-    return CadFile(kind, unit, parts, walk.left_out, names_of_units=names)
+    return kind, names, document
 
 
 def _step_units(reader: Any, path: Path) -> tuple[str, ...]:
@@ -181,6 +195,8 @@ class _Walk:
         self._known: dict[int, tuple[Moments, int]] = {}
         self._count = 0
         self.left_out = 0
+        self.placed: list[Any] = []
+        """The shapes of the parts that were given, at their places."""
 
     def parts(self) -> Iterator[CadPart]:
         labels = occt("collections").Sequence_TDF_Label()
@@ -211,8 +227,8 @@ class _Walk:
     def _solids(self, label: Any, place: Any, name: str) -> Iterator[CadPart]:
         shape = self._tools.XCAFDoc_ShapeTool.GetShape_s(label)
         kinds = occt("TopAbs").TopAbs_ShapeEnum
-        solids = list(_within(shape, kinds.TopAbs_SOLID))
-        self.left_out += sum(1 for _ in _within(shape, kinds.TopAbs_FACE, kinds.TopAbs_SOLID))
+        solids = list(within(shape, kinds.TopAbs_SOLID))
+        self.left_out += sum(1 for _ in within(shape, kinds.TopAbs_FACE, kinds.TopAbs_SOLID))
         name = name or _name(label)
         material, density = _material(label)
         for number, solid in enumerate(solids):
@@ -227,6 +243,7 @@ class _Walk:
                 )
             moments, faces = self._moments(solid, own)
             rotation, position = _numbers(whole)
+            self.placed.append(solid.Located(occt("TopLoc").TopLoc_Location(whole)))
             yield CadPart(own, moments, rotation, position, material, density, faces)
 
     def _moments(self, solid: Any, name: str) -> tuple[Moments, int]:
@@ -234,11 +251,8 @@ class _Walk:
         unplaced = solid.Located(occt("TopLoc").TopLoc_Location())
         key = hash(unplaced)
         if key not in self._known:
-            faces = [
-                occt("TopoDS").TopoDS.Face(face)
-                for face in _within(unplaced, occt("TopAbs").TopAbs_ShapeEnum.TopAbs_FACE)
-            ]
-            about, reach = _box(unplaced)
+            faces = faces_of(unplaced)
+            about, reach = box_of(unplaced)
             try:
                 moments = moments_of_faces(faces, about, reach)
             except ValueError as error:
@@ -267,7 +281,16 @@ class _Walk:
             raise MeshError(f"{what} {sign} ({moments.volume:.4g} mm^3); heal it in CAD and export it again")
 
 
-def _within(shape: Any, kind: Any, but_in: Any = None) -> Iterator[Any]:
+def faces_of(shape: Any) -> list[Any]:
+    """Give the faces of a shape."""
+    return [
+        occt("TopoDS").TopoDS.Face(face)
+        for face in within(shape, occt("TopAbs").TopAbs_ShapeEnum.TopAbs_FACE)
+    ]
+
+
+def within(shape: Any, kind: Any, but_in: Any = None) -> Iterator[Any]:
+    """Give what of a kind is in a shape; with `but_in` alone what is in nothing of that kind."""
     explorer = occt("TopExp").TopExp_Explorer
     found = explorer(shape, kind) if but_in is None else explorer(shape, kind, but_in)
     while found.More():
@@ -275,7 +298,8 @@ def _within(shape: Any, kind: Any, but_in: Any = None) -> Iterator[Any]:
         found.Next()
 
 
-def _box(shape: Any) -> tuple[Floats, float]:
+def box_of(shape: Any) -> tuple[Floats, float]:
+    """Give the middle of the box around a shape, and half of its diagonal."""
     box = occt("Bnd").Bnd_Box()
     occt("BRepBndLib").BRepBndLib.Add_s(shape, box)
     if box.IsVoid():

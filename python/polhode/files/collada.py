@@ -13,6 +13,7 @@ import numpy as np
 
 from polhode.errors import FileFormatError
 from polhode.files.mesh import Mesh, weld
+from polhode.files.reading import with_way_out
 from polhode.files.xml_source import Element, parse_xml
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def read_collada(source: bytes, file: Path) -> tuple[Mesh, float | None, str]:
         metres = _metres(root)
         return _Scene(root).mesh(), metres, _up(root)
     except _FaultError as fault:
-        raise FileFormatError(f"{file}: {fault}") from None
+        raise FileFormatError(f"{file}: {with_way_out(fault, 'export it again')}") from None
 
 
 def _tag(element: Element) -> str:

@@ -41,6 +41,10 @@ MOST_PARTS: Final = 200
 # What is shared by less than this, of the smaller one, is contact.
 _CONTACT: Final = 1e-9
 _MOST_TOLD: Final = 8
+# As a part of lengths (and of areas): nearer than this a ray does not tell on which side it passes.
+_NEAR: Final = 1e-9
+_ASKEW: Final = np.array([[2.0, -3.0, 6.0], [6.0, -2.0, -3.0], [3.0, 6.0, 2.0]]) / 7.0
+"""A rotation: edges of parts run along the axes, and rays should not meet them."""
 
 
 class Part(NamedTuple):
@@ -142,13 +146,21 @@ def parts_of(
         faces, volumes = faces[:, ::-1], -volumes
     if not 1 < count <= most:
         return [Part("1", vertices, faces, float(volumes.sum()), 0, is_turned)]
-    of = np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
+    order, starts = np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1]
+    of = np.split(order, starts)
     outer = [k for k in range(count) if volumes[k] > 0.0]
     holes: dict[int, list[int]] = {k: [] for k in outer}
+    if len(outer) < count:
+        low, high = (ends[order] for ends in _boxes(corners))
+        low, high = (np.minimum.reduceat(low, [0, *starts]), np.maximum.reduceat(high, [0, *starts]))
+    seen: dict[int, tuple[Floats, Floats, Floats]] = {}
     for k in (k for k in range(count) if volumes[k] <= 0.0):
-        point = vertices[faces[of[k][0], 0]]
-        around = [o for o in outer if _is_within(vertices[faces[of[k]]], vertices[faces[of[o]]])]
-        around = [o for o in around if winding(point[None], vertices[faces[of[o]]])[0] > 0.5]
+        around = [o for o in outer if (low[k] >= low[o]).all() and (high[k] <= high[o]).all()]
+        for o in (o for o in around if o not in seen):
+            turned_away = corners[of[o]] @ _ASKEW
+            seen[o] = turned_away, *_boxes(turned_away)
+        point = corners[of[k][0], 0] @ _ASKEW
+        around = [o for o in around if _is_inside(point, *seen[o])]
         if around:
             holes[min(around, key=lambda o: volumes[o])].append(k)
     nested = {k for inside in holes.values() for k in inside}
@@ -244,9 +256,35 @@ def _share_inside(of: Floats, triangles: Floats) -> float:
     return float(inside) if len(near) == len(corners) else float(inside) * 0.5
 
 
-def _is_within(inner: Floats, outer: Floats) -> bool:
-    low, high = outer.min(axis=(0, 1)), outer.max(axis=(0, 1))
-    return bool((inner.min(axis=(0, 1)) >= low).all() and (inner.max(axis=(0, 1)) <= high).all())
+def _boxes(triangles: Floats) -> tuple[Floats, Floats]:
+    """Give the lower and the upper corners of the boxes around triangles."""
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+
+
+def _is_inside(point: Floats, triangles: Floats, low: Floats, high: Floats) -> bool:
+    """Tell whether a closed surface is around a point, from the boxes of its triangles too.
+
+    Triangles are counted that a ray upward from the point crosses, by the sign of their normals; where it
+    passes near an edge, or the point near a face, the solid angles decide.
+    """
+    x, y, z = point
+    above = (low[:, 0] <= x) & (high[:, 0] >= x) & (low[:, 1] <= y) & (high[:, 1] >= y) & (high[:, 2] >= z)
+    few = triangles[above] - point
+    a, b = few[..., :2], np.roll(few[..., :2], -1, axis=1)
+    areas = (
+        a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    )  # beside each edge, of the triangles seen from above
+    total = areas.sum(axis=1)
+    heights = (areas * np.roll(few[..., 2], -2, axis=1)).sum(axis=1)  # times `total`
+    crossed = (areas > 0.0).all(axis=1) | (areas < 0.0).all(axis=1)
+    reach = np.abs(few).max(initial=0.0)
+    near_edge = (np.abs(areas) <= _NEAR * reach**2).any(axis=1)
+    near_face = crossed & (np.abs(heights) <= _NEAR * reach * np.abs(total))
+    if near_edge.any() or near_face.any():
+        return bool(abs(winding(point[None], triangles)[0]) > 0.5)
+    up = crossed & (heights * np.sign(total) > 0.0)
+    return bool(abs(np.sign(total[up]).sum()) > 0.5)
 
 
 def told(found: Sequence[Overlap], total: float, unit: str = "") -> list[str]:

@@ -156,7 +156,7 @@ def opened(file: Path) -> Iterator[Content]:
 
 def _checked_format(file: Path, head: bytes, size: int) -> str | None:
     if not head:
-        raise FileFormatError(f"{file}: the file is empty")
+        raise FileFormatError(f"{file}: the file is empty; export it again")
     robot = next((name for root, name in _ROBOT_ROOTS if root in head), None)
     if robot is not None and head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
         raise FileFormatError(f"{file}: is a robot ({robot}); polhode check judges its links")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode.errors import FileFormatError
-from polhode.files.reading import MOST_TEXT, check_ordinary, naming, read_text
+from polhode.files.reading import MOST_TEXT, check_ordinary, naming, read_text, with_way_out
 from polhode.files.writing import write_bytes
 
 if TYPE_CHECKING:
@@ -41,11 +41,13 @@ def read_json(file: Path) -> dict[str, Any]:
     try:
         fields = json.loads(text, parse_constant=_refused, object_pairs_hook=_once)
     except RecursionError:
-        raise FileFormatError(f"{file}: not JSON: its parts are nested beyond reason") from None
+        raise FileFormatError(
+            f"{file}: not JSON: its parts are nested beyond reason; save it again"
+        ) from None
     except ValueError as error:
-        raise FileFormatError(f"{file}: not JSON: {error}") from None
+        raise FileFormatError(f"{file}: not JSON: {with_way_out(error, 'save it again')}") from None
     if not isinstance(fields, dict):
-        raise FileFormatError(f"{file}: not an object of fields")
+        raise FileFormatError(f"{file}: not an object of fields; save it again")
     return fields
 
 
@@ -81,7 +83,7 @@ def read_npz(file: Path) -> dict[str, NDArray[Any]]:
             for member in archive.infolist():
                 name = member.filename.removesuffix(".npy")
                 if name in arrays:
-                    raise ValueError(f"{name[:40]!r} stands there twice")
+                    raise ValueError(f"{name[:40]!r} stands there twice; save it again")
                 if member.compress_type != zipfile.ZIP_STORED and member.file_size > MOST_COMPRESSED:
                     raise ValueError(
                         f"{name} is compressed from {member.file_size} bytes, and at most {MOST_COMPRESSED} "
@@ -93,10 +95,14 @@ def read_npz(file: Path) -> dict[str, NDArray[Any]]:
     except OSError as error:
         if error.errno != errno.EINVAL:  # which is a place in the file that there is not
             raise
-        raise FileFormatError(f"{file}: not a whole npz file: it points outside itself") from None
+        raise FileFormatError(
+            f"{file}: not a whole npz file: it points outside itself; save it again"
+        ) from None
     except Exception as error:  # zipfile, zlib and numpy raise nearly anything over a damaged file
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileFormatError(f"{file}: not a whole npz file: {reason[:200]}") from None
+        raise FileFormatError(
+            f"{file}: not a whole npz file: {with_way_out(reason[:200], 'save it again')}"
+        ) from None
     return arrays
 
 
@@ -116,7 +122,10 @@ def numbers(value: Any, name: str, file: Path, *, with_holes: bool = False) -> N
     if array.dtype.kind not in "fiu" or array.dtype.itemsize > 8:
         raise FileFormatError(f"{file}: {name} holds {array.dtype}, expected real numbers (float64)")
     if array.dtype.kind in "iu" and array.size and max(abs(int(array.min())), int(array.max())) > _EXACT:
-        raise FileFormatError(f"{file}: {name} holds whole numbers beyond 2^53, which float64 does not keep")
+        raise FileFormatError(
+            f"{file}: {name} holds whole numbers beyond 2^53, which float64 does not keep; save them as "
+            "float64"
+        )
     result = array.astype(np.float64)
     if not with_holes and not np.isfinite(result).all():
         raise FileFormatError(
@@ -131,7 +140,7 @@ def counts(value: Any, name: str, file: Path, shape: tuple[int, ...]) -> NDArray
     if exact.shape != shape:
         raise FileFormatError(f"{file}: {name} has shape {exact.shape}, expected {shape}")
     if (exact < 0).any() or (exact != np.floor(exact)).any() or (exact > _EXACT).any():
-        raise FileFormatError(f"{file}: {name} holds numbers that are no counts")
+        raise FileFormatError(f"{file}: {name} holds numbers that are no counts; save it again")
     return exact.astype(np.int64)
 
 
@@ -144,11 +153,13 @@ def _listed_numbers(value: Any, name: str, file: Path, with_holes: bool) -> NDAr
         found = (
             "lists of different lengths" if list in others else " and ".join(sorted(map(_in_json, others)))
         )
-        raise FileFormatError(f"{file}: {name} is not an array of numbers: it holds {found}")
+        raise FileFormatError(f"{file}: {name} is not an array of numbers: it holds {found}; save it again")
     try:
         return held.astype(np.float64)  # None becomes NaN
     except OverflowError:
-        raise FileFormatError(f"{file}: {name} is not an array of numbers: one is beyond float64") from None
+        raise FileFormatError(
+            f"{file}: {name} is not an array of numbers: one is beyond float64; save it again"
+        ) from None
 
 
 def _in_json(kind: type) -> str:
@@ -169,13 +180,16 @@ def _array(data: bytes) -> NDArray[Any]:
         raise ValueError(f"an array holds {dtype}, expected plain numbers")
     start = stream.tell()
     if min(shape, default=0) < 0 or math.prod(shape) * dtype.itemsize != len(data) - start:
-        raise ValueError(f"an array says {dtype} of shape {shape}, but {len(data) - start} bytes are there")
+        raise ValueError(
+            f"an array says {dtype} of shape {shape}, but {len(data) - start} bytes are there; is the "
+            "file cut short?"
+        )
     flat = np.frombuffer(data, dtype=dtype, offset=start) if len(data) > start else np.empty(0, dtype=dtype)
     return flat.reshape(shape, order="F" if is_fortran else "C")
 
 
 def _refused(word: str) -> Any:
-    raise ValueError(f"{word} is no number of JSON; null stands for what is not a number")
+    raise ValueError(f"{word} is no number of JSON; write null for what is not a number")
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -183,5 +197,5 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(fields) < len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"{twice[:40]!r} stands there twice")
+        raise ValueError(f"{twice[:40]!r} stands there twice; remove one of them")
     return fields

@@ -11,7 +11,7 @@ from typing import Any, BinaryIO, Final
 from urllib.parse import unquote
 
 from polhode.errors import FileFormatError
-from polhode.files.reading import read_bytes, text_of
+from polhode.files.reading import read_bytes, text_of, with_way_out
 
 __all__ = ["as_glb"]
 
@@ -55,7 +55,8 @@ def as_glb(stream: BinaryIO, file: Path) -> bytes:
         raise
     except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError) as error:
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileFormatError(f"{file}: not a readable glTF file: {reason[:200]}") from None
+        fault = with_way_out(reason[:200], "export it again")
+        raise FileFormatError(f"{file}: not a readable glTF file: {fault}") from None
     described += b" " * (-len(described) % 4)
     size = 12 + 8 + len(described) + 8 + len(data)
     head = struct.pack("<5I", 0x46546C67, 2, size, len(described), 0x4E4F534A)

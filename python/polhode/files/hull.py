@@ -41,7 +41,9 @@ def hull(vertices: ArrayLike, faces: ArrayLike) -> NDArray[np.int64]:
         found = spatial.ConvexHull(points[used] - middle, qhull_options="Qt")
     except (spatial.QhullError, ValueError) as error:
         reason = str(error).strip().split("\n")[0]
-        raise MeshError(f"the mesh has no convex hull with a volume: {reason}") from None
+        raise MeshError(
+            f"the mesh has no convex hull with a volume: {reason}; model a sheet as a thin shell instead"
+        ) from None
     return np.asarray(used[_wound_alike(found.simplices, found.neighbors)], dtype=np.int64)
 
 

@@ -76,7 +76,7 @@ def weld_within(mesh: Mesh, length: float) -> Mesh:
         chain of others between them.
     """
     if not (np.isfinite(length) and length > 0.0):
-        raise ValueError(f"weld: {length} is not a positive length")
+        raise ValueError(f"weld: {length} is not a positive length; leave it out to join equal corners")
     if not np.isfinite(mesh.vertices).all():
         return mesh  # to be refused as it is, with the number of the vertex
     cells = np.empty(mesh.vertices.shape, dtype=np.int64)

@@ -31,6 +31,7 @@ __all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of"]
 _SMALL_FILE: Final = 1 << 28
 """Bytes of a file that is read whole for a hint in an error."""
 _MOST_TRIED: Final = 300_000
+_CLOSURES: Final[tuple[Literal["caps", "hull"], ...]] = ("caps", "hull")
 """Faces of a mesh that is repaired for a hint in an error."""
 _CHECKS, _WELDED, _CLOSURE, _CHANGE = 27, 28, 29, 30
 """Places among the numbers of a body."""
@@ -330,6 +331,8 @@ def _offer_repair(error: MeshError, mesh: Mesh, scale: float) -> None:
     """Offer what mends a mesh, where it does: repair, else the convex hull."""
     if len(mesh.faces) > _MOST_TRIED:
         return
+    if error.law == "closed":
+        _offer_what_closes(error, mesh, scale)
     try:
         steps = _repaired_solid(mesh, 1.0, None, scale, 0.0).steps
     except (MeshError, ValueError):
@@ -344,6 +347,21 @@ def _offer_repair(error: MeshError, mesh: Mesh, scale: float) -> None:
     if steps:
         names = ", ".join(dict.fromkeys(step.name for step in steps))
         error.offer(f"repair=True mends it ({names}; volume changed by {change:.2g} %)")
+
+
+def _offer_what_closes(error: MeshError, mesh: Mesh, scale: float) -> None:
+    """Take the closures out of the message that leave no solid."""
+    serving = []
+    for closure in _CLOSURES:
+        with suppress(MeshError, ValueError):
+            with suppress(ModuleNotFoundError):  # whether it would serve is not known
+                _core.RigidBody.from_mesh(mesh.vertices * scale, mesh.faces, density=1.0, closure=closure)
+            serving.append(f'"{closure}"')
+    if len(serving) < len(_CLOSURES):
+        every = 'close the mesh (closure="caps" or "hull"), or '
+        left = f"close the mesh (closure={serving[0]}), or " if serving else ""
+        error.args = (str(error).replace(every, left),)
+        error.way_out = error.way_out.replace(every, left)
 
 
 def _offer_weld(error: MeshError, mesh: Mesh) -> None:

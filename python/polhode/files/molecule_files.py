@@ -6,7 +6,7 @@ from decimal import Decimal, InvalidOperation
 from typing import TYPE_CHECKING, BinaryIO, Final
 
 from polhode.errors import FileFormatError
-from polhode.files.reading import text_of
+from polhode.files.reading import text_of, with_way_out
 from polhode.files.xyz import Molecule, molecule_from
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def read_pdb(stream: BinaryIO, file: Path) -> Molecule:
         except _FaultError as error:
             raise FileFormatError(f"{file}: line {number}: {error}") from None
     if not labels:
-        raise FileFormatError(f"{file}: holds no ATOM and no HETATM; is it a PDB file?")
+        raise FileFormatError(f"{file}: holds no ATOM and no HETATM; check the file")
     notes = []
     if not any(label in _HYDROGENS for label in labels):
         notes.append("the file holds no hydrogens: mass and moments are without them; add them first")
@@ -94,7 +94,7 @@ def read_mol(stream: BinaryIO, file: Path) -> Molecule:
             raise _FaultError("it has fewer than four lines; is it cut short?")
         labels, rows = _of_v3000(lines) if "V3000" in lines[3] else _of_v2000(lines)
     except _FaultError as error:
-        raise FileFormatError(f"{file}: {error}") from None
+        raise FileFormatError(f"{file}: {with_way_out(error, 'export it again')}") from None
     notes = []
     if not any(label.lstrip("0123456789") in _HYDROGENS for label in labels):
         notes.append("the file holds no hydrogens: mass and moments are without them; add them first")
@@ -122,7 +122,9 @@ def _of_v2000(lines: list[str]) -> tuple[list[str], list[list[Decimal]]]:
             words = line[9:].split()
             for atom, isotope in zip(words[::2], words[1::2], strict=False):
                 if not (atom.isdecimal() and isotope.isdecimal() and 1 <= int(atom) <= count):
-                    raise _FaultError(f"line {number}: {line[:40]!r} names no atom of the file")
+                    raise _FaultError(
+                        f"line {number}: {line[:40]!r} names no atom of the file; correct the line"
+                    )
                 labels[int(atom) - 1] = f"{int(isotope)}{labels[int(atom) - 1].lstrip('0123456789')}"
     return labels, rows
 

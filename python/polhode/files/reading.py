@@ -24,6 +24,7 @@ __all__ = [
     "read_text",
     "text_of",
     "whole_of",
+    "with_way_out",
 ]
 
 MOST_TEXT: Final = 1 << 30
@@ -134,13 +135,19 @@ def whole_of(stream: BinaryIO, path: str | os.PathLike[str], most: int = MOST_TE
     return _whole(stream, path, most)
 
 
+def with_way_out(fault: object, way_out: str) -> str:
+    """Give the words of a fault, with the way out behind them where they name none after a semicolon."""
+    words = str(fault)
+    return words if "; " in words else f"{words}; {way_out}"
+
+
 def _whole(stream: BinaryIO, path: str | os.PathLike[str], most: int) -> bytes:
     if os.fstat(stream.fileno()).st_size <= most:
         data = stream.read(most + 1)
         if len(data) <= most:
             return data
     raise FileFormatError(
-        f"{os.fspath(path)}: is larger than {most} bytes, the most that is read of such files"
+        f"{os.fspath(path)}: is larger than {most} bytes, the most that is read of such files; divide it"
     )
 
 
@@ -149,5 +156,6 @@ def _decoded(data: bytes, path: str | os.PathLike[str], kind: str) -> str:
         return data.decode()
     except UnicodeDecodeError as error:
         raise FileFormatError(
-            f"{os.fspath(path)}: not a text file, so not {kind}: byte {error.start} is not UTF-8"
+            f"{os.fspath(path)}: not a text file, so not {kind}: byte {error.start} is not UTF-8; check "
+            "the file"
         ) from None

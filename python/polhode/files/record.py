@@ -38,7 +38,7 @@ def record_suffix(file: Path) -> str:
     """Give the suffix of a record, ``.json`` or ``.npz``."""
     suffix = file.suffix.lower()
     if suffix not in (".json", ".npz"):
-        raise ValueError(f"path: {file} does not end in .json or .npz")
+        raise ValueError(f"path: {file} does not end in .json or .npz; name it so")
     return suffix
 
 
@@ -89,7 +89,7 @@ def check_names(fields: dict[str, Any], known: Collection[str], where: str) -> N
 def required(fields: dict[str, Any], name: str, file: Path) -> Any:
     """Give a field that every file of the format has."""
     if name not in fields:
-        raise FileFormatError(f"{file}: {name} is missing")
+        raise FileFormatError(f"{file}: {name} is missing; save it again")
     return fields[name]
 
 
@@ -104,7 +104,7 @@ def in_json(fields: dict[str, Any], file: Path) -> dict[str, Any]:
     for name, value in fields.items():
         if isinstance(value, np.ndarray) and value.dtype.kind == "f" and np.isinf(value).any():
             raise ValueError(
-                f"path: {file}: {name} is infinite somewhere, which JSON does not have; .npz does"
+                f"path: {file}: {name} is infinite somewhere, which JSON does not have; save it as .npz"
             )
     return {name: _plain(value) for name, value in fields.items()}
 

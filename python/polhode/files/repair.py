@@ -72,9 +72,13 @@ def repaired(mesh: Mesh, weld: float = 0.0) -> tuple[Mesh, list[tuple[str, str, 
     """
     faces = mesh.faces
     if not np.isfinite(mesh.vertices).all() or not faces.size:
-        raise MeshError("the mesh cannot be repaired: it has no faces, or corners that are not finite")
+        raise MeshError(
+            "the mesh cannot be repaired: it has no faces, or corners that are not finite; export it again"
+        )
     if faces.min() < 0 or faces.max() >= len(mesh.vertices):
-        raise MeshError("the mesh cannot be repaired: its faces name vertices that are not there")
+        raise MeshError(
+            "the mesh cannot be repaired: its faces name vertices that are not there; is the file cut short?"
+        )
     steps: list[tuple[str, str, float]] = []
 
     def note(name: str, what: str) -> None:

@@ -133,7 +133,7 @@ def read_report(path: str | PathLike[str]) -> RigidBody | None:
     except PolhodeError as error:
         raise FileFormatError(f"{file}: {error}") from error
     except ValueError as error:
-        raise FileFormatError(f"{file}: not the numbers of a body: {error}") from error
+        raise FileFormatError(f"{file}: not the numbers of a body: {error}; save it again") from error
 
 
 def body_fields(body: RigidBody) -> dict[str, Any]:
@@ -170,7 +170,8 @@ def _doubts_of(fields: dict[str, Any], file: Path) -> dict[str, Any] | None:
     is_whole = (counts == np.floor(counts)).all() and (counts >= 0).all() and (words == np.floor(words)).all()
     if not is_whole or (words.size and not 0 <= words.min() <= words.max() < 2**16):
         raise FileFormatError(
-            f"{file}: variables and variable_counts must be whole numbers, below 65536 and from 0"
+            f"{file}: variables and variable_counts must be whole numbers, below 65536 and from 0; save "
+            "it again"
         )
     return {
         "counts": counts.astype(np.int64).ravel(),
@@ -187,7 +188,8 @@ def body_of(fields: dict[str, Any], file: Path) -> RigidBody:
         if "numbers" not in fields:
             if any(name in fields for name in _DOUBTS):
                 raise FileFormatError(
-                    f"{file}: the uncertainty is of the body in numbers, which are left out"
+                    f"{file}: the uncertainty is of the body in numbers, which are left out; save it "
+                    "again, or leave the uncertainty out"
                 )
             return _core.RigidBody(given["mass"], given["inertia"], given["center_of_mass"])
         body = _core.RigidBody._from_numbers(
@@ -198,7 +200,7 @@ def body_of(fields: dict[str, Any], file: Path) -> RigidBody:
     except PolhodeError as error:
         raise FileFormatError(f"{file}: {error}") from error
     except ValueError as error:
-        raise FileFormatError(f"{file}: not the fields of a body: {error}") from error
+        raise FileFormatError(f"{file}: not the fields of a body: {error}; save it again") from error
     for name, value in given.items():
         if not np.array_equal(getattr(body, name), value):
             raise FileFormatError(
@@ -210,4 +212,4 @@ def body_of(fields: dict[str, Any], file: Path) -> RigidBody:
 def check_has_bodies(body: RigidBody, file: Path) -> None:
     """Refuse an empty stack, whose shape JSON does not tell."""
     if not np.size(body.mass):
-        raise ValueError(f"path: {file}: JSON does not tell the shape of an empty stack; .npz does")
+        raise ValueError(f"path: {file}: JSON does not tell the shape of an empty stack; save it as .npz")

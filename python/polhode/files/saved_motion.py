@@ -118,7 +118,7 @@ def save_trajectory(trajectory: Trajectory, path: str | PathLike[str]) -> None:
     elif suffix == ".npz":
         save_trajectory_npz(trajectory, file)
     else:
-        raise ValueError(f"path: {file} does not end in .csv, .json or .npz")
+        raise ValueError(f"path: {file} does not end in .csv, .json or .npz; name it so")
 
 
 def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
@@ -182,7 +182,7 @@ def read_motion(path: str | PathLike[str]) -> tuple[dict[str, Any], bool]:
             name.removeprefix("body_"): value for name, value in fields.items() if name.startswith("body_")
         }
     elif not isinstance(fields.get("body"), dict):
-        raise FileFormatError(f"{file}: body is not an object with the fields of a body")
+        raise FileFormatError(f"{file}: body is not an object with the fields of a body; save it again")
     else:
         check_names(fields["body"], (*BODY_FIELDS, *WORDS), f"{file}: body")
     body = body_of(fields["body"], file)
@@ -231,7 +231,9 @@ def _states_of_load(fields: dict[str, Any], file: Path, leading: tuple[int, ...]
     else:
         held = fields.get(_STATES_OF_LOAD, {})
         if not isinstance(held, dict):
-            raise FileFormatError(f"{file}: {_STATES_OF_LOAD} is not an object of arrays by name")
+            raise FileFormatError(
+                f"{file}: {_STATES_OF_LOAD} is not an object of arrays by name; save it again"
+            )
     states = {}
     for name, values in held.items():
         states[name] = numbers(values, f"{_STATES_OF_LOAD} {name}", file, with_holes=True)

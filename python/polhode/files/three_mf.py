@@ -73,8 +73,8 @@ def read_three_mf(stream: BinaryIO, file: Path) -> tuple[Mesh, str, bool]:
         _FaultError,
         zipfile.BadZipFile,
         expat.ExpatError,
-        NotImplementedError,
-        RuntimeError,
+        NotImplementedError,  # of zipfile, for a compression that it does not know
+        RuntimeError,  # of zipfile, for a member under a password
         EOFError,
     ) as error:
         raise FileFormatError(f"{file}: not a readable 3MF file: {error}; export it again") from None

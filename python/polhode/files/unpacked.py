@@ -71,4 +71,4 @@ def _unpack(path: Path, copy: IO[bytes], most: int) -> None:
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
         raise FileFormatError(f"{path}: not a whole gzip file: {error}; is it cut short?") from None
     if size == 0:
-        raise FileFormatError(f"{path}: the file is empty")
+        raise FileFormatError(f"{path}: the file is empty; pack it again")

@@ -34,7 +34,7 @@ def read_vtk(path: Path) -> Mesh:
         raise
     except Exception as error:  # a damaged file can raise anything in there
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileFormatError(f"{path}: not a readable VTK file: {reason[:200]}") from None
+        raise FileFormatError(f"{path}: not a readable VTK file: {reason[:200]}; export it again") from None
     finally:
         vtk.vtkObject.GlobalWarningDisplayOn()
     if not isinstance(held, pyvista.DataSet) or isinstance(held, pyvista.ImageData):
@@ -44,7 +44,7 @@ def read_vtk(path: Path) -> Mesh:
     promised = held.n_cells
     surface = held if isinstance(held, pyvista.PolyData) else _around(held, pyvista)
     if surface.n_lines or surface.n_verts:
-        raise FileFormatError(f"{path}: holds points or lines where triangles are needed")
+        raise FileFormatError(f"{path}: holds points or lines where triangles are needed; export triangles")
     triangles = surface.triangulate()
     faces = np.asarray(triangles.faces, dtype=np.int64).reshape(-1, 4)[:, 1:]
     if not promised or not len(faces):

@@ -111,10 +111,10 @@ def _old(path: str | os.PathLike[str]) -> os.stat_result | None:
     if stat.S_ISDIR(old.st_mode):
         raise IsADirectoryError(errno.EISDIR, "is a directory; name a file in it", str(path))
     if stat.S_ISSOCK(old.st_mode):
-        raise OSError(errno.ENXIO, "is a socket, which no file can be written to", str(path))
+        raise OSError(errno.ENXIO, "is a socket, which no file can be written to; name a file", str(path))
     if stat.S_ISREG(old.st_mode) and not os.access(path, os.W_OK):
         # Its folder may allow to replace it; whoever took the right to write away did not mean that.
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        raise PermissionError(errno.EACCES, f"{os.strerror(errno.EACCES)}; name another file", str(path))
     return old
 
 
@@ -138,7 +138,8 @@ def _create(new: Path) -> None:
         os.close(os.open(new, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     except PermissionError as error:
         reason = (
-            f"its folder takes no new file ({os.strerror(errno.EACCES)}), and an old one is only replaced"
+            f"its folder takes no new file ({os.strerror(errno.EACCES)}), and an old one is only replaced; "
+            "name a file in another"
         )
         raise PermissionError(errno.EACCES, reason, str(new)) from error
 

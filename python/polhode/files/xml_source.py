@@ -201,7 +201,10 @@ def parse_xml(
         parser.Parse(source, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
-        raise FileFormatError(f"{name}: line {error.lineno}: not well-formed XML: {reason}") from None
+        raise FileFormatError(
+            f"{name}: line {error.lineno}: not well-formed XML: {reason}; correct the line, or is the "
+            "file cut short?"
+        ) from None
     except FileFormatError:
         raise
     except (LookupError, ValueError) as error:  # of an encoding that Python does not know, or of many bytes

@@ -82,7 +82,7 @@ def molecule_of(stream: BinaryIO, file: Path) -> Molecule:
     count_text = lines[0].strip()
     if not (count_text.isdecimal() and len(count_text) <= _MOST_DIGITS) or int(count_text) == 0:
         raise FileFormatError(
-            f"{file}: line 1 of an XYZ file is the number of atoms, not {count_text[:40]!r}"
+            f"{file}: line 1 of an XYZ file is the number of atoms, not {count_text[:40]!r}; write it there"
         )
     count = int(count_text)
     comment = lines[1].strip() if len(lines) > 1 else ""

@@ -21,6 +21,7 @@ from polhode.robots import mjcf, sdf, urdf
 from polhode.robots.addresses import Addresses, own_root
 from polhode.robots.geometry import GeometryReader
 from polhode.robots.model import Inertial, Joint, Link, Place, Robot, Shape
+from polhode.robots.sdf_include import check_version
 from polhode.robots.sources import Sources, read_source
 from polhode.robots.verdict import FAILURES, Verdict, judge
 from polhode.robots.words import shortened
@@ -43,7 +44,12 @@ __all__ = [
     "read_robot",
 ]
 
-_FORMATS = {"robot": ("URDF", urdf), "sdf": ("SDF", sdf), "mujoco": ("MJCF", mjcf)}
+_FORMATS = {
+    "robot": ("URDF", urdf),
+    "sdf": ("SDF", sdf),
+    "gazebo": ("SDF", sdf),  # of SDF 1.2
+    "mujoco": ("MJCF", mjcf),
+}
 
 
 def read_robot(
@@ -125,7 +131,7 @@ def parse_robot(
     [('arm', 2.0)]
     """
     if not source.strip():
-        raise FileFormatError(f"{name}: the file is empty")
+        raise FileFormatError(f"{name}: the file is empty; check the file")
     body_format, _ = content_format(source[:4096], len(source))
     if body_format is not None:
         way_out = "unpack it with gunzip" if "gzip" in body_format else "polhode report reads it"
@@ -139,6 +145,7 @@ def parse_robot(
             f"{name}: its root is <{shortened(root.tag)}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); "
             "check the file"
         )
+    check_version(root, name)
     format_name, reader = _FORMATS[root.tag]
     unexpanded = next((e for e in _walk(root) if e.startswith("xacro:")), None)
     if unexpanded is not None:

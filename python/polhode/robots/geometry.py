@@ -11,6 +11,7 @@ from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
 from polhode.files.components import meeting, overlaps, parts_of, told
 from polhode.files.loaded import load
+from polhode.files.mesh import Mesh
 from polhode.robots.facets import sagitta
 from polhode.robots.words import quoted, shortened
 from polhode.units import metres_per
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from polhode.files.mesh import Mesh
+    from polhode.files.cad_file import CadFile
     from polhode.robots.addresses import Addresses
     from polhode.robots.model import Link, Shape
 
@@ -78,10 +79,11 @@ class Geometry:
 
 
 class _Read(NamedTuple):
-    """A mesh, and those of its vertices that triangles use."""
+    """A mesh, and those of its vertices that triangles use; or solids of CAD in the corners of wide boxes."""
 
     mesh: Mesh
     corners: Floats
+    solids: RigidBody | None = None
 
 
 class GeometryReader:
@@ -136,7 +138,7 @@ class GeometryReader:
         for shape in link.shapes:
             if shape.kind == "mesh":
                 mesh = self._mesh(shape.mesh, link.folder or self._folder)
-                if not isinstance(mesh, str):
+                if not isinstance(mesh, str) and mesh.solids is None:
                     factors = np.array(shape.size)
                     largest = max(largest, sagitta(mesh.mesh.vertices * factors, mesh.mesh.faces))
             else:
@@ -185,6 +187,11 @@ class GeometryReader:
         read, name = self._mesh(shape.mesh, folder), shortened(shape.mesh)
         if isinstance(read, str):
             return None, read
+        if read.solids is not None:
+            factor = shape.size[0]
+            if not (factor > 0.0 and all(each == factor for each in shape.size)):
+                return None, f"mesh {name}: solids of CAD are scaled alike along all axes; correct the scale"
+            return read.solids.scaled(mass=factor**3, length=factor), ""
         mesh = read.mesh
         vertices = mesh.vertices * np.array(shape.size)
         try:
@@ -215,6 +222,8 @@ class GeometryReader:
             return f"mesh {name} is a directory; name a file in it"
         try:
             loaded = load(path)
+            if loaded.cad is not None:
+                return _of_cad(loaded.cad)
             mesh = loaded.mesh
             if loaded.unit not in (None, "m"):  # robots are in metres, as is what states no unit
                 mesh = mesh._replace(vertices=mesh.vertices * metres_per(loaded.unit))
@@ -259,6 +268,22 @@ class GeometryReader:
         else:
             return None
         return position - reach, position + reach
+
+
+def _of_cad(cad: CadFile) -> _Read:
+    """Give the solids of a CAD file with density 1, in metres, and the corners of wide boxes around them."""
+    from polhode.files.cad_solid import solids_of
+
+    signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+    corners = np.concatenate(
+        [
+            part.rotation @ part.moments.about + part.position + part.moments.reach * signs
+            for part in cad.parts
+        ]
+    )
+    corners *= metres_per("mm")
+    empty = np.empty((0, 3), dtype=np.int64)
+    return _Read(Mesh(corners, empty, cad.format), corners, solids_of(cad, density=1.0)[0])
 
 
 def _is_nothing(shape: Shape) -> bool:

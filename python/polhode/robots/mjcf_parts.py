@@ -44,7 +44,9 @@ def expand_includes(root: Element, folder: Path, sources: Sources) -> None:
                 raise FileFormatError(f"{child.where}: <include> without file; name one")
             path = sources.locate(name, folder, child)
             if path.resolve() in included:
-                raise FileFormatError(f"{child.where}: {name} is included twice; MuJoCo allows it once")
+                raise FileFormatError(
+                    f"{child.where}: {name} is included twice; MuJoCo allows it once: leave one of them out"
+                )
             included.add(path.resolve())
             unread += reversed(sources.read(path, name, child).children)
         element.children = children

@@ -210,7 +210,8 @@ def _shape(element: Element, form: Element, role: Literal["collision", "visual"]
         return Shape(form.tag, size, place, role, where=form.where)
     if form.tag == "mesh" and form.find("submesh") is None:
         factors = scale(form.find("scale") or form, _text(form, "scale") or "1")
-        return Shape("mesh", factors, place, role, mesh=_text(form, "uri"), where=form.where)
+        address = _text(form, "uri") or _text(form, "filename")  # as it is called in SDF 1.2
+        return Shape("mesh", factors, place, role, mesh=address, where=form.where)
     kind = form.tag if form.tag != "mesh" else "part of a mesh"
     return Shape(kind, (), place, role, where=form.where)
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Reader = Callable[[Element, Sources, Scope], Iterator[Link]]
 
-__all__ = ["included", "is_true", "text_of"]
+__all__ = ["check_version", "included", "is_true", "text_of"]
 
 _ROOTS: Final = frozenset({"sdf", "robot", "gazebo", "world", "model"})
 
@@ -50,6 +50,7 @@ def included(include: Element, sources: Sources, scope: Scope, read_links: Reade
         if root.tag not in _ROOTS:
             found = f"the root of {shortened(uri)} is <{shortened(root.tag)}>"
             raise FileFormatError(f"{include.where}: {found}, not <sdf> or <robot>; check the file")
+        check_version(root, f"{include.where}: {shortened(uri)}")
     except FileFormatError as error:
         name = sources.name(scope.prefix, f"(include of {include.where})", include)
         yield Link(name, include.line, None, str(error), file=include.file)
@@ -70,6 +71,14 @@ def included(include: Element, sources: Sources, scope: Scope, read_links: Reade
                 yield replace(link, is_static=inner.is_static)
         else:
             yield from read_links(root, sources, inner)
+
+
+def check_version(root: Element, name: str) -> None:
+    """Refuse SDF before 1.2, whose root is ``<gazebo>`` as in 1.2: its values are attributes."""
+    if root.tag == "gazebo" and root.attributes.get("version", "1.0") in ("1.0", "1.1"):
+        raise FileFormatError(
+            f"{name}: is SDF before 1.2, whose values are attributes; export it as SDF 1.2 or later"
+        )
 
 
 def _located(include: Element, uri: str, sources: Sources, folder: Path) -> Path:
