@@ -168,6 +168,13 @@ class TestClosedForms:
         shown = data(run.animate(tmp_path / "a.html"))
         assert (shown["top"]["weight"], shown["top"]["limits"], shown["free"]) == (0.0, [], None)
 
+    def test_methods(self, tmp_path: Path) -> None:
+        free = self.BRICK.free_motion((0.01, 6.0, 0.0))
+        assert free.animate(tmp_path / "a.html", 5.0, title="A") == tmp_path / "a.html"
+        assert data(tmp_path / "a.html")["t"][-1] == 5.0
+        pytest.importorskip("matplotlib")
+        assert free.plot(5.0).lines[0].get_xdata()[-1] == 5.0
+
 
 class TestTime:
     """Speed 1 is real time; where that cannot be watched, a round part or multiple of it."""

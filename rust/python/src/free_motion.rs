@@ -1,6 +1,7 @@
 //! The class `FreeMotion`: exact motions of free bodies.
 
 mod constants;
+mod drawn;
 mod from_periods;
 mod in_time;
 
