@@ -76,6 +76,7 @@ __all__ = [
     "kepler_states",
     "least_spin",
     "local_frames",
+    "machine",
     "magnetic",
     "motion_sensitivity",
     "nearest_valid",

@@ -74,7 +74,10 @@ fn times_that_do_not_run_one_way_are_an_error_of_every_method() {
             assert!(run.into_result().is_err());
             let series = solve_one(&task, &[], &mut go_on);
             assert!(matches!(series.end, End::Failed(_)), "{times:?}");
-            assert!(variations(&task, &[], &mut go_on).is_err(), "{times:?}");
+            assert!(
+                variations(&task, &[], &[], &mut go_on).is_err(),
+                "{times:?}"
+            );
         }
     }
     let unsorted = free(&task(&body, start(), &[0.0, 2.0, 1.0], Method::Dop853)).into_result();

@@ -20,6 +20,16 @@ pub(crate) const BLOCK: usize = 1024;
 /// Rows of a small map done between two looks at the clock.
 const FEW: usize = 16;
 
+/// Makes the first row.
+type First<'a, R> = dyn Fn(&mut Watch<'_>) -> Result<R, Error> + Sync + 'a;
+
+/// Makes the rows of a block, from the number of its first on; tells the first that fails.
+type Block<'a, R> =
+    dyn Fn(usize, &mut [R], &mut Watch<'_>) -> Result<(), (usize, Error)> + Sync + 'a;
+
+/// Makes all rows, and tells the first that fails.
+type Rows<'a> = dyn FnMut(&Interrupt) -> Result<(), Halt<(usize, Error)>> + Send + 'a;
+
 /// Values in C order under a shape; one value has the empty shape.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Stack<T> {
@@ -229,8 +239,8 @@ impl<'a, const K: usize> Broadcast<'a, K> {
         py: Python<'_>,
         size: usize,
         mut blank: Option<R>,
-        first: &(dyn Fn(&mut Watch<'_>) -> Result<R, Error> + Sync),
-        block: &(dyn Fn(usize, &mut [R], &mut Watch<'_>) -> Result<(), (usize, Error)> + Sync),
+        first: &First<'_, R>,
+        block: &Block<'_, R>,
     ) -> PyResult<Stack<R>> {
         let count = self.len();
         let mut rows = memory::vector(Names(&self.names), &self.shape, 0)?;
@@ -261,11 +271,7 @@ impl<'a, const K: usize> Broadcast<'a, K> {
     }
 
     /// Does the rows while other threads of Python go on.
-    fn detached(
-        &self,
-        py: Python<'_>,
-        rows: &mut (dyn FnMut(&Interrupt) -> Result<(), Halt<(usize, Error)>> + Send),
-    ) -> PyResult<()> {
+    fn detached(&self, py: Python<'_>, rows: &mut Rows<'_>) -> PyResult<()> {
         let interrupt = Interrupt::new(None);
         let outcome = py.detach(|| rows(&interrupt));
         interrupt.finish(py, outcome.is_ok())?;

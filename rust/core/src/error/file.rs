@@ -10,7 +10,8 @@ use super::kind::Kind;
 pub enum FileFault {
     /// Shorter than its header promises, or than a header.
     #[error(
-        "truncated binary STL: {held} bytes where its header of {triangles} triangles promises {promised}"
+        "truncated binary STL: {held} bytes where its header of {triangles} triangles promises {promised}; \
+         export it again"
     )]
     TruncatedStl {
         /// Bytes in the file.

@@ -61,7 +61,7 @@ pub enum MeshFault {
         vertices: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("vertices[{vertex}] is not finite: {value:?}")]
+    #[error("vertices[{vertex}] is not finite: {value:?}; give finite coordinates")]
     NonFiniteVertex {
         /// The vertex.
         vertex: usize,
@@ -69,7 +69,7 @@ pub enum MeshFault {
         value: f64,
     },
     /// A coordinate of a triangle is NaN or infinite.
-    #[error("faces[{face}] has a corner that is not finite: {corner}")]
+    #[error("faces[{face}] has a corner that is not finite: {corner}; give finite coordinates")]
     NonFiniteCorner {
         /// The triangle.
         face: usize,
@@ -221,7 +221,7 @@ pub enum CellFault {
         nodes: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("nodes[{node}] is not finite: {value:?}")]
+    #[error("nodes[{node}] is not finite: {value:?}; give finite coordinates")]
     NonFiniteNode {
         /// The node.
         node: usize,

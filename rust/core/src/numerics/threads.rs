@@ -130,12 +130,15 @@ pub fn fill_blocks<T: Send, E: Send>(
     in_blocks(out, block, watch, &work)
 }
 
+/// What is done with a block, from the index of its first element.
+type Work<'a, T, E> = dyn Fn(usize, &mut [T]) -> Result<(), E> + Sync + 'a;
+
 /// Compiled once for all work on the same elements.
 fn in_blocks<T: Send, E: Send>(
     out: &mut [T],
     block: usize,
     watch: &mut Watch<'_>,
-    work: &(dyn Fn(usize, &mut [T]) -> Result<(), E> + Sync),
+    work: &Work<'_, T, E>,
 ) -> Result<(), Halt<E>> {
     let total = out.len();
     let blocks = out.chunks_mut(block).enumerate();
