@@ -41,7 +41,8 @@ def parameters(name: str) -> set[str]:
 
 def test_every_function_of_angles_has_the_option() -> None:
     assert {name for name in OBJECTS if "degrees" in parameters(name)} == HAVE
-    asks = {name for name in OBJECTS if parameters(name) & NAMES}
+    # What polhode.symbolic takes are expressions, which have no unit.
+    asks = {name for name in OBJECTS if parameters(name) & NAMES and "symbolic" not in name}
     assert asks <= HAVE
     for name in HAVE:
         option = inspect.signature(OBJECTS[name]).parameters["degrees"]

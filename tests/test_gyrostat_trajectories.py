@@ -82,5 +82,5 @@ def test_a_loaded_motion_from_a_file_is_drawn_by_its_samples(suffix: str, tmp_pa
         read = Trajectory.from_file(tmp_path / f"{name}.{suffix}")
         with pytest.warns(UserWarning, match="more than the 30"):
             shown = data(read.animate(tmp_path / "page.html"))
-        assert shown["t"] == run.t.tolist()
+        assert shown["t"].tolist() == run.t.tolist()
         np.testing.assert_allclose(shown["quaternion"], run.quaternion, atol=1e-7)

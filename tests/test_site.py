@@ -161,7 +161,7 @@ def test_a_button_copies_commands_without_their_dollar() -> None:
     return kept;
     """
     (found,) = answers(SITE, [("/command_line.html", *DESK, code)])
-    assert found.startswith("polhode report part.stl")
+    assert found.startswith("polhode samples .\npolhode report t-handle.stl")
     assert "$" not in found
 
 

@@ -78,7 +78,7 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
 
         return by_differences(self)
     if method != "series":
-        raise ValueError(f"method: {method!r} is not 'series' or 'differences'")
+        raise ValueError(f"method: expected 'series' or 'differences', got {method!r}")
     start, load = self.state(0), self._acting("sensitivity")
     return _core.motion_sensitivity(
         self.body,
