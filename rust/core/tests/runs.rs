@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use polhode::error::MotionFault;
 use polhode::io::stl::{self, StlStream};
 use polhode::mass::polyhedron::stream::StreamError;
-use polhode::motion::integrate::taylor::solve_one;
+use polhode::motion::integrate::taylor::{solve_many, solve_one};
 use polhode::motion::integrate::variation::variations;
 use polhode::motion::loads::{Analytic, Callback, Frame, Term, Wrench};
 use polhode::motion::simulate::{
@@ -74,6 +74,10 @@ fn times_that_do_not_run_one_way_are_an_error_of_every_method() {
             assert!(run.into_result().is_err());
             let series = solve_one(&task, &[], &mut go_on);
             assert!(matches!(series.end, End::Failed(_)), "{times:?}");
+            let mut many: [Option<Run<Error>>; 5] = Default::default();
+            solve_many(&|_| task.clone(), &|_| &[], &mut many, &|_| go_on(0.0));
+            let all_failed = (many.iter().flatten()).all(|run| matches!(run.end, End::Failed(_)));
+            assert!(all_failed && many.iter().all(Option::is_some), "{times:?}");
             assert!(
                 variations(&task, &[], &[], &mut go_on).is_err(),
                 "{times:?}"

@@ -139,7 +139,14 @@ pub fn simulated(body: &RigidBody, mut draw: Draw<'_>) -> Result<()> {
             let direction = draw.one_of(&directions)?;
             let last = draw.one_of(&[0, 1, 2])?;
             let mut passages = Passages {
-                rules: vec![Rule { direction, last, ..Rule::default() }; events],
+                rules: vec![
+                    Rule {
+                        direction,
+                        last,
+                        ..Rule::default()
+                    };
+                    events
+                ],
                 levels: if draw.coin()? {
                     [0.0; 3]
                 } else {
@@ -233,7 +240,7 @@ fn obeys(run: &Run<Error>, task: &Task<'_>, terms: &[Term], tolerance: &Toleranc
 
 fn derivatives(task: &Task<'_>, terms: &[Term]) {
     let watch: &mut dyn FnMut(f64) -> ControlFlow<()> = &mut patience(60);
-    if let Ok(found) = variations(task, terms, watch) {
+    if let Ok(found) = variations(task, terms, &[], watch) {
         assert_eq!(found.len(), task.times.len());
         let numbers: usize = terms
             .iter()

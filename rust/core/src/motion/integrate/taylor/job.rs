@@ -7,7 +7,7 @@ use super::{series, twin};
 use crate::error::Error;
 use crate::motion::loads::variables::Fixed;
 use crate::motion::loads::{Parts, Term};
-use crate::motion::problem::{End, Run, Task};
+use crate::motion::problem::{End, Run, Task, check_times};
 
 pub(super) fn settings(task: &Task<'_>, parts: Parts) -> Settings {
     let tolerance = task.tolerance;
@@ -25,6 +25,10 @@ pub(super) fn job<'a, X: Precision<Variables = Fixed>>(
     terms: &'a [Term],
     run: &'a mut Run<Error>,
 ) -> Option<Job<'a, X>> {
+    if let Err(error) = check_times(task.times) {
+        run.end = End::Failed(error);
+        return None;
+    }
     if run.samples.len() == 1 {
         run.end = End::Complete;
         return None;

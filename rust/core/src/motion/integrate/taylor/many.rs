@@ -23,9 +23,6 @@ const FEW: usize = 4;
 /// `task` gives the tasks and `terms` what acts in each. They may differ in body, state and numbers; times, tolerance,
 /// whether the body is pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
 /// motions that were begun; it may stop the run.
-///
-/// # Panics
-/// As [`solve_one`](super::solve_one).
 pub fn solve_many<'a, E: From<Error> + Send>(
     task: &(dyn Fn(usize) -> Task<'a> + Sync),
     terms: &(dyn Fn(usize) -> &'a [Term] + Sync),

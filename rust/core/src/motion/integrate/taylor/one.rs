@@ -8,7 +8,7 @@ use super::job::{job, settings};
 use super::kernels::{OneByOne, Precisely};
 use crate::error::Error;
 use crate::motion::loads::Term;
-use crate::motion::problem::{End, Run, Task, check_times};
+use crate::motion::problem::{End, Run, Task};
 use crate::numerics::dispatch::dispatch;
 
 /// The motion of `task` under `terms`.
@@ -20,9 +20,6 @@ pub fn solve_one(
     terms: &[Term],
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Run<Error> {
-    if let Err(error) = check_times(task.times) {
-        return Run::at_start(task, End::Failed(error));
-    }
     let mut run = Run::at_start(task, End::Stopped);
     go(task, terms, &mut run, watch, None);
     run
