@@ -16,8 +16,8 @@ import time
 from pathlib import Path
 
 from command_line import torus
+from meshes import write_stl
 from polhode import robots
-from polhode.cli.t_handle import write_stl
 
 LINKS = 30
 IMPORTS = "import cyclopts, rich.console, rich.text, numpy, polhode._core"
