@@ -6,7 +6,10 @@ export CARGO_TERM_COLOR ?= auto
 
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
 
-.PHONY: help setup build demo quick test test-rust test-python test-long fuzz coverage lint format docs figures package bench clean
+# All commands fill one environment.
+.NOTPARALLEL:
+
+.PHONY: help setup build demo quick test licences test-rust test-python test-long fuzz coverage lint format docs figures package bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -14,7 +17,7 @@ help: ## list the commands
 demo: build ## the tumbling brick and the T-handle: report, motion and picture
 	$(BIN)/polhode demo
 
-test: build ## every test, Rust and Python, with lints and type checks
+test: build setup ## every test, Rust and Python, with lints and type checks
 	@for stage in lint test-rust test-python; do \
 		start=$$(date +%s); \
 		$(MAKE) --no-print-directory $$stage || exit 1; \
@@ -25,27 +28,27 @@ quick: setup ## lints and tests of what differs from the last commit
 	$(BIN)/python tests/quick.py
 
 test-rust: ## the tests of the core
-	cargo test --locked
+	cargo test --locked --features polhode/serde
 
-test-python: build ## the tests of the package, on all cores; then those that measure time, by themselves
+test-python: build setup ## the tests of the package, on all cores; then those that measure time, by themselves
 	$(BIN)/python -m pytest -m "not long and not alone" --numprocesses auto --dist loadfile
 	$(BIN)/python -m pytest -m "alone and not long"
 
-test-long: build ## the tests that take minutes: more random cases than `make test` draws
+test-long: build setup ## the tests that take minutes: more random cases than `make test` draws
 	$(BIN)/python -m pytest -m long
 
 TIME ?= 1800
-fuzz: build ## hostile input, TIME= seconds a harness, going on where the last run ended; then long tests of hostile calls
+fuzz: build setup ## hostile input, TIME= seconds a harness, going on where the last run ended; then long tests of hostile calls
 	TIME=$(TIME) rust/fuzz/run
 	$(BIN)/python -m pytest -m long -k "hostile or damage"
 
-coverage: build ## lines of the core that tests execute; needs llvm-tools of rustup or LLVM as new as rustc's
+coverage: build setup ## lines of the core that tests execute; needs llvm-tools of rustup or LLVM as new as rustc's
 	$(BIN)/python rust/coverage.py --least 95
 
-lint: build ## formatting, lints, types, stubs
+lint: build setup licences ## formatting, lints, types, stubs
 	cargo fmt --all --check
-	cargo clippy --locked --workspace --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --package polhode --no-deps --quiet
+	cargo clippy --locked --workspace --all-targets --features polhode/serde -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --package polhode --features serde --no-deps --quiet
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
@@ -54,6 +57,13 @@ lint: build ## formatting, lints, types, stubs
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-forms .github/ISSUE_TEMPLATE/[!c]*.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.readthedocs .readthedocs.yaml
+
+licences: ## licences and sources of the crates that are compiled in, where cargo-deny is installed
+	@command -v cargo-deny >/dev/null || echo "no cargo-deny here: licences and sources of crates are not looked at"
+	@! command -v cargo-deny >/dev/null || for manifest in Cargo.toml rust/fuzz/Cargo.toml; do \
+		cargo deny --locked --manifest-path $$manifest check --config $(CURDIR)/packaging/deny.toml --hide-inclusion-graph \
+			--allow license-exception-not-encountered licenses bans sources || exit 1; \
+	done
 
 format: setup ## put all sources in form
 	cargo fmt --all
@@ -64,7 +74,7 @@ docs: build $(VENV)/.docs ## the pages as a site in docs/_build/html; a warning 
 	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet docs docs/_build/html
 	@echo "open docs/_build/html/index.html"
 
-figures: build ## draw the figures of the pages anew
+figures: build setup ## draw the figures of the pages anew
 	for script in docs/figures/[!_]*.py; do $(BIN)/python $$script || exit 1; done
 
 package: $(VENV)/.package ## source distribution and wheel into dist/, as they are published; on Linux for systems since 2014
@@ -72,7 +82,7 @@ package: $(VENV)/.package ## source distribution and wheel into dist/, as they a
 	$(BIN)/python packaging/build.py
 	$(BIN)/python packaging/try_wheel.py dist
 
-bench: build ## times beside the peers, as ratios, of the extension as in a wheel; NAMES= picks files of rows
+bench: build setup ## times beside the peers, as ratios, of the extension as in a wheel; NAMES= picks files of rows
 	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]" \
 		--config-settings=build-args="--profile release"
 	$(BIN)/python benchmarks/run.py $(NAMES)
@@ -105,7 +115,11 @@ $(VENV)/.package: pyproject.toml $(VENV)/.tools
 	$(BIN)/python -m pip install --quiet --group package
 	@touch $@
 
-$(VENV)/.built: $(VENV)/.tools $(RUST)
+$(VENV)/.maturin: pyproject.toml $(VENV)/.python
+	$(BIN)/python -m pip install --quiet --group build
+	@touch $@
+
+$(VENV)/.built: $(VENV)/.maturin $(RUST)
 	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]"
 	@touch $@
 

@@ -19,7 +19,8 @@ def motion_polhode() -> Any:
     from polhode import RigidBody
 
     body = RigidBody.from_principal(1.0, MOMENTS)
-    return body.free_motion(SPIN).at(TIMES).omega
+    states = body.free_motion(SPIN).at(TIMES)
+    return states.omega, states.quaternion
 
 
 def motion_scipy() -> Any:
@@ -38,7 +39,7 @@ def motion_scipy() -> Any:
     found = solve_ivp(
         rates, (0.0, TIMES[-1]), [*SPIN, 0, 0, 0, 1], method="DOP853", t_eval=TIMES, rtol=1e-12, atol=1e-12
     )
-    return found.y[:3].T
+    return found.y[:3].T, found.y[3:].T
 
 
 def motion_sympy() -> Any:
@@ -66,7 +67,7 @@ def motion_sympy() -> Any:
         rtol=1e-12,
         atol=1e-12,
     )
-    return found.y[3:].T
+    return found.y[3:].T, found.y[:3].T
 
 
 def motion_mujoco() -> Any:
@@ -79,12 +80,13 @@ def motion_mujoco() -> Any:
     )
     data = mujoco.MjData(model)
     data.qvel[3:] = SPIN
-    found = []
+    rates, attitude = [], []
     for time in TIMES:
         while data.time < time - 0.0005:
             mujoco.mj_step(model, data)
-        found.append(data.qvel[3:].copy())
-    return np.array(found)
+        rates.append(data.qvel[3:].copy())
+        attitude.append(data.qpos[3:].copy())
+    return np.array(rates), np.array(attitude)
 
 
 def motion_heyoka() -> Any:
@@ -102,7 +104,55 @@ def motion_heyoka() -> Any:
         (w, -0.5 * (x * p + y * q + z * r)),
     ]
     integrator = hy.taylor_adaptive(system, [*SPIN, 0.0, 0.0, 0.0, 1.0])
-    return integrator.propagate_grid(TIMES)[5][:, :3]
+    found = integrator.propagate_grid(TIMES)[5]
+    return found[:, :3], found[:, 3:]
+
+
+def axes_polhode(tensors: Any) -> Any:
+    from polhode import principal_axes
+
+    found = principal_axes(tensors)
+    return found.moments, found.axes
+
+
+def axes_numpy(tensors: Any) -> Any:
+    moments, axes = np.linalg.eigh(tensors)
+    axes[np.linalg.det(axes) < 0, :, 2] *= -1  # right-handed
+    return moments, axes
+
+
+def axes_scipy(tensors: Any) -> Any:
+    from scipy.linalg import eigh
+
+    found = [eigh(tensor) for tensor in tensors]
+    moments, axes = np.array([w for w, _ in found]), np.array([v for _, v in found])
+    axes[np.linalg.det(axes) < 0, :, 2] *= -1  # right-handed
+    return moments, axes
+
+
+def tensors() -> Any:
+    """A thousand bodies of eight particles each: their inertia tensors."""
+    r = np.random.default_rng(7).normal(size=(1000, 8, 3))
+    second = np.einsum("nki,nkj->nij", r, r)
+    return np.trace(second, axis1=1, axis2=2)[:, None, None] * np.eye(3) - second
+
+
+def particles_polhode(masses: Any, positions: Any) -> Any:
+    from polhode import RigidBody
+
+    return RigidBody.from_particles(masses, positions).inertia
+
+
+def particles_numpy(masses: Any, positions: Any) -> Any:
+    arms = positions - masses @ positions / masses.sum()
+    second = arms.T @ (masses[:, None] * arms)
+    return np.trace(second) * np.eye(3) - second
+
+
+def cloud() -> tuple[Any, Any]:
+    """A thousand particles, a hundred sizes away from the origin: masses and positions."""
+    rng = np.random.default_rng(11)
+    return rng.uniform(0.5, 1.5, 1000), rng.normal(size=(1000, 3)) + 100.0
 
 
 def tensor_numpy(vertices: Any, faces: Any) -> Any:

@@ -24,7 +24,7 @@ MU, SPAN = 398600.4418, 6 * DAY
 MOMENTS = np.array([0.64, 0.97, 1.0])
 BODY = RigidBody.from_principal(1.0, MOMENTS)
 ORBIT = orbits.from_elements(MU, eccentricity=4.253901873, periapsis=38011.486, since_periapsis=-SPAN / 2)
-CLONES, BESIDE_SCIPY, BESIDE_HEYOKA = 20_000, 5, 800
+CLONES, BESIDE_SCIPY, BESIDE_HEYOKA = 20_000, 5, 8000
 RTOL = 1e-12
 
 

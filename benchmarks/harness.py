@@ -119,14 +119,16 @@ def kept(path: Path = RATIOS) -> tuple[str, dict[str, float]]:
         return "", {}
     releases = json.loads(path.read_text(encoding="utf-8"))
     release = max(releases, key=lambda name: [int(part) for part in name.split(".")])
-    return release, releases[release]["ratios"]
+    # Of the first release the medians alone were kept.
+    ratios = releases[release]["ratios"].items()
+    return release, {name: ratio[0] if isinstance(ratio, list) else ratio for name, ratio in ratios}
 
 
 def keep(release: str, results: Iterable[Result], path: Path = RATIOS) -> None:
-    """Keep the ratios of a release beside those of the earlier ones."""
+    """Keep the ratios of a release, median, least and most, beside those of the earlier ones."""
     releases = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    ratios = {_key(result): float(f"{result.speedup[0]:.3g}") for result in results}
-    releases[release] = {"machine": _machine(), "ratios": ratios}
+    ratios = {_key(result): [float(f"{ratio:.3g}") for ratio in result.speedup] for result in results}
+    releases[release] = {"date": time.strftime("%Y-%m-%d"), "machine": _machine(), "ratios": ratios}
     path.write_text(json.dumps(releases, indent=2) + "\n", encoding="utf-8")
 
 

@@ -55,7 +55,7 @@ def main() -> None:
             "python": platform.python_version(),
             "polhode": polhode.__version__,
         },
-        "elsewhere": {"motion": list(compared("motion")), "tensor": list(compared("tensor"))},
+        "elsewhere": {problem: list(compared(problem)) for problem in EXACT},
         "validation": [
             {"what": what, "against": against, "error": error()} for what, against, error in CHECKS
         ],
@@ -74,7 +74,10 @@ def cpu() -> str:
 
 
 def arguments(name: str) -> tuple[Any, ...]:
-    return elsewhere.mesh() if name.startswith("tensor") else ()
+    """What the functions of a problem are given."""
+    problem = name.partition("_")[0]
+    given = {"tensor": elsewhere.mesh, "axes": lambda: (elsewhere.tensors(),), "particles": elsewhere.cloud}
+    return given[problem]() if problem in given else ()
 
 
 def timed(name: str) -> dict[str, float]:
@@ -90,12 +93,13 @@ def timed(name: str) -> dict[str, float]:
 
 def compared(problem: str) -> Iterator[dict[str, Any]]:
     """Lines, seconds and error of each program that has a function for a problem."""
-    exact = {"motion": exact_rates, "tensor": exact_tensor}[problem]()
+    exact = EXACT[problem]()
     for name, function in inspect.getmembers(elsewhere, inspect.isfunction):
         kind, _, program = name.partition("_")
         if kind != problem or not find_spec(program):
             continue
         answer = function(*arguments(name))
+        answer = answer[0] if isinstance(answer, tuple) else answer  # rates, moments
         done = subprocess.run([sys.executable, __file__, name], capture_output=True, text=True, check=True)
         lines = [line for line in inspect.getsource(function).splitlines()[1:] if line.strip()]
         yield {
@@ -122,6 +126,44 @@ def exact_tensor() -> Any:
 
     solid = polyhedron(*elsewhere.mesh())
     return 1000.0 * np.array([[float(x) for x in row] for row in solid.inertia])
+
+
+def exact_moments() -> Any:
+    """The moments of the tensors in forty digits."""
+    import mpmath
+
+    with mpmath.workdps(40):
+        return np.array(
+            [
+                sorted(float(x) for x in mpmath.eigsy(mpmath.matrix(one.tolist()), eigvals_only=True))
+                for one in elsewhere.tensors()
+            ]
+        )
+
+
+def exact_particles() -> Any:
+    """The tensor of the particles in rational numbers."""
+    from fractions import Fraction
+
+    masses, positions = elsewhere.cloud()
+    m, r = [Fraction(x) for x in masses], [[Fraction(x) for x in row] for row in positions]
+    center = [sum(w * row[i] for w, row in zip(m, r, strict=True)) / sum(m) for i in range(3)]
+    arms = [[x - c for x, c in zip(row, center, strict=True)] for row in r]
+    second = np.array(
+        [
+            [float(sum(w * a[i] * a[j] for w, a in zip(m, arms, strict=True))) for j in range(3)]
+            for i in range(3)
+        ]
+    )
+    return np.trace(second) * np.eye(3) - second
+
+
+EXACT: dict[str, Callable[[], Any]] = {
+    "motion": exact_rates,
+    "tensor": exact_tensor,
+    "axes": exact_moments,
+    "particles": exact_particles,
+}
 
 
 def _relative(found: Any, exact: Any) -> float:
@@ -168,7 +210,7 @@ def of_axes() -> float:
 
 
 def of_free_motion() -> float:
-    return _relative(elsewhere.motion_polhode(), exact_rates())
+    return _relative(elsewhere.motion_polhode()[0], exact_rates())
 
 
 def of_long_motion() -> float:

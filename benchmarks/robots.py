@@ -4,7 +4,8 @@
 holds git repositories named ``owner+name`` or ``owner/name`` (a fork serves, if it has the commit);
 ``--fetch`` asks GitHub for those that are missing. Each is unpacked once into ``--scratch``. NAME is
 ``ours``, or who gave the expectations: ``law`` (ElementTree, NumPy, trimesh), ``mujoco``, ``pinocchio``;
-these need ``pip install mujoco pin pycollada``. ``--renew`` writes into ``robots.toml`` what they say.
+these need ``pip install mujoco pin pycollada``. ``--processes 40`` also times ``polhode check`` as a process
+on so many of the files, spread over the list. ``--renew`` writes into ``robots.toml`` what they say.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import argparse
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import tomllib
@@ -332,13 +334,14 @@ def main() -> None:
     parser.add_argument("--fetch", action="store_true", help="get what is missing from GitHub")
     parser.add_argument("--scratch", type=Path, default=Path(tempfile.gettempdir()) / "polhode-robots")
     parser.add_argument("--judge", choices=JUDGES, default="ours")
+    parser.add_argument("--processes", type=int, default=0, metavar="N", help="time N files as processes")
     parser.add_argument("--renew", action="store_true", help="write what the judges say into robots.toml")
     options = parser.parse_args()
     options.mirrors, options.scratch = options.mirrors.resolve(), options.scratch.resolve()
     options.scratch.mkdir(parents=True, exist_ok=True)
     os.chdir(options.scratch)  # where MuJoCo leaves its log
     counts: Counter[str] = Counter()
-    seconds, rows = [], []
+    seconds, rows, paths = [], [], []
     for file in listed():
         if options.names and file.repository not in options.names:
             rows.append(file)
@@ -354,6 +357,7 @@ def main() -> None:
             rows += filter(None, [renewed(file, folder / file.path, folder)])
             continue
         judged = ask(options.judge, folder / file.path, folder)
+        paths.append(folder / file.path)
         seconds.append((judged.seconds, f"{file.repository}: {file.path}"))
         counts["files"] += 1
         counts["links"] += len(judged.links)
@@ -370,6 +374,38 @@ def main() -> None:
         worst, name = max(seconds)
         middle = sorted(seconds)[len(seconds) // 2][0]
         print(f"CPU: median {middle * 1e3:.0f} ms, worst {worst:.2f} s, {name}")
+    if options.processes and paths:
+        print_processes(paths[:: max(1, len(paths) // options.processes)])
+
+
+def print_processes(paths: list[Path]) -> None:
+    """Time `polhode check` as a process on each file: the better of two runs, of modules compiled before."""
+    # As installed: pip compiles modules, PYTHONDONTWRITEBYTECODE would compile them in each run.
+    env = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    rows = []
+    for path in paths:
+        runs = []
+        for _ in range(2):
+            start, before = time.perf_counter(), os.times()
+            done = subprocess.run(
+                [sys.executable, "-m", "polhode.cli", "check", path],
+                capture_output=True,
+                check=False,
+                env=env,
+            )
+            wall, after = time.perf_counter() - start, os.times()
+            cpu = sum(after[2:4]) - sum(before[2:4])  # of children: the load of the machine is not in it
+            runs.append((wall, cpu))
+            if done.returncode not in (0, 1, 2) or b"No module named" in done.stderr:
+                raise SystemExit(f"{path}: {done.stderr.decode(errors='replace')}")
+        rows.append((*map(min, zip(*runs, strict=True)), path.name))
+    for name, column in (("wall", 0), ("CPU", 1)):
+        taken = sorted((row[column], row[2]) for row in rows)
+        within = sum(seconds <= 0.6 for seconds, _ in taken)
+        print(
+            f"processes, {name}: median {taken[len(taken) // 2][0]:.2f} s, {within} of {len(taken)} within "
+            f"0.6 s, worst {taken[-1][0]:.2f} s, {taken[-1][1]}"
+        )
 
 
 if __name__ == "__main__":

@@ -100,7 +100,7 @@ def beyond(link: Link, low: Array, high: Array) -> str:
 
 def isotropic(tensor: Array) -> float | None:
     """Give the moment of a tensor that is a multiple of the unit tensor; None for others."""
-    moment = float(tensor[0, 0])
+    moment = float(f"{tensor[0, 0]:.9g}")  # the turn of its axes leaves it so
     return (
         moment
         if moment and np.allclose(tensor, moment * np.eye(3), rtol=0, atol=1e-9 * abs(moment))

@@ -20,6 +20,7 @@ extensions = [
     "interface",
     "gallery",
     "measured",
+    "moved",
     "written",
 ]
 exclude_patterns = ["_build"]

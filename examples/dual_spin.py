@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 from matplotlib.figure import Figure
-from polhode import RigidBody, plot
+from polhode import RigidBody, animation, plot, wheel
 
 SATELLITE = RigidBody.from_principal(150.0, (20.0, 25.0, 30.0))
 SPIN = (0.002, 0.1, 0.002)  # rad/s, nearly about the middle axis
@@ -31,8 +31,9 @@ def off(omega: np.ndarray) -> float:
 
 def animate(file: str) -> None:
     """Write the moving page."""
-    motion = SATELLITE.gyrostat((0.0, 1.0, 0.0)).free_motion((0.05, 0.1, 0.03))
-    motion.at(np.linspace(0.0, 300.0, 901)).animate(file, title="A satellite with a wheel")
+    inside = wheel(axis=(0, 1, 0), inertia=0.01, momentum=1.0, mode="held")  # at 955 turns a minute
+    motion = SATELLITE.gyrostat(wheels=[inside]).free_motion((0.05, 0.1, 0.03))
+    animation.animate(motion, file, end=300.0, title="A satellite with a wheel")
 
 
 if __name__ == "__main__":

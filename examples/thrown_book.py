@@ -1,4 +1,4 @@
-"""A book thrown about each of its three axes: two turns are steady, the third is not."""
+"""A book thrown about each of its three axes: two turns are stable, the third is not."""
 
 import sys
 
@@ -19,7 +19,7 @@ def draw() -> Figure:
     for k, ax in enumerate(figure.subplots(1, 3, sharey=True)):
         spin = np.full(3, 0.1) + 10.0 * np.eye(3)[k] @ body.principal.axes.T
         stability = body.stability(10.0)[k]
-        verdict = "steady" if stability > 0.0 else "flips"
+        verdict = "stable" if stability > 0.0 else "flips"
         print(f"axis {k + 1}: moment {body.principal_moments[k]:.5f} kg m², {verdict}")
         plot.angular_velocity(body.simulate(np.linspace(0.0, 6.0, 601), spin), ax, frame="principal")
         ax.set_title(f"about axis {k + 1}", pad=22)
@@ -27,7 +27,7 @@ def draw() -> Figure:
 
 
 def animate(file: str) -> None:
-    """Write the moving page of the throw that is not steady."""
+    """Write the moving page of the throw that is not stable."""
     body = book()
     spin = np.full(3, 0.1) + 10.0 * body.principal.axes[:, 1]
     body.simulate(np.linspace(0.0, 4.0, 801), spin).animate(file, title="A book about its middle axis")

@@ -1,14 +1,16 @@
-"""A page in headless Chromium, driven through its debugging pipe: no package and no port is needed."""
+"""Pages in headless Chromium, driven through its debugging pipe: no package and no port is needed."""
 
 from __future__ import annotations
 
 import base64
+import importlib.util
 import io
 import json
 import os
 import shutil
 import subprocess
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -16,16 +18,35 @@ import pytest
 from PIL import Image
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 needs_browser = pytest.mark.skipif(BROWSER is None, reason="no Chromium: apt install chromium")
 
+AXE = """axe.run(document, { resultTypes: ["violations"], iframes: false }).then((found) => found.violations
+  .filter(({ impact }) => impact === "serious" || impact === "critical")
+  .map(({ id, nodes }) => [id, nodes.length, nodes[0].html.slice(0, 200)]))"""
+MIDDLE = """(async () => {{
+  let page = document, left = 0, top = 0;
+  if ({frame}) {{
+    const frame = document.querySelector({frame});
+    page = frame.contentDocument;
+    page.querySelector({selector}).scrollIntoView({{ block: "center", behavior: "instant" }});
+    ({{ left, top }} = frame.getBoundingClientRect());
+  }}
+  const found = page.querySelector({selector});
+  if (!{frame}) found.scrollIntoView({{ block: "center", behavior: "instant" }});
+  const box = found.getBoundingClientRect();
+  return [left + box.x + box.width / 2, top + box.y + box.height / 2];
+}})()"""
+
+
+class LeftError(RuntimeError):
+    """The page was left before it could answer."""
+
 
 class Browser:
-    """One page of one Chromium; errors in the page's scripts are errors here."""
+    """One page of one Chromium without a network; errors in the page's scripts are errors here."""
 
     def __init__(self, folder: Path) -> None:
         assert BROWSER is not None
@@ -35,6 +56,8 @@ class Browser:
         command = f'exec "$0" "$@" 3<&{to_browser} 4>&{from_browser}'
         flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", "--mute-audio"]
         flags += [f"--user-data-dir={folder / 'profile'}", "--no-first-run", "--disable-extensions"]
+        flags += ["--disable-dev-shm-usage", "--host-resolver-rules=MAP * ~NOTFOUND"]  # no network
+        flags += ["--allow-file-access-from-files"]  # of a page, what is in its frames
         self._process = subprocess.Popen(
             ["bash", "-c", command, BROWSER, *flags, "about:blank"],
             pass_fds=(to_browser, from_browser),
@@ -74,7 +97,8 @@ class Browser:
             answer = self._next()
             if answer.get("id") == self._number:
                 if "error" in answer:
-                    raise RuntimeError(f"{method}: {answer['error']}")
+                    kind = LeftError if "navigated" in answer["error"]["message"] else RuntimeError
+                    raise kind(f"{method}: {answer['error']}")
                 return answer["result"]
             if answer.get("method") == "Runtime.exceptionThrown":
                 details = answer["params"]["exceptionDetails"]
@@ -99,8 +123,11 @@ class Browser:
     def wait(self, script: str) -> None:
         """Wait until an expression is true."""
         for _ in range(400):
-            if self.run(script):
-                return
+            try:
+                if self.run(script):
+                    return
+            except LeftError:  # the next page is asked
+                pass
             time.sleep(0.025)
         raise AssertionError(f"never true: {script}")
 
@@ -125,9 +152,20 @@ class Browser:
     def open(self, page: Path, hash_: str = "") -> None:
         """Show a page from its beginning."""
         self.ask("Page.navigate", url="about:blank")
+        # Chromium leaves a command unanswered that comes between leaving a page and showing the next.
+        self.wait("location.protocol === 'about:' && document.readyState === 'complete'")
         self.faults.clear()
         self.ask("Page.navigate", url=page.as_uri() + hash_)
-        self.wait("typeof polhode === 'object' && document.readyState === 'complete'")
+        self.wait("location.protocol === 'file:' && document.readyState === 'complete'")
+
+    def serious_faults(self) -> list[Any]:
+        """What axe-core finds in the page that is serious: its rule, how often, the first place."""
+        found = importlib.util.find_spec("axe_playwright_python")
+        if found is None or found.origin is None:
+            pytest.skip("no axe-core: pip install --no-deps axe-playwright-python")
+        self.run(Path(found.origin).with_name("axe.min.js").read_text("utf-8") + "; null")
+        faults: list[Any] = self.run(AXE)
+        return faults
 
     def picture(self) -> NDArray[np.int64]:
         """Give what is seen, shape (height, width, 3)."""
@@ -138,6 +176,17 @@ class Browser:
     def key(self, name: str, text: str = "") -> None:
         for kind in ("keyDown", "keyUp"):
             self.ask("Input.dispatchKeyEvent", type=kind, key=name, text=text if kind == "keyDown" else "")
+
+    def click(self, selector: str, *, frame: str = "") -> None:
+        """Press the mouse in the middle of what a selector finds, within a frame of the page where asked."""
+        at = self.middle(selector, frame=frame)
+        self._mouse("mousePressed", at)
+        self._mouse("mouseReleased", at)
+
+    def middle(self, selector: str, *, frame: str = "") -> tuple[float, float]:
+        """Where on the screen the middle of what a selector finds is, after scrolling there."""
+        x, y = self.run(MIDDLE.format(selector=json.dumps(selector), frame=json.dumps(frame)))
+        return x, y
 
     def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
         self._mouse("mousePressed", start)

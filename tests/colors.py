@@ -9,13 +9,29 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-# From linear red, green and blue to what is seen: nothing amiss, and without long, middle and short cones.
-SEEN = {
-    "all": np.eye(3),
-    "protan": np.array([[0.11238, 0.88762, 0.0], [0.11238, 0.88762, 0.0], [0.00401, -0.00401, 1.0]]),
-    "deutan": np.array([[0.29275, 0.70725, 0.0], [0.29275, 0.70725, 0.0], [-0.02234, 0.02234, 1.0]]),
-    "tritan": np.array([[1.00000, 0.14461, -0.14461], [0.0, 0.85924, 0.14076], [0.0, 0.85924, 0.14076]]),
-}
+# From linear red, green and blue (sRGB) to what long, middle and short cones answer: to XYZ after Judd and
+# Vos (Viénot, Brettel, Mollon, Color Research & Application 24 (1999) 243,
+# doi:10.1002/(SICI)1520-6378(199908)24:4<243::AID-COL5>3.0.CO;2-3), then to cones after Smith and Pokorny,
+# Vision Research 15 (1975) 161.
+CONES = np.array([[0.15514, 0.54312, -0.03286], [-0.15514, 0.45684, 0.03286], [0.0, 0.0, 0.00801]]) @ (
+    np.array([[40.9568, 35.5041, 17.9167], [21.3389, 70.6743, 7.98680], [1.86297, 11.4620, 91.2367]])
+)
+
+
+def without(missing: int, kept: tuple[float, float, float]) -> NDArray[np.float64]:
+    """What is seen without one kind of cones, as Viénot, Brettel and Mollon: white and one colour stay."""
+    others = [kind for kind in range(3) if kind != missing]
+    stay = CONES @ np.array([(1.0, 1.0, 1.0), kept]).T
+    answer = np.eye(3)
+    answer[missing] = 0.0
+    answer[missing, others] = np.linalg.solve(stay[others].T, stay[missing])
+    seen: NDArray[np.float64] = np.linalg.inv(CONES) @ answer @ CONES
+    return seen
+
+
+BLUE, RED = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+SEEN = {"all": np.eye(3), "protan": without(0, BLUE), "deutan": without(1, BLUE), "tritan": without(2, RED)}
+"""Nothing amiss, and without long, middle and short cones."""
 
 
 def linear(color: str) -> NDArray[np.float64]:

@@ -26,6 +26,8 @@ class Row(NamedTuple):
 
 HINGE: Final = '<joint type="hinge"/>'
 HEAVY: Final = '<inertial pos="0 0 0" mass="5" diaginertia="0.02 0.02 0.021"/>'
+SHARP: Final = '<inertial pos="0 0 0" mass="5" diaginertia="0.02 0.02 0.041"/>'
+FITTED: Final = '<asset><mesh name="m" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>'
 ARM: Final = link("arm", 5.0, (0.02, 0.02, 0.021), BALL)
 # 2/5 m r² of the ball is 0.02. A ball of osmium of 1 kg: r³ = 3/(4π 22590), 2/5 r².
 OSMIUM: Final = 0.4 * (3.0 / (4.0 * math.pi * 22_590.0)) ** (2.0 / 3.0)
@@ -162,10 +164,13 @@ TENSORS: Final = {
         urdf(bare("base"), ARM, link("a", 1.0, 0.0), joint("base", "arm"), joint("arm", "a", "fixed")),
         {"base": "none", "arm": "good", "a": "placeholder"},
     ),
-    "the unit tensor": Row(urdf(link("a", 5.0, 1.0)), {"a": "placeholder"}, "1 1 1 stands only here"),
+    "the unit tensor": Row(urdf(link("a", 5.0, 1.0)), {"a": "placeholder"}, "1 1 1 is the unit tensor"),
     "the unit tensor of a cube": Row(
         urdf(link("a", 6.0, 1.0, CUBE)), {"a": "good"}, "as its collision shape"
     ),
+    # Of a cube of 1 m with that mass the moments are 1.0083 and 1.0117: a hundredth is let through.
+    "the unit tensor, nearly of a cube": Row(urdf(link("a", 6.05, 1.0, CUBE)), {"a": "good"}),
+    "the unit tensor, not quite of a cube": Row(urdf(link("a", 6.07, 1.0, CUBE)), {"a": "placeholder"}),
     "one for unlike masses": Row(
         urdf(link("a", 1.0, 0.5), link("b", 2.0, 0.5)), {"a": "placeholder", "b": "placeholder"}, "in 2 links"
     ),
@@ -194,6 +199,17 @@ ROOM: Final = {
         urdf(link("a", 6.0, 2.0, CUBE, at="0.4 0 0")),
         {"a": "impossible"},
         "as the centre of mass is 0.1 m from",
+    ),
+    "no room beside a wall, but in the middle": Row(
+        urdf(link("a", 6.0, 2.0, CUBE, at="0.4 0 0")),
+        {"a": "impossible"},
+        "about its middle the shape has room: look at the centre of mass",
+    ),
+    "beyond three times the cube filled, off the middle": Row(
+        urdf(link("a", 6.0, (2.0, 5.5, 5.5), CUBE, at="0.1 0 0")), {"a": "suspect"}, "4.33 times the box"
+    ),
+    "far beyond the room, about the middle": Row(
+        urdf(link("a", 6.0, 999.0, CUBE)), {"a": "suspect"}, "identified tensors are so at times"
     ),
     # 2 % of the diagonal of the ball's box is δ = 6.93 mm. Spread s² = I/2m about a centre d beyond the ball
     # needs (δ − d)(0.2 + δ + d) ≥ s².
@@ -328,6 +344,42 @@ FORMATS: Final = {
             sjoint("f", "a", "fixed"),
         ),
         {"b": "good", "a": "none"},
+    ),
+    # MuJoCo fits a ball to the mesh; what it comes to is not computed, and the tensor alone is judged.
+    "MJCF, a geom fitted to a mesh": Row(
+        mjcf(f'<body name="a">{HINGE}{HEAVY}<geom type="sphere" mesh="m"/></body>', before=FITTED),
+        {"a": "good"},
+    ),
+    "MJCF, a geom fitted to a mesh, impossible": Row(
+        mjcf(f'<body name="a">{HINGE}{SHARP}<geom type="sphere" mesh="m"/></body>', before=FITTED),
+        {"a": "impossible"},
+    ),
+    "MJCF, a body of a geom fitted to a mesh": Row(
+        mjcf(f'<body name="a">{HINGE}<geom type="capsule" mesh="m"/></body>', before=FITTED),
+        {"a": "inferred"},
+    ),
+    "MJCF, inferred always, but no geom weighs": Row(
+        mjcf(
+            f'<body name="a">{HINGE}{HEAVY}</body>'
+            f'<body name="b">{HINGE}{HEAVY}<geom size="0.1" mass="0"/></body>'
+            f'<body name="c">{HINGE}{SHARP}<geom size="0.1"/></body>',
+            before='<compiler inertiafromgeom="true"/>',
+        ),
+        {"a": "good", "b": "good", "c": "inferred"},
+        refused=False,
+    ),
+    "MJCF, hollow geoms and meshes without a file": Row(
+        mjcf(
+            f'<body name="a">{HINGE}<geom size="0.1" mass="1" shellinertia="true"/></body>'
+            f'<body name="b">{HINGE}{HEAVY}<geom size="0.1" mass="1" shellinertia="true"/></body>'
+            f'<body name="c">{HINGE}<geom type="mesh" mesh="m"/></body>',
+            before=FITTED,
+        ),
+        {"a": "inferred", "b": "good", "c": "inferred"},
+    ),
+    "MJCF, inferred always, what no body has": Row(
+        mjcf(f'<body name="a">{HINGE}{SHARP}</body>', before='<compiler inertiafromgeom="true"/>'),
+        {"a": "impossible"},
     ),
     "MJCF, nothing, no joint": Row(mjcf('<body name="a"/>'), {"a": "none"}, refused=False),
     "MJCF, nothing, moved": Row(mjcf(f'<body name="a">{HINGE}</body>'), {"a": "missing"}, refused=True),

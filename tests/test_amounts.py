@@ -198,3 +198,69 @@ def test_units_of_the_desk(text: str, unit: str, exact: Fraction) -> None:
 def test_a_pound_is_a_mass(text: str) -> None:
     with pytest.raises(PolhodeError, match="lb and oz are masses here; write lbf or ozf"):
         quantity(text, "kg m^2", "x")
+
+
+# Whatever has the dimension of a rate or an angle without counting an angle.
+NO_ANGLE = (
+    "Hz",
+    "mHz",
+    "cps",
+    "Bq",
+    "1/min",
+    "min^-1",
+    "d-1",
+    "s**-1",
+    "counts/s",
+    "percent/s",
+    "sr/s",
+    "deg^-1/s",
+    "m/m/s",
+)
+
+
+@pytest.mark.parametrize("unit", NO_ANGLE)
+def test_a_rate_counts_an_angle(unit: str) -> None:
+    """Turns a minute are written min^-1 as well; read as radians they would be wrong by 2π."""
+    with pytest.raises(PolhodeError, match="does not say what is counted; write turn/s, rad/s, deg/s or rpm"):
+        quantity(f"1 {unit}", "rad/s", "--omega")
+
+
+@pytest.mark.parametrize("unit", ["sr", "counts", "percent", "m/m"])
+def test_an_angle_is_one(unit: str) -> None:
+    with pytest.raises(PolhodeError, match="does not say what is counted; write turn, rad or deg"):
+        quantity(f"1 {unit}", "rad", "--node")
+
+
+@pytest.mark.parametrize(
+    ("unit", "per_radian"),
+    {
+        "rpm": np.pi / 30,
+        "turn min^-1": np.pi / 30,
+        "rev/d": np.pi / 43200,
+        "cycle/s": 2 * np.pi,
+        "deg h-1": np.pi / 648000,
+        "arcsec/s": np.pi / 648000,
+        "grad/s": np.pi / 200,
+        "mrad/s": 1e-3,
+    }.items(),
+)
+def test_rates(unit: str, per_radian: float) -> None:
+    assert quantity(f"1 {unit}", "rad/s", "--omega") == pytest.approx(per_radian, rel=4e-16)
+
+
+@pytest.mark.parametrize(
+    "text", ["1e-400", "1e400", "1e-322 g", "1e-400 ± 1", "1 ± 1e-400", "1(5)e-400", "-1e-400"]
+)
+def test_beyond_the_range_at_both_ends(text: str) -> None:
+    """A number that would become zero is told as one that would become infinite is."""
+    zero: Any = amount("0e-400 ± 0.0e-400 g", "kg", "x")
+    assert (zero.value, zero.sigma) == (0.0, 0.0)
+    assert quantity("5e-324", "kg", "x") == 5e-324
+    with pytest.raises(PolhodeError, match=r"is beyond the range of numbers; check the exponent"):
+        amount(text, "kg", "x")
+
+
+@pytest.mark.parametrize("unit", ["kg^0", "kg0", "a0", "kg m0"])
+def test_a_unit_has_a_power(unit: str) -> None:
+    with pytest.raises(PolhodeError, match="is not a unit"):
+        quantity(f"1 {unit}", "kg", "x")

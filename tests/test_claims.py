@@ -27,7 +27,11 @@ ROOT = Path(__file__).resolve().parents[1]
 CLAIMS: dict[str, dict[str, str | list[str]]] = tomllib.loads(
     (Path(__file__).parent / "claims.toml").read_text("utf-8")
 )
-THEORY = [f"docs/theory/{name}.md" for name in ("index", "mass", "principal", "motion", "numerics")]
+THEORY = [
+    page.relative_to(ROOT).as_posix()
+    for page in sorted((ROOT / "docs" / "theory").glob("*.md"))
+    if page.stem != "uncertainty"
+]
 PROMISES = [
     "README.md",
     "CHANGELOG.md",
@@ -47,7 +51,7 @@ NO_SENTENCE = re.compile(
     | (?:\{[\w:]+\})?`[^`]*`  # code within a sentence, names, formulas of one
     | (?<=\])\([^)\s]*\)      # targets of links
     | \b(?:mex|mln|msl)\d+    # labels of the course
-    | \b(?:19\d\d|20[0-2]\d)\b  # years
+    | \b(?:1[89]\d\d|20[0-2]\d)\b  # years
     | \bax[ei]s\ \d(?:\ and\ \d)? | \bcolumns?\ \d(?:\ and\ \d)?
     | \bequations\ [\d.]+\ to\ [\d.]+ | §[\d.]+ | \d+\s\(\d{4}\)\ \d+  # of a book, of a journal
     | [α-ω]\ [<=>]\ \d

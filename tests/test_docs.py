@@ -23,7 +23,7 @@ DOCS = ROOT / "docs"
 CORE = ROOT / "rust" / "core" / "src"
 PAGES = pages_of(DOCS)
 SCRIPTS = sorted(DOCS.glob("figures/[!_]*.py"))
-EXERCISES = {67, 68, 69, 71, 73, 143, 173, 174, 175, 252, 253, 254, 255}
+EXERCISES = (67, 173, 69, 73, 68, 252, 253, 254, 255, 71, 143, 174, 175)  # in the course's order
 LABELS = {"mln24", "mln25", "mln27", "mln80", "msl25", "msl26"} | {f"mex{number}" for number in EXERCISES}
 
 
@@ -51,7 +51,7 @@ class TestCode:
         monkeypatch.chdir(tmp_path)
         run_page(page)
 
-    @pytest.mark.parametrize("number", sorted(EXERCISES))
+    @pytest.mark.parametrize("number", EXERCISES)
     def test_every_exercise_states_solves_and_shows(self, number: int) -> None:
         page = DOCS / "exercises" / f"mex{number}.md"
         text = page.read_text("utf-8")
@@ -60,7 +60,16 @@ class TestCode:
         assert text.index("## By hand") < text.index("## With polhode")
         assert "$" in text[text.index("## By hand") : text.index("## With polhode")]
         assert {"python", "text"} <= {kind for kind, _ in blocks(page)}
-        assert f"(mex{number}.md)" in (page.parent / "index.md").read_text("utf-8")
+
+    def test_exercises_stand_in_the_courses_order_with_name_and_label(self) -> None:
+        folder = DOCS / "exercises"
+        index = (folder / "index.md").read_text("utf-8")
+        heading = re.compile(r"^# (.*) \((mex\d+)\)$", re.MULTILINE)
+        named = [heading.findall((folder / f"mex{n}.md").read_text("utf-8")) for n in EXERCISES]
+        rows = re.findall(r"\| \[([^]]*)\]\((mex\d+)\.md\) \| (mex\d+) \| \[", index, re.MULTILINE)
+        assert rows == [(name, label, label) for ((name, label),) in named]
+        assert re.findall(r"^(mex\d+)$", index, re.MULTILINE) == [f"mex{n}" for n in EXERCISES]
+        assert {label for label in LABELS if label not in index} == set()
 
 
 def test_the_tutorial_takes_twenty_minutes() -> None:
@@ -69,7 +78,7 @@ def test_the_tutorial_takes_twenty_minutes() -> None:
 
 
 class TestTheory:
-    text = "\n".join(page.read_text("utf-8") for page in sorted(DOCS.glob("theory/*.md")))
+    text = "".join("\n" + page.read_text("utf-8") for page in sorted(DOCS.glob("theory/*.md")))
 
     @pytest.mark.parametrize("stem", theorems())
     def test_every_theorem_has_its_section_and_leads_to_its_code(self, stem: str) -> None:

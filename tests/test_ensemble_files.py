@@ -267,3 +267,22 @@ class TestCheckpoints:
         before = path.stat().st_mtime_ns
         self.reduced().compute(checkpoint=path)
         assert path.stat().st_mtime_ns == before
+
+
+def test_whatever_byte_of_a_chunk_is_wrong(tmp_path: Path, rng: np.random.Generator) -> None:
+    """A chunk with one bit turned is written anew, or still gives the same numbers."""
+    few = twisted(3)
+    few.to_npz(tmp_path / "few")
+    chunk = tmp_path / "few" / "chunk-00000000.npz"
+    whole = chunk.read_bytes()
+    with np.load(chunk) as arrays:
+        want = {name: arrays[name].tobytes() for name in arrays}
+    for number in range(150):
+        # Half of them among the last bytes, which say where all others are.
+        place = int(rng.integers(len(whole))) if number % 2 else len(whole) - 1 - int(rng.integers(22))
+        wrong = bytearray(whole)
+        wrong[place] ^= 1 << int(rng.integers(8))
+        chunk.write_bytes(wrong)
+        few.resume(tmp_path / "few")
+        with np.load(chunk) as arrays:
+            assert {name: arrays[name].tobytes() for name in arrays} == want, place

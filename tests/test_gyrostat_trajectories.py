@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polhode
 import pytest
-from polhode import RigidBody, Trajectory, loads
+from polhode import GyrostatMotion, RigidBody, Trajectory, loads, wheel
 from test_animation import data
 
 if TYPE_CHECKING:
@@ -84,3 +85,21 @@ def test_a_loaded_motion_from_a_file_is_drawn_by_its_samples(suffix: str, tmp_pa
             shown = data(read.animate(tmp_path / "page.html"))
         assert shown["t"].tolist() == run.t.tolist()
         np.testing.assert_allclose(shown["quaternion"], run.quaternion, atol=1e-7)
+
+
+def test_states_know_their_wheels() -> None:
+    """From states the motion goes on with its wheels: free ones keep ``J (Ω + a·ω)``, held ones Ω."""
+    axis = np.array([1.0, 2.0, 2.0]) / 3.0
+    free = wheel(axis=3.0 * axis, inertia=0.1, rate=4.0)
+    held = wheel(axis=(0, 0, 1), inertia=0.2, rate=-3.0, mode="held")
+    whip = wheel(axis=(1, 0, 0), inertia=0.0, momentum=0.3)
+    motion = BODY.gyrostat((0.0, 0.1, 0.0), wheels=[free, held, whip]).free_motion(OMEGA)
+    states = motion.at(np.linspace(2.0, 9.0, 8))
+    for known in (states, pickle.loads(pickle.dumps(states)), copy.copy(states)):
+        again = known._exact()
+        assert isinstance(again, GyrostatMotion)
+        one, two, three = again.gyrostat.wheels
+        assert one.rate + axis @ states.omega[0] == pytest.approx(4.0 + axis @ motion.omega, rel=1e-14)
+        assert (two, three) == (held, whip)
+        np.testing.assert_allclose(again.rotor, motion.rotor, rtol=1e-14)
+        np.testing.assert_allclose(again.at(7.0).omega, states.omega[-1], rtol=1e-13)

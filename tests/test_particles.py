@@ -210,9 +210,17 @@ class TestLabels:
         ("masses", "labels", "words"),
         [
             ([1.0, 1.0], [0, -2], r"labels\[1\] is -2.*counted from 0|counted from 0.*labels\[1\] is -2"),
-            ([1.0, 1.0], [0, 2], r"label 1: .*0 particles"),
-            ([1.0, 1.0], [2**62, 0], r"label 1: .*0 particles"),
-            ([1.0, 0.0], [0, 1], r"label 1: .*1 particles.*positive"),
+            (
+                [1.0, 1.0],
+                [0, 2],
+                r"label 1: .*0 particles.*; .*polhode\.labelled\.bodies takes labels with gaps",
+            ),
+            ([1.0, 1.0], [2**62, 0], r"label 1: .*0 particles.*polhode\.labelled"),
+            (
+                [1.0, 0.0],
+                [0, 1],
+                r"label 1: .*1 particles.*positive.*; give its particles their masses, or the label -1",
+            ),
             ([1.0, -3.0], [1, 0], r"label 0: .*-3\.0"),
             ([1.0, 1.0], [0, 1, 2], r"labels.*shape \(2,\).*got \(3,\)"),
         ],

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +14,20 @@ import pytest
 @pytest.fixture
 def harness(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[1] / "benchmarks"))
-    from importlib import import_module
-
     yield import_module("harness")
     sys.modules.pop("harness")
 
 
 def result(harness: Any, name: str, ratio: float) -> Any:
     return harness.Result(
-        name, "a peer", 9, (1.0, 1.0, 1.0), (ratio, ratio, ratio), (ratio, ratio, ratio), "", None
+        name,
+        "a peer",
+        9,
+        (1.0, 1.0, 1.0),
+        (ratio, ratio, ratio),
+        (ratio, 0.9 * ratio, 1.2345 * ratio),
+        "",
+        None,
     )
 
 
@@ -32,9 +39,27 @@ def test_a_run_is_compared_with_the_last_release(
     for release, ratio in (("0.9.0", 3.0), ("0.10.0", 4.0), ("0.2.0", 5.0)):
         harness.keep(release, [result(harness, "a row", ratio)], path)
     assert harness.kept(path) == ("0.10.0", {"a row, beside a peer": 4.0})
+    first = {"0.1.0": {"date": "2026-11-22", "machine": {}, "ratios": {"a row, beside a peer": 2.0}}}
+    (tmp_path / "first.json").write_text(json.dumps(first), encoding="utf-8")
+    assert harness.kept(tmp_path / "first.json") == ("0.1.0", {"a row, beside a peer": 2.0})
     rows = [result(harness, "a row", 5.0), result(harness, "another row", 5.0)]
     harness.report(rows, ratios=path)
     head, old, new = capsys.readouterr().out.splitlines()
     assert "0.10.0" in head
     assert "x1.25" in old
     assert " new " in new
+
+
+def test_the_page_tells_spread_machine_and_date(
+    harness: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[1] / "docs" / "site"))
+    measured: Any = import_module("measured")
+    path = tmp_path / "ratios.json"
+    harness.keep("0.2.0", [result(harness, "a row", 4.0)], path)
+    found = json.loads(path.read_text("utf-8"))
+    page = measured.performance(found | json.loads(harness.RATIOS.read_text("utf-8")))
+    assert "| a row | a peer | 4 | 3.6 to 4.94 |" in page
+    assert "| moments and axes, 1e6 tensors | numpy.linalg.eigh | 43.2 | not kept |" in page
+    assert f"Measured on {found['0.2.0']['date']}: {found['0.2.0']['machine']['cpu']}, " in page
+    assert "Measured on 2026-11-22: AMD EPYC, 2 cores, Python 3.11.7." in page

@@ -137,8 +137,18 @@ class TestLicences:
         text = script("dress")["third_party"]()
         for crate in ("nalgebra", "pyo3", "numpy", "thiserror"):
             assert re.search(rf"^- {crate} [\d.]+", text, re.MULTILINE)
-        for other in ("proptest", "polhode 0", "/root/", "/home/"):
+        for other in ("proptest", "serde", "polhode 0", "/root/", "/home/"):
             assert other not in text
+
+    def test_lints_and_workflow_look_at_the_licences_of_both_lockfiles(self) -> None:
+        makefile = (ROOT / "Makefile").read_text("utf-8")
+        assert re.search(r"^lint:.* licences ", makefile, re.MULTILINE)
+        rule = makefile[makefile.index("\nlicences:") :].split("\n\n")[0]
+        assert "Cargo.toml rust/fuzz/Cargo.toml" in rule
+        assert "licenses bans sources" in rule
+        workflow = (ROOT / ".github" / "workflows" / "release.yml").read_text("utf-8")
+        assert "- run: make licences\n" in workflow
+        assert "check --config packaging/deny.toml advisories\n" in workflow
 
     def test_both_licences_stand_in_the_crate(self) -> None:
         for name in ("LICENSE-MIT", "LICENSE-APACHE"):
@@ -155,21 +165,34 @@ class TestBytes:
                 "serialNumber": f"urn:{number}",
                 "metadata": {"timestamp": number, "name": f"file:///tmp/x{number}/rust"},
             }
+            library = zipfile.ZipInfo("a.so", (2000 + number, 1, 1, 0, 0, 0))
+            # What one machine lets its group write, and another does not.
+            library.external_attr = (0o100775, 0o100755)[number - 1] << 16
+            files: list[tuple[zipfile.ZipInfo | str, bytes]] = [
+                (library, b"code"),
+                ("a.dist-info/sboms/a.cyclonedx.json", json.dumps(bill).encode()),
+                ("a.dist-info/RECORD", b"old"),
+            ]
             with zipfile.ZipFile(wheel, "w") as archive:
-                archive.writestr(zipfile.ZipInfo("a.so", (2000 + number, 1, 1, 0, 0, 0)), b"code")
-                archive.writestr("a.dist-info/sboms/a.cyclonedx.json", json.dumps(bill))
-                archive.writestr("a.dist-info/RECORD", "old")
+                for name, data in files[:: (1, -1)[number - 1]]:
+                    archive.writestr(name, data)
             plain(wheel, out, f"/tmp/x{number}")
             wheels.append(out.read_bytes())
         assert wheels[0] == wheels[1]
         with zipfile.ZipFile(out) as archive:
             record = archive.read("a.dist-info/RECORD").decode().splitlines()
             assert [line.split(",")[0] for line in record] == archive.namelist()
-            assert json.loads(archive.read(archive.namelist()[1])) == {
+            assert archive.namelist()[-1] == "a.dist-info/RECORD"
+            assert [entry.external_attr >> 16 for entry in archive.infolist()] == [
+                0o100644,
+                0o100755,
+                0o100644,
+            ]
+            assert json.loads(archive.read(archive.namelist()[0])) == {
                 "metadata": {"name": "file:///polhode/rust"}
             }
             digest = base64.urlsafe_b64encode(hashlib.sha256(b"code").digest()).decode().rstrip("=")
-            assert record[0] == f"a.so,sha256={digest},4"
+            assert record[1] == f"a.so,sha256={digest},4"
 
 
 def test_the_program_that_tries_a_wheel_runs_here(script: Any) -> None:
@@ -197,7 +220,11 @@ class TestFiles:
 
     def test_what_crates_may_be_is_what_they_are(self) -> None:
         rules = tomllib.loads((PACKAGING / "deny.toml").read_text("utf-8"))
-        lock = tomllib.loads((ROOT / "Cargo.lock").read_text("utf-8"))
-        sources = {package["source"] for package in lock["package"] if "source" in package}
-        assert sources == {"registry+https://github.com/rust-lang/crates.io-index"}
+        sources = {
+            package["source"]
+            for lock in (ROOT / "Cargo.lock", ROOT / "rust/fuzz/Cargo.lock")
+            for package in tomllib.loads(lock.read_text("utf-8"))["package"]
+            if "source" in package
+        }
+        assert [source.partition("+")[0] for source in sources] == ["registry"]
         assert rules["sources"] == {"unknown-registry": "deny", "unknown-git": "deny"}

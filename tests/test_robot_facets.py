@@ -53,3 +53,5 @@ def test_a_centre_beyond_the_facets(beyond: float, word: str, tmp_path: Path) ->
     text = urdf(link("a", 1.0, (0.38, 0.33, 0.05), '<mesh filename="m.obj"/>', at=f"{float(x)!r} 0 0"))
     (verdict,) = robots.check(robots.parse_robot(text.encode(), name="r", folder=tmp_path))
     assert verdict.verdict == word
+    assert f"; walls {1e3 * beyond * (radius - flat):.3g} mm farther out would do, " in verdict.reason
+    assert f"off by {'no more than ' * (word != 'coarse')}{1e3 * (radius - flat):.3g} mm" in verdict.reason

@@ -37,6 +37,16 @@ def parsed(text: str | bytes) -> robots.Robot:
     return robots.parse_robot(text if isinstance(text, bytes) else text.encode(), name="r", folder=".")
 
 
+def test_what_is_unreadable_is_left_and_told_so(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(urdf(link("a", 1.0, 0.1, BALL).replace('"1.0"', '"${mass}"')))
+    code, out, _ = run("check", path, "--fix", tmp_path / "out.urdf")
+    assert code == 1
+    assert "expand the file with xacro first" in out
+    assert "left as they are, to be corrected by hand: a" in out
+    assert "tells nothing" not in out
+
+
 class TestWhatIsMissing:
     def test_is_left_without_a_density(self) -> None:
         robot = parsed(ARM)

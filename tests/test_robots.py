@@ -131,6 +131,14 @@ def test_meshes_of_mjcf_have_the_scale_of_their_class(
     np.testing.assert_allclose(there(verdict.moments), [moment] * 3, rtol=1e-9)
 
 
+def test_links_of_one_name_are_told_apart_by_their_models() -> None:
+    models = """<model name="a"><link name="link"/></model>
+    <model name="b"><link name="link"/><link name="c"/></model>"""
+    world = f'<sdf version="1.9"><world name="w">{models}</world></sdf>'
+    verdicts = robots.check(robots.parse_robot(world.encode(), name="w", folder="."))
+    assert [verdict.name for verdict in verdicts] == ["a::link", "b::link", "c"]
+
+
 def test_the_same_moments_in_turned_axes_are_a_placeholder() -> None:
     turned = "0.709167 -0.0920216 -0.0630148 0.696164"
     bodies = "".join(

@@ -142,3 +142,18 @@ class TestSafety:
         with contextlib.suppress(FileFormatError):
             robot = robots.parse_robot(bytes(source), name="r", folder=".")
             robots.fixed(robot, robots.check(robot))
+
+
+def test_what_a_urdf_says_twice_or_amiss_is_told() -> None:
+    numbers = '<mass value="1"/><inertia ixx="1" iyy="1.1" izz="1.2" ixy="0" ixz="0" iyz="0"'
+    right = f'<robot name="r">\n<link name="a"><inertial>{numbers}/></inertial></link>\n</robot>'
+    assert robots.parse_robot(right.encode(), name="r", folder=".").notes == ()
+    told = {
+        'iyz="0" iyx="3" Ixx="1"/>': "line 2: link 'a': <inertia> has Ixx, iyx, which no parser reads",
+        'iyz="0"/></inertial>\n<inertial>': "line 3: <inertial> again in link 'a'; only the first is read",
+        'iyz="0"/></inertial></link>\n<link name="a"><inertial>': "line 3: link 'a' again; parsers refuse",
+    }
+    for text, note in told.items():
+        wrong = right.replace('iyz="0"/>', text)
+        (said,) = robots.parse_robot(wrong.encode(), name="r", folder=".").notes
+        assert said.startswith(note)

@@ -2,34 +2,40 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from polhode import RigidBody, solids
 from polhode._scene.solids import solid_surface
 
-SOLIDS: list[tuple[str, dict[str, Any]]] = [
-    ("cylinder", {"radius": 1.5, "height": 0.7}),
-    ("tube", {"inner_radius": 0.5, "outer_radius": 1.5, "height": 0.7}),
-    ("cone", {"radius": 1.5, "height": 2.0}),
-    ("frustum", {"bottom_radius": 1.5, "top_radius": 0.5, "height": 2.0}),
-    ("frustum", {"bottom_radius": 1.5, "top_radius": 0.0, "height": 2.0}),
-    ("sphere", {"radius": 1.5}),
-    ("ellipsoid", {"semi_axes": [1.0, 2.0, 0.5]}),
-    ("hemisphere", {"radius": 1.5}),
-    ("capsule", {"radius": 0.5, "length": 2.0}),
-    ("torus", {"major_radius": 2.0, "minor_radius": 0.5}),
-    ("prism", {"sides": 5, "radius": 1.5, "height": 2.0}),
+SOLIDS: list[tuple[str, tuple[float, ...]]] = [
+    ("cuboid", (1.0, 2.0, 3.0)),
+    ("cube", (2.0,)),
+    ("wedge", (1.0, 2.0, 3.0)),
+    ("pyramid", (1.0, 2.0, 3.0)),
+    ("tetrahedron", (2.0,)),
+    ("cylinder", (1.5, 0.7)),
+    ("tube", (0.5, 1.5, 0.7)),
+    ("cone", (1.5, 2.0)),
+    ("frustum", (1.5, 0.5, 2.0)),
+    ("frustum", (1.5, 0.0, 2.0)),
+    ("sphere", (1.5,)),
+    ("ellipsoid", (1.0, 2.0, 0.5)),
+    ("hemisphere", (1.5,)),
+    ("capsule", (0.5, 2.0)),
+    ("torus", (2.0, 0.5)),
+    ("prism", (5, 1.5, 2.0)),
 ]
+BY_SIZE = {"cuboid": "box", "wedge": "wedge", "pyramid": "pyramid", "ellipsoid": "ellipsoid"}
+"""Those that take their lengths as one argument."""
 
 
-@pytest.mark.parametrize(("name", "arguments"), SOLIDS)
-def test_it_is_the_solid(name: str, arguments: dict[str, Any]) -> None:
-    exact = getattr(solids, name)(**arguments, density=2.0)
+@pytest.mark.parametrize(("name", "numbers"), SOLIDS)
+def test_it_is_the_solid(name: str, numbers: tuple[float, ...]) -> None:
+    make = getattr(solids, BY_SIZE.get(name, name))
+    exact = make(numbers, density=2.0) if name in BY_SIZE else make(*numbers, density=2.0)
     off = []
     for segments in (40, 160):
-        surface = solid_surface(name, arguments, segments)
+        surface = solid_surface(name, np.array(numbers), segments)
         assert surface is not None
         drawn = RigidBody.from_mesh(*surface, density=2.0)  # closed and outward, or this is an error
         assert np.allclose(drawn.center_of_mass, exact.center_of_mass, atol=0.02)
@@ -39,5 +45,5 @@ def test_it_is_the_solid(name: str, arguments: dict[str, Any]) -> None:
 
 
 def test_others_have_none() -> None:
-    assert solid_surface("box", {"size": [1, 2, 3]}) is None
-    assert solid_surface("", {}) is None
+    assert solid_surface("disk", np.array([1.0])) is None
+    assert solid_surface("", np.array([])) is None

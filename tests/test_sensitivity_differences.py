@@ -64,6 +64,20 @@ def test_a_pivoted_body() -> None:
     near(found.load[0]["gravity"], exact.load[0]["gravity"])
 
 
+def test_loads_in_windows() -> None:
+    load = loads.damping(0.3) + loads.constant_torque((0.1, -0.2, 0.3), "space")
+    load = loads.schedule(loads.schedule(load, [(0.5, 2.0)]), [(0.0, 1.5)])
+    run = BODY.simulate(T, OMEGA, ATTITUDE, load=load)
+    found, exact = run.sensitivity("differences"), run.sensitivity()
+    for got, series in zip(found.load, exact.load, strict=True):
+        assert set(got) == set(series)
+        for name in got:
+            near(got[name], series[name])
+    # Of what was multiplied by a factor the numbers are not varied.
+    twice = BODY.simulate(T, OMEGA, ATTITUDE, load=2.0 * loads.damping(0.3)).sensitivity("differences")
+    assert twice.load == ({},)
+
+
 def test_functions_with_states() -> None:
     """A slug in Python: its derivatives are those of the slug of the package."""
 

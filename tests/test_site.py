@@ -5,18 +5,20 @@ Without a site that is as new as its pages these tests are skipped; `.ci/run` bu
 
 from __future__ import annotations
 
-import importlib.util
+import base64
 import os
 import re
-import subprocess
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urldefrag
 
 import pytest
-from site_browser import CHROMIUM, Task, answers
+from browser import Browser, needs_browser
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parents[1]
 SITE = ROOT / "docs" / "_build" / "html"
@@ -33,11 +35,10 @@ pytestmark = pytest.mark.skipif(
     not BUILT.exists() or BUILT.stat().st_mtime < max(path.stat().st_mtime for path in SOURCES),
     reason="the site is not built, or older than its pages: make docs",
 )
-in_a_browser = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
 
 PHONE, DESK = (390, 844), (1280, 800)
 TALLEST = 15_000
-"""Pixels of the longest page of the interface at the width of a desk."""
+"""Pixels of the longest page at the width of a desk."""
 
 
 class Page(HTMLParser):
@@ -100,104 +101,203 @@ def test_nothing_is_loaded_from_the_network() -> None:
 
 
 def test_formulas_are_in_the_pages() -> None:
-    assert pages()["theory/motion.html"].formulas > 300
+    assert pages()["theory/free.html"].formulas > 50
     assert pages()["cheat_sheet.html"].formulas == 6
 
 
-MEASURE = """
-await wait(30);
-const width = page.documentElement.clientWidth;
+def test_old_links_to_the_theory_of_motion_lead_on() -> None:
+    """Each section was once on one page; its anchor there names the page where it is now."""
+    old = (SITE / "theory" / "motion.html").read_text("utf-8")
+    on = dict(re.findall(r'<span id="([^"]+)" data-moved="([^"]+)">', old))
+    sections = re.compile(r"^\((motion/[\w/]+)\)=$", re.MULTILINE)
+    names = [
+        name
+        for page in (ROOT / "docs" / "theory").glob("*.md")
+        for name in sections.findall(page.read_text("utf-8"))
+    ]
+    assert len(names) > 20
+    assert {re.sub(r"[/_]", "-", name) for name in names} <= set(on)
+    for anchor, target in on.items():
+        file, same = urldefrag(target)
+        assert same == anchor
+        assert anchor in pages()[f"theory/{file}"].anchors
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    with Browser(tmp_path_factory.mktemp("browser")) as one:
+        yield one
+
+
+@pytest.fixture
+def desk(browser: Browser) -> Browser:
+    browser.screen(*DESK)
+    return browser
+
+
+MEASURE = """(() => {
+const width = document.documentElement.clientWidth;
 const scrolls = (e) => { for (let p = e; p && p.tagName !== "MAIN"; p = p.parentElement)
-  if (["auto", "scroll", "hidden"].includes(view.getComputedStyle(p).overflowX)) return true; return false; };
-const wide = [...page.querySelectorAll("main *")].filter((e) => {
+  if (["auto", "scroll", "hidden"].includes(getComputedStyle(p).overflowX)) return true; return false; };
+const wide = [...document.querySelectorAll("main *")].filter((e) => {
   const box = e.getBoundingClientRect();
   return box.width > 1 && box.right > width + 1 && !scrolls(e);
 });
-const shown = [...page.querySelectorAll("math")].filter((e) => e.getClientRects().length);
+const shown = [...document.querySelectorAll("math")].filter((e) => e.getClientRects().length);
 const empty = shown.filter((e) => e.getBoundingClientRect().width < 2);
 return {
   wide: wide.slice(0, 3).map((e) => e.outerHTML.slice(0, 200)),
-  beyond: page.documentElement.scrollWidth - width,
+  beyond: document.documentElement.scrollWidth - width,
   empty: empty.length,
-  height: page.documentElement.scrollHeight,
+  height: document.documentElement.scrollHeight,
 };
-"""
+})()"""
 
 
-@in_a_browser
+@needs_browser
 @pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
-def test_nothing_overflows_and_formulas_are_drawn(size: tuple[int, int]) -> None:
-    every = list(pages())
-    names = every if size == PHONE else [n for n in every if n.startswith("interface/") or "/" not in n]
-    tasks: list[Task] = [(f"/{name}", *size, MEASURE) for name in names]
+def test_nothing_overflows_and_formulas_are_drawn(browser: Browser, size: tuple[int, int]) -> None:
+    browser.screen(*size)
     bad = []
-    for name, found in zip(names, answers(SITE, tasks), strict=True):
-        is_tall = size == DESK and name.startswith("interface/") and found.get("height", 0) > TALLEST
-        if "error" in found or found["wide"] or found["beyond"] > 0 or found["empty"] or is_tall:
+    for name in pages():
+        if size == DESK and name.startswith(("gallery/", "exercises/", "decisions/")):
+            continue  # which are as wide as the others
+        browser.open(SITE / name)
+        found = browser.run(MEASURE)
+        is_tall = size == DESK and found["height"] > TALLEST
+        if found["wide"] or found["beyond"] > 0 or found["empty"] or is_tall:
             bad.append((name, found))
     assert bad == []
 
 
-@in_a_browser
-def test_the_search_finds_the_gallery_first() -> None:
-    code = """
-    for (let k = 0; k < 200; k++) { await wait(50); if (page.querySelector("#search-results li a")) break; }
-    await wait(300);
-    return [...page.querySelectorAll("#search-results li a")].slice(0, 3).map((e) => e.getAttribute("href"));
-    """
-    (found,) = answers(SITE, [("/search.html?q=tennis+racket", *DESK, code)])
-    assert found[0].startswith("gallery/tennis_racket.html")
+@needs_browser
+@pytest.mark.parametrize("words", ["tennis racket", "Tennis+Racket", "racket"])
+def test_the_search_finds_the_gallery_first(desk: Browser, words: str) -> None:
+    desk.open(SITE / "search.html", f"?q={words.replace(' ', '+')}")
+    first = "document.querySelector('#search-results li a')"
+    desk.wait(f"{first} && !document.querySelector('#search-progress')?.textContent")
+    assert desk.run(f"{first}.getAttribute('href')").startswith("gallery/tennis_racket.html")
 
 
-@in_a_browser
-def test_a_button_copies_commands_without_their_dollar() -> None:
-    code = """
-    await wait(300);
-    let kept = null;
-    Object.defineProperty(view.navigator.clipboard, "writeText", {value: async (text) => { kept = text; }});
-    const block = [...page.querySelectorAll(".highlight-console div.highlight")][0];
-    block.querySelector("button.copy").click();
-    await wait(50);
-    return kept;
-    """
-    (found,) = answers(SITE, [("/command_line.html", *DESK, code)])
-    assert found.startswith("polhode samples .\npolhode report t-handle.stl")
-    assert "$" not in found
+@needs_browser
+class TestCopies:
+    """A real press of the button, and what the clipboard then holds."""
+
+    @pytest.fixture
+    def clipboard(self, desk: Browser) -> Browser:
+        desk.ask("Browser.grantPermissions", permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
+        return desk
+
+    def copied(self, browser: Browser, page: str, block: str) -> str:
+        browser.open(SITE / page)
+        browser.run("navigator.clipboard.writeText('nothing yet')")
+        browser.click(f"{block} button.copy")
+        browser.wait(f"document.querySelector({block + ' button.copy'!r}).textContent === 'copied'")
+        return str(browser.run("navigator.clipboard.readText()"))
+
+    def test_commands_without_their_dollar_and_what_they_print(self, clipboard: Browser) -> None:
+        found = self.copied(clipboard, "command_line.html", ".highlight-console div.highlight")
+        assert found.startswith("polhode samples .\npolhode report t-handle.stl")
+        assert "$" not in found
+        assert all(line.startswith("polhode ") for line in found.splitlines())
+
+    def test_code_as_it_stands(self, clipboard: Browser) -> None:
+        found = self.copied(clipboard, "gallery/tennis_racket.html", ".highlight-python div.highlight")
+        assert found.strip() == (ROOT / "examples" / "tennis_racket.py").read_text("utf-8").strip()
+
+    def test_a_session_without_its_prompts(self, clipboard: Browser) -> None:
+        found = self.copied(clipboard, "interface/RigidBody.html", ".doctest div.highlight")
+        assert found.count("\n") > 1
+        assert ">>>" not in found
+        assert compile(found, "session", "exec")
 
 
-@in_a_browser
-def test_the_cheat_sheet_is_two_pages_on_paper(tmp_path: Path) -> None:
-    assert CHROMIUM
-    file = tmp_path / "sheet.pdf"
-    options = ["--headless=new", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"]
-    options += [f"--user-data-dir={tmp_path / 'profile'}", f"--print-to-pdf={file}"]
-    page = (SITE / "cheat_sheet.html").as_uri()
-    subprocess.run([CHROMIUM, *options, page], check=True, capture_output=True, timeout=60)
-    assert len(re.findall(rb"/Type\s*/Page[^s]", file.read_bytes())) <= 2
+@needs_browser
+class TestMovingPage:
+    """The moving page within a page of the gallery."""
+
+    FRAME = "iframe.live"
+    INSIDE = "document.querySelector('iframe.live').contentWindow"
+
+    @pytest.fixture
+    def racket(self, desk: Browser) -> Browser:
+        desk.open(SITE / "gallery" / "tennis_racket.html")
+        desk.run(
+            "document.querySelector('iframe.live').scrollIntoView({ block: 'center', behavior: 'instant' })"
+        )
+        desk.wait(f"typeof {self.INSIDE}.polhode === 'object'")
+        return desk
+
+    def test_full_screen_and_back(self, racket: Browser) -> None:
+        racket.click("#full", frame=self.FRAME)
+        racket.wait("document.fullscreenElement?.matches('iframe.live') ?? false")
+        racket.wait(f"{self.INSIDE}.innerWidth === {DESK[0]} && {self.INSIDE}.innerHeight === {DESK[1]}")
+        racket.click("#full", frame=self.FRAME)
+        racket.wait("document.fullscreenElement === null")
+
+    def test_keys_bring_nearer_and_reset_turns_back(self, racket: Browser) -> None:
+        zoom = f"{self.INSIDE}.polhode.views.space.zoom"
+        racket.click("#space", frame=self.FRAME)
+        start = racket.run(zoom)
+        for name, nearer in (("+", True), ("-", False)):
+            before = racket.run(zoom)
+            racket.key(name, name)
+            assert (racket.run(zoom) > before) is nearer
+        racket.key("+", "+")
+        racket.click("#reset", frame=self.FRAME)
+        racket.wait(f"{zoom} === {start}")
+
+    def test_two_fingers_bring_nearer_and_one_scrolls_the_page(self, racket: Browser) -> None:
+        racket.screen(*PHONE, touch=True)
+        racket.open(SITE / "gallery" / "tennis_racket.html")
+        racket.run(
+            "document.querySelector('iframe.live').scrollIntoView({ block: 'start', behavior: 'instant' })"
+        )
+        racket.wait(f"typeof {self.INSIDE}.polhode === 'object'")
+        x, y = racket.middle("#space", frame=self.FRAME)
+        zoom = f"{self.INSIDE}.polhode.views.space.zoom"
+        before = racket.run(zoom)
+        racket.touch("touchStart", (x - 20, y), (x + 20, y))
+        for far in (25, 30, 35, 40):
+            racket.touch("touchMove", (x - far, y), (x + far, y))
+        racket.touch("touchEnd")
+        assert racket.run(zoom) == pytest.approx(2.0 * before, rel=0.2)
+        place = f"scrollY + {self.INSIDE}.scrollY"
+        before = racket.run(place)
+        racket.touch("touchStart", (x, y + 100))
+        for k in range(1, 11):
+            racket.touch("touchMove", (x, y + 100 - 20 * k))
+        racket.touch("touchEnd")
+        racket.wait(f"{place} > {before + 50}")
 
 
-def axe() -> Path | None:
-    found = importlib.util.find_spec("axe_playwright_python")
-    return Path(found.origin).parent / "axe.min.js" if found and found.origin else None
+@needs_browser
+def test_an_old_link_goes_to_the_new_page(desk: Browser) -> None:
+    desk.open(SITE / "theory" / "motion.html", "#motion-heavy-top")
+    desk.wait("location.pathname.endsWith('/theory/heavy_top.html') && location.hash === '#motion-heavy-top'")
 
 
-@in_a_browser
-@pytest.mark.skipif(axe() is None, reason="no axe-core: pip install --no-deps axe-playwright-python")
+@needs_browser
+def test_the_cheat_sheet_is_two_pages_on_paper(browser: Browser) -> None:
+    browser.open(SITE / "cheat_sheet.html")
+    paper = base64.b64decode(browser.ask("Page.printToPDF")["data"])
+    assert len(re.findall(rb"/Type\s*/Page[^s]", paper)) <= 2
+
+
+@needs_browser
 @pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
-def test_axe_finds_nothing_serious(size: tuple[int, int]) -> None:
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_axe_finds_nothing_serious(browser: Browser, size: tuple[int, int], dark: bool) -> None:
     names = [
         "index", "tutorial", "gallery/index", "gallery/tennis_racket", "interface/index",
         "interface/RigidBody", "interface/RigidBody.motion", "theory/principal", "exercises/mex143",
         "why_others_disagree", "cheat_sheet", "command_line", "how_to/roboticist", "measured/elsewhere",
         "search",
     ]  # fmt: skip
-    names = names if size == DESK else names[::2]
-    code = """
-    await wait(100);
-    const found = await (await axe(view)).run(page, {resultTypes: ["violations"], iframes: false});
-    return found.violations.filter((v) => ["serious", "critical"].includes(v.impact))
-      .map((v) => [v.id, v.nodes.length, v.nodes[0].html.slice(0, 200)]);
-    """
-    tasks: list[Task] = [(f"/{name}.html", *size, code) for name in names]
-    found: list[Any] = answers(SITE, tasks, axe())
-    assert {name: each for name, each in zip(names, found, strict=True) if each} == {}
+    browser.screen(*size, dark=dark)
+    faults: dict[str, list[Any]] = {}
+    for name in names[dark::2] if size == PHONE else names[:: 1 + dark]:
+        browser.open(SITE / f"{name}.html")
+        if found := browser.serious_faults():
+            faults[name] = found
+    assert faults == {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -57,18 +58,20 @@ def test_products_of_two_particles() -> None:
     # Two particles of mass 1 at ±(1, 1, 0): the product of inertia is +2, the element of the tensor -2.
     pair = RigidBody(2.0, [(2.0, -2.0, 0.0), (-2.0, 2.0, 0.0), (0.0, 0.0, 4.0)])
     assert np.allclose(pair.inertia, RigidBody.from_particles([1, 1], [(1, 1, 0), (-1, -1, 0)]).inertia)
-    signs = {"adams": "2.0", "solidworks": "2.0", "drake": "-2.0", "simulink": "-2.0", "pinocchio": "-2.0"}
+    signs = {"adams": "2.0", "solidworks": "2.0"}
     places = {
         "adams": r"IP=2.0, 2.0, 4.0, (\S+), 0.0, 0.0",
         "solidworks": r"Lxy = (\S+)",
         "drake": r"Ixy=(\S+),",
         "simulink": r"Products of Inertia: \[0.0, 0.0, (\S+)\]",
         "pinocchio": r"\[\[2.0, (\S+), 0.0\]",
+        "onshape": r'"inertia": \[\s+2.0, (\S+), 0.0,',
+        "matlab": r"Inertia = \[2.0, 2.0, 4.0, 0.0, 0.0, (\S+)\];",
     }
-    for program, sign in signs.items():
-        found = re.search(places[program], forms.to_text(pair, program))
+    for program, place in places.items():
+        found = re.search(place, forms.to_text(pair, program))
         assert found is not None
-        assert found[1] == sign
+        assert found[1] == signs.get(program, "-2.0")
 
 
 def test_lines_of_each_program_hold_the_body() -> None:
@@ -86,6 +89,14 @@ def test_lines_of_each_program_hold_the_body() -> None:
         xx, yy, zz, xy, xz, yz = numbers(part.partition("IP=")[2])
         assert np.array_equal(tensor((xx, yy, zz, -xy, -xz, -yz)), body.inertia)
         assert np.array_equal(numbers(marker.partition("QP=")[2]), c)
+        onshape = json.loads(forms.to_text(body, "onshape"))
+        assert [*onshape["mass"], *onshape["centroid"]] == [m, *c]
+        assert np.array_equal(np.reshape(onshape["inertia"], (3, 3)), body.inertia)
+        made, *matlab = forms.to_text(body, "matlab").split("\n")
+        assert made == 'body = rigidBody("body");'
+        assert [numbers(line) for line in matlab[:2]] == [[m], c.tolist()]
+        xx, yy, zz, yz, xz, xy = numbers(matlab[2])  # about the origin of its frame
+        assert np.array_equal(tensor((xx, yy, zz, xy, xz, yz)), body.inertia_about("origin"))
         text = forms.to_text(body, "pybullet")
         x, y, z, w = numbers(text.partition("Orientation=")[2].partition("]")[0])
         R = np.array(
@@ -131,6 +142,19 @@ class TestSolidWorks:
         assert np.allclose(np.abs(np.sum(axes * AXES, axis=1)), 1.0, atol=1e-7)
         assert np.linalg.det(axes) == pytest.approx(1.0)
         assert np.allclose([float(x) for x in re.findall(r"P[xyz] = (\S+)", text)], MOMENTS, atol=4e-8)
+
+
+def test_onshape_and_the_shape_it_was_asked_about() -> None:
+    # Rhoban/onshape-to-robot-examples at a0f8b921, 2wheels_urdf: what Onshape's interface said of the part
+    # "body", mass and tensor, in the part's axes; and assets/body.stl of that mass, by trimesh, in the same.
+    told = (2.06023e-3, 1.50691e-3, 2.54354e-3, 4.48497e-10, 6.47006e-11, -2.87610e-4)
+    shape = (2.059526353e-3, 1.506772201e-3, 2.542976451e-3, 0.0, 0.0, -2.873031616e-4)
+    body = forms.from_printout(2.23874, (0.0375, 0.0253843, 0.0225241), told, products="negative")
+    assert np.allclose(body.inertia, tensor(shape), rtol=2e-3, atol=1e-9)
+    found = json.loads(forms.to_text(body, "onshape"))["inertia"]
+    assert np.allclose(np.reshape(found, (3, 3)), tensor(told), rtol=1e-15)
+    other = forms.from_printout(2.23874, (0.0375, 0.0253843, 0.0225241), told, products="positive")
+    assert np.abs(other.inertia - tensor(shape)).max() > 5e-4
 
 
 @pytest.mark.long
@@ -208,8 +232,8 @@ class TestCommand:
         assert "state --length-unit" in err
 
     def test_python_refuses(self) -> None:
-        with pytest.raises(PolhodeError, match="there is no form for 'onshape'; give one of urdf"):
-            forms.to_text(bodies()[0], "onshape")
+        with pytest.raises(PolhodeError, match="there is no form for 'catia'; give one of urdf"):
+            forms.to_text(bodies()[0], "catia")
         with pytest.raises(PolhodeError, match="expected one body, got a stack of shape"):
             forms.to_text(RigidBody.stack(bodies()), "urdf")
         flat = solids.box((1, 0, 0), mass=1.0)

@@ -201,13 +201,35 @@ def test_long_motions_are_exact() -> None:
     assert there["omega_end"] != back["omega_end"]
 
 
-def test_animation_and_json(tmp_path: Path) -> None:
+def test_animation_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polhode._scene.footage._SECONDS", 0.5)  # few pictures
     asked = ("--moments", "1 2 3", "--omega", "0.01 2 0", "--until", 10, "--samples", 31)
     code, _, err = run("spin", *asked, "--save", tmp_path / "a.html", "--save", tmp_path / "a.gif")
     assert (code, err) == (0, "")
     assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
     page = (tmp_path / "a.html").read_text()
     assert "<canvas" in page or "<svg" in page
+
+
+@pytest.mark.parametrize(
+    ("omega", "tilt", "path"),
+    [
+        ("0 0 150", 180, "steady"),
+        ("0 0 0", 180, "steady"),
+        ("0 0 150", -180, "steady"),
+        ("0 0 150", 0, "steady"),
+        ("0 0 150", 360, "steady"),
+        ("0 0 150", "179.99999999999", "cusp"),
+        ("0 0 0", "179.99999999999", "planar"),
+        ("0 0 150", 34, "cusp"),
+    ],
+)
+def test_an_axis_straight_up_or_down_rests(omega: str, tilt: float | str, path: str) -> None:
+    """In degrees a half turn is off by rounding, and so are the cusps that it would have."""
+    body = ("--moments", "2e-4 2e-4 3e-4", "--mass", 0.5, "--center", "0 0 4 cm")
+    start = ("--omega", omega, "--attitude", f"0 {tilt} 0 deg", "--gravity", 9.81, "--format", "json")
+    code, out, _ = run("spin", *body, *start)
+    assert (code, json.loads(out)["path"]) == (0, path)
 
 
 def test_heavy_top() -> None:

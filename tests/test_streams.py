@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from command_line import run, write_obj
 from mesh_files import binary_ply
 from oracles.exact_polyhedron import polyhedron
 from oracles.meshes import box, icosphere, merge
@@ -210,3 +211,14 @@ assert grown < 30_000, grown  # kilobytes: eight bytes a triangle, a block and s
         with pytest.raises(KeyboardInterrupt):
             RigidBody.from_file(many, density=1.0, progress=interrupt)
         assert len(seen) <= 2
+
+
+def test_a_file_called_as_standard_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As everywhere, "./-" names the file and "-" the stream."""
+    monkeypatch.chdir(tmp_path)
+    write_obj(tmp_path / "slab.obj", *box((1.0, 2.0, 3.0)))
+    assert run("report", "slab.obj", "--mass", "2", "--output", "./-.json")[0] == 0
+    (tmp_path / "-.json").rename(tmp_path / "-")
+    code, _, err = run("report", "./-")
+    assert code == 2  # read, but without a suffix that names its format
+    assert str(tmp_path / "-") in err

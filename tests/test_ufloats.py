@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from polhode import RigidBody, Uncertain, laminae, solids
+from polhode.errors import PolhodeError
 from polhode.uncertainty import joined, propagate, to_ufloats
 from uncertainties import ufloat
 from uncertainties.umath import sqrt
@@ -129,3 +130,13 @@ def test_arguments_alone_are_drawn_from_their_sources() -> None:
     sigma = 4 / 3 * np.pi * np.sqrt(9 * 0.04 + 36 * 0.0016 + 15 * 0.000064)
     assert found.value == pytest.approx(mean, abs=4 * sigma / np.sqrt(4000))
     assert found.sigma == pytest.approx(sigma, rel=0.06)
+
+
+@pytest.mark.parametrize(
+    "length", [ufloat(1.0, float("nan")), ufloat(1.0, float("inf")), ufloat(1.0, 1e200) * ufloat(1e200, 0.1)]
+)
+def test_sigmas_that_are_not_finite_are_refused(length: Any) -> None:
+    with pytest.raises(PolhodeError, match="standard deviations of a ufloat must be finite"):
+        solids.box((length, 1.0, 1.0), mass=1.0)
+    box: Any = solids.box((ufloat(1.0, 1e150), 1.0, 1.0), mass=1.0)
+    assert np.isfinite(box.sigma.inertia).all()

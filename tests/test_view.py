@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import polhode
 import pytest
+from oracles.bodies import matrix
 from oracles.meshes import cube
 from polhode import RigidBody, Trajectory, solids, view
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+    from polhode import GyrostatMotion
 
 SIDES = np.array([1.0, 2.0, 3.0])
 MOMENTS = (SIDES @ SIDES - SIDES**2) / 12.0
@@ -155,6 +160,54 @@ class TestMotion:
     def test_times_beyond_the_motion(self, motion: Trajectory, at: float) -> None:
         with pytest.raises(ValueError, match="is not between 0 and 5, the times of the motion"):
             motion.view(at=at)
+
+
+@pytest.mark.usefixtures("pyvista")
+class TestWheels:
+    """Of a gyrostat: discs in the body that turn by their angle relative to it."""
+
+    TURNING = polhode.wheel(axis=(0.0, 0.6, 0.8), inertia=0.2, rate=2.5, mode="held")
+
+    def gyrostat(self, inside: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> GyrostatMotion:
+        brick = solids.box(SIDES, mass=1.0)
+        return brick.gyrostat(inside, wheels=[self.TURNING]).free_motion((0.3, 0.9, 0.1))
+
+    @pytest.mark.parametrize("at", [0.0, 0.7, 2.0])
+    def test_a_disc_stands_and_turns_as_the_wheel_does(self, at: float) -> None:
+        motion = self.gyrostat()
+        plotter = view.motion(motion, end=2.0, at=at, duration=10.0)
+        placed = plotter.actors["motion-wheel-0-rim"].user_matrix
+        (shown,) = re.findall(r"t = (\S+) s", plotter.actors["motion-time"].GetText(2))
+        t = float(shown)
+        np.testing.assert_allclose(placed[:3, :3], matrix(motion.at(t).quaternion), atol=2e-3)
+        mark = plotter.actors["motion-wheel-0-mark-0"].user_matrix
+        turn = (mark @ np.linalg.inv(placed))[:3, :3]
+        axis = placed[:3, :3] @ (0.0, 0.6, 0.8)
+        np.testing.assert_allclose(turn @ axis, axis, atol=1e-12)
+        half = 0.5 * 2.5 * t
+        quaternion = np.array([*(np.sin(half) * axis), np.cos(half)])
+        np.testing.assert_allclose(turn, matrix(quaternion), atol=2e-3)
+        assert "wheel: 2.5 rad/s" in plotter.actors["motion-time"].GetText(2)
+        picture = pixels(plotter)
+        assert (np.abs(picture - (0x7A, 0x4A, 0x00)).max(axis=-1) < 24).sum() > 40
+
+    def test_fast_ones_are_slowed_and_rotors_have_rings(self) -> None:
+        for duration, is_slowed in ((0.5, False), (0.45, True)):  # 19.1 and 21.2 degrees a picture
+            plotter = view.motion(self.gyrostat((0.3, 0.0, 0.0)), end=2.0, duration=duration)
+            assert ("2.5 rad/s, drawn 2× slower" in plotter.actors["motion-time"].GetText(2)) == is_slowed
+        assert "rotor: speed not known" in plotter.actors["motion-time"].GetText(2)
+        assert "motion-wheel-1-mark-5" in plotter.actors
+        assert "motion-wheel-1-mark-6" not in plotter.actors
+
+    def test_states_tell_the_momentum_alone(self) -> None:
+        plotter = view.motion(self.gyrostat().at(np.linspace(0.0, 2.0, 21)))
+        assert "wheels: speed not known" in plotter.actors["motion-time"].GetText(2)
+
+    def test_ends(self) -> None:
+        with pytest.raises(ValueError, match="end: a motion in closed form has no end of its own"):
+            view.motion(self.gyrostat())
+        with pytest.raises(ValueError, match="end: a trajectory has its own times"):
+            view.motion(self.gyrostat().at([0.0, 1.0]), end=2.0)
 
 
 def test_a_picture_is_saved(pyvista: Any, tmp_path: Path) -> None:

@@ -74,7 +74,7 @@ def test_a_film_that_is_given_up(suffix: str, tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        motion.animate(path, progress=stop)
+        motion.animate(path, duration=1.0, progress=stop)
     assert path.read_bytes() == OLD
     assert list(tmp_path.iterdir()) == [path]
 

@@ -19,6 +19,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import thumbnails
 from written import keep
 
 if TYPE_CHECKING:
@@ -40,7 +41,8 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 def write(docs: Path) -> None:
     """Run what is not kept, and write the pages."""
-    groups = tomllib.loads((docs / "gallery.toml").read_text("utf-8"))
+    table = tomllib.loads((docs / "gallery.toml").read_text("utf-8"))
+    groups, shown = table["groups"], table["thumbnails"]
     names = [name for group in groups.values() for name in group]
     stamp = of_package()
     missing = [name for name in names if not done(name, stamp)]
@@ -48,16 +50,17 @@ def write(docs: Path) -> None:
         with ProcessPoolExecutor(min(len(missing), os.cpu_count() or 1)) as pool:
             for _ in pool.map(run, missing, [stamp] * len(missing)):
                 pass
-    keep(docs / "gallery", dict(pages(groups)))
+    keep(docs / "gallery", dict(pages(groups, {name: words for name, (_, words) in shown.items()})))
     for name in names:
         shutil.copy2(KEPT / name / f"{name}.png", PICTURES)
 
 
 def copy(site: Path) -> None:
-    """Put the moving pages where the pages of the gallery look for them."""
+    """Put the moving pages and the small pictures where the pages of the gallery look for them."""
     if (site / "gallery").is_dir():
-        for page in KEPT.glob("*/live.html"):
-            shutil.copy2(page, site / "gallery" / f"{page.parent.name}.live.html")
+        for kind in ("live.html", "light.png", "dark.png"):
+            for file in KEPT.glob(f"*/{kind}"):
+                shutil.copy2(file, site / "gallery" / f"{file.parent.name}.{kind}")
 
 
 def of_package() -> str:
@@ -65,7 +68,12 @@ def of_package() -> str:
     mark = hashlib.sha256(f"{version('numpy')} {version('matplotlib')}".encode())
     package = ROOT / "python" / "polhode"
     for file in sorted(
-        [*package.rglob("*.py"), *package.rglob("*.html"), *package.glob("*.so"), Path(__file__)]
+        [
+            *package.rglob("*.py"),
+            *package.rglob("*.html"),
+            *package.glob("*.so"),
+            *(ROOT / "docs" / name for name in ("gallery.toml", "site/gallery.py", "site/thumbnails.py")),
+        ]
     ):
         mark.update(f"{file.name}{file.stat().st_mtime_ns}".encode())
     return mark.hexdigest()
@@ -95,11 +103,20 @@ def run(name: str, stamp: str) -> None:
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed), warnings.catch_warnings(action="error"):
         made = runpy.run_path(str(script(name)))
-        made["draw"]().savefig(folder / f"{name}.png", dpi=96)
+        figure = made["draw"]()
+        figure.savefig(folder / f"{name}.png", dpi=96)
+        thumbnails.save(figure, view(name), folder)
     (folder / "printed.txt").write_text(printed.getvalue(), "utf-8")
     if "animate" in made:
         made["animate"](str(folder / "live.html"))
     (folder / "mark").write_text(stamp + text_mark(name))
+
+
+def view(name: str) -> int:
+    """Give the number of the view of a figure that stands in the gallery."""
+    table = tomllib.loads((ROOT / "docs" / "gallery.toml").read_text("utf-8"))
+    number, _ = table["thumbnails"][name]
+    return int(number)
 
 
 def title(name: str) -> str:
@@ -112,7 +129,7 @@ def says(name: str) -> str:
     return " ".join((ast.get_docstring(ast.parse(script(name).read_text("utf-8"))) or "").split())
 
 
-def pages(groups: dict[str, list[str]]) -> Iterator[tuple[str, str]]:
+def pages(groups: dict[str, list[str]], shown: dict[str, str]) -> Iterator[tuple[str, str]]:
     """Give the name and the text of each page."""
     listing = [
         "# Gallery\n",
@@ -123,7 +140,7 @@ def pages(groups: dict[str, list[str]]) -> Iterator[tuple[str, str]]:
         for name in names:
             live = " ▶" if (KEPT / name / "live.html").exists() else ""
             listing.append(
-                f'<a class="entry" href="{name}.html"><img src="../_images/{name}.png" alt="" loading="lazy">'
+                f'<a class="entry" href="{name}.html">{small(name, shown[name])}'
                 f"<span><b>{title(name)}{live}</b>{says(name)}</span></a>"
             )
             yield f"{name}.md", entry(name)
@@ -132,13 +149,22 @@ def pages(groups: dict[str, list[str]]) -> Iterator[tuple[str, str]]:
     yield "index.md", "\n".join(listing)
 
 
+def small(name: str, words: str) -> str:
+    """Give the small picture of an entry, in the colours of both modes of the page."""
+    return "".join(
+        f'<img class="only-{mode}" src="{name}.{mode}.png" alt="{words}" width="320" height="200"'
+        ' loading="lazy">'
+        for mode in thumbnails.THEMES
+    )
+
+
 def entry(name: str) -> str:
     """Give the page of an entry."""
     lines = [f"# {title(name)}\n", f"{says(name)}\n"]
     if (KEPT / name / "live.html").exists():
         lines.append(
             f'<iframe class="live" src="{name}.live.html" title="{title(name)}, moving"'
-            ' loading="lazy"></iframe>\n\n'
+            ' loading="lazy" allowfullscreen></iframe>\n\n'
             f'<p><a href="{name}.live.html">The moving page by itself</a></p>\n'
         )
     drawn = made_of(name, "draw") or f"Picture of {title(name)}"
@@ -155,5 +181,11 @@ def made_of(name: str, function: str) -> str:
     """Give the first line of the docstring of a function of an entry."""
     for node in ast.parse(script(name).read_text("utf-8")).body:
         if isinstance(node, ast.FunctionDef) and node.name == function:
-            return (ast.get_docstring(node) or "").partition("\n")[0].rstrip(".")
+            return described(ast.get_docstring(node) or "")
     return ""
+
+
+def described(docstring: str) -> str:
+    """Give what a figure shows: the first line of the function that draws it, as a noun."""
+    text = docstring.partition("\n")[0].rstrip(".").removeprefix("Draw ")
+    return text[:1].upper() + text[1:]

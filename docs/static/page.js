@@ -14,7 +14,15 @@ function copied(text) {
   return lines.join("\n");
 }
 
+// A link to a section of a page that was split: on to the page where it is now.
+function follow() {
+  const moved = document.getElementById(decodeURIComponent(location.hash.slice(1)))?.dataset.moved;
+  if (moved) location.replace(moved);
+}
+addEventListener("hashchange", follow);
+
 document.addEventListener("DOMContentLoaded", () => {
+  follow();
   for (const summary of document.querySelectorAll(".toctree-toggle")) {
     const name = summary.closest("li")?.querySelector("a")?.textContent.trim() ?? "";
     summary.closest("summary")?.setAttribute("aria-label", `pages of ${name}`); // which the theme leaves empty

@@ -28,7 +28,7 @@ def torque(self: Trajectory) -> Floats:
     -------
     numpy.ndarray, shape (..., T, 3)
     """
-    if self.load is None and "_rotor" in self.__dict__:
+    if self.load is None and "_within" in self.__dict__:
         return of_rotor(self)
     if self._acting("torque") is None:
         return np.zeros_like(self.omega)

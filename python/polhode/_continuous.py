@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 from itertools import permutations
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -117,15 +117,15 @@ def continuous(self: PrincipalAxes, axis: int = 0, rtol: float | None = None) ->
         overlap[k] = np.minimum((cosines * signs).min(axis=-1), 1.0)
     free = np.stack([close[..., 0], close.any(axis=-1), close[..., 1]], axis=-1)
 
-    def back(values: NDArray[np.generic], *ends: int) -> NDArray[np.generic]:
+    def back(values: NDArray[Any], *ends: int) -> NDArray[Any]:
         return np.moveaxis(values.reshape(count, *rest, *ends), 0, axis)
 
     return ContinuousAxes(
-        back(np.take_along_axis(moments, order, axis=-1), 3),  # type: ignore[arg-type]  # of reals
-        back(axes, 3, 3),  # type: ignore[arg-type]
-        back(order, 3),  # type: ignore[arg-type]
-        back(overlap),  # type: ignore[arg-type]
-        back(~np.take_along_axis(free, order, axis=-1), 3),  # type: ignore[arg-type]
+        back(np.take_along_axis(moments, order, axis=-1), 3),
+        back(axes, 3, 3),
+        back(order, 3),
+        back(overlap),
+        back(~np.take_along_axis(free, order, axis=-1), 3),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -37,6 +38,9 @@ NOISE: Final = 1e-9
 RTOL: Final = 1e-13
 HELD: Final = ("times", "t", "epoch", "target")
 """Arguments of loads that are not varied."""
+
+AROUND: Final = ("_scheduled", "_anchored")
+"""What is done to a part that was made."""
 
 
 class _Starts(NamedTuple):
@@ -228,6 +232,11 @@ def _known(load: _core.Load | None, recipes: list[Recipe]) -> set[str]:
 
 def _numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Callable[[Floats], Recipe]]]:
     """Give the numbers among the arguments of a part by name, and the recipe with others in their place."""
+    around, recipe = _unwrapped(recipe)
+    if around:
+        for name, values, changed in _numbers(recipe):
+            yield name, values, _wrapped(around, changed)
+        return
     made_by, arguments = recipe
     function = getattr(_core, made_by, None)
     if function is None or made_by in ("callback", "torque_callback", "with_states"):
@@ -240,12 +249,55 @@ def _numbers(recipe: Recipe) -> Iterator[tuple[str, Floats, Callable[[Floats], R
             (inner,) = _recipes(value)
             for deeper, values, changed in _numbers(inner):
                 yield deeper, values, _with_load(made_by, named, name, changed)
+        elif is_dataclass(value):
+            for deeper, values, placed in _fields_of(value):
+                yield deeper, values, _with(made_by, named, name, placed)
         elif name not in HELD and isinstance(value, float | np.ndarray):
-            yield name, np.array(value, dtype=float), _with(made_by, named, name)
+            yield name, np.array(value, dtype=float), _with(made_by, named, name, _plain)
 
 
-def _with(made_by: str, named: dict[str, Any], name: str) -> Callable[[Floats], Recipe]:
-    return lambda values: (made_by, (named | {name: values if values.ndim else float(values)},))
+def _unwrapped(recipe: Recipe) -> tuple[list[Recipe], Recipe]:
+    """Give what was done to a part, the last first and without the part, and the part."""
+    around: list[Recipe] = []
+    while recipe[0] in AROUND:
+        around.append((recipe[0], recipe[1][1:]))
+        recipe = recipe[1][0]
+    return around, recipe
+
+
+def _wrapped(around: list[Recipe], changed: Callable[[Floats], Recipe]) -> Callable[[Floats], Recipe]:
+    def placed(values: Floats) -> Recipe:
+        recipe = changed(values)
+        for name, arguments in reversed(around):
+            recipe = name, (recipe, *arguments)
+        return recipe
+
+    return placed
+
+
+def _fields_of(path: Any) -> Iterator[tuple[str, Floats, Callable[[Floats], Any]]]:
+    """Give the numbers of an orbit or of a field along one by name, and how to put others in their place."""
+    for field in fields(path):
+        value = getattr(path, field.name)
+        if is_dataclass(value):
+            for deeper, values, placed in _fields_of(value):
+                yield deeper, values, _within(path, field.name, placed)
+        elif field.name not in HELD and value is not None:
+            yield field.name, np.array(value, dtype=float), _within(path, field.name, _plain)
+
+
+def _plain(values: Floats) -> Any:
+    return values if values.ndim else float(values)
+
+
+def _within(path: Any, name: str, placed: Callable[[Floats], Any]) -> Callable[[Floats], Any]:
+    return lambda values: replace(path, **{name: placed(values)})
+
+
+def _with(
+    made_by: str, named: dict[str, Any], name: str, placed: Callable[[Floats], Any]
+) -> Callable[[Floats], Recipe]:
+    return lambda values: (made_by, (named | {name: placed(values)},))
 
 
 def _with_load(

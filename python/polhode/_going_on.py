@@ -54,9 +54,10 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
     first time hold the states, and `begins` has what they add where the rate is held in place of them.
 
     Differences follow the motion through every change of the law, since each neighbour finds its own: a wheel
-    that stops in its bearing, a motor that saturates. The numbers of functions are not known to them, and a
-    target is not varied; those of stacks of loads, of scaled and scheduled ones and beside compiled functions
-    are not either.
+    that stops in its bearing, a motor that saturates. Of orbits all numbers are varied: J₂, radius and
+    pole of an oblate attractor too, and each position of a table, with six runs for a number. The numbers of
+    functions are not known to them, and a target at rest is not varied; those of stacks of loads, of
+    scaled ones and beside compiled functions are not either.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What all orbits tell: states, the frame that points down, the field of a dipole; orbits along samples."""
+"""What orbits tell: states, elements, the frame that points down, a dipole's field; orbits along samples."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DipoleField",
+    "Elements",
     "LocalFrame",
     "OrbitState",
     "Path",
@@ -39,6 +40,40 @@ class OrbitState(NamedTuple):
 
     position: Floats
     velocity: Floats
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+class Elements(NamedTuple):
+    """The elements of an orbit at its epoch; angles in radians, and in degrees by :meth:`in_degrees`.
+
+    Attributes
+    ----------
+    periapsis : float or numpy.ndarray, shape (...)
+        Least distance from the attractor.
+    eccentricity : float or numpy.ndarray, shape (...)
+    inclination : float or numpy.ndarray, shape (...)
+        Between the normal of the orbit and z.
+    node : float or numpy.ndarray, shape (...)
+        From x to where the orbit crosses the plane xy upward; 0 for an orbit in that plane.
+    argument : float or numpy.ndarray, shape (...)
+        From the node to the periapsis; 0 for a circle.
+    anomaly : float or numpy.ndarray, shape (...)
+        From the periapsis to the body (the true anomaly); of a circle from the node.
+    """
+
+    periapsis: Any
+    eccentricity: Any
+    inclination: Any
+    node: Any
+    argument: Any
+    anomaly: Any
+
+    def in_degrees(self) -> Elements:
+        """Give them with the four angles in degrees."""
+        angles = ("inclination", "node", "argument", "anomaly")
+        return self._replace(**{name: np.rad2deg(getattr(self, name)) for name in angles})
 
     def __repr__(self) -> str:
         return short(self)

@@ -33,7 +33,7 @@ _LAST_PLACES: Final = re.compile(
     r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+))\((?P<last>\d+)\)(?P<power>[eE][+-]?\d{1,3})?\s*(?P<unit>\S.*?)?\s*"
 )
 _SIGMA_EXAMPLE: Final = "1.00 ± 0.01"
-_FACTOR: Final = r"[A-Za-zµμ°Å_]+(?:(?:\^|\*\*)?-?\d)?"
+_FACTOR: Final = r"[A-Za-zµμ°Å_]+(?:(?:\^|\*\*)?-?[1-9])?"
 _BARE_POWER: Final = re.compile(r"(?<=[A-Za-zµμ°Å])(?=-?\d)")
 _UNIT: Final = re.compile(rf"(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR})*")
 _SIGNS: Final = str.maketrans({"·": "*", "²": "^2", "³": "^3"})
@@ -48,7 +48,8 @@ _OWN_UNITS: Final = (
     "pci = pound / inch ** 3",
 )
 """What drawings and printouts of the desk say, beside what pint knows."""
-_FREQUENCIES: Final = re.compile(r"[kMG]?Hz|hertz|1\s*/.*|cps")
+_COUNTS_ANGLES: Final = ("rad", "rad/s")
+"""A unit that counts no angle, as ``min^-1``, is no unit of these: it may mean turns as well as radians."""
 _EXAMPLES: Final = {
     "kg": "0.3 lb",
     "kg/m^3": "2.7 g/cm^3",
@@ -147,7 +148,7 @@ def amount(text: str, unit: str, option: str) -> float | _core.Uncertain:
     value, sigma = _converted(text, typed, unit, option), typed.sigma
     if typed.sigma_unit not in (None, unit):
         sigma *= _factor(str(typed.sigma_unit), unit, option)
-    if not math.isfinite(float(sigma)):
+    if not _is_held(sigma):
         raise PolhodeError(
             f"{option}: the sigma of {text!r} is beyond the range of numbers; check the exponent"
         )
@@ -279,12 +280,18 @@ def _has_sigma(text: str) -> bool:
 
 
 def _converted(text: str, typed: _Typed, unit: str, option: str) -> float:
-    value = float(typed.number)
+    value = Decimal(typed.number)
     if typed.unit not in (None, unit):
-        value = float(Decimal(typed.number) * _factor(str(typed.unit), unit, option))
-    if not math.isfinite(value):
+        value *= _factor(str(typed.unit), unit, option)
+    if not _is_held(value):
         raise PolhodeError(f"{option}: {text!r} is beyond the range of numbers; check the exponent")
-    return value
+    return float(value)
+
+
+def _is_held(number: Decimal) -> bool:
+    """Tell whether a float can hold it: neither infinite, nor zero unless it is."""
+    held = float(number)
+    return math.isfinite(held) and (held != 0.0 or number == 0)
 
 
 def _example(unit: str) -> str:
@@ -297,10 +304,6 @@ def _sigma_examples(unit: str) -> str:
 
 def _factor(text: str, unit: str, option: str) -> Decimal:
     """Give the size of the unit that was typed, in `unit`."""
-    if unit == "rad/s" and _FREQUENCIES.fullmatch(text):
-        raise PolhodeError(
-            f"{option}: {text!r} does not say what is counted; write turn/s, rad/s, deg/s or rpm"
-        )
     pint = require("pint", extra="units", purpose=f"{option}: a unit ({text})")
     plain = _HYPHEN.sub("*", text.translate(_SIGNS))
     if _UNIT.fullmatch(plain) is None:
@@ -308,7 +311,8 @@ def _factor(text: str, unit: str, option: str) -> Decimal:
     registry = _registry()
     try:
         given = registry.parse_units(_BARE_POWER.sub("^", plain))
-        factor = registry.Quantity(Decimal(1), given).to(registry.parse_units(unit))
+        wanted = registry.parse_units(unit)
+        factor = registry.Quantity(Decimal(1), given).to(wanted)
     except pint.UndefinedUnitError:
         raise PolhodeError(f"{option}: {text!r} is not a known unit; write {_example(unit)}") from None
     except pint.DimensionalityError:
@@ -316,6 +320,9 @@ def _factor(text: str, unit: str, option: str) -> Decimal:
         is_force = as_force != plain and registry.parse_units(as_force).is_compatible_with(unit)
         way_out = "lb and oz are masses here; write lbf or ozf" if is_force else f"write {_example(unit)}"
         raise PolhodeError(f"{option}: {text!r} cannot be converted to {unit}; {way_out}") from None
+    if unit in _COUNTS_ANGLES and registry.get_root_units(given)[1] != registry.get_root_units(wanted)[1]:
+        way_out = "turn/s, rad/s, deg/s or rpm" if unit == "rad/s" else "turn, rad or deg"
+        raise PolhodeError(f"{option}: {text!r} does not say what is counted; write {way_out}")
     return Decimal(factor.magnitude)
 
 

@@ -115,7 +115,7 @@ def _frame(page: str, height: int) -> str:
     """Put a page into another, whole: it asks for nothing else."""
     return (
         f'<iframe title="moving picture of the motion" srcdoc="{html.escape(page, quote=True)}" width="100%" '
-        f'height="{height}" loading="lazy" style="border:0;max-width:900px"></iframe>'
+        f'height="{height}" loading="lazy" allowfullscreen style="border:0;max-width:900px"></iframe>'
     )
 
 

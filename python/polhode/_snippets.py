@@ -46,6 +46,7 @@ def to_text(body: RigidBody, program: str) -> str:
         ``"urdf"``, ``"sdf"``, ``"mjcf"``: the element of such a file. ``"mujoco"``, ``"drake"``,
         ``"pinocchio"``, ``"pybullet"``: lines of Python. ``"simulink"``: the fields of Simscape Multibody.
         ``"adams"``: statements of the solver. ``"solidworks"``: the printout of its mass properties.
+        ``"onshape"``: the fields of its REST interface. ``"matlab"``: a ``rigidBody``, about its origin.
 
     Returns
     -------
@@ -217,6 +218,26 @@ def _solidworks(n: _Numbers) -> str:
     return "\n".join(lines)
 
 
+def _onshape(n: _Numbers) -> str:
+    xx, yy, zz, xy, xz, yz = n.own
+    rows = ",\n    ".join(_row(row, ", ") for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+    return f"""{{
+  "mass": [{n.mass!r}],
+  "centroid": {_list(n.center)},
+  "inertia": [
+    {rows}
+  ]
+}}"""
+
+
+def _matlab(n: _Numbers) -> str:
+    xx, yy, zz, xy, xz, yz = n.origin
+    return f"""body = rigidBody("body");
+body.Mass = {n.mass!r};
+body.CenterOfMass = {_list(n.center)};
+body.Inertia = {_list((xx, yy, zz, yz, xz, xy))};"""
+
+
 _WRITERS: Final[dict[str, Callable[[_Numbers], str]]] = {
     "urdf": _urdf,
     "sdf": _sdf,
@@ -228,5 +249,7 @@ _WRITERS: Final[dict[str, Callable[[_Numbers], str]]] = {
     "simulink": _simulink,
     "adams": _adams,
     "solidworks": _solidworks,
+    "onshape": _onshape,
+    "matlab": _matlab,
 }
 PROGRAMS: Final = tuple(_WRITERS)

@@ -8,13 +8,14 @@ by :func:`sampled` from a table of positions. The loads :func:`polhode.loads.gra
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _core
 from polhode._paths import (
     DipoleField,
+    Elements,
     LocalFrame,
     OrbitState,
     Path,
@@ -24,7 +25,6 @@ from polhode._paths import (
     reshaped,
     vector,
 )
-from polhode._repr import short
 from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
@@ -43,40 +43,6 @@ __all__ = [
     "kepler",
     "sampled",
 ]
-
-
-class Elements(NamedTuple):
-    """The elements of an orbit at its epoch; angles in radians, and in degrees by :meth:`in_degrees`.
-
-    Attributes
-    ----------
-    periapsis : float or numpy.ndarray, shape (...)
-        Least distance from the attractor.
-    eccentricity : float or numpy.ndarray, shape (...)
-    inclination : float or numpy.ndarray, shape (...)
-        Between the normal of the orbit and z.
-    node : float or numpy.ndarray, shape (...)
-        From x to where the orbit crosses the plane xy upward; 0 for an orbit in that plane.
-    argument : float or numpy.ndarray, shape (...)
-        From the node to the periapsis; 0 for a circle.
-    anomaly : float or numpy.ndarray, shape (...)
-        From the periapsis to the body (the true anomaly); of a circle from the node.
-    """
-
-    periapsis: Any
-    eccentricity: Any
-    inclination: Any
-    node: Any
-    argument: Any
-    anomaly: Any
-
-    def in_degrees(self) -> Elements:
-        """Give them with the four angles in degrees."""
-        angles = ("inclination", "node", "argument", "anomaly")
-        return self._replace(**{name: np.rad2deg(getattr(self, name)) for name in angles})
-
-    def __repr__(self) -> str:
-        return short(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -140,7 +140,9 @@ class Trajectory:
     def __getstate__(self) -> dict[str, Any]:
         """Give all attributes, for copy and pickle."""
         held = {
-            name: self.__dict__[name] for name in ("_rotor", "_was_loaded", "_given") if name in self.__dict__
+            name: self.__dict__[name]
+            for name in ("_within", "_was_loaded", "_given")
+            if name in self.__dict__
         }
         return held | {one.name: getattr(self, one.name) for one in fields(self)}
 

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Footage", "of_motion", "of_samples"]
+__all__ = ["GIF_RATE", "RATE", "Footage", "of_motion", "of_samples"]
 
 _SECONDS: Final = 10.0
 """That a motion takes on the screen at least."""
-_RATE: Final = 30.0
+RATE: Final = 30.0
 """Pictures a second, of a film and of a browser on a slow machine."""
-_FASTEST_RATE: Final = 50.0
+GIF_RATE: Final = 50.0
 """Pictures a second that every viewer of GIFs keeps to."""
 _FILM: Final = 1800
 """Pictures of a film: a minute of it, and a few minutes of drawing."""
@@ -94,6 +94,8 @@ def of_samples(
     shown = frames or count
     if is_page and frames is None:
         shown = min(count, max(_PAGE_FRAMES, int(np.ceil(angles.sum() / TURN)) + 1))
+    elif is_film and frames is None and duration is not None:
+        shown = min(count, max(2, int(GIF_RATE * duration * (1.0 + 1e-9))))
     chosen = np.unique(np.linspace(0, count - 1, shown).round().astype(int))
     whole = float(abs(trajectory.t[-1] - trajectory.t[0]))
     rate = float(np.linalg.norm(trajectory.omega, axis=-1).max())
@@ -103,14 +105,16 @@ def of_samples(
         widest = float(between.max())
         needed = np.ceil(whole * rate / TURN) + 1.0
         where = f"{trajectory.t[chosen[int(between.argmax())]]:.6g} {time_unit}"
-        way_out = (
-            f"give frames={needed:.7g} or more" if count >= needed else f"ask for {needed:.7g} times or more"
-        )
+        can_help = float(angles.max()) <= COARSE and count >= needed  # samples that are near enough
+        way_out = f"ask for {needed:.7g} times or more, evenly spaced"
+        if can_help:
+            is_short = is_film and frames is None
+            way_out = "give a longer duration" if is_short else f"give frames={needed:.7g} or more"
         notes += _judged(widest, f"animate: from one frame to the next, at t = {where},", way_out)
     if is_film:
         if fps is not None and duration is not None:
             raise ValueError("fps: of samples each is one picture; give fps or duration, not both")
-        least = max(_SECONDS, len(chosen) / _FASTEST_RATE) if duration is None else duration
+        least = max(_SECONDS, len(chosen) / GIF_RATE) if duration is None else duration
         seconds = least if fps is None else len(chosen) / fps
         return Footage(trajectory, chosen, seconds, tuple(notes))
     seconds, told = _on_screen(whole, rate, duration, time_unit if is_page else None)
@@ -169,15 +173,15 @@ def _pictures(
     """Choose evenly spaced times for the pictures of a film; also give its length in seconds, and notes."""
     needed = float(np.ceil(abs(length) * rate / TURN)) + 1.0
     if duration is None:
-        count = int(min(max(needed, (fps or _RATE) * _SECONDS), _FILM))
+        count = int(min(max(needed, (fps or RATE) * _SECONDS), _FILM))
         if needed > count:
             length = float(np.copysign((count - 1) * TURN / rate, length))
-        return np.linspace(0.0, length, count), count / (fps or _RATE), []
+        return np.linspace(0.0, length, count), count / (fps or RATE), []
     if fps is None:
-        count = int(min(max(needed, _RATE * duration, 2.0), max(_FASTEST_RATE * duration, 2.0), _FILM))
+        count = int(min(max(needed, RATE * duration, 2.0), max(GIF_RATE * duration, 2.0), _FILM))
     else:
         count = int(min(max(round(fps * duration), 2.0), _FILM))
-    most = fps or _FASTEST_RATE
+    most = fps or GIF_RATE
     where = f"duration: of {count} pictures, {most:g} a second at most, from one to the next"
     way_out = "give a longer one, or leave it out" if needed > most * duration else "leave it out"
     return (
@@ -209,9 +213,9 @@ def _on_screen(
 
     A page, which names its speed, runs at one that has a name, in real time where that can be watched.
     """
-    turned = abs(length) * rate / _RATE
+    turned = abs(length) * rate / RATE
     needed = max(_SECONDS, turned / TURN)
     if duration is None:
         return (needed if time_unit is None else pace(abs(length), needed, turned / TURN, time_unit)), []
-    where = f"duration: at {_RATE:g} pictures a second from one to the next"
+    where = f"duration: at {RATE:g} pictures a second from one to the next"
     return duration, _judged(turned / duration, where, f"give duration={np.ceil(needed):.6g} or more")

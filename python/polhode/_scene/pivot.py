@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Pivot", "pivot_of", "top_of"]
+__all__ = ["Pivot", "path_of", "pivot_of", "top_of"]
 
 _GRAVITY: Final = "<Load: uniform_gravity>"
+_ROUNDING: Final = 64.0 * float(np.finfo(np.float64).eps)
+"""Radians that an attitude in degrees, or of rounded numbers, is off."""
 
 
 @dataclass(frozen=True)
@@ -32,17 +34,14 @@ class Pivot:
         Unit vector from the pivot toward the centre of mass, in the body frame.
     down : numpy.ndarray, shape (3,)
         Unit vector of gravity in space; -z where there is none.
-    weight : float
-        ``m g l``: the weight times the distance of the centre of mass. Zero where no gravity acts.
     limits : tuple of float
         Of a heavy top the least and the greatest angle between the axis and the upward vertical.
     path : str
-        Of a heavy top what its axis draws, ``HeavyTop.path``.
+        Of a heavy top what its axis draws, see `path_of`.
     """
 
     axis: Floats
     down: Floats
-    weight: float
     limits: tuple[float, ...]
     path: str
 
@@ -58,6 +57,17 @@ def top_of(trajectory: Trajectory) -> HeavyTop | None:
         return None
 
 
+def path_of(motion: HeavyTop) -> str:
+    """Tell what the axis of a top draws: ``HeavyTop.path``, but ``steady`` where it nods by rounding alone.
+
+    180 degrees are not a float in radians: a top that hangs straight down with them is off by 1e-16, and what
+    it draws has cusps of that size.
+    """
+    least, greatest = motion.nutation_limits
+    is_vertical = greatest <= _ROUNDING or np.pi - least <= _ROUNDING
+    return "steady" if is_vertical else str(motion.path)
+
+
 def pivot_of(trajectory: Trajectory, motion: FreeMotion | HeavyTop | GyrostatMotion | None) -> Pivot | None:
     """Find what is drawn of the fixed point of a body; None for a body without one.
 
@@ -70,14 +80,14 @@ def pivot_of(trajectory: Trajectory, motion: FreeMotion | HeavyTop | GyrostatMot
     """
     if not trajectory.pivoted:
         return None
-    center, mass = trajectory.body.center_of_mass, float(trajectory.body.mass)
+    center = trajectory.body.center_of_mass
     arm = float(np.linalg.norm(center))
     axis = center / arm if arm > 0.0 else trajectory.body.principal_about("origin").axes[:, 2]
     limits: tuple[float, ...] = ()
     path, gravity = "", np.zeros(3)
     if isinstance(motion, _core.HeavyTop):
-        gravity, path = motion.gravity, str(motion.path)
+        gravity, path = motion.gravity, path_of(motion)
         limits = tuple(float(angle) for angle in motion.nutation_limits)
     size = float(np.linalg.norm(gravity))
     down = gravity / size if size > 0.0 else np.array([0.0, 0.0, -1.0])
-    return Pivot(axis, down, mass * size * arm, limits, path)
+    return Pivot(axis, down, limits, path)

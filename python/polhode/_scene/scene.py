@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _core
+from polhode._scene.energy import Energy, energy_of
 from polhode._scene.footage import of_motion, of_samples
 from polhode._scene.pivot import Pivot, pivot_of, top_of
-from polhode._scene.shape import Shape, check_one, equivalent_box, shape_of
+from polhode._scene.shape import Shape, body_shape, check_size, notes_on, shape_of
+from polhode._scene.wheels import Disc, discs_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 __all__ = ["Scene"]
+
+_FACES = 20_000
+"""Triangles of a mesh that pages and films still turn smoothly."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +47,8 @@ class Scene:
         Spin angular momentum about the point of reference, wheels included, components in space.
     inside : numpy.ndarray, shape (F, 3), or None
         What of it the body carries along beside I ω, components in the body frame.
-    ellipsoid : numpy.ndarray, shape (F, 3)
-        Semi-axes of ω·Iω = 2T, along the principal axes about the point of reference.
     axes : numpy.ndarray, shape (3, 3)
-        Those axes, as columns in the body frame.
+        The principal axes about the point of reference, as columns in the body frame.
     moments : numpy.ndarray, shape (3,)
         The moments about them.
     is_free : bool
@@ -56,6 +59,10 @@ class Scene:
         Where its axis points at every sample, in space.
     shape : Shape
         The surface drawn.
+    discs : tuple of Disc
+        The wheels that turn in the body.
+    energy : Energy
+        What is known of it.
     title, time_unit : str
         As the viewer reads them.
     duration : float
@@ -71,13 +78,14 @@ class Scene:
     path: Floats
     momentum: Floats
     inside: Floats | None
-    ellipsoid: Floats
     axes: Floats
     moments: Floats
     is_free: bool
     pivot: Pivot | None
     axis_path: Floats | None
     shape: Shape
+    discs: tuple[Disc, ...]
+    energy: Energy
     title: str
     time_unit: str
     duration: float
@@ -107,10 +115,16 @@ class Scene:
         if trajectory.omega.ndim != 2:
             stack = trajectory.omega.shape[:-2]
             raise ValueError(
-                f"animate: expected the motion of one body, got a stack of shape {stack}; index it"
+                f"animate: expected the motion of one body, got a stack of shape {stack}; ask for the motion "
+                "of one, as bodies[0].simulate(t, omega[0])"
             )
-        if not np.isfinite(trajectory.omega).all() or not np.isfinite(trajectory.quaternion).all():
-            raise ValueError("animate: the motion holds states that are not numbers; it ended early")
+        known = np.isfinite(trajectory.omega).all(axis=-1) & np.isfinite(trajectory.quaternion).all(axis=-1)
+        if not known.all():
+            first = f"{trajectory.t[known.argmin()]:.6g} {time_unit}"
+            raise ValueError(
+                f"animate: from t = {first} on the states are not numbers, since the motion ended early; "
+                "simulate to an earlier time"
+            )
         _check_duration(duration)
         motion = trajectory._exact() or top_of(trajectory)
         options: dict[str, Any] = {
@@ -124,7 +138,17 @@ class Scene:
             footage = of_motion(motion, trajectory, **options)
         else:
             footage = of_samples(trajectory, frames=frames, **options)
-        return cls._of_footage(footage, motion, shape, title, time_unit, is_cut=not is_page)
+        travel = float(trajectory.kinetic_energy().translational[0])
+        return cls._of_footage(
+            footage,
+            motion,
+            shape,
+            title,
+            time_unit,
+            is_cut=not is_page,
+            at_most=_FACES if is_page or is_film else None,
+            travel=travel if isinstance(motion, _core.FreeMotion) and frames is None else 0.0,
+        )
 
     @classmethod
     def of_motion(
@@ -141,7 +165,11 @@ class Scene:
         fps: float | None = None,
     ) -> Scene:
         """Choose the frames of a motion in closed form from time 0 to its end."""
-        check_one(motion.shape, "animate")
+        if motion.shape:
+            raise ValueError(
+                f"animate: expected the motion of one body, got a stack of shape {motion.shape}; ask for the "
+                "motion of one, as bodies[0].free_motion(omega[0])"
+            )
         if not np.isfinite(end):
             raise ValueError(f"end: {end} is not a finite time")
         _check_duration(duration)
@@ -154,7 +182,7 @@ class Scene:
             is_page=is_page,
             fps=fps,
         )
-        return cls._of_footage(footage, motion, shape, title, time_unit, is_cut=not is_page)
+        return cls._of_footage(footage, motion, shape, title, time_unit, is_cut=not is_page, at_most=_FACES)
 
     @classmethod
     def _of_footage(
@@ -166,19 +194,22 @@ class Scene:
         time_unit: str,
         *,
         is_cut: bool,
+        at_most: int | None,
+        travel: float = 0.0,
     ) -> Scene:
         trajectory, chosen = footage.trajectory, footage.chosen
         about = trajectory.about
         pivot = pivot_of(trajectory, motion)
         principal = trajectory.body.principal_about(about)
-        in_axes = trajectory.omega[chosen] @ principal.axes
+        check_size(principal.moments, "animate: the moments of inertia", "mass and length")
+        check_size(trajectory.omega[chosen], "animate: the angular velocity", "time")
         momentum = trajectory.angular_momentum().spin[chosen]
-        doubled = (in_axes**2) @ principal.moments
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ellipsoid = np.sqrt(doubled[:, np.newaxis] / principal.moments)
-        # About an axis without a moment the ellipsoid is a cylinder without end.
-        reach = 1.5 * np.linalg.norm(in_axes, axis=1, keepdims=True).max()
-        ellipsoid = np.where(np.isfinite(ellipsoid), np.minimum(ellipsoid, reach), reach)
+        gyrostat = motion if isinstance(motion, _core.GyrostatMotion) else None
+        if shape is None:
+            surface, notes = body_shape(trajectory.body, about, is_cut=is_cut)
+        else:
+            surface = shape_of(shape, about, is_cut=is_cut, at_most=at_most)
+            notes = notes_on(surface)
         return cls(
             t=trajectory.t[chosen],
             quaternion=trajectory.quaternion[chosen],
@@ -187,19 +218,18 @@ class Scene:
             path=_core.rotate(trajectory.quaternion, trajectory.omega),
             momentum=momentum,
             inside=None if trajectory.carried is None else trajectory.carried[0][chosen],
-            ellipsoid=ellipsoid,
             axes=principal.axes,
             moments=principal.moments,
             is_free=isinstance(motion, _core.FreeMotion),
             pivot=pivot,
             axis_path=None if pivot is None else _core.rotate(trajectory.quaternion, pivot.axis),
-            shape=equivalent_box(trajectory.body, about)
-            if shape is None
-            else shape_of(shape, about, is_cut=is_cut),
+            shape=surface,
+            discs=discs_of(footage, surface, gyrostat),
+            energy=energy_of(footage, is_exact=motion is not None, travel=travel),
             title=title,
             time_unit=time_unit,
             duration=footage.duration,
-            notes=footage.notes,
+            notes=(*footage.notes, *notes),
         )
 
 

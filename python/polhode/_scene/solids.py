@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -19,27 +19,30 @@ __all__ = ["solid_surface"]
 _SEGMENTS: Final = 40
 
 
-def solid_surface(name: str, arguments: dict[str, Any], segments: int = _SEGMENTS) -> Surface | None:
-    """Give vertices and triangles, outward, of a solid in its own place; None for those without a profile.
+def solid_surface(name: str, numbers: Floats, segments: int = _SEGMENTS) -> Surface | None:
+    """Give vertices and triangles, outward, of a solid in its own place; None for another shape.
 
     Parameters
     ----------
     name : str
         Of :mod:`polhode.solids`.
-    arguments : dict
-        Without mass and density.
+    numbers : numpy.ndarray, shape (n,)
+        Its arguments one after the other, without mass and density.
     segments : int
         Of a full circle.
     """
+    if name in _FLAT_FACED:
+        corners, triangles = _FLAT_FACED[name]
+        return corners * numbers, np.array(triangles)
     if name == "prism":
-        radius, height = arguments["radius"], arguments["height"]
-        return _turned(_cylinder(radius, height), int(arguments["sides"]))
+        sides, radius, height = numbers
+        return _turned(_cylinder(radius, height), int(sides))
     if name == "ellipsoid":
         vertices, faces = _turned(_ball(1.0, segments), segments)
-        return vertices * np.asarray(arguments["semi_axes"], dtype=np.float64), faces
+        return vertices * numbers, faces
     if name not in _PROFILES:
         return None
-    return _turned(_PROFILES[name](segments, **arguments), segments)
+    return _turned(_PROFILES[name](segments, *numbers), segments)
 
 
 def _turned(profile: Floats, segments: int) -> Surface:
@@ -60,7 +63,7 @@ def _turned(profile: Floats, segments: int) -> Surface:
             if r[i + 1] > 0.0:
                 faces.append((a, c, d))
     vertices, index = np.unique(rings.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
-    return vertices, index.reshape(-1)[np.array(faces)].astype(np.int64)
+    return vertices, index.reshape(-1)[np.array(faces, dtype=np.int64).reshape(-1, 3)].astype(np.int64)
 
 
 def _cylinder(radius: float, height: float) -> Floats:
@@ -81,7 +84,8 @@ def _ball(radius: float, segments: int) -> Floats:
 
 def _frustum(bottom_radius: float, top_radius: float, height: float) -> Floats:
     a, b, h = bottom_radius, top_radius, height
-    low = -h * (a * a + 2.0 * a * b + 3.0 * b * b) / (4.0 * (a * a + a * b + b * b))
+    # Without width it has no surface, wherever it stands.
+    low = -h * (a * a + 2.0 * a * b + 3.0 * b * b) / (4.0 * (a * a + a * b + b * b) or 1.0)
     ends = [(0.0, low), (a, low), (b, low + h), (0.0, low + h)]
     return np.array(ends if b > 0.0 else ends[:3])
 
@@ -101,16 +105,47 @@ def _torus(major_radius: float, minor_radius: float, segments: int) -> Floats:
 
 _PROFILES: Final[dict[str, Callable[..., Floats]]] = {
     "cylinder": lambda n, radius, height: _cylinder(radius, height),  # noqa: ARG005
-    "tube": lambda n, **of: _tube(**of),  # noqa: ARG005
+    "tube": lambda n, inner, outer, height: _tube(inner, outer, height),  # noqa: ARG005
     "cone": lambda n, radius, height: _frustum(radius, 0.0, height),  # noqa: ARG005
-    "frustum": lambda n, **of: _frustum(**of),  # noqa: ARG005
+    "frustum": lambda n, bottom, top, height: _frustum(bottom, top, height),  # noqa: ARG005
     "sphere": lambda n, radius: _ball(radius, n),
-    "hollow_sphere": lambda n, inner_radius, outer_radius: _ball(outer_radius, n),  # noqa: ARG005
+    "hollow_sphere": lambda n, inner, outer: _ball(outer, n),  # noqa: ARG005
     "hemisphere": lambda n, radius: np.vstack(
         [(0.0, -0.375 * radius), _arc(radius, 0.0, 90.0, n, -0.375 * radius)]
     ),
     "capsule": lambda n, radius, length: np.vstack(
         [_arc(radius, -90.0, 0.0, n, -length / 2), _arc(radius, 0.0, 90.0, n, length / 2)]
     ),
-    "torus": lambda n, major_radius, minor_radius: _torus(major_radius, minor_radius, n),
+    "torus": lambda n, major, minor: _torus(major, minor, n),
 }
+
+_BOX_FACES: Final = [
+    (1, 3, 5), (3, 7, 5), (0, 4, 2), (2, 4, 6), (2, 6, 3), (3, 6, 7),
+    (0, 1, 4), (1, 5, 4), (4, 5, 6), (5, 7, 6), (0, 2, 1), (1, 2, 3),
+]  # fmt: skip
+"""Two triangles for each face, toward +x, −x, +y, −y, +z, −z."""
+_BOX: Final = np.array([(x, y, z) for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)])
+_FLAT_FACED: Final[dict[str, tuple[Floats, list[tuple[int, int, int]]]]] = {
+    "cuboid": (_BOX, _BOX_FACES),
+    "cube": (_BOX, _BOX_FACES),
+    "wedge": (
+        np.array([(x / 3, y, z / 3) for y in (-0.5, 0.5) for x, z in ((-1, -1), (2, -1), (-1, 2))]),
+        [(0, 1, 2), (3, 5, 4), (0, 3, 1), (1, 3, 4), (1, 4, 2), (2, 4, 5), (2, 5, 0), (0, 5, 3)],
+    ),
+    "pyramid": (
+        np.array([(-1, -1, -0.5), (1, -1, -0.5), (1, 1, -0.5), (-1, 1, -0.5), (0, 0, 1.5)]) / 2.0,
+        [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
+    ),
+    "tetrahedron": (
+        np.array(
+            [
+                (0.0, 0.0, 6**0.5 / 4),
+                (3**-0.5, 0.0, -(24**-0.5)),
+                (-(12**-0.5), 0.5, -(24**-0.5)),
+                (-(12**-0.5), -0.5, -(24**-0.5)),
+            ]
+        ),
+        [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)],
+    ),
+}  # fmt: skip
+"""Corners of those of size 1, and their triangles."""

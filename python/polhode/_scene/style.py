@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["AXIS_COLORS", "AXIS_DASHES", "INSIDE_COLOR", "MOMENTUM_COLOR", "OMEGA_COLOR", "OUTLINE_COLOR"]
+__all__ = [
+    "AXIS_COLORS",
+    "AXIS_DASHES",
+    "DISC_COLOR",
+    "INSIDE_COLOR",
+    "MOMENTUM_COLOR",
+    "OMEGA_COLOR",
+    "OUTLINE_COLOR",
+    "RIM_COLOR",
+]
 
 AXIS_COLORS: Final = ("#0072B2", "#D55E00", "#009E73")
 """Blue, vermilion and bluish green: first, second and third axis."""
@@ -16,5 +25,9 @@ MOMENTUM_COLOR: Final = "#111111"
 """Nearly black: the angular momentum."""
 INSIDE_COLOR: Final = "#7A4A00"
 """Of the momentum that the body carries along."""
+DISC_COLOR: Final = "#F6EAD2"
+"""Of a wheel's face, on which its spokes are in the colour of what the body carries along."""
+RIM_COLOR: Final = "#D9BF8F"
+"""Of its rim."""
 OUTLINE_COLOR: Final = (0.17, 0.18, 0.22)
 """Red, green and blue of a body's edges."""

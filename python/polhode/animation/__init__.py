@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._scene.footage import GIF_RATE
 from polhode._scene.scene import Scene
 from polhode.animation._page import page
 from polhode.files.writing import write_bytes
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 __all__ = ["ANIMATION_SUFFIXES", "animate"]
 
 ANIMATION_SUFFIXES = (".html", ".gif", ".mp4")
-_GIF_RATE = 50.0
 
 
 def animate(
@@ -45,19 +45,24 @@ def animate(
     Parameters
     ----------
     trajectory : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
-        The motion of one body.
+        The motion of one body. Its wheels are drawn as discs outside of it, not to scale, which turn by their
+        angle relative to the body. Where the momentum alone is known, as of `loads.rotor`, they do not turn.
     path : str or os.PathLike
         ``.html`` is an interactive page that needs no network: the body, its principal axes, ω, L (with that
         of wheels, and theirs as h) and their paths in space; the path of ω on the ellipsoid of inertia in the
         body; of a free body also that ellipsoid rolling on its plane, and sliders for another start, whose
-        motion the page computes itself; of a top the path of its axis. ``.gif`` and ``.mp4`` need
-        matplotlib, the latter also ffmpeg, which the extra ``film`` brings.
+        motion the page computes itself; of a top the path of its axis; the speeds of wheels, and T, V and
+        their sum where the load has a potential. A wheel that turns by more than 20 degrees from picture to
+        picture is drawn turning 2, 5, 10, … times slower than it does, as is written there. ``.gif`` and
+        ``.mp4`` need matplotlib, the latter also ffmpeg, which the extra ``film`` brings.
     end : float, optional
         Of a motion in closed form, which has no times of its own: it is shown from 0 to this time.
     shape : (vertices, faces) or list, optional
-        A mesh of the body in its frame, (n, 3) and (m, 3); or a list of parts, each a mesh or a body, where a
-        body stands for the box of its inertia: ``[bar, stem]`` of two boxes draws both. By default the
-        uniform box that has the inertia of the whole.
+        A mesh of the body in its frame, (n, 3) and (m, 3); or a list of parts, each a mesh or a body. By
+        default the body is drawn as what it was made of: solids, sheets, wires, a mesh of up to 20,000
+        triangles, up to 256 particles, or up to 256 such parts put together. Of a body of which the inertia
+        alone is known, or that was read from a saved file, it is the uniform box that has this inertia.
+        Of a given mesh with more than 20,000 triangles corners near each other are joined, which is told.
     frames : int, optional
         Number of samples shown, evenly chosen. By default as many as the motion needs: where nothing acts on
         the body, or gravity alone on a heavy top, the states between its samples are those of its exact
@@ -72,9 +77,11 @@ def animate(
     size : int or (int, int), optional
         Of a film: width and height in pixels; 480 by default.
     fps : float, optional
-        Of a film: pictures a second, at most 50 of a GIF; 30 by default.
+        Of a film: pictures a second, at most 50 of a GIF; 30 by default. A GIF counts time in hundredths of
+        a second, so that at 30 its pictures stay three, three and four of them.
     labels : bool, optional
-        Of a film: whether the axes are named, and title and time written.
+        Of a film: whether anything is written: the names of arrows, axes and wheels, title, time, speeds of
+        wheels. In a small picture names without room are left out, and a long title has several lines.
     progress : callable, optional
         Is told the fraction of a film that is drawn; an exception it raises ends the drawing.
 
@@ -94,7 +101,7 @@ def animate(
         If it turns by more than 30 degrees, or the end of the motion is not shown.
     """
     file = _checked(path)
-    if fps is not None and not 1.0 <= fps <= (_GIF_RATE if file.suffix.lower() == ".gif" else 240.0):
+    if fps is not None and not 1.0 <= fps <= (GIF_RATE if file.suffix.lower() == ".gif" else 240.0):
         raise ValueError(f"fps: {fps} is not from 1 to 240 pictures a second, or 50 of a GIF")
     scene = scene_of(
         trajectory,

@@ -12,16 +12,40 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._scene.clock import SECONDS
+from polhode._scene.footage import RATE
+from polhode._scene.sampling import TURN
+from polhode._scene.shape import BOX_TINTS, longest
+from polhode._scene.wheels import RINGS, SPOKE, SPOKES
+
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from polhode._scene.scene import Scene
+    from polhode._scene.wheels import Disc
+
+    Floats = NDArray[np.float64]
 
 __all__ = ["page"]
 
 _MODULES: Final = (
-    "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "solid", "views",
-    "live", "clock", "main",
+    "vectors", "double", "elliptic", "free", "frames", "trail", "labels", "camera", "theme", "solid", "clock",
+    "wheels", "views", "energy", "live", "main",
 )  # fmt: skip
 """Of the folder ``page``, each after those that it imports; a browser reads them as one."""
+_SHARED: Final = {
+    "SECONDS": SECONDS,
+    "PICTURES": RATE,
+    "TURN": TURN,
+    "SPOKES": SPOKES,
+    "SPOKE": SPOKE,
+    "RINGS": RINGS,
+    "TINTS": BOX_TINTS.tolist(),
+}
+"""What the package and the page both know: the module ``shared`` that others import is written of it."""
+
+_SHORT: Final = (1e-30, 1e30)
+"""Sizes that keep their digits in floats of four bytes."""
 
 
 def page(scene: Scene) -> str:
@@ -33,14 +57,19 @@ def page(scene: Scene) -> str:
         What is shown.
     """
     shape, pivot = scene.shape, scene.pivot
+    vertices, shape_unit = _in_reach(shape.vertices)
+    omega, omega_unit = _in_reach(scene.omega)
+    inside, inside_unit = (None, 1.0) if scene.inside is None else _in_reach(scene.inside)
     motion = {
         "title": scene.title,
         "time_unit": scene.time_unit,
         "duration": scene.duration,
         "t": _packed(scene.t, "<f8"),
         "quaternion": _packed(scene.quaternion, "<f4"),
-        "omega": _packed(scene.omega, "<f4"),
-        "inside": None if scene.inside is None else _packed(scene.inside, "<f4"),
+        "omega": _packed(omega, "<f4"),
+        "omega_unit": omega_unit,
+        "inside": None if inside is None else _packed(inside, "<f4"),
+        "inside_unit": inside_unit,
         "axes": scene.axes.T.tolist(),
         "moments": scene.moments.tolist(),
         "free": _start(scene),
@@ -49,16 +78,17 @@ def page(scene: Scene) -> str:
         else {
             "axis": pivot.axis.tolist(),
             "down": pivot.down.tolist(),
-            "weight": pivot.weight,
             "limits": pivot.limits,
             "path": pivot.path,
         },
-        "vertices": _packed(shape.vertices, "<f4"),
+        "wheels": [_wheel(disc, shape_unit) for disc in scene.discs],
+        "energy": _energy(scene),
+        "vertices": _packed(vertices, "<f4"),
         "faces": _packed(shape.faces, "<u4"),
         "colors": _packed(shape.colors, "u1"),
     }
-    # Inside a script element only "</" could end it early.
-    text = json.dumps(motion, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+    # Inside a script element "</script" ends it, and after "<!--" and "<script" its own end does not.
+    text = json.dumps(motion, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     before, middle, after = re.split("@TITLE@|@MOTION@", _template())
     return f"{before}{html.escape(scene.title)}{middle}{text}{after}"
 
@@ -71,6 +101,41 @@ def _start(scene: Scene) -> dict[str, list[float]] | None:
         "moments": scene.moments.tolist(),
         "omega": (scene.omega[0] @ scene.axes).tolist(),
         "quaternion": scene.quaternion[0].tolist(),
+    }
+
+
+def _in_reach(vectors: Floats) -> tuple[Floats, float]:
+    """Give vectors as short floats hold them, and the unit that they are counted in: 1, or a power of two."""
+    size = longest(vectors)
+    unit = 1.0 if _SHORT[0] < size < _SHORT[1] else float(2.0 ** np.floor(np.log2(size)))
+    return vectors / unit, unit
+
+
+def _wheel(disc: Disc, unit: float) -> dict[str, Any]:
+    """Give a wheel; of a constant speed as one number, of none without a speed."""
+    rate, angle = disc.rate, disc.angle
+    is_constant = rate is not None and bool((rate == rate[0]).all())
+    return {
+        "name": disc.name,
+        "axis": disc.axis.tolist(),
+        "middle": (disc.middle / unit).tolist(),
+        "radius": disc.radius / unit,
+        "half": disc.half / unit,
+        "constant": float(rate[0]) if rate is not None and is_constant else None,
+        "rate": None if rate is None or is_constant else _packed(rate, "<f4"),
+        "angle": None if angle is None or is_constant else _packed(angle, "<f8"),
+    }
+
+
+def _energy(scene: Scene) -> dict[str, Any]:
+    """Give the energy at the frames, in all digits, so that a drift is the motion's own."""
+    energy = scene.energy
+    return {
+        "kinetic": None if scene.is_free else _packed(energy.kinetic, "<f8"),
+        "potential": None if energy.potential is None else _packed(energy.potential, "<f8"),
+        "why": energy.why,
+        "size": energy.size,
+        "travel": energy.travel,
     }
 
 
@@ -87,6 +152,8 @@ def _template() -> str:
     def read(name: str) -> str:
         return folder.joinpath(name).read_text(encoding="utf-8")
 
-    joined = "\n".join(re.sub(r"(?m)^import .*\n", "", read(f"{name}.js")) for name in _MODULES)
+    shared = [f"const {name} = {json.dumps(value)};" for name, value in _SHARED.items()]
+    modules = [re.sub(r"(?m)^import .*\n", "", read(f"{name}.js")) for name in _MODULES]
+    joined = "\n".join([*shared, *modules])
     script = re.sub(r"(?m)^export ", "", joined)
     return read("page.html").replace("@STYLE@", read("page.css")).replace("@SCRIPT@", script)

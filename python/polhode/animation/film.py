@@ -9,17 +9,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from polhode import _core
 from polhode._extras import require
-from polhode._scene.shape import longest
-from polhode._scene.style import AXIS_COLORS, INSIDE_COLOR, MOMENTUM_COLOR, OMEGA_COLOR
-from polhode._scene.triangles import unit_normals
-from polhode.files.writing import replacing
-from polhode.plot._style import show_around
-from polhode.plot._surfaces import arrow, toward_viewer
+from polhode._scene.footage import GIF_RATE
+from polhode.animation._picture import Picture
+from polhode.files.writing import replacing, writing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from polhode._scene.scene import Scene
@@ -28,11 +24,6 @@ __all__ = ["film"]
 
 _SIZE: Final = 480
 _SIZES: Final = (64, 4096)
-_DPI: Final = 100
-_BODY: Final = 0.8
-_AXIS_DASHES: Final = ("--", "-", ":")
-_PATH_COLOR: Final = "#555555"
-"""Of the path of a top's axis."""
 
 
 def film(
@@ -56,38 +47,61 @@ def film(
     size : int or (int, int), optional
         Width and height in pixels.
     labels : bool
-        Whether the axes are named, and title and time written.
+        Whether anything is written: names, title, time, speeds of wheels.
     """
-    width, height = _pixels(size, file)
-    animation: Any = require("matplotlib.animation", extra="plot", purpose="a film")
-    figures: Any = require("matplotlib.figure", extra="plot", purpose="a film")
-    rate = max(1.0, len(scene.t) / scene.duration)
-    if file.suffix.lower() == ".gif":
-        writer = animation.PillowWriter(fps=rate)
-        program = ""
+    pixels, count = _pixels(size, file), len(scene.t)
+    is_gif = file.suffix.lower() == ".gif"
+    if is_gif and count > GIF_RATE * scene.duration * (1.0 + 1e-9):
+        raise ValueError(
+            f"duration: {count} pictures in {scene.duration:g} s are more than the {GIF_RATE:g} a second "
+            f"that viewers of GIFs show; give duration={count / GIF_RATE:g} or more, or fewer frames"
+        )
+    program = "" if is_gif else _ffmpeg(file)
+    picture = Picture(scene, pixels, has_labels=labels)
+
+    def shown() -> Iterator[Picture]:
+        for frame in range(count):
+            picture.show(frame)
+            yield picture
+            if progress is not None:
+                progress((frame + 1) / count)
+
+    if is_gif:
+        _write_gif(shown(), file, _delays(count, scene.duration))
     else:
-        program = _ffmpeg(file)
-        writer = animation.FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
-    figure = figures.Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI)
-    ax = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", computed_zorder=False)
+        _write_mp4(shown(), file, picture, program, count / scene.duration)
+
+
+def _delays(count: int, duration: float) -> list[int]:
+    """Give how long each picture is shown, in milliseconds: whole hundredths of a second, as a GIF has them.
+
+    Each change is the one that is nearest to its time, so that the whole takes the time that was asked for.
+    """
+    changes = np.rint(np.linspace(0.0, 100.0 * duration, count + 1)).astype(int)
+    return [10 * int(delay) for delay in np.diff(changes)]
+
+
+def _write_gif(pictures: Iterator[Picture], file: Path, delays: list[int]) -> None:
+    image: Any = require("PIL.Image", extra="plot", purpose="a film")
+    images = (image.fromarray(one.pixels()[..., :3]) for one in pictures)
+    with writing(file) as stream:
+        first = next(images)
+        first.save(stream, format="GIF", save_all=True, append_images=images, duration=delays, loop=0)
+
+
+def _write_mp4(pictures: Iterator[Picture], file: Path, picture: Picture, program: str, rate: float) -> None:
+    animation: Any = require("matplotlib.animation", extra="plot", purpose="a film")
     settings: Any = require("matplotlib", extra="plot", purpose="a film")
-    with settings.rc_context({"animation.ffmpeg_path": program or "ffmpeg"}), replacing(file) as new:
-        writer.setup(figure, str(new), dpi=_DPI)
+    writer = animation.FFMpegWriter(fps=rate, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
+    with settings.rc_context({"animation.ffmpeg_path": program}), replacing(file) as new:
+        writer.setup(picture.figure, str(new), dpi=picture.dpi)
         try:
-            for frame in range(len(scene.t)):
-                ax.clear()
-                _draw(ax, scene, frame, labels)
+            for _ in pictures:
                 writer.grab_frame()
-                if progress is not None:
-                    progress((frame + 1) / len(scene.t))
         except BaseException as error:
-            if program:
-                _end(writer, file, error)
+            _end(writer, file, error)
             raise
-        if program:
-            _end(writer, file)
-        else:
-            writer.finish()
+        _end(writer, file)
 
 
 def _end(writer: Any, file: Path, error: BaseException | None = None) -> None:
@@ -129,45 +143,3 @@ def _pixels(size: int | tuple[int, int] | None, file: Path) -> tuple[int, int]:
         even = tuple(x + x % 2 for x in both)
         raise ValueError(f"size: {size!r}: an MP4 has even numbers of pixels, such as {even}")
     return both[0], both[1]
-
-
-def _draw(ax: Any, scene: Scene, frame: int, labels: bool) -> None:
-    art3d: Any = require("mpl_toolkits.mplot3d.art3d", extra="plot", purpose="a film")
-    to_space = _core.rotate(scene.quaternion[frame], np.eye(3)).T
-    for name, direction in zip("xyz", np.eye(3), strict=True):
-        ax.plot(*np.stack([np.zeros(3), 1.3 * direction], axis=-1), color="0.75", linewidth=0.8, zorder=1)
-        ax.text(*(1.4 * direction), name, color="0.5", ha="center", va="center")
-    size = longest(scene.shape.vertices)
-    triangles = (scene.shape.vertices * (_BODY / size) @ to_space.T)[scene.shape.faces]
-    facing = unit_normals(triangles) @ toward_viewer(ax)
-    near = facing > 0.0
-    colors = (scene.shape.colors / 255.0)[near] * (0.62 + 0.38 * facing[near, np.newaxis])
-    ax.add_collection3d(
-        art3d.Poly3DCollection(triangles[near], facecolors=colors, edgecolors=colors, zorder=2)
-    )
-    for k, (axis, color, dash) in enumerate(zip(scene.axes.T, AXIS_COLORS, _AXIS_DASHES, strict=True)):
-        ends = np.stack([-1.05 * axis, 1.05 * axis], axis=-1)
-        ax.plot(*(to_space @ ends), color=color, linestyle=dash, linewidth=1.2, zorder=3)
-        if labels:
-            ax.text(
-                *(1.13 * to_space @ axis), f"e{'₁₂₃'[k]}", color=color, ha="center", va="center", zorder=5
-            )
-    if scene.axis_path is not None:
-        ax.plot(*scene.axis_path[: scene.sample[frame] + 1].T, color=_PATH_COLOR, linewidth=1.4, zorder=3)
-    tips = scene.path[: scene.sample[frame] + 1] / longest(scene.path)
-    ax.plot(*tips.T, color=OMEGA_COLOR, alpha=0.5, linewidth=1.0, zorder=3)
-    arrows = [(scene.momentum[frame], MOMENTUM_COLOR, "L")]
-    strongest = longest(scene.momentum)
-    if scene.inside is not None:
-        strongest = longest(np.concatenate([scene.momentum, scene.inside]))
-        if scene.inside[frame].any():
-            arrows.insert(0, (to_space @ scene.inside[frame], INSIDE_COLOR, "h"))
-    arrows = [(1.25 * vector / strongest, color, name) for vector, color, name in arrows]
-    for tip, color, name in (*arrows, (tips[-1], OMEGA_COLOR, "ω")):
-        arrow(ax, tip, color, name, order=4, ha="left", va="baseline", weight="bold", zorder=5)
-    if labels:
-        ax.text2D(0.03, 0.95, scene.title, transform=ax.transAxes, fontsize=11, weight="bold")
-        ax.text2D(0.03, 0.03, f"t = {scene.t[frame]:.4g} {scene.time_unit}", transform=ax.transAxes)
-    show_around(ax, np.zeros(3), 0.95)
-    ax.set_box_aspect((1.0, 1.0, 1.0))
-    ax.set_axis_off()

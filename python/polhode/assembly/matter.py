@@ -5,13 +5,14 @@ from __future__ import annotations
 import inspect
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from polhode import laminae, rods, solids
 from polhode._core import RigidBody
 from polhode._printed import from_printout
 from polhode.assembly.keys import COMMON, FILE, KINDS, PRINTED, check_keys, text_of
 from polhode.errors import PolhodeError
+from polhode.files.components import MOST_FACES, overlapping
 from polhode.files.content import is_molecule
 from polhode.files.loaded import load
 from polhode.files.mesh_solid import solid_of
@@ -23,8 +24,9 @@ if TYPE_CHECKING:
 
     from polhode.assembly.numbers import Scope
     from polhode.files.loaded import Loaded
+    from polhode.files.mesh_solid import MeshSolid
 
-__all__ = ["SAVED", "body_of_part", "kind_of"]
+__all__ = ["SAVED", "Matter", "body_of_part", "kind_of"]
 
 SAVED: Final = (".json", ".npz")
 """Of bodies that ``RigidBody.save`` wrote, and of reports."""
@@ -56,22 +58,35 @@ def kind_of(table: Mapping[str, Any], where: str) -> str:
     raise PolhodeError(f"{where}: expected one of {', '.join(KINDS)}, {found}")
 
 
-def body_of_part(
-    kind: str, table: Mapping[str, Any], scope: Scope, folder: Path
-) -> tuple[RigidBody, dict[str, Any], float]:
-    """Make the body of a part that is a solid, a file or numbers.
+class Matter(NamedTuple):
+    """What a part is made of.
 
-    The arguments of a solid come with it, and how many metres the unit of length has.
+    Attributes
+    ----------
+    body : RigidBody
+    metres : float
+        In one unit of length.
+    arguments : dict
+        Of a solid.
+    notes : tuple of str
+        What is to be told of its file.
     """
-    arguments: dict[str, Any] = {}
-    metres = scope.metres
+
+    body: RigidBody
+    metres: float
+    arguments: dict[str, Any] = {}  # noqa: RUF012
+    notes: tuple[str, ...] = ()
+
+
+def body_of_part(kind: str, table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
+    """Make the body of a part that is a solid, a file or numbers."""
     try:
         if kind == "solid":
-            body, arguments = _solid(table, scope)
+            made = _solid(table, scope)
         elif kind == "inertia":
-            body = _printed(table, scope)
+            made = Matter(_printed(table, scope), scope.metres)
         else:
-            body, metres = _file(table, scope, folder)
+            made = _file(table, scope, folder)
     except (ValueError, TypeError, OverflowError, OSError) as error:
         if str(error).startswith(scope.where):
             raise
@@ -82,12 +97,12 @@ def body_of_part(
         )
         kind_of_error = type(error) if isinstance(error, PolhodeError) else PolhodeError
         raise kind_of_error(f"{scope.where}: {what}") from error
-    if body.shape:
+    if made.body.shape:
         raise PolhodeError(
-            f"{scope.where}: its numbers are of {body.shape[0]} bodies, not of one; give numbers, not "
+            f"{scope.where}: its numbers are of {made.body.shape[0]} bodies, not of one; give numbers, not "
             "rows of them"
         )
-    return body, arguments, metres
+    return made._replace(notes=tuple(f"{scope.where}: {note}" for note in made.notes))
 
 
 def _in_keys(message: str) -> str:
@@ -104,7 +119,7 @@ def _weight(table: Mapping[str, Any], scope: Scope, what: str) -> dict[str, Any]
     return {"density": scope.amount("density", table["density"], "kg/m^3")}
 
 
-def _solid(table: Mapping[str, Any], scope: Scope) -> tuple[RigidBody, dict[str, Any]]:
+def _solid(table: Mapping[str, Any], scope: Scope) -> Matter:
     name = text_of(table, "solid", scope.where)
     if name not in _SHAPES:
         raise PolhodeError(
@@ -126,7 +141,7 @@ def _solid(table: Mapping[str, Any], scope: Scope) -> tuple[RigidBody, dict[str,
     if "sides" in options:
         options["sides"] = table["sides"]
     try:
-        return shape(**options, **_weight(table, scope, f"a {name}")), options
+        return Matter(shape(**options, **_weight(table, scope, f"a {name}")), scope.metres, options)
     except TypeError as error:
         raise PolhodeError(f"{scope.where}: {name}: {error}") from None
 
@@ -168,7 +183,7 @@ def _printed(table: Mapping[str, Any], scope: Scope) -> RigidBody:
         raise
 
 
-def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBody, float]:
+def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> Matter:
     check_keys(table, (*COMMON, *FILE), scope.where)
     path = folder / text_of(table, "file", scope.where)
     suffix = path.suffix.lower()
@@ -189,7 +204,7 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBo
                 f"{scope.where}: {path.name} holds a stack of bodies, of shape {body.shape}, not one; "
                 "save one of them alone"
             )
-        return body, scope.metres
+        return Matter(body, scope.metres)
     options = {key: table[key] for key in FILE if key in table and key not in ("mass", "density", "weld")}
     for key in (key for key in _SWITCHES if key in table):
         if not isinstance(table[key], bool):
@@ -200,14 +215,25 @@ def _file(table: Mapping[str, Any], scope: Scope, folder: Path) -> tuple[RigidBo
     if is_molecule(path):
         unit = str(table.get("length_unit", "angstrom"))
         options |= {key: table[key] for key in ("mass", "density", "weld") if key in table}
-        return RigidBody.from_file(path, length_unit=unit, **options), metres_per(unit)
+        return Matter(RigidBody.from_file(path, length_unit=unit, **options), metres_per(unit))
     loaded = load(path, index_base=options.pop("index_base", 1))
     metres = metres_per(_unit_of(loaded, table, scope))
     if "weld" in table:
         options["weld"] = scope.lengths("weld", table["weld"], 1)[0] / metres
     if not ({"mass", "density"}.isdisjoint(table) and _has_materials(loaded)):
         options |= _weight(table, scope, path.name)
-    return solid_of(loaded, scale=metres, **options).body, metres
+    solid = solid_of(loaded, scale=metres, **options)
+    return Matter(solid.body, metres, notes=(*loaded.notes, *_overlaps(loaded, solid, metres, options)))
+
+
+def _overlaps(loaded: Loaded, solid: MeshSolid, metres: float, options: Mapping[str, Any]) -> list[str]:
+    """Say which components of a mesh overlap; of solids of CAD the notes of their file do."""
+    if loaded.cad is not None or not options.keys().isdisjoint(("union", "closure", "repair", "weld")):
+        return []
+    if solid.faces > MOST_FACES:
+        return []
+    lines = overlapping(loaded.mesh.vertices * metres, loaded.mesh.faces)
+    return [*lines, "union = true counts what components share once"] if lines else []
 
 
 def _has_materials(loaded: Loaded) -> bool:

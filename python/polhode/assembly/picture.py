@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from polhode._scene.shape import equivalent_box
-from polhode._scene.solids import solid_surface
+from polhode._scene.shape import body_shape
 from polhode._scene.triangles import joined
 from polhode.assembly.matter import SAVED
 from polhode.files.content import is_molecule
-from polhode.files.loaded import load
+from polhode.files.loaded import CAD_SUFFIXES, load
+from polhode.files.unpacked import inner_suffix
 from polhode.plot import body as draw_body
 from polhode.plot import principal_axes
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from mpl_toolkits.mplot3d.axes3d import Axes3D
     from numpy.typing import NDArray
 
@@ -39,8 +41,8 @@ _MOST: Final = 20_000
 def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | None = None) -> Axes3D:
     """Draw the parts where they stand; see :meth:`Assembly.plot`.
 
-    A mesh is drawn as it is, or coarser where it has many triangles; a solid as it is; another part as the
-    box of the same inertia.
+    A mesh is drawn as it is, or coarser where it has many triangles; a solid as it is; a part of which no
+    shape is known as the box of the same inertia.
     """
     branches = sorted(assembly.ledger[assembly.ledger.root].children, key=lambda node: -node.mass)
     tops = {node.id: k for k, node in enumerate(branches)}
@@ -63,13 +65,15 @@ def draw(assembly: Assembly, ax: Axes3D | None = None, *, length_unit: str | Non
 
 def _surface(part: Member, most: int) -> tuple[Floats, NDArray[np.int64]]:
     """Give the triangles of a part where it stands."""
-    surface = solid_surface(part.solid, part.arguments)
-    if part.file is not None and part.file.suffix.lower() not in SAVED and not is_molecule(part.file):
-        loaded = load(part.file)
-        if loaded.cad is None:
-            surface = loaded.mesh.vertices * part.metres, loaded.mesh.faces
-    if surface is None:
-        box = equivalent_box(part.body, np.zeros(3))
-        return box.vertices, box.faces
-    vertices, faces, _ = joined(*surface, most)
-    return vertices @ part.rotation.T + part.displacement, faces
+    if part.file is not None and _is_mesh(part.file):
+        mesh = load(part.file).mesh
+        vertices, faces, _ = joined(mesh.vertices * part.metres, mesh.faces, most)
+        return vertices @ part.rotation.T + part.displacement, faces
+    drawn, _ = body_shape(part.body, np.zeros(3), is_cut=False)
+    vertices, faces, _ = joined(drawn.vertices, drawn.faces, most)
+    return vertices, faces
+
+
+def _is_mesh(file: Path) -> bool:
+    """Tell whether a file holds triangles: no atoms, no solids of CAD, no numbers alone."""
+    return not is_molecule(file) and inner_suffix(file) not in (*SAVED, *CAD_SUFFIXES)

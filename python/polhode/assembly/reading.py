@@ -190,10 +190,10 @@ def _part(
             name, comment or inner.comment, children=inner.children, members=inner.members, notes=inner.notes
         )
     else:
-        body, arguments, metres = body_of_part(kind, row, scope, folder)
+        body, metres, arguments, told = body_of_part(kind, row, scope, folder)
         shape = text_of(row, "solid", scope.where)
         mended = row.get("repair") is True and "repaired" in body.provenance.checked
-        notes: tuple[str, ...] = (f"{scope.where}: its mesh was repaired; polhode report lists how",) * mended
+        notes = (*told, *((f"{scope.where}: its mesh was repaired; polhode report lists how",) * mended))
         one = _Unit(name, comment, body, file, metres, shape, arguments, notes=notes)
     place, moves = place_of(row, scope), copies(row, scope)
     if len(moves) == 1:

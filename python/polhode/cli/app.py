@@ -10,7 +10,6 @@ import re
 import sys
 from contextlib import suppress
 from functools import partial
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
@@ -27,15 +26,13 @@ from polhode.cli.options import (
     ReportOptions,
     SpinOptions,
 )
+from polhode.cli.showing import held_and_shown, show, show_lines
 from polhode.cli.standard_output import ReaderLeft, standard_output
 from polhode.cli.text import in_options, note, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
-    from rich.console import Console
-
-    from polhode.cli.layout import Report
 
 __all__ = ["app", "run"]
 
@@ -99,8 +96,10 @@ def report(
             told = file_report(file, body, extra)
     check_outputs([("--output", output.output)], read)
     if extra.program is not None:
-        return _printed(text, notes, output)
-    return _held_and_shown(told, extra, output)
+        show_lines(text, output)
+        note(notes)
+        return GOOD
+    return GOOD if held_and_shown(told, extra, output) else BAD_VERDICT
 
 
 @app.command
@@ -126,7 +125,7 @@ def check(
     with files_read() as read:
         told, is_good = check_report(file, check)
     check_outputs([("--output", output.output)], read)
-    _show(told, output)
+    show(told, output)
     return GOOD if is_good else BAD_VERDICT
 
 
@@ -149,7 +148,7 @@ def molecule(
     from polhode.cli.outputs import check_outputs
 
     check_outputs([("--output", output.output)], [file])
-    _show(molecule_report(file, molecule), output)
+    show(molecule_report(file, molecule), output)
     return GOOD
 
 
@@ -174,7 +173,7 @@ def spin(
     from polhode.cli.spin import spin_report
 
     check_outputs([*(("--save", path) for path in spin.save), ("--output", output.output)], [file])
-    _show(spin_report(file, spin, body), output)
+    show(spin_report(file, spin, body), output)
     return GOOD
 
 
@@ -202,7 +201,7 @@ def flyby(
     for path in flyby.save:
         draw_flyby(found, path)
         told.notes.append(f"saved {path}")
-    _show(told, output)
+    show(told, output)
     return GOOD
 
 
@@ -235,9 +234,11 @@ def assemble(
             told, made = assembly_report(file, assemble, extra)
     check_outputs(places, read)
     if extra.program is not None:
-        return _printed(text, notes, output)
+        show_lines(text, output)
+        note(notes)
+        return GOOD
     saved = (line for path in assemble.save for line in save_assembly(made, path))
-    return _held_and_shown(told, extra, output, saved)
+    return GOOD if held_and_shown(told, extra, output, saved) else BAD_VERDICT
 
 
 @app.command
@@ -272,7 +273,7 @@ def ledger(
     if output.form is None and output.output is not None and output.output.suffix.lower() == ".csv":
         made.to_csv(output.output)
     else:
-        _show(told, output)
+        show(told, output)
     return GOOD
 
 
@@ -317,7 +318,7 @@ def validate(*, output: Output = SHOWN) -> int:
 
     check_outputs([("--output", output.output)], [])
     told, is_good = validation()
-    _show(told, output)
+    show(told, output)
     return GOOD if is_good else BAD_VERDICT
 
 
@@ -373,7 +374,9 @@ def run(arguments: list[str]) -> int:
 
 
 def _as_value(argument: str) -> str:
-    """Keep ``"-1 0 0 deg/s"`` from being taken for an option: a number may have blanks before it."""
+    """Keep ``"-1 0 0 deg/s"`` from being taken for an option, and the file ``./-`` for standard input."""
+    if argument == "./-":  # a path without its "./" would be "-"
+        return str(Path.cwd() / "-")
     return f" {argument}" if re.match(r"-\.?\d", argument) else argument
 
 
@@ -382,57 +385,3 @@ def _fail(message: str, code: int = BAD_INPUT) -> int:
         with suppress(OSError):  # nobody reads it: the exit code remains
             print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
     return code
-
-
-def _printed(text: str, notes: list[str], output: OutputOptions) -> int:
-    """Write the numbers for another program, and beside them what has to be noted."""
-    _write_text(text, output)
-    note(notes)
-    return GOOD
-
-
-def _held_and_shown(
-    told: Report, extra: ReportOptions, output: OutputOptions, saved: Iterable[str] = ()
-) -> int:
-    """Hold a report against what was expected, then save what is to be saved, and show it."""
-    differing = []
-    if extra.expect is not None:
-        from polhode.cli.compare import held_against
-
-        differing = held_against(told, extra.expect, extra.rtol)
-    told.notes += saved
-    _show(told, output)
-    return BAD_VERDICT if differing else GOOD
-
-
-def _write_text(text: str, options: OutputOptions) -> None:
-    """Write lines as they are to where a report goes."""
-    from polhode.files.writing import DASH, write_bytes
-
-    if options.output is None or options.output == DASH:
-        print(text)
-    else:
-        write_bytes(options.output, f"{text}\n".encode())
-
-
-def _show(report: Report, options: OutputOptions) -> None:
-    from rich.console import Console
-
-    from polhode.files.writing import DASH, write_bytes
-
-    path = options.output if options.output != DASH else None
-    by_name = "json" if path is not None and path.suffix.lower() == ".json" else "table"
-    form = options.form or by_name
-    if path is None:
-        _write(report, form, Console(highlight=False))
-    else:
-        text = StringIO()
-        _write(report, form, Console(file=text, highlight=False, color_system=None))
-        write_bytes(path, text.getvalue().encode(errors="backslashreplace"))
-
-
-def _write(report: Report, form: str, console: Console) -> None:
-    if form == "json":
-        print(report.as_json(), file=console.file)
-    else:
-        report.print(console)

@@ -240,9 +240,12 @@ def _fix(
     report.section("changed", Table("changed", columns, rows))
     report.notes.append(f"wrote {path}: {len(rows)} links changed, everything else as it stands")
     unweighed = [v.name for v in left if v.verdict == "missing"]
-    unshaped = [v.name for v in left if v.verdict != "missing"]
+    unread = [v.name for v in left if v.verdict == "unreadable"]
+    unshaped = [v.name for v in left if v.verdict not in ("missing", "unreadable")]
     if unweighed:
         report.notes.append(f"left as they are: {', '.join(unweighed)}; {_WAY_OUT}")
+    if unread:
+        report.notes.append(f"left as they are, to be corrected by hand: {', '.join(unread)}")
     if unshaped:
         report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(unshaped)}")
     if elsewhere:

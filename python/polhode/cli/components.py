@@ -3,25 +3,37 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from polhode import RigidBody
-from polhode._quantities import has_unit, quantity
-from polhode.cli.layout import Column, Table
+from polhode import Uncertain
+from polhode._quantities import amount, has_unit
+from polhode._rounding import with_sigma
+from polhode.cli.layout import Cell, Column, Table
 from polhode.errors import PolhodeError
-from polhode.files.components import MOST_PARTS, Part, groups_of, labels, overlaps, parts_of, told
-from polhode.files.mesh import weld_within
+from polhode.files.components import (
+    MOST_FACES,
+    MOST_PARTS,
+    Part,
+    labels,
+    overlapping,
+    overlaps,
+    parts_of,
+    told,
+)
+from polhode.files.named_densities import OVERLAPPING, body_of_parts, named_parts
 from polhode.files.repair import repaired
-from polhode.files.unpacked import inner_suffix, unpacked
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from polhode.cli.layout import Report
     from polhode.cli.options import BodyOptions
     from polhode.files.loaded import Loaded
     from polhode.files.mesh_solid import MeshSolid
 
-__all__ = ["Components", "add_components", "components_of", "has_names", "weighed"]
+__all__ = ["Components", "add_components", "components_of", "has_names", "overlaps_beside", "weighed"]
 
+_WAY_OUT: Final = "--union counts what components share once, where they are of one material"
 # Larger meshes are not taken apart: their triangles would all be held in memory.
 _MOST_FACES: Final = 250_000
 
@@ -33,13 +45,13 @@ class Components:
     Attributes
     ----------
     parts : list of Part
-    densities : list of float
+    densities : list of float or Uncertain
     notes : list of str
         Where they overlap.
     """
 
     parts: list[Part]
-    densities: list[float]
+    densities: Sequence[float | Uncertain]
     notes: list[str]
 
 
@@ -56,13 +68,7 @@ def components_of(
         return Components(
             [], [], ["components were joined (--union): how far that moves corners is in no bound"]
         )
-    if loaded.cad is not None:
-        from polhode.files.cad_overlaps import overlaps_told
-
-        return (
-            Components([], [], overlaps_told(loaded.cad, loaded.path)) if len(loaded.cad.parts) > 1 else None
-        )
-    if solid.faces > _MOST_FACES or options.closure is not None:
+    if loaded.cad is not None or solid.faces > _MOST_FACES or options.closure is not None:
         return None
     parts = _parts(loaded, scale, weld, mended=options.repair)
     if len(parts) < 2:
@@ -74,9 +80,18 @@ def components_of(
         )
         return Components([], [], [note])
     notes = told(overlaps(parts), sum(part.volume for part in parts), _unit(options))
-    if notes:
-        notes.append("--union counts what components share once, where they are of one material")
+    notes += [_WAY_OUT] if notes else []
     return Components(parts, [float(solid.body.mass) / solid.volume] * len(parts), notes)
+
+
+def overlaps_beside(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float) -> list[str]:
+    """Say which components of a mesh overlap, where they are not listed; nothing of a large mesh."""
+    if loaded.cad is not None or solid.components is not None or solid.faces > MOST_FACES:
+        return []
+    if options.union or options.repair or options.closure is not None or options.weld is not None:
+        return []
+    lines = overlapping(loaded.mesh.vertices * scale, loaded.mesh.faces, _unit(options))
+    return [*lines, _WAY_OUT] if lines else []
 
 
 def weighed(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float, weld: float) -> MeshSolid:
@@ -93,17 +108,12 @@ def weighed(loaded: Loaded, solid: MeshSolid, options: BodyOptions, scale: float
     ):
         if is_given:
             raise PolhodeError(f"--{name}: components of several densities are not joined; leave it out")
-    parts = _parts(loaded, scale, weld)
+    parts = named_parts(loaded, scale, weld)
     densities = _densities(options.density or "", [part.name for part in parts], options.length_unit)
-    bodies = [
-        RigidBody.from_mesh(part.vertices, part.faces, density=density)
-        for part, density in zip(parts, densities, strict=True)
-    ]
     notes = told(overlaps(parts), sum(part.volume for part in parts), _unit(options))
-    if notes:
-        notes.append("components of several densities overlap: take what they share out of one of them")
+    notes += [OVERLAPPING] if notes else []
     found = Components(parts, densities, notes)
-    return solid._replace(body=sum(bodies[1:], start=bodies[0]), components=found)
+    return solid._replace(body=body_of_parts(parts, densities), components=found)
 
 
 def add_components(report: Report, found: Components | None, volume: str, density: str) -> None:
@@ -116,10 +126,13 @@ def add_components(report: Report, found: Components | None, volume: str, densit
         Column("density", "density", density),
         Column("cavities", "cavities"),
     )
-    rows = [
-        {"name": part.name, "volume": part.volume, "density": rho, "cavities": part.cavities}
+    rows: list[dict[str, Any]] = [
+        {"name": part.name, "volume": part.volume, "density": _cell(rho), "cavities": part.cavities}
         for part, rho in zip(found.parts, found.densities, strict=True)
     ]
+    if any(isinstance(rho, Uncertain) for rho in found.densities):
+        for row, rho in zip(rows, found.densities, strict=True):
+            row["density_sigma"] = float(rho.sigma) if isinstance(rho, Uncertain) else 0.0
     if rows:
         report.section("components", Table("components", columns, rows))
     report.notes += found.notes
@@ -129,23 +142,26 @@ def _parts(loaded: Loaded, scale: float, weld: float, *, mended: bool = False) -
     if mended:
         mesh, _, _, _ = repaired(loaded.mesh, weld)
         return parts_of(mesh.vertices * scale, mesh.faces)
-    mesh = weld_within(loaded.mesh, weld) if weld != 0.0 else loaded.mesh
-    vertices = mesh.vertices * scale
-    parts = parts_of(vertices, mesh.faces)
-    if len(parts) > 1 and inner_suffix(loaded.path) == ".obj":
-        with unpacked(loaded.path) as inside:
-            groups = groups_of(inside)
-        if len(groups) == len(mesh.faces):  # none fell together when corners did
-            return parts_of(vertices, mesh.faces, groups)
-    return parts
+    return named_parts(loaded, scale, weld)
+
+
+def _value(density: float | Uncertain) -> float:
+    return float(density.value) if isinstance(density, Uncertain) else density
+
+
+def _cell(density: float | Uncertain) -> Cell | float:
+    """Show a density with its sigma, where it has one."""
+    if not isinstance(density, Uncertain):
+        return density
+    return Cell(with_sigma(float(density.value), float(density.sigma)), float(density.value))
 
 
 def _unit(options: BodyOptions) -> str:
     return " m^3" if options.length_unit is not None else ""
 
 
-def _densities(text: str, names: list[str], unit: str | None) -> list[float]:
-    given: dict[str, float] = {}
+def _densities(text: str, names: list[str], unit: str | None) -> list[float | Uncertain]:
+    given: dict[str, float | Uncertain] = {}
     for item in text.split(","):
         name, is_named, value = (word.strip() for word in item.partition("="))
         if not is_named or name in given or name not in names:
@@ -159,8 +175,8 @@ def _densities(text: str, names: list[str], unit: str | None) -> list[float]:
                 f"--density: {value!r} has a unit, but the file's coordinates have none; state "
                 "--length-unit too"
             )
-        given[name] = quantity(value, "kg/m^3", "--density")
-        if not given[name] > 0.0:
+        given[name] = found = amount(value, "kg/m^3", "--density")
+        if not _value(found) > 0.0:
             raise PolhodeError(f"--density: {item.strip()} is not above 0; give the one of the material")
     absent = [name for name in names if name not in given]
     if absent:

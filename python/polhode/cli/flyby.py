@@ -30,7 +30,7 @@ PICTURES: Final = (".png", ".pdf", ".svg")
 
 def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[Report, Flyby]:
     """Run the clones and report on them; give them too."""
-    found, orbit = _run(file, options, body)
+    found, orbit, notes = _run(file, options, body)
     report = Report()
     elements = orbit.elements
     report.section(
@@ -73,6 +73,7 @@ def flyby_report(file: Path | None, options: FlybyOptions, body: BodyOptions) ->
     report.section("modes after", Table("modes", (Column("mode", "mode"), Column("share", "clones")), shares))
     if found.failed.any():
         report.notes.append(f"{int(found.failed.sum())} clones failed and are in none of these numbers")
+    report.notes += notes
     report.notes.append("spin rate: 2 E/|L|; pole shift: the angle between L before and after")
     return report, found
 
@@ -89,7 +90,9 @@ def draw_flyby(found: Flyby, path: Path) -> None:
     save_picture(figure, path)
 
 
-def _run(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[Flyby, orbits.Orbit]:
+def _run(
+    file: Path | None, options: FlybyOptions, body: BodyOptions
+) -> tuple[Flyby, orbits.Orbit, tuple[str, ...]]:
     if (file is None) == (not options.moments):
         raise PolhodeError("flyby: give a file, or principal moments with --moments")
     for path in options.save:
@@ -102,9 +105,11 @@ def _run(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[F
     if not options.periods:
         raise PolhodeError('--periods: state the two periods, as in "264.178 h, 27.38547 h"')
     if file is not None:
-        asteroid = any_body(file, body).body
+        loaded = any_body(file, body)
+        asteroid, notes = loaded.body, loaded.notes
     else:
         check_moments_alone(body)
+        notes = ()
         asteroid = RigidBody.from_principal(1.0, quantities(options.moments, 3, "kg m^2", "--moments"))
     rotation, precession = quantities(options.periods, 2, "s", "--periods")
     span = quantity(options.span, "s", "--span")
@@ -143,7 +148,7 @@ def _run(file: Path | None, options: FlybyOptions, body: BodyOptions) -> tuple[F
     finally:
         if client is not None:
             client.close()
-    return found, orbit
+    return found, orbit, notes
 
 
 def _row(name: str, values: Any, unit: str) -> dict[str, Any]:

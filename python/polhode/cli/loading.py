@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from polhode._quantities import amount, has_unit, quantity
-from polhode.cli.components import components_of, has_names, weighed
+from polhode.cli.components import components_of, has_names, overlaps_beside, weighed
 from polhode.cli.progress import reading_progress
 from polhode.cli.source import as_file
 from polhode.errors import PolhodeError
@@ -132,11 +132,7 @@ def _load_mesh(file: Path, options: BodyOptions, with_shape: bool, with_componen
         solid = solid._replace(components=components_of(loaded, solid, options, scale, weld))
     provenance = solid.body.provenance
     notes = [*_taken(options, unit), *_of_unit(loaded, asked), *loaded.notes]
-    if len(solid.parts) > 1 and solid.components is None:
-        notes.append(
-            "solids of a CAD file are taken as they stand: where two overlap, what they share counts twice; "
-            "polhode report looks for that"
-        )
+    notes += [] if with_components else overlaps_beside(loaded, solid, options, scale)
     notes += _unusual(solid.volume, unit, loaded)
     if weld != 0.0 and not options.repair:
         notes.append(f"{solid.welded} corners were joined to others within {weld:g} (--weld)")

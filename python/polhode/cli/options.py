@@ -22,9 +22,9 @@ __all__ = [
 ]
 
 LengthUnit: TypeAlias = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]
-Program: TypeAlias = Literal[
-    "urdf", "sdf", "mjcf", "mujoco", "drake", "pinocchio", "pybullet", "simulink", "adams", "solidworks"
-]
+Described: TypeAlias = Literal["urdf", "sdf", "mjcf"]
+Engine: TypeAlias = Literal["mujoco", "drake", "pinocchio", "pybullet", "simulink", "matlab"]
+Program: TypeAlias = Literal[Described, Engine, "adams", "solidworks", "onshape"]
 Words: TypeAlias = tuple[str, ...]
 
 
@@ -54,7 +54,8 @@ class BodyOptions:
     density
         Density, as in "2.7 g/cm^3"; a bare number is kg/m^3 where --length-unit is given, which the report
         says, else per the file's own unit of volume. It may have a sigma, as in "2.70 ± 0.02 g/cm^3". Each
-        component its own: "body=2700, insert=7.8 g/cm^3", by the names of OBJ groups or by numbers.
+        component its own, with or without a sigma: "body=2700, insert=7.80(5) g/cm^3", by the names of OBJ
+        groups or by numbers.
     mass
         Mass instead of density, as in "0.3 lb"; a bare number is kg where --length-unit is given. It may have
         a sigma: "5.0 ± 0.1 kg", with +- as well, "5.0(1) kg" or "5.0 kg ± 2 %".

@@ -19,6 +19,7 @@ from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
 from polhode.cli.spin_sigmas import attitude_field, of_end, of_start
 from polhode.cli.tables import top_fields
+from polhode.cli.text import printable
 from polhode.cli.whole import any_body, check_moments_alone
 from polhode.errors import PolhodeError
 from polhode.euler_angles import to_quaternion
@@ -112,7 +113,7 @@ def spin_report(file: Path | None, spin: SpinOptions, options: BodyOptions) -> R
         return report
     part, note = drawable(loaded, options)
     report.notes += [note] if note else []
-    title = "" if file is None else Path(shown(file)).name
+    title = "" if file is None else printable(Path(shown(file)).name)
     for path in spin.save:
         saved = save(motion, trajectory, path, spin, title=title, part=part)
         report.notes.append(f"saved {path}")

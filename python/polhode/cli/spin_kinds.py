@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode._drift import drift
 from polhode._lengths import lengths
+from polhode._scene.pivot import path_of
 from polhode.cli.layout import Column, Field, Table
 
 if TYPE_CHECKING:
@@ -156,7 +157,7 @@ class TopKind:
         motion = self._motion
         limits = np.rad2deg(motion.nutation_limits)
         return [
-            Field("path", "path of the axis", str(motion.path)),
+            Field("path", "path of the axis", path_of(motion)),
             Field("nutation_limits", "axis from vertical", limits, "deg", "least, greatest"),
             *period_fields("nutation_period", "nutation period", motion.nutation_period, "", {}),
             Field(

@@ -124,5 +124,5 @@ def _draw(trajectory: Trajectory, path: Path, spin: SpinOptions, title: str, par
         show_around(picture, np.zeros(3), 0.9 * length)
     frame: Literal["body", "principal"] = "principal" if spin.axes == "principal" else "body"
     ax = angular_velocity(trajectory, place, frame=frame, degrees=spin.degrees)
-    ax.set_title(title, loc="left")
+    ax.set_title(title, loc="left", parse_math=False)
     save_picture(figure, path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import time
 import zipfile
@@ -108,7 +109,9 @@ class Checkpoint:
                     raise ValueError("its chunks are not those of its nodes")
         except FileFormatError:
             raise
-        except _BROKEN as error:
+        except (OSError, *_BROKEN) as error:
+            if isinstance(error, OSError) and error.errno != errno.EINVAL:  # it points outside itself
+                raise
             raise FileFormatError(
                 f"{self.path}: holds no reductions that compute has begun ({error}); give another path, or "
                 "delete it"

@@ -152,10 +152,8 @@ def picked(trajectory: Trajectory, rows: Rows) -> Trajectory:
     known["states"] = {name: part(value, 3) for name, value in trajectory.states.items()}
     shared = ("t", "events", "pivoted", "uncertain_start")
     known |= {name: getattr(trajectory, name) for name in shared} | {"failures": ()}
-    own = ("_rotor", "_was_loaded")
-    return type(trajectory)._of_run(
-        known | {one: trajectory.__dict__[one] for one in own if one in trajectory.__dict__}
-    )
+    own = {one: trajectory.__dict__[one] for one in ("_was_loaded",) if one in trajectory.__dict__}
+    return type(trajectory)._of_run(known | own)
 
 
 def admitted(inputs: Inputs) -> tuple[Rows, dict[int, PolhodeError]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import zipfile
 import zlib
@@ -80,7 +81,11 @@ class NpzStore:
             with zipfile.ZipFile(self.file(index)) as archive:
                 names = {f"{name}.npy" for name in layout(self.plan)}
                 return names <= set(archive.namelist()) and archive.testzip() is None
-        except (FileNotFoundError, zipfile.BadZipFile, EOFError, zlib.error):
+        except OSError as error:
+            if error.errno not in (errno.ENOENT, errno.EINVAL):  # not there, or it points outside itself
+                raise
+            return False
+        except (zipfile.BadZipFile, zlib.error, EOFError, ValueError, RuntimeError):
             return False
 
     def write(self, index: int, arrays: Arrays) -> None:

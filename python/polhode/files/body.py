@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -11,7 +12,7 @@ import numpy as np
 from polhode.errors import FileFormatError, PolhodeError
 from polhode.files.content import is_molecule
 from polhode.files.loaded import load
-from polhode.files.mesh_solid import naming_file, solid_of
+from polhode.files.mesh_solid import naming_file, solid_of, warn_of_overlaps
 from polhode.molecules import ATOMIC_MASS_CONSTANT, Isotope, body_of_atoms, isotopes
 from polhode.units import metres_per
 
@@ -24,13 +25,15 @@ if TYPE_CHECKING:
     from polhode._typing import SupportsSigma
     from polhode.files.xyz import Molecule
 
+    Number = float | _core.Uncertain | SupportsSigma
+
 __all__ = ["body_from_file", "check_molecule_options", "molecule_isotopes"]
 
 
 def body_from_file(
     path: str | os.PathLike[str],
     *,
-    density: float | _core.Uncertain | SupportsSigma | None = None,
+    density: Number | Mapping[str, Number] | None = None,
     mass: float | _core.Uncertain | SupportsSigma | None = None,
     length_unit: str | None = None,
     weld: float = 0.0,
@@ -50,7 +53,9 @@ def body_from_file(
         A mesh (STL, OBJ and ``v``/``f`` plate files, PLY, OFF, GLB; see :func:`read_mesh`) or a molecule
         (XYZ; see :func:`read_xyz`).
     density, mass : float or Uncertain, optional
-        Exactly one of them for a mesh, neither for a molecule.
+        Exactly one of them for a mesh, neither for a molecule. A mapping of names to densities gives each
+        component of a mesh its own: by the names of the groups of OBJ, or by numbers from 1, as ``polhode
+        report`` lists them.
     length_unit : str, optional
         Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's
         masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
@@ -68,6 +73,12 @@ def body_from_file(
     -------
     RigidBody
 
+    Warns
+    -----
+    UserWarning
+        Of solids in a CAD file that overlap, with what counts twice. Components of a mesh are not searched
+        for overlaps; ``polhode report`` does that.
+
     Raises
     ------
     FileFormatError
@@ -84,7 +95,23 @@ def body_from_file(
         if masses != "most_common":
             raise PolhodeError(f"masses: {os.fspath(path)} is a mesh, not a molecule; leave masses out")
         loaded = load(path, index_base=index_base)
+        warn_of_overlaps(loaded)
         unit = loaded.length(length_unit)
+        if isinstance(density, Mapping):
+            from polhode.files.named_densities import body_by_names
+
+            return body_by_names(
+                loaded,
+                density,
+                scale=1.0 if unit is None else metres_per(unit),
+                weld=weld,
+                orient=orient,
+                progress=progress,
+                mass=mass is not None,
+                closure=closure,
+                union=union,
+                repair=repair,
+            )
         return solid_of(
             loaded,
             density=density,

@@ -23,9 +23,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["CAD_SUFFIXES", "CadFile", "CadPart", "box_of", "faces_of", "read_cad", "solids_in", "within"]
+__all__ = ["CadFile", "CadPart", "box_of", "faces_of", "read_cad", "read_with_shapes", "within"]
 
-CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _IGES: Final = (".igs", ".iges")
 _WORST: Final = 1e-3
 """Bound of a volume, as a part of it, with which a solid is still taken."""
@@ -94,6 +93,8 @@ class CadFile:
         Whether materials have densities whose units could not be told.
     names_of_units : tuple of str
         As the file has them; mostly one.
+    overlaps : tuple of str
+        What is to be told of solids that share matter, so that it counts twice.
     """
 
     format: str
@@ -102,10 +103,11 @@ class CadFile:
     left_out: int
     unread_densities: bool = False
     names_of_units: tuple[str, ...] = ()
+    overlaps: tuple[str, ...] = ()
 
 
 def read_cad(path: Path) -> CadFile:
-    """Read the solids of a STEP or IGES file.
+    """Read the solids of a STEP or IGES file; what they share is not looked for.
 
     Parameters
     ----------
@@ -118,6 +120,11 @@ def read_cad(path: Path) -> CadFile:
     MeshError
         If a solid is open or inside out.
     """
+    return read_with_shapes(path)[0]
+
+
+def read_with_shapes(path: Path) -> tuple[CadFile, list[Any]]:
+    """Read the solids of a file, each with its shape of OCCT at its place; see :func:`read_cad`."""
     kind, names, document = _document(path)
     is_iges = kind == "IGES"
     units = {_UNITS.get(name, "m") for name in names}
@@ -129,19 +136,12 @@ def read_cad(path: Path) -> CadFile:
         raise FileFormatError(f"{path}: holds no solid ({walk.left_out} faces bound none); {way_out}")
     raw = sorted({part.density for part in parts if part.density is not None})
     stated = densities_of(read_bytes(path).decode("latin-1")) if raw else []
-    if stated is None or len(stated) != len(raw):
-        parts = tuple(replace(part, density=None) for part in parts)
-        return CadFile(kind, unit, parts, walk.left_out, unread_densities=True, names_of_units=names)
-    known: dict[float | None, float | None] = {None: None, **dict(zip(raw, stated, strict=True))}
-    parts = tuple(replace(part, density=known[part.density]) for part in parts)
-    return CadFile(kind, unit, parts, walk.left_out, names_of_units=names)
-
-
-def solids_in(path: Path) -> list[tuple[CadPart, Any]]:
-    """Read the solids of a file as :func:`read_cad` does, each with its shape of OCCT at its place."""
-    kind, _, document = _document(path)
-    walk = _Walk(path, kind, document)
-    return list(zip(walk.parts(), walk.placed, strict=True))
+    is_unread = stated is None or len(stated) != len(raw)
+    known: dict[float | None, float | None] = dict(
+        zip(raw, [None] * len(raw) if is_unread else stated or [], strict=True)
+    )
+    parts = tuple(replace(part, density=known.get(part.density)) for part in parts)
+    return CadFile(kind, unit, parts, walk.left_out, is_unread, names), walk.placed
 
 
 def _document(path: Path) -> tuple[str, tuple[str, ...], Any]:

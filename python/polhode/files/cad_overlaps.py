@@ -1,39 +1,33 @@
-"""Solids of a CAD file that share matter: looked for by OCCT's boolean operations, in a process of their own.
+"""Solids of a CAD file that share matter: found by OCCT's boolean operations, and told.
 
 What two solids share is a solid itself, whose faces are integrated as those of the file are. An operation
-may fail, last long or end its process: what was found before stays, and the rest is told as not known.
+may fail, last long or end its process (:mod:`polhode.files.cad_apart` starts one for that): what was found
+before stays, and the rest is told as not known.
 """
 
 from __future__ import annotations
 
-import io
-import os
-import pickle
-import subprocess
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from polhode.files.cad_kernel import occt
 from polhode.files.components import Overlap, told
-from polhode.files.unpacked import unpacked
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from polhode.files.cad_file import CadFile, CadPart
 
-__all__ = ["overlaps_told"]
+__all__ = ["Pair", "near_pairs", "overlaps_told", "volume_shared"]
 
-_COMMAND: Final = ["-m", "polhode.files.cad_overlaps"]
 _MOST_PAIRS: Final = 2000
-_SECONDS: Final = 60.0
 _CONTACT: Final = 1e-9
 """What is shared by less than this, of the smaller one, is contact."""
 _TWICE: Final = "what they share counts twice"
 
 
-class _Pair(NamedTuple):
+class Pair(NamedTuple):
     """Two solids by their numbers, the larger one first, and what they share in mm^3; None: not known."""
 
     large: int
@@ -41,22 +35,20 @@ class _Pair(NamedTuple):
     volume: float | None
 
 
-def overlaps_told(cad: CadFile, path: Path) -> list[str]:
+def overlaps_told(cad: CadFile, pairs: Sequence[Pair], fault: str = "") -> tuple[str, ...]:
     """Say which solids of a file overlap and by how much of their volume, and what of that is not known.
 
     Parameters
     ----------
     cad : CadFile
-    path : pathlib.Path
-        Where it was read from.
+    pairs : sequence of Pair
+        That were looked at.
+    fault : str
+        Why not all of :func:`near_pairs` were.
     """
     near = _meeting(cad.parts)
-    if not near:
-        return []
     if len(near) > _MOST_PAIRS:
-        return [f"{len(near)} pairs of solids are near enough to overlap, too many to look at: {_TWICE}"]
-    with unpacked(path) as inside:
-        pairs, fault = _looked_for_apart(inside, near)
+        return (f"{len(near)} pairs of solids are near enough to overlap, too many to look at: {_TWICE}",)
     found = [
         Overlap(
             cad.parts[pair.large].name,
@@ -76,15 +68,21 @@ def overlaps_told(cad: CadFile, path: Path) -> list[str]:
             f"whether solids overlap is not known of {', '.join(unknown[:3])}{more}: OCCT does not tell; "
             f"where they do, {_TWICE}"
         )
-    if fault:
+    if len(pairs) < len(near):
         lines.append(
             f"{fault}: {len(near) - len(pairs)} pairs of solids that are near enough to overlap were not "
             f"looked at; where they do, {_TWICE}"
         )
-    return lines
+    return tuple(lines)
 
 
-def _meeting(parts: tuple[CadPart, ...]) -> list[tuple[int, int]]:
+def near_pairs(parts: Sequence[CadPart]) -> list[tuple[int, int]]:
+    """Give the pairs of solids that may share matter; none where they are too many to be looked at."""
+    near = _meeting(parts)
+    return near if len(near) <= _MOST_PAIRS else []
+
+
+def _meeting(parts: Sequence[CadPart]) -> list[tuple[int, int]]:
     """Give the pairs whose spheres around their boxes meet, the larger one first."""
     middles = np.array([part.rotation @ part.moments.about + part.position for part in parts])
     reaches = np.array([part.moments.reach for part in parts])
@@ -98,38 +96,15 @@ def _meeting(parts: tuple[CadPart, ...]) -> list[tuple[int, int]]:
     return pairs
 
 
-def _looked_for_apart(path: Path, near: list[tuple[int, int]]) -> tuple[list[_Pair], str]:
-    """Look at pairs in another process; give what it found, and why it ended before its end, if it did."""
-    if not sys.executable:  # within another program
-        return [], "OCCT was not started"
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(place for place in sys.path if place)}
-    fault = ""
-    try:
-        done = subprocess.run(
-            [sys.executable, *_COMMAND, str(path)],
-            env=environment,
-            input=pickle.dumps(near),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            timeout=_SECONDS,
-            check=False,
-        )
-        answer = done.stdout
-        if done.returncode != 0:
-            fault = f"OCCT broke down when it looked for overlaps (exit code {done.returncode})"
-    except subprocess.TimeoutExpired as ended:
-        answer, fault = ended.stdout or b"", f"OCCT took more than {_SECONDS:g} s to look for overlaps"
-    stream, pairs = io.BytesIO(answer), []
-    try:
-        while stream.tell() < len(answer):
-            pairs.append(_Pair(*pickle.load(stream)))
-    except (EOFError, pickle.UnpicklingError):  # the last one was being written
-        pass
-    return pairs, fault
+def volume_shared(one: Any, other: Any, least: float) -> float | None:
+    """Give the volume that two placed solids share, in mm^3; None where OCCT does not tell.
 
-
-def _shared(one: Any, other: Any, least: float) -> float | None:
-    """Give the volume that two placed solids share, in mm^3; None where OCCT does not tell."""
+    Parameters
+    ----------
+    one, other : TopoDS_Solid
+    least : float
+        The smaller one's volume.
+    """
     from polhode.files.cad_file import box_of, faces_of
     from polhode.files.cad_moments import moments_of_faces
 
@@ -171,20 +146,3 @@ def _holds_corner(outer: Any, inner: Any) -> bool:
         if classifier.State() == kinds.TopAbs_State.TopAbs_IN:
             return True
     return False
-
-
-def _main(path: Path) -> None:
-    """Look at the pairs that come on standard input; write each on standard output when it is known."""
-    out = os.dup(1)
-    os.dup2(2, 1)  # OCCT speaks on standard output
-    from polhode.files.cad_file import solids_in
-
-    near = pickle.loads(sys.stdin.buffer.read())
-    solids = solids_in(path)
-    for i, k in near:
-        volume = _shared(solids[i][1], solids[k][1], solids[k][0].moments.volume)
-        os.write(out, pickle.dumps((i, k, volume)))
-
-
-if __name__ == "__main__":
-    _main(Path(sys.argv[1]))

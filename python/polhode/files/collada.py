@@ -7,6 +7,7 @@ was drawn and turns nothing here: the axes are those of the stored numbers, abou
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -29,6 +30,7 @@ __all__ = ["read_collada"]
 
 _DEEPEST: Final = 100
 _MOST_TRIANGLES: Final = 100_000_000
+_DIGITS: Final = re.compile(r"\s*[0-9][0-9\s]*", re.ASCII)
 _FACES: Final = ("triangles", "polylist", "polygons", "trifans", "tristrips")
 
 
@@ -317,6 +319,10 @@ def _floats(text: str, element: Element) -> Floats:
 
 
 def _integers(text: str, element: Element) -> Integers:
+    if _DIGITS.fullmatch(text):  # which is read sooner as a whole, numbers out of range as the largest
+        found = np.fromstring(text, dtype=np.int64, sep=" ")
+        if found.max() < np.iinfo(np.int64).max:
+            return found
     try:
         return np.array(text.split(), dtype=np.int64)
     except (ValueError, OverflowError) as error:

@@ -23,12 +23,14 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
 
 __all__ = [
+    "MOST_FACES",
     "MOST_PARTS",
     "Overlap",
     "Part",
     "groups_of",
     "labels",
     "meeting",
+    "overlapping",
     "overlaps",
     "parts_of",
     "told",
@@ -41,6 +43,12 @@ MOST_PARTS: Final = 200
 # What is shared by less than this, of the smaller one, is contact.
 _CONTACT: Final = 1e-9
 _MOST_TOLD: Final = 8
+# What components share is told beside other things from this part of their volume on.
+_LITTLE: Final = 1e-3
+# Beside other things, meshes of more triangles are not searched for components that overlap.
+MOST_FACES: Final = 50_000
+# Nor are components with more triangles than this, counted once for each pair whose boxes meet.
+_MOST_PAIRED: Final = 50_000
 # As a part of lengths (and of areas): nearer than this a ray does not tell on which side it passes.
 _NEAR: Final = 1e-9
 _ASKEW: Final = np.array([[2.0, -3.0, 6.0], [6.0, -2.0, -3.0], [3.0, 6.0, 2.0]]) / 7.0
@@ -305,6 +313,31 @@ def told(found: Sequence[Overlap], total: float, unit: str = "") -> list[str]:
         way = "how much is not known" if has_union() else 'pip install "polhode[union]" tells how much'
         lines.append(f"components {pairs} overlap: what they share counts twice; {way}")
     return lines
+
+
+def overlapping(vertices: Floats, faces: Integers, unit: str = " m^3") -> list[str]:
+    """Say which components of a mesh overlap by more than a thousandth; nothing of a large mesh.
+
+    Parameters
+    ----------
+    vertices : numpy.ndarray, shape (n, 3)
+    faces : numpy.ndarray, shape (m, 3)
+    unit : str
+        Of volumes.
+    """
+    if len(faces) > MOST_FACES:
+        return []
+    parts = parts_of(vertices, faces)
+    if len(parts) < 2:
+        return []
+    pairs = meeting(parts)
+    if sum(len(parts[i].faces) + len(parts[k].faces) for i, k in pairs) > _MOST_PAIRED:
+        return [f"its {len(parts)} components were not searched for overlaps; polhode report does it"]
+    total = sum(part.volume for part in parts)
+    found = [
+        each for each in overlaps(parts, pairs) if not each.volume < _LITTLE * total
+    ]  # or it is not known
+    return told(found, total, unit)
 
 
 def groups_of(path: Path) -> list[str]:

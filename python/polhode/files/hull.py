@@ -8,6 +8,8 @@ import numpy as np
 
 from polhode._extras import require
 from polhode.errors import MeshError
+from polhode.files.mesh import used_vertices
+from polhode.files.union import is_closed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -30,10 +32,10 @@ def hull(vertices: ArrayLike, faces: ArrayLike) -> NDArray[np.int64]:
     """
     spatial: Any = require("scipy.spatial", extra=None, purpose='closure="hull"')
     points = np.asarray(vertices, dtype=np.float64)
-    corners = np.asarray(faces)
+    corners = np.asarray(faces, dtype=np.int64)
     if corners.size and (corners.min() < 0 or corners.max() >= len(points)):
         return np.empty((0, 3), dtype=np.int64)  # to be refused as it is, with the number of the face
-    used = np.unique(corners)
+    used = used_vertices(corners, len(points))
     if not np.isfinite(points[used]).all():
         return np.empty((0, 3), dtype=np.int64)
     middle = points[used].mean(axis=0) if len(used) else 0.0
@@ -44,7 +46,18 @@ def hull(vertices: ArrayLike, faces: ArrayLike) -> NDArray[np.int64]:
         raise MeshError(
             f"the mesh has no convex hull with a volume: {reason}; model a sheet as a thin shell instead"
         ) from None
-    return np.asarray(used[_wound_alike(found.simplices, found.neighbors)], dtype=np.int64)
+    wound = _outward(found.simplices, found.points, found.equations)
+    if not is_closed(wound):  # slivers have no normals to speak of
+        wound = _wound_alike(found.simplices, found.neighbors)
+    return np.asarray(used[wound], dtype=np.int64)
+
+
+def _outward(faces: NDArray[Any], points: NDArray[Any], equations: NDArray[Any]) -> NDArray[Any]:
+    """Turn the faces as the first one is, by the normals of their planes."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    is_inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), equations[:, :3]) < 0.0
+    is_turned = is_inward != is_inward[0]
+    return np.where(is_turned[:, None], faces[:, [1, 0, 2]], faces)
 
 
 def _wound_alike(faces: NDArray[Any], neighbors: NDArray[Any]) -> NDArray[Any]:

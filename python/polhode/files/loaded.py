@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from polhode.files.cad_file import CadFile
     from polhode.files.xyz import Molecule
 
-__all__ = ["Loaded", "load", "read_mesh"]
+__all__ = ["CAD_SUFFIXES", "Loaded", "load", "read_mesh"]
 
-_CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
+CAD_SUFFIXES: Final = (".step", ".stp", ".igs", ".iges")
 _METRE: Final = ("m", "metre", "meter")
-_OF_EXTRAS: Final = (*_CAD_SUFFIXES, ".vtk", ".vtu", ".vtp")
+_OF_EXTRAS: Final = (*CAD_SUFFIXES, ".vtk", ".vtu", ".vtp")
 _MESH_SUFFIXES: Final = tuple(
     suffix for suffix in EXPECTED_CONTENT if suffix not in (*MOLECULE_SUFFIXES, *_OF_EXTRAS)
 )
@@ -180,7 +180,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
         raise ValueError(f"index_base: expected 0 or 1, got {index_base!r}")
     if index_base != 1 and suffix not in _TEXT_SUFFIXES:
         raise ValueError(f"index_base: {file} is not v/f text (.obj, .tab, .txt); leave index_base out")
-    if suffix in _CAD_SUFFIXES:
+    if suffix in CAD_SUFFIXES:
         check_occt(f"{file}: reading CAD files (STEP, IGES)")  # told of any such name
     if file.suffix.lower() == ".gz" and suffix not in EXPECTED_CONTENT:
         check_ordinary(file)
@@ -200,7 +200,7 @@ def _load(file: Path, suffix: str, index_base: int) -> Loaded:
         stream = content.stream
         if suffix in MOLECULE_SUFFIXES:
             return _load_molecule(content, file, suffix)
-        if suffix in _CAD_SUFFIXES:
+        if suffix in CAD_SUFFIXES:
             return _load_cad(file)
         if content.format == "ASCII STL":
             from polhode.files.ascii_stl import read_ascii_stl
@@ -263,6 +263,7 @@ def _load_cad(file: Path) -> Loaded:
         )
     if cad.unread_densities:
         notes.append("the densities of its materials have units that are not understood and are not used")
+    notes += cad.overlaps
     return Loaded(file, cad.format, unit=cad.unit, states_unit=True, notes=tuple(notes), cad=cad)
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
 
-__all__ = ["Mesh", "check_faces", "weld", "weld_within"]
+__all__ = ["Mesh", "check_faces", "equal_rows", "used_vertices", "weld", "weld_within"]
 
 
 class Mesh(NamedTuple):
@@ -93,10 +93,41 @@ def weld_within(mesh: Mesh, length: float) -> Mesh:
 
 def _merged(mesh: Mesh, keys: Floats | Integers) -> Mesh:
     """Vertices with equal keys made the first of them."""
-    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    first, of = equal_rows(keys)
     if len(first) == len(mesh.vertices):
         return mesh
-    order = np.argsort(first)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    return Mesh(mesh.vertices[first[order]], rank[inverse.reshape(-1)][mesh.faces], mesh.format)
+    return Mesh(mesh.vertices[first], of[mesh.faces], mesh.format)
+
+
+def equal_rows(rows: Floats | Integers) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Find rows that are equal.
+
+    Parameters
+    ----------
+    rows : numpy.ndarray, shape (n, 3)
+
+    Returns
+    -------
+    first : numpy.ndarray of int, shape (k,)
+        The first row of each kind, in their order.
+    of : numpy.ndarray of int, shape (n,)
+        The kind of each row.
+    """
+    order = np.lexsort(rows.T[::-1])  # equal rows stay in their order
+    ordered = rows[order]
+    begins = np.ones(len(rows), dtype=bool)
+    begins[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    found = order[begins]
+    kinds = np.argsort(found)
+    rank = np.empty_like(kinds)
+    rank[kinds] = np.arange(len(kinds))
+    of = np.empty(len(rows), dtype=np.intp)
+    of[order] = rank[np.cumsum(begins) - 1]
+    return found[kinds], of
+
+
+def used_vertices(faces: NDArray[np.integer], count: int) -> NDArray[np.intp]:
+    """Give the vertices that faces use, ascending; all of them are between 0 and `count`."""
+    marks = np.zeros(count, dtype=bool)
+    marks[faces] = True
+    return np.flatnonzero(marks)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     Number = float | _core.Uncertain | SupportsSigma
 
-__all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of"]
+__all__ = ["MeshSolid", "naming_file", "solid_from_file", "solid_of", "warn_of_overlaps"]
 
 _SMALL_FILE: Final = 1 << 28
 """Bytes of a file that is read whole for a hint in an error."""
@@ -132,6 +133,7 @@ def solid_from_file(
         If the file cannot be read.
     """
     loaded = load(path, index_base=index_base)
+    warn_of_overlaps(loaded)
     own = 1.0 if loaded.unit is None else metres_per(loaded.unit)
     if scale is not None and scale != own and loaded.states_unit:
         raise PolhodeError(
@@ -223,6 +225,12 @@ def solid_of(
     welded = joined + corners - len(mesh.vertices)
     count = len(mesh.vertices)
     return MeshSolid(body._welded(welded), mesh.format, count, len(mesh.faces), volume, area, welded)
+
+
+def warn_of_overlaps(loaded: Loaded) -> None:
+    """Warn of solids of CAD that share matter, for a caller who sees no notes."""
+    for line in () if loaded.cad is None else loaded.cad.overlaps:
+        warnings.warn(f"{loaded.path}: {line}", stacklevel=3)
 
 
 def _joined(loaded: Loaded, mesh: Mesh, orient: bool) -> Loaded:

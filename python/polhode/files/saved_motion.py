@@ -312,7 +312,7 @@ def table_of(trajectory: Trajectory) -> tuple[dict[str, NDArray[Any]], dict[str,
     vectors = {name: (getattr(trajectory, name), parts) for name, parts in _COLUMNS.items()}
     vectors["euler"] = trajectory.euler_angles("ZXZ", singular="nan"), _EULER
     is_free = not trajectory._is_loaded() and trajectory.carried is None
-    is_known = trajectory.load is not None or is_free or "_rotor" in trajectory.__dict__
+    is_known = trajectory.load is not None or is_free or "_within" in trajectory.__dict__
     if is_known and all(np.isfinite(values).all() for values, _ in list(vectors.values())[:-1]):
         vectors["torque"] = trajectory.torque(), "xyz"
     columns = {

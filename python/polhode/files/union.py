@@ -13,7 +13,7 @@ import numpy as np
 
 from polhode._extras import require
 from polhode.errors import MeshError
-from polhode.files.mesh import Mesh
+from polhode.files.mesh import Mesh, used_vertices
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -70,7 +70,7 @@ def _library() -> Any:
 
 def _centred(parts: Sequence[Surface]) -> tuple[Floats, list[Surface]]:
     """Move surfaces near the origin, where their coordinates have most digits, and drop unused vertices."""
-    used = [np.unique(faces) for _, faces in parts]
+    used = [used_vertices(faces, len(vertices)) for vertices, faces in parts]
     corners = np.concatenate([vertices[rows] for (vertices, _), rows in zip(parts, used, strict=True)])
     middle = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
     moved: list[Surface] = [

@@ -31,6 +31,7 @@ __all__ = [
 _START_TAG: Final = re.compile(rb"<[^\"'<>]*(?:\"[^\"]*\"[^\"'<>]*|'[^']*'[^\"'<>]*)*>")
 # A declaration after blanks or comments.
 _LATE: Final = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!--(?:(?!--).)*-->\s*)*(<\?xml\s[^<>]*\?>)", re.DOTALL)
+_BAD_TOKEN: Final = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
 _DEEPEST: Final = 200
 _MOST_ELEMENTS: Final = 1_000_000
 
@@ -201,6 +202,11 @@ def parse_xml(
         parser.Parse(source, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
+        if error.code == _BAD_TOKEN and not _is_utf8(source):
+            raise FileFormatError(
+                f"{name}: line {error.lineno}: holds bytes that are not UTF-8; save it as UTF-8, or name its "
+                'encoding in the first line, as in <?xml version="1.0" encoding="ISO-8859-1"?>'
+            ) from None
         raise FileFormatError(
             f"{name}: line {error.lineno}: not well-formed XML: {reason}; correct the line, or is the "
             "file cut short?"
@@ -265,3 +271,11 @@ def _attribute(source: bytes, element: Element, name: str) -> re.Match[bytes] | 
             return match
         at = match.end()
     return None
+
+
+def _is_utf8(source: bytes) -> bool:
+    try:
+        source.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True

@@ -157,6 +157,11 @@ def parse_robot(
     except ValueError as error:
         raise FileFormatError(f"{name}: {error}") from None
     if not links:
+        if format_name == "MJCF" and any(root.all("body")):
+            raise FileFormatError(
+                f"{name}: its bodies stand outside <worldbody>, as in a part that models include; check the "
+                "model that includes it"
+            )
         raise FileFormatError(f"{name}: holds no link; check the file")
     read = f"read too: {', '.join(sources.names)}"
     notes = (*([read] if sources.names else []), *sources.notes)

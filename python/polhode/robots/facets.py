@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from polhode.files.mesh import equal_rows
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -34,8 +36,8 @@ def sagitta(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> float:
         In the unit of the vertices; 0 where nothing is round.
     """
     # STL repeats its vertices: those in one place are one.
-    places, index = np.unique(vertices, axis=0, return_inverse=True)
-    triangles = index.reshape(-1)[faces]
+    first, of = equal_rows(vertices)
+    places, triangles = vertices[first], of[faces]
     corners = places[triangles]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     sizes = np.linalg.norm(areas, axis=1)

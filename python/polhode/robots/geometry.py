@@ -9,9 +9,9 @@ import numpy as np
 
 from polhode import RigidBody, solids
 from polhode.errors import PolhodeError
-from polhode.files.components import meeting, overlaps, parts_of, told
+from polhode.files.components import overlapping
 from polhode.files.loaded import load
-from polhode.files.mesh import Mesh
+from polhode.files.mesh import Mesh, used_vertices
 from polhode.robots.facets import sagitta
 from polhode.robots.words import quoted, shortened
 from polhode.units import metres_per
@@ -39,12 +39,6 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
 }
 # How well a box or a cylinder is taken to stand for the true part, of its diagonal.
 _OF_PRIMITIVES: Final = 0.02
-# What components share is told from this part of their volume on.
-_LITTLE: Final = 1e-3
-# Meshes of more triangles are not searched for components that overlap.
-_MOST_FACES: Final = 50_000
-# Nor are components with more triangles than this, counted once for each pair whose boxes meet.
-_MOST_PAIRED: Final = 50_000
 
 
 @dataclass(frozen=True)
@@ -84,6 +78,7 @@ class _Read(NamedTuple):
     mesh: Mesh
     corners: Floats
     solids: RigidBody | None = None
+    overlaps: tuple[str, ...] = ()
 
 
 class GeometryReader:
@@ -191,7 +186,8 @@ class GeometryReader:
             factor = shape.size[0]
             if not (factor > 0.0 and all(each == factor for each in shape.size)):
                 return None, f"mesh {name}: solids of CAD are scaled alike along all axes; correct the scale"
-            return read.solids.scaled(mass=factor**3, length=factor), ""
+            note = f"mesh {name}: {'; '.join(read.overlaps)}" if read.overlaps else ""
+            return read.solids.scaled(mass=factor**3, length=factor), note
         mesh = read.mesh
         vertices = mesh.vertices * np.array(shape.size)
         try:
@@ -229,9 +225,10 @@ class GeometryReader:
                 mesh = mesh._replace(vertices=mesh.vertices * metres_per(loaded.unit))
         except (ValueError, OSError, ModuleNotFoundError, MemoryError) as error:
             return f"mesh {name}: {error}"
-        used = np.unique(mesh.faces)
-        if used.size and not (used[0] >= 0 and used[-1] < len(mesh.vertices)):
+        faces = mesh.faces
+        if faces.size and not (faces.min() >= 0 and faces.max() < len(mesh.vertices)):
             return f"mesh {name}: {path}: a face names a vertex that the file does not hold; check the file"
+        used = used_vertices(faces, len(mesh.vertices))
         corners = mesh.vertices[used]
         if not np.isfinite(corners).all():
             vertex = int(used[np.flatnonzero(~np.isfinite(corners).all(axis=1))[0]])
@@ -283,7 +280,7 @@ def _of_cad(cad: CadFile) -> _Read:
     )
     corners *= metres_per("mm")
     empty = np.empty((0, 3), dtype=np.int64)
-    return _Read(Mesh(corners, empty, cad.format), corners, solids_of(cad, density=1.0)[0])
+    return _Read(Mesh(corners, empty, cad.format), corners, solids_of(cad, density=1.0)[0], cad.overlaps)
 
 
 def _is_nothing(shape: Shape) -> bool:
@@ -292,20 +289,7 @@ def _is_nothing(shape: Shape) -> bool:
 
 def _overlapping(name: str, vertices: Floats, faces: NDArray[np.int64]) -> str:
     """Say which components of a mesh overlap; "" where none do, or where there are too many faces."""
-    if len(faces) > _MOST_FACES:
-        return ""
-    parts = parts_of(vertices, faces)
-    if len(parts) < 2:
-        return ""
-    pairs = meeting(parts)
-    if sum(len(parts[i].faces) + len(parts[k].faces) for i, k in pairs) > _MOST_PAIRED:
-        return f"{name}: its {len(parts)} components were not searched for overlaps; polhode report does it"
-    total = sum(part.volume for part in parts)
-    found = [
-        each for each in overlaps(parts, pairs) if not each.volume < _LITTLE * total
-    ]  # or it is not known
-    lines = told(found, total, " m^3")
-    return f"{name}: {'; '.join(lines)}" if lines else ""
+    return f"{name}: {'; '.join(lines)}" if (lines := overlapping(vertices, faces)) else ""
 
 
 def _solid(shape: Shape) -> tuple[RigidBody | None, str]:

@@ -105,10 +105,15 @@ class _Reader:
         inertial: Inertial | None = None
         shapes: tuple[Shape, ...] = ()
         declared = body.find("inertial")
+        is_inferred = declared is None or self.infers_always
         try:
-            if declared is not None and not self.infers_always:
+            geoms = self.members(body, "geom", Place.here(), inherited)
+            shapes = tuple(self._shape(geom, weighs=is_inferred) for geom in geoms)
+            # MuJoCo keeps what is declared where no geom weighs, whatever the compiler says.
+            masses = (geom.density if geom.mass is None else geom.mass for geom in shapes)
+            is_inferred = declared is None or (self.infers_always and any(masses))
+            if declared is not None and not is_inferred:
                 inertial = self._inertial(declared)
-            shapes = tuple(self._shape(geom) for geom in self.members(body, "geom", Place.here(), inherited))
         except LimitError:
             raise
         except FileFormatError as error:
@@ -126,7 +131,7 @@ class _Reader:
             inertial=inertial,
             problem=problem,
             shapes=shapes,
-            inferred=declared is None or self.infers_always,
+            inferred=is_inferred,
             rewrite=None if body.file or self.infers_always else partial(_rewrite, body, declared),
             file=body.file,
             folder=self.folder,
@@ -298,7 +303,8 @@ class _Reader:
             tensor = np.diag(numbers(element, attributes.get("diaginertia"), 3, "diaginertia"))
         return Inertial(float(mass), place.position, place.rotation @ tensor @ place.rotation.T)
 
-    def _shape(self, member: Member) -> Shape:
+    def _shape(self, member: Member, *, weighs: bool) -> Shape:
+        """Read a geom; where the inertia is taken from it, a hollow one is told."""
         geom, frame, inherited, problem = member
         if problem:
             raise FileFormatError(problem)
@@ -313,15 +319,22 @@ class _Reader:
         if len(self.groups) == 2 and group.isdecimal() and len(group) < 10:
             low, high = self.groups
             mass = mass if low <= int(group) <= high else 0.0
+        if weighs and attributes.get("shellinertia") == "true":
+            return Shape(f"{kind}, hollow", (), frame, "collision", "", density, mass, geom.where)
         if kind == "mesh":
             place = frame.then(self._place(geom, attributes))
             name = attributes.get("mesh", "")
             if name not in self.meshes:
                 return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass, geom.where)
             mesh, address = self.meshes[name]
+            kind = "mesh, hollow" if weighs and mesh.attributes.get("inertia") == "shell" else kind
+            kind = kind if address else "mesh without a file"
             of_class = self.scales.get(mesh.attributes.get("class", "main"), "1")
             factors = scale(mesh, mesh.attributes.get("scale", of_class))
-            return Shape("mesh", factors, place, "collision", address, density, mass, geom.where)
+            return Shape(kind, factors, place, "collision", address, density, mass, geom.where)
+        if "mesh" in attributes:  # MuJoCo takes the size from the mesh, whatever stands here
+            kind = f"{kind} fitted to a mesh"
+            return Shape(kind, (), frame, "collision", "", density, mass, geom.where)
         place, size = self._sized(geom, attributes, kind)
         return Shape(kind, size, frame.then(place), "collision", "", density, mass, geom.where)
 

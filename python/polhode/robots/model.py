@@ -219,7 +219,10 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
         wanted = (
             "a finite number" if count == 1 else f"{count or ''} finite numbers".replace("  ", " ").strip()
         )
-        raise FileFormatError(f"{element.where}: {what} is {quoted(text)} where {wanted} has to stand")
+        way_out = "; expand the file with xacro first" if text and "${" in text else ""
+        raise FileFormatError(
+            f"{element.where}: {what} is {quoted(text)} where {wanted} has to stand{way_out}"
+        )
     if values.size and np.abs(values).max() > _LARGEST:
         raise FileFormatError(
             f"{element.where}: {what} is {quoted(text)}, beyond {_LARGEST:g}, where squares have no "

@@ -44,10 +44,11 @@ _STEPS: Final = 40
 
 
 class Finding(NamedTuple):
-    """What a law says: the word of the verdict that it leads to, and why."""
+    """What a law says: the word of the verdict that it leads to, what is beyond it, and why that word."""
 
     word: Literal["suspect", "coarse", "impossible"]
     reason: str
+    why: str = ""
 
 
 def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], float]) -> Finding | None:
@@ -64,36 +65,43 @@ def beyond_room(body: RigidBody, geometry: Geometry, coarseness: Callable[[], fl
     low, high = geometry.low, geometry.high
     if low is None or high is None or fit_in_box(body, low, high).possible:
         return None
-    beyond = Finding(_word_of(body, low, high), _excess(body, low, high))
+    reason = _excess(body, low, high)
     most = _COARSEST * float(np.linalg.norm(high - low))
-    if not fit_in_box(body, low - most, high + most).possible:
-        return beyond
+    if not fit_in_box(body, low - 2.0 * most, high + 2.0 * most).possible:
+        return _beyond(body, low, high, reason)
     allowed = min(coarseness(), most)
-    if allowed > 0.0 and fit_in_box(body, low - allowed, high + allowed).possible:
-        inner, outer = 0.0, allowed
-        for _ in range(_STEPS):
-            middle = (inner + outer) / 2.0
-            is_enough = fit_in_box(body, low - middle, high + middle).possible
-            inner, outer = (inner, middle) if is_enough else (middle, outer)
-        return Finding(
-            "coarse",
-            f"{beyond.reason}; walls {outer * 1e3:.3g} mm farther out would do, and its shapes may be off by "
-            f"{allowed * 1e3:.3g} mm",
-        )
-    return beyond
+    is_coarse = allowed > 0.0 and fit_in_box(body, low - allowed, high + allowed).possible
+    inner, outer = 0.0, allowed if is_coarse else 2.0 * most
+    for _ in range(_STEPS):
+        middle = (inner + outer) / 2.0
+        is_enough = fit_in_box(body, low - middle, high + middle).possible
+        inner, outer = (inner, middle) if is_enough else (middle, outer)
+    needed, told = _apart(outer * 1e3, allowed * 1e3)
+    reason = f"{reason}; walls {needed} mm farther out would do"
+    if is_coarse:
+        return Finding("coarse", f"{reason}, and its shapes may be off by {told} mm")
+    return _beyond(body, low, high, f"{reason}, but its shapes are taken to be off by no more than {told} mm")
 
 
-def _word_of(body: RigidBody, low: Floats, high: Floats) -> Literal["suspect", "impossible"]:
+def _beyond(body: RigidBody, low: Floats, high: Floats, reason: str) -> Finding:
     """Say how bad it is: makers publish tensors far beyond the room of their shapes, and simulators run them.
 
-    More than 1000 times the box filled is beyond any reason. Less than 3 times has room in the middle of the
-    box, so that the centre of mass is at fault, which no reason explains either.
+    More than 1000 times the box filled is beyond any reason. Less than 3 times may have room in the middle of
+    the box, so that the centre of mass is at fault, which no reason explains either.
     """
     sides = high - low
     spread = float(np.trace(body.inertia)) / 2.0 / float(body.mass)
     factor = spread / (float(sides @ sides) / 12.0)
     is_outside = bool(((body.center_of_mass < low) | (body.center_of_mass > high)).any())
-    return "suspect" if MOST < factor <= FAR and not is_outside else "impossible"
+    if MOST < factor <= FAR and not is_outside:
+        filled = f"{times(factor)} the box around it filled"
+        return Finding(
+            "suspect", reason, f"{filled}: identified tensors are so at times, --strict fails them"
+        )
+    middle = body.translated((low + high) / 2.0 - body.center_of_mass)
+    has_room = not is_outside and fit_in_box(middle, low, high).possible
+    why = "about its middle the shape has room: look at the centre of mass" if has_room else ""
+    return Finding("impossible", reason, why)
 
 
 def _excess(body: RigidBody, low: Floats, high: Floats) -> str:

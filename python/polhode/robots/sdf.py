@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -67,6 +68,10 @@ def links(root: Element, sources: Sources) -> Iterator[Link]:
     """Read the links of every model, those of included files too, and their joints."""
     found = list(below(root, sources, Scope(sources.folder)))
     keys = dict.fromkeys(link.key for link in found)
+    count = Counter(link.name for link in found)
+    found = [
+        replace(link, name=link.key) if count[link.name] > 1 and not link.file else link for link in found
+    ]
     sources.joints[:] = [
         joint._replace(
             parent=_resolved(joint.parent, keys, sources.frames),

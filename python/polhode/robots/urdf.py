@@ -84,11 +84,32 @@ def links(
         sources.joints.append(Joint(element.attributes.get("name", ""), kind, *ends))
         with suppress(FileFormatError):
             reaches[child] = float(np.linalg.norm(_place(element.find("origin")).position))
+    met: set[str] = set()
     for element in root.all("link"):
+        for note in _oddities(element, met):
+            sources.notes[note] = None
         link = reader.read(element, sources, folder or sources.folder, prefix)
         name = element.attributes.get("name", "(without a name)")
         key = name if name == WORLD else scope + name
         yield replace(link, key=key, reach=reaches.get(name, 0.0))
+
+
+def _oddities(link: Element, met: set[str]) -> Iterator[str]:
+    """Tell what is written for a link and not read; `met` are the names of the links before it."""
+    name = link.attributes.get("name", "")
+    if name in met:
+        yield f"{link.where}: link {name!r} again; parsers refuse two links of one name: rename one"
+    met.add(name)
+    inertials = list(link.all("inertial"))
+    if len(inertials) > 1:
+        yield f"{inertials[1].where}: <inertial> again in link {name!r}; only the first is read: leave one"
+    inertia = inertials[0].find("inertia") if inertials else None
+    unknown = sorted(set(inertia.attributes) - set(_MOMENTS)) if inertia is not None else []
+    if unknown:
+        yield (
+            f"{link.where}: link {name!r}: <inertia> has {', '.join(unknown)}, which no parser reads; "
+            f"its attributes are {', '.join(_MOMENTS)}"
+        )
 
 
 def _end(joint: Element, tag: str) -> str:

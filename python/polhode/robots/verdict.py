@@ -40,6 +40,7 @@ Word = Literal[
 ]
 FAILURES: Final = frozenset({"placeholder", "impossible", "missing", "unreadable"})
 
+_STANDS_FOR: Final = {0.0: "is a point's, where mass has no spread", 1.0: "is the unit tensor"}
 # A table printed to few digits breaks a law by no more than this, and can be put right without guessing.
 _NEAR: Final = 0.1
 
@@ -265,21 +266,20 @@ class _Judging(NamedTuple):
         moment = _isotropic(declared.inertia)
         if moment is not None and moment in self.placeholders:
             count = self.placeholders[moment]
-            where = f"in {count} links" if count > 1 else "only here"
-            told = f"{moment:g} {moment:g} {moment:g} stands {where}"
-            told = f"{told}, where mass has no spread at all" if moment == 0.0 else told
+            told = f"{moment:g} {moment:g} {moment:g} {_STANDS_FOR.get(moment, 'in links of unlike mass')}"
+            told = f"{told}; it stands in {count} links" if count > 1 else told
             is_true = own is not None and size is None and _are_near(own.inertia, declared.inertia)
             if not is_true:
                 return "placeholder", _joined(told, compared, size.reason if size else "")
         if size is not None and size.word == "impossible":
-            return size.word, _joined(compared, size.reason, needed)
+            return size.word, _joined(compared, size.reason, size.why, needed)
         if factor is not None and not LEAST <= factor <= MOST:
-            return "suspect", _joined(compared, size.reason if size else "", needed)
+            return "suspect", _joined(compared, *((size.reason, size.why) if size else ()), needed)
         if size is not None and size.word == "coarse":
             return size.word, _joined(compared, size.reason)
         if size is None and own is None:
             size = too_dense(body)
-        return (size.word, size.reason) if size is not None else ("good", compared)
+        return (size.word, _joined(size.reason, size.why)) if size is not None else ("good", compared)
 
 
 def _are_near(one: Floats, other: Floats) -> bool:

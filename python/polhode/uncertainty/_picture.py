@@ -58,9 +58,10 @@ def sunburst(node: Part, ax: Axes | None = None) -> Axes:
         if rest:
             _wedge(ax, "others", start, rest, level, _OTHERS)
     mass = with_sigma(*node.with_sigma("mass"))
-    ax.text(0.0, 0.0, f"{_short(node.id)}\n{mass}", ha="center", va="center", fontsize=10)
+    ax.text(0.0, 0.0, f"{_short(node.id)}\n{mass}", ha="center", va="center", fontsize=10, parse_math=False)
     reach = 1.02 * (1.0 + max(levels, 1))
-    ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", title=f"mass of {_short(node.id)}")
+    ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    ax.set_title(f"mass of {_short(node.id)}", parse_math=False)
     ax.set_axis_off()
     return ax
 
@@ -83,10 +84,11 @@ def bars(shares: Shares, ax: Axes | None = None) -> Axes:
         left += width
     for row, width in enumerate(left):
         ax.text(width + 1.0, row, f"{width:.3g} %", va="center", fontsize=8)
-    ax.set_yticks(np.arange(len(names)), names)
+    ax.set_yticks(np.arange(len(names)), names, parse_math=False)
     ax.invert_yaxis()
     ax.set_xlim(0.0, max(1.18 * float(left.max()), 1.0))
-    ax.set_xlabel(f"share of the variance of {shares.of} of {_short(shares.at)}, %; sigma {shares.sigma:.2g}")
+    told = f"share of the variance of {shares.of} of {_short(shares.at)}, %; sigma {shares.sigma:.2g}"
+    ax.set_xlabel(told, parse_math=False)
     ax.legend(frameon=False, ncols=3, title="error of", loc="lower left", bbox_to_anchor=(0.0, 1.0))
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
@@ -120,6 +122,7 @@ def _wedge(ax: Axes, name: str, start: float, share: float, level: int, color: s
         va="center",
         fontsize=7,
         rotation=turn,
+        parse_math=False,
         color="white" if brightness < _DARK else "black",
     )
 

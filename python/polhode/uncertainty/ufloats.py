@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -10,6 +11,7 @@ import numpy as np
 from polhode import _core
 from polhode._extras import require
 from polhode._repr import short
+from polhode.errors import PolhodeError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,11 +57,17 @@ def terms(number: Any) -> dict[tuple[int, int], float]:
 
     What depends on one variable there depends on one variable here, in all calls.
     """
-    return {
-        _words(variable): float(slope * variable.std_dev)
+    changes = {
+        variable: float(slope * variable.std_dev)
         for variable, slope in number.derivatives.items()
         if slope * variable.std_dev != 0.0
     }
+    for variable, change in changes.items():
+        if not math.isfinite(change):
+            raise PolhodeError(
+                f"the standard deviations of a ufloat must be finite, got {variable.std_dev} in {number}"
+            )
+    return {_words(variable): change for variable, change in changes.items()}
 
 
 def _words(variable: Any) -> tuple[int, int]:

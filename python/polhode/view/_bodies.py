@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from polhode import _core
 from polhode._scene.ellipsoid import inertia_semi_axes, principal_circles
-from polhode._scene.shape import check_one, equivalent_box, given_shape, longest
+from polhode._scene.shape import body_shape, check_one, given_shape, longest
 from polhode._scene.style import AXIS_COLORS, OUTLINE_COLOR
 from polhode.view._style import AXIS_STYLE, add_name, line, new_plotter, pyvista, show_all, surface
 
@@ -187,7 +188,8 @@ def rigid_body(
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default.
     shape : (vertices, faces), optional
-        A mesh of the body in its frame, (n, 3) and (m, 3). By default the uniform box that has its inertia.
+        A mesh of the body in its frame, (n, 3) and (m, 3). By default what the body was made of, see
+        :func:`polhode.animation.animate`.
     opacity : float
         Of the ellipsoid, from 0 to 1.
 
@@ -197,7 +199,12 @@ def rigid_body(
     """
     check_one(body.shape, "body")
     plotter = new_plotter() if plotter is None else plotter
-    drawn = equivalent_box(body, np.zeros(3)) if shape is None else given_shape(*shape, np.zeros(3))
+    if shape is None:
+        drawn, notes = body_shape(body, np.zeros(3), is_cut=False)
+        for note in notes:
+            warnings.warn(note, stacklevel=2)
+    else:
+        drawn = given_shape(*shape, np.zeros(3))
     add_surface(plotter, drawn, "body", 1.0)
     reach = longest(drawn.vertices - body.center_of_mass)
     return ellipsoid(body, plotter, size=reach, opacity=opacity)

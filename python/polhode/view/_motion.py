@@ -9,17 +9,19 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from polhode import _core
+from polhode._scene.footage import RATE
 from polhode._scene.scene import Scene
 from polhode._scene.shape import longest
 from polhode._scene.style import AXIS_COLORS, INSIDE_COLOR, MOMENTUM_COLOR, OMEGA_COLOR
 from polhode.view._bodies import add_surface
+from polhode.view._discs import WheelActors
 from polhode.view._style import AXIS_STYLE, add_name, arrow, line, new_plotter, pyvista, show_all
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from pyvista import Plotter
 
-    from polhode import Trajectory
+    from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
 
     Floats = NDArray[np.float64]
 
@@ -32,9 +34,10 @@ _TICK: Final = 30
 
 
 def motion(
-    trajectory: Trajectory,
+    trajectory: Trajectory | FreeMotion | HeavyTop | GyrostatMotion,
     plotter: Plotter | None = None,
     *,
+    end: float | None = None,
     at: float | None = None,
     shape: tuple[ArrayLike, ArrayLike] | None = None,
     duration: float | None = None,
@@ -44,21 +47,26 @@ def motion(
 ) -> Plotter:
     """Show the motion of one body about its point of reference, with ω, its path in space, and L.
 
-    L is with that of wheels, which is also shown by itself, as h.
+    L is with that of wheels, which is also shown by itself, as h. Wheels are drawn as
+    :func:`polhode.animation.animate` does.
 
     In a window the slider chooses the time and the space bar lets the motion run and stop.
 
     Parameters
     ----------
-    trajectory : Trajectory
+    trajectory : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
         Of one body. Where nothing acts on it, what is shown are as many states of its motion as it needs;
         else its samples, between which the body should turn by no more than 30 degrees.
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default. On one that shows the motion already, another `at` moves it.
+    end : float, optional
+        Of a motion in closed form, which has no times of its own: it is shown from 0 to this time. Of a
+        gyrostat its wheels turn then one by one; the states of one tell their momentum alone.
     at : float, optional
         Time to begin with, as the nearest state that is shown has it; the start by default.
     shape : (vertices, faces), optional
-        A mesh of the body in its frame, (n, 3) and (m, 3). By default the uniform box that has its inertia.
+        A mesh of the body in its frame, (n, 3) and (m, 3). By default what the body was made of, see
+        :func:`polhode.animation.animate`.
     duration : float, optional
         Seconds that the whole motion takes when it runs; by default 10, and more where the body would turn by
         more than 20 degrees from one picture to the next.
@@ -88,9 +96,17 @@ def motion(
     >>> racket = solids.box((3, 2, 1), mass=1.0).simulate(np.linspace(0, 20, 1001), omega=(0.01, 3, 0))
     >>> view.motion(racket).show()  # doctest: +SKIP
     """
-    scene = Scene.of(
-        trajectory, frames=None, duration=duration, shape=shape, title=title, time_unit=time_unit
-    )
+    options: dict[str, Any] = {"shape": shape, "title": title, "duration": duration, "time_unit": time_unit}
+    if not isinstance(trajectory, _core.FreeMotion | _core.HeavyTop | _core.GyrostatMotion):
+        if end is not None:
+            raise ValueError("end: a trajectory has its own times; leave it out")
+        scene = Scene.of(trajectory, frames=None, **options)
+    elif end is None:
+        raise ValueError(
+            "end: a motion in closed form has no end of its own; give the time to which it is shown"
+        )
+    else:
+        scene = Scene.of_motion(trajectory, end, **options)
     for note in scene.notes:
         warnings.warn(note, stacklevel=2)
     first, last = float(scene.t.min()), float(scene.t.max())
@@ -127,6 +143,11 @@ class _Player:
             reach = 1.2 * self._reach
             mesh = line(-reach * axis, reach * axis, 0.5 * self._thickness)
             self._bodies.append(plotter.add_mesh(mesh, color=color, name=f"{name}-axis-{k}", **AXIS_STYLE))
+        self._factors = [disc.factor(self._rate() / RATE) for disc in scene.discs]
+        self._wheels = [
+            WheelActors(plotter, disc, factor, f"{name}-wheel-{k}")
+            for k, (disc, factor) in enumerate(zip(scene.discs, self._factors, strict=True))
+        ]
         self._add_space()
 
     def seek(self, time: float) -> None:
@@ -196,12 +217,16 @@ class _Player:
         placed[:3, :3] = _core.rotate(self._scene.quaternion[index], np.eye(3)).T
         for actor in self._bodies:
             actor.user_matrix = placed
+        for wheel in self._wheels:
+            wheel.show(index, placed)
         if len(self._inside):
             self._add_arrow("h  ", self._inside[index], INSIDE_COLOR, "right")
         self._add_arrow("L  ", self._momenta[index], MOMENTUM_COLOR, "right")
         self._add_arrow("  omega", self._tips[index], OMEGA_COLOR, "left")  # VTK's fonts have no ω
         instant = f"t = {self._scene.t[index]:.4g} {self._scene.time_unit}"
-        text = f"{self._scene.title}\n{instant}" if self._scene.title else instant
+        discs = zip(self._scene.discs, self._factors, strict=True)
+        speeds = [disc.words(index, factor, self._scene.time_unit) for disc, factor in discs]
+        text = "\n".join([*([self._scene.title] if self._scene.title else []), instant, *speeds])
         self._plotter.add_text(
             text, position="upper_left", font_size=11, color="#333333", name=f"{self._name}-time"
         )

@@ -1,8 +1,8 @@
 //! Principal axes against nalgebra's `SymmetricEigen`: `cargo bench --bench eigen3`.
 
 use nalgebra::Matrix3;
-use polhode::numerics::dispatch::{Level, level, set_level};
-use polhode::numerics::eigen3::{eigen3, eigen3_many, eigenvalues3_many};
+use polhode::inside::{eigen3, eigen3_many, eigenvalues3_many};
+use polhode::parallel::{Level, level, set_level};
 
 mod harness;
 

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
+use polhode::inside::carlson_rf;
 use polhode::motion::free::FreeMotion;
-use polhode::numerics::dispatch::{Level, level, set_level};
-use polhode::numerics::elliptic::carlson_rf;
+use polhode::parallel::{Level, level, set_level};
 
 mod harness;
 

@@ -6,10 +6,8 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use polhode::numerics::dispatch::{Kernel, Level, dispatch, level, set_level};
-use polhode::numerics::eigen3::{eigen3, eigen3_many, eigenvalues3_many};
-use polhode::numerics::lane::{Double, Lane};
-use polhode::numerics::threads::set_thread_limit;
+use polhode::inside::{Double, Kernel, Lane, dispatch, eigen3, eigen3_many, eigenvalues3_many};
+use polhode::parallel::{Level, level, set_level, set_thread_limit};
 use polhode::principal::{principal_axes, principal_axes_many};
 
 type Row = [f64; 9];

@@ -12,8 +12,7 @@ use polhode::error::BodyFault;
 use polhode::mass::particles::{Particles, particle_stack, particles, particles_watched};
 use polhode::mass::voxels::{Grid, voxels};
 use polhode::mass::{MassAccumulator, RigidBody};
-use polhode::numerics::dispatch::{Level, level, set_level};
-use polhode::numerics::threads::{set_thread_limit, set_watch_interval};
+use polhode::parallel::{Level, level, set_level, set_thread_limit, set_watch_interval};
 use polhode::{Error, PrincipalAxes};
 use proptest::prelude::*;
 

@@ -18,15 +18,6 @@ use polhode::motion::simulate::{
 use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::{Error, RigidBody};
 
-const METHODS: [Method; 6] = [
-    Method::Auto,
-    Method::Exact,
-    Method::Taylor,
-    Method::Dop853,
-    Method::Radau,
-    Method::Splitting,
-];
-
 fn go_on(_: f64) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
@@ -66,7 +57,7 @@ fn times_that_do_not_run_one_way_are_an_error_of_every_method() {
         &[0.0, -1.0, -0.5],
     ];
     for times in bad {
-        for method in METHODS {
+        for &method in Method::ALL {
             let task = task(&body, start(), times, method);
             let run = free(&task);
             assert!(matches!(run.end, End::Failed(_)), "{method:?} {times:?}");
@@ -90,7 +81,7 @@ fn times_that_do_not_run_one_way_are_an_error_of_every_method() {
     };
     assert_eq!(index, 2);
     for times in [&[3.0][..], &[0.0, 1.0, 4.0], &[0.0, -1.0]] {
-        for method in METHODS {
+        for &method in Method::ALL {
             let run = free(&task(&body, start(), times, method))
                 .into_result()
                 .expect("good times");
@@ -107,7 +98,7 @@ fn a_state_that_is_no_number_is_an_error() {
     bad[1].position.x = f64::INFINITY;
     bad[2].velocity.z = f64::NAN;
     for (phase, what) in bad.into_iter().zip(["omega", "position", "velocity"]) {
-        for method in METHODS {
+        for &method in Method::ALL {
             let run = free(&task(&body, phase.clone(), &[0.0, 1.0], method));
             assert!(
                 matches!(run.end, End::Failed(Error::NonFinite { what: named, .. }) if named == what),

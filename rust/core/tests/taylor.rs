@@ -14,8 +14,7 @@ use polhode::motion::loads::{Analytic, Damping, Frame, Term};
 use polhode::motion::simulate::{
     End, Method, NoEvents, Phase, Run, TIGHTEST, Task, Tolerance, simulate,
 };
-use polhode::numerics::dispatch::{Level, level, set_level};
-use polhode::numerics::threads::set_thread_limit;
+use polhode::parallel::{Level, level, set_level, set_thread_limit};
 use proptest::prelude::*;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;

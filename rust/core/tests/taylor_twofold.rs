@@ -11,8 +11,7 @@ use polhode::RigidBody;
 use polhode::motion::integrate::taylor::{solve_many, solve_one};
 use polhode::motion::loads::{Damping, Frame, Term};
 use polhode::motion::simulate::{End, Method, Phase, Run, TIGHTEST, Task, Tolerance};
-use polhode::numerics::dispatch::{Level, level, set_level};
-use polhode::numerics::threads::set_thread_limit;
+use polhode::parallel::{Level, level, set_level, set_thread_limit};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 

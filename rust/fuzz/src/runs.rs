@@ -74,15 +74,6 @@ impl Load for Called<'_> {
     }
 }
 
-const METHODS: [Method; 6] = [
-    Method::Auto,
-    Method::Exact,
-    Method::Taylor,
-    Method::Dop853,
-    Method::Radau,
-    Method::Splitting,
-];
-
 /// Looks at the watch before a run is given up: as many steps.
 const STEPS: u32 = 60;
 
@@ -113,7 +104,7 @@ pub fn simulated(body: &RigidBody, mut draw: Draw<'_>) -> Result<()> {
     if !pivoted {
         (initial.position, initial.velocity) = (draw.vector()?, draw.vector()?);
     }
-    let method = draw.one_of(&METHODS)?;
+    let method = draw.one_of(Method::ALL)?;
     let relative = draw.one_of(&[1e-10, 1e-6, 1e-3, 0.1, 1e-14, 1e-20])?;
     let Ok(tolerance) = Tolerance::new(relative, draw.one_of(&[0.0, 1e-9])?) else {
         return Ok(());

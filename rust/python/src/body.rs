@@ -6,6 +6,7 @@ use polhode::RigidBody;
 use polhode::uncertainty::Doubt;
 use pyo3::prelude::*;
 
+use crate::figure::Figures;
 use crate::stack::Stack;
 
 /// The doubts of each body of a stack, or none where all is taken as known.
@@ -65,6 +66,8 @@ pub(crate) struct PyRigidBody {
     pub(crate) bodies: Stack<RigidBody>,
     /// What is not known of them.
     pub(crate) doubts: Doubts,
+    /// What they look like.
+    pub(crate) figures: Figures,
 }
 
 impl From<Stack<RigidBody>> for PyRigidBody {
@@ -72,6 +75,7 @@ impl From<Stack<RigidBody>> for PyRigidBody {
         Self {
             bodies,
             doubts: None,
+            figures: None,
         }
     }
 }

@@ -3,8 +3,7 @@
 use std::env;
 use std::num::NonZeroUsize;
 
-use polhode::numerics::dispatch::{Level, level, set_level};
-use polhode::numerics::threads::{set_thread_limit, thread_count};
+use polhode::parallel::{Level, level, set_level, set_thread_limit, thread_count};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

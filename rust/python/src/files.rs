@@ -13,7 +13,7 @@ use polhode::mass::polyhedron::Options;
 use polhode::mass::polyhedron::stream::{StreamError, TriangleStream};
 use polhode::mass::polyhedron::streamed::streamed;
 use polhode::mass::surface;
-use polhode::numerics::threads::Halt;
+use polhode::parallel::Halt;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 

@@ -1,7 +1,6 @@
 //! The class `FreeMotion`: exact motions of free bodies.
 
 mod constants;
-mod drawn;
 mod from_periods;
 mod in_time;
 

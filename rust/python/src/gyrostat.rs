@@ -4,8 +4,8 @@ pub(crate) mod motion;
 mod steady;
 
 use nalgebra::{Matrix3, Vector3};
+use polhode::DoubleDouble;
 use polhode::motion::gyrostat::{Gyrostat, Inside};
-use polhode::numerics::double_double::DoubleDouble;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;

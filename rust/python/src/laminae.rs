@@ -5,6 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
+use crate::figure::{Outline, alone, figures_of_lengths};
 use crate::shapes::{Amounts, Given, lengths, one, shape};
 use crate::stack::Broadcast;
 use crate::uncertain::{Quantity, carried, quantity, quantity_list};
@@ -37,7 +38,7 @@ pub(crate) fn disk(
         ["radius"],
         [radius],
         (mass, density),
-        &shape!(|&[radius]| 1, laminae::disk, radius),
+        shape!(|&[radius]| 1, laminae::disk, radius),
     )
 }
 
@@ -71,7 +72,7 @@ pub(crate) fn annulus(
         ["inner_radius", "outer_radius"],
         [inner_radius, outer_radius],
         (mass, density),
-        &shape!(|&[inner, outer]| 2, laminae::annulus, inner, outer),
+        shape!(|&[inner, outer]| 2, laminae::annulus, inner, outer),
     )
 }
 
@@ -104,7 +105,7 @@ pub(crate) fn ellipse(
         semi_axes,
         "semi_axes",
         (mass, density),
-        &shape!(|lengths| 2, laminae::ellipse, lengths),
+        shape!(|lengths| 2, laminae::ellipse, lengths),
     )
 }
 
@@ -137,7 +138,7 @@ pub(crate) fn rectangle(
         size,
         "size",
         (mass, density),
-        &shape!(|lengths| 2, laminae::rectangle, lengths),
+        shape!(|lengths| 2, laminae::rectangle, lengths),
     )
 }
 
@@ -182,7 +183,12 @@ pub(crate) fn triangle(
     let doubts = carried(vertices.py(), &grid, is_uncertain, |[v, a]| {
         amounts.doubt_of_polygon(a, corners.row(v))
     })?;
-    Ok(PyRigidBody::doubtful(bodies, doubts))
+    let figures = figures_of_lengths("laminae::polygon", grid.len(), |row| {
+        corners.values[grid.operands(row)[0]]
+            .as_flattened()
+            .to_vec()
+    });
+    Ok(PyRigidBody::doubtful(bodies, doubts).looking(figures))
 }
 
 /// Simple polygon in the x-y plane, where its corners are.
@@ -243,5 +249,9 @@ pub(crate) fn polygon(
             .collect();
         amounts.doubt_of_polygon(a, numbers)
     })?;
-    Ok(PyRigidBody::doubtful(bodies, doubts))
+    let is_alone = grid.shape.is_empty();
+    let outline = is_alone
+        .then(|| Outline::of_points("laminae::polygon", &corners.values.rows))
+        .flatten();
+    Ok(PyRigidBody::doubtful(bodies, doubts).looking(alone(outline)))
 }

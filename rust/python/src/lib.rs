@@ -12,6 +12,7 @@
 //! | `interrupt` | Ctrl-C and progress |
 //! | `depth` | functions of Python that call the package anew |
 //! | `closed_form` | exact motions at many times |
+//! | `drawn` | pictures of exact motions, which Python draws |
 //! | `uncertain` | numbers with a sigma, and the covariances of bodies |
 //! | `environment` | the variables that limit threads and name the instruction set |
 //! | the others | one each for a class or module of the Python package |
@@ -27,12 +28,14 @@ mod attitudes;
 mod body;
 mod closed_form;
 mod depth;
+mod drawn;
 mod elsewhere;
 mod environment;
 mod equimomental;
 mod errors;
 mod euler_rates;
 mod events;
+mod figure;
 mod files;
 mod foreign;
 mod forms;

@@ -2,7 +2,7 @@
 
 use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use polhode::Error;
-use polhode::numerics::threads::Halt;
+use polhode::parallel::Halt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 

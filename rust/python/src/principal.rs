@@ -5,7 +5,7 @@ use std::cell::Cell;
 use nalgebra::Matrix3;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use polhode::mass::validity::{ASYMMETRY, check_symmetry};
-use polhode::numerics::threads::Halt;
+use polhode::parallel::Halt;
 use polhode::principal as core;
 use polhode::{PrincipalAxes, RigidBody};
 use pyo3::exceptions::PyValueError;

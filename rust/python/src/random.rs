@@ -1,9 +1,9 @@
 //! Random numbers of the members of ensembles, and factors of covariances.
 
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use polhode::numerics::covariance::factor;
-use polhode::numerics::threads::Halt;
+use polhode::parallel::Halt;
 use polhode::random::Stream;
+use polhode::random::factor;
 use polhode::random::laws::{normal, uniform};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

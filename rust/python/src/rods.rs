@@ -35,7 +35,7 @@ pub(crate) fn rod(
         ["length"],
         [length],
         (mass, density),
-        &shape!(|&[length]| 1, rods::rod, length),
+        shape!(|&[length]| 1, rods::rod, length),
     )
 }
 
@@ -67,7 +67,7 @@ pub(crate) fn ring(
         ["radius"],
         [radius],
         (mass, density),
-        &shape!(|&[radius]| 1, rods::ring, radius),
+        shape!(|&[radius]| 1, rods::ring, radius),
     )
 }
 
@@ -110,9 +110,15 @@ pub(crate) fn arc(
 ) -> PyResult<PyRigidBody> {
     let (names, sizes) = (["radius", "angle"], [radius, angle]);
     if degrees {
-        let turned = shape!(|&[r, angle]| 2, rods::arc, r, angle * 1.0_f64.to_radians());
-        return lengths(names, sizes, (mass, density), &turned);
+        let turned = shape!(
+            "rods::arc in degrees",
+            |&[r, angle]| 2,
+            rods::arc,
+            r,
+            angle * 1.0_f64.to_radians()
+        );
+        return lengths(names, sizes, (mass, density), turned);
     }
     let turned = shape!(|&[r, angle]| 2, rods::arc, r, angle);
-    lengths(names, sizes, (mass, density), &turned)
+    lengths(names, sizes, (mass, density), turned)
 }

@@ -10,7 +10,7 @@ use polhode::motion::integrate::variation::{Variation, variations};
 use polhode::motion::loads::Term;
 use polhode::motion::simulate::{Method, Task, Tolerance};
 use polhode::motion::state::{Phase, State};
-use polhode::numerics::threads::fill_blocks;
+use polhode::parallel::fill_blocks;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 

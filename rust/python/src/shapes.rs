@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::Item;
 use crate::body::PyRigidBody;
+use crate::figure::figures_of_lengths;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{Number, Quantity, carried, factor, quantity};
 
@@ -25,9 +26,15 @@ pub(crate) fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount
     }
 }
 
+/// A shape under the name of what makes it.
+pub(crate) type Named<'a, const N: usize> = (&'static str, &'a dyn AnyShape<N>);
+
 /// The shape that an expression of the core makes of its lengths, for plain numbers and for numbers with derivatives.
 macro_rules! shape {
-    (|$lengths:pat_param| $n:literal, $function:path, $($argument:expr),+) => {{
+    (|$lengths:pat_param| $n:literal, $function:path, $($argument:expr),+) => {
+        shape!(stringify!($function), |$lengths| $n, $function, $($argument),+)
+    };
+    ($name:expr, |$lengths:pat_param| $n:literal, $function:path, $($argument:expr),+) => {{
         struct Shape;
         impl polhode::uncertainty::Shape<$n> for Shape {
             fn of<X: polhode::mass::ten::Size>(
@@ -38,7 +45,7 @@ macro_rules! shape {
                 $function($($argument,)+ amount)
             }
         }
-        Shape
+        ($name, &Shape as &dyn $crate::shapes::AnyShape<$n>)
     }};
 }
 pub(crate) use shape;
@@ -65,7 +72,7 @@ pub(crate) fn one<const N: usize>(
     size: &Bound<'_, PyAny>,
     name: &str,
     amounts: (Given<'_, '_>, Given<'_, '_>),
-    shape: &dyn AnyShape<N>,
+    (kind, shape): Named<'_, N>,
 ) -> PyResult<PyRigidBody>
 where
     [f64; N]: Item + Sync,
@@ -83,7 +90,10 @@ where
     let doubts = carried(size.py(), &grid, is_uncertain, |[s, a]| {
         amounts.doubt(a, sizes.row(s), shape)
     })?;
-    Ok(PyRigidBody::doubtful(bodies, doubts))
+    let figures = figures_of_lengths(kind, grid.len(), |row| {
+        sizes.values[grid.operands(row)[0]].to_vec()
+    });
+    Ok(PyRigidBody::doubtful(bodies, doubts).looking(figures))
 }
 
 /// A shape with several lengths.
@@ -91,7 +101,7 @@ pub(crate) fn lengths<const N: usize>(
     names: [&str; N],
     lengths: [&Bound<'_, PyAny>; N],
     amounts: (Given<'_, '_>, Given<'_, '_>),
-    shape: &dyn AnyShape<N>,
+    (kind, shape): Named<'_, N>,
 ) -> PyResult<PyRigidBody> {
     let py = lengths[0].py();
     let mut read_in: Vec<Quantity<f64>> = Vec::with_capacity(N);
@@ -100,7 +110,8 @@ pub(crate) fn lengths<const N: usize>(
     }
     let shapes = std::array::from_fn(|k| &read_in[k].values.shape[..]);
     let together: Stack<[usize; N]> = Broadcast::of(names, shapes)?.try_map(py, Ok)?;
-    let of_row = |rows: &[usize; N]| std::array::from_fn(|k| read_in[k].values[rows[k]]);
+    let of_row =
+        |rows: &[usize; N]| -> [f64; N] { std::array::from_fn(|k| read_in[k].values[rows[k]]) };
     let amounts = Amounts::read(amounts)?;
     let all = names.join(", ");
     let grid = Broadcast::of(
@@ -117,7 +128,10 @@ pub(crate) fn lengths<const N: usize>(
             .collect();
         amounts.doubt(a, numbers, shape)
     })?;
-    Ok(PyRigidBody::doubtful(bodies, doubts))
+    let figures = figures_of_lengths(kind, grid.len(), |row| {
+        of_row(&together[grid.operands(row)[0]]).to_vec()
+    });
+    Ok(PyRigidBody::doubtful(bodies, doubts).looking(figures))
 }
 
 /// Masses or densities, which may be uncertain.

@@ -5,7 +5,7 @@
 use std::ops::Index;
 
 use polhode::Error;
-use polhode::numerics::threads::{Halt, Watch, fill_blocks};
+use polhode::parallel::{Halt, Watch, fill_blocks};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

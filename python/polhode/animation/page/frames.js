@@ -30,10 +30,10 @@ export class Frames {
     return [low, high, span, span ? Math.min(1, Math.max(0, (t - this.t[low]) / span)) : 0];
   }
 
-  /** The time of the frame that is nearest to a time. */
+  /** The frame that is nearest to a time. */
   nearest(t) {
     const [low, high, , s] = this.place(t);
-    return this.t[s < 0.5 ? low : high];
+    return s < 0.5 ? low : high;
   }
 
   at(t) {

@@ -12,7 +12,7 @@ export function placed(names, width, height) {
     let best = null, least = Infinity;
     for (const far of [14, 26, 40]) {
       for (const turn of AROUND) {
-        const c = Math.cos(turn), s = Math.sin(turn), size = far + one.width / 4;
+        const c = Math.cos(turn), s = Math.sin(turn), size = far + Math.abs(c * one.ux - s * one.uy) * one.width / 2;
         const at = [
           Math.min(width - one.width / 2 - 2, Math.max(one.width / 2 + 2, one.x + size * (c * one.ux - s * one.uy))),
           Math.min(height - HEIGHT / 2, Math.max(HEIGHT / 2, one.y + size * (s * one.ux + c * one.uy))),

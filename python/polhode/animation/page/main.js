@@ -1,7 +1,8 @@
 // The page: what it was given, what it shows now, and what its controls do.
 
 import { View } from "./camera.js";
-import { asked, speedName, speeds } from "./clock.js";
+import { asked, speedWords, speeds, timeText } from "./clock.js";
+import { energyRows } from "./energy.js";
 import { Frames, numbers } from "./frames.js";
 import { FreeBody, quaternionOf } from "./free.js";
 import { buildSliders } from "./live.js";
@@ -10,12 +11,14 @@ import { colors, key, readColors } from "./theme.js";
 import { Trail } from "./trail.js";
 import { conjugate, dot, length, rotate, sum, times } from "./vectors.js";
 import { drawBody, drawPoinsot, drawSpace } from "./views.js";
+import { Wheel, slowed } from "./wheels.js";
 
-const PATHS = { cusp: "with cusps", loop: "with loops", wave: "in waves" }; // of a top's axis
+const PATHS = { steady: "at rest", regular: "a circle", cusp: "with cusps", loop: "with loops", wave: "in waves", crossing: "through the vertical", planar: "in a plane", asymptotic: "asymptotic to the vertical" }; // of a top's axis
 const element = (id) => document.getElementById(id);
 const given = JSON.parse(element("motion").textContent);
 const unpack = (text, Kind) => (text === null ? null : numbers(text, Kind));
-const frames = new Frames(unpack(given.t, Float64Array), unpack(given.quaternion, Float32Array), unpack(given.omega, Float32Array), unpack(given.inside, Float32Array));
+const inUnits = (array, unit) => (array === null || unit === 1 ? array : Float64Array.from(array, (x) => x * unit));
+const frames = new Frames(unpack(given.t, Float64Array), unpack(given.quaternion, Float32Array), inUnits(unpack(given.omega, Float32Array), given.omega_unit), inUnits(unpack(given.inside, Float32Array), given.inside_unit));
 const solid = new Solid(unpack(given.vertices, Float32Array), unpack(given.faces, Uint32Array), unpack(given.colors, Uint8Array));
 const start = frames.t[0], end = frames.t[frames.count - 1], span = end - start;
 const toBodyAxes = quaternionOf(given.axes);
@@ -23,7 +26,8 @@ if (given.free) given.free.attitude = times(given.free.quaternion, toBodyAxes);
 const wanted = asked(location.hash, start, end);
 
 // The motion that is shown: the given one, or that of another start.
-const motion = { axes: given.axes, top: given.top };
+const motion = { axes: given.axes, top: given.top, wheels: given.wheels.map((one) => new Wheel({ ...one, isBrief: given.wheels.length > 4, rate: unpack(one.rate, Float32Array), angle: unpack(one.angle, Float64Array) }, frames)) };
+const energy = { ...given.energy, kinetic: unpack(given.energy.kinetic, Float64Array), potential: unpack(given.energy.potential, Float64Array) };
 function follow(another) {
   const begin = another ?? given.free, body = begin && new FreeBody(begin.moments, begin.omega, given.free.attitude);
   const closed = (since) => {
@@ -64,25 +68,24 @@ let speed = rate;
 
 /** The numbers of a state: the energy, |L|, |ω| and when the body turns over next; those of the nearest frame where no more is known. */
 function readouts(now) {
-  const state = motion.body ? now : motion.at(frames.nearest(now.t));
+  const state = motion.body ? now : motion.at(frames.t[frames.nearest(now.t)]);
   const kinetic = 0.5 * state.along.reduce((total, w, i) => total + motion.moments[i] * w * w, 0);
-  const rows = [];
-  if (given.top?.weight) rows.push(["E = T + V", (kinetic - given.top.weight * dot(rotate(state.q, given.top.axis), given.top.down)).toPrecision(6)]);
-  else rows.push(["T", kinetic.toPrecision(6)]);
+  const rows = energyRows(energy, motion.body ? null : frames.nearest(now.t), kinetic);
   rows.push(["|L|", length(state.momentum).toPrecision(6)], ["|\u03c9|", `${length(state.omega).toPrecision(5)} rad/${given.time_unit}`]);
-  if (motion.body && span >= 0) {
+  const [i1, i2, i3] = motion.moments;
+  if (motion.body && span >= 0 && i1 < i2 && i2 < i3) { // else there is no intermediate axis
     const flip = motion.body.nextFlip(state.since);
     rows.push(["next flip", Number.isFinite(flip) ? `in ${flip.toPrecision(4)} ${given.time_unit}` : "never"]);
   }
+  for (const wheel of motion.wheels) rows.push([wheel.name, wheel.words(now.t, given.time_unit, speed)]);
   return rows;
 }
-const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(Math.abs(span) || 1))));
-const clockText = (t) => `${t.toFixed(digits)} ${given.time_unit}`;
+const clockText = (t) => `${timeText(t, start, end)} ${given.time_unit}`;
 const cells = new Map();
 
 function draw() {
   const state = motion.at(now), shown = { traces: element("traces").checked, axes: element("axes").checked };
-  drawSpace(views.space, state, motion, shown);
+  drawSpace(views.space, state, motion, shown, speed);
   (second === "poinsot" ? drawPoinsot : drawBody)(views.second, state, motion, shown);
   element("slider").value = span ? (now - start) / span : 0;
   element("slider").setAttribute("aria-valuetext", clockText(now));
@@ -125,7 +128,7 @@ function choose(name) {
   document.body.dataset.view = name;
   for (const button of element("tabs").children) button.setAttribute("aria-pressed", String(button.dataset.view === (matchMedia("(max-width: 640px)").matches ? view : second)));
   const path = given.top ? `, and the path of its axis${given.top.path ? ` (${PATHS[given.top.path] ?? given.top.path})` : ""}` : "";
-  element("space-caption").innerHTML = `In space: the body, ${key("omega", "\u03c9")}, ${key("momentum", "L")}${given.inside ? ` (with ${key("inside", "h")}, which the body carries along)` : ""}${path}`;
+  element("space-caption").innerHTML = `In space: the body, ${key("omega", "\u03c9")}, ${key("momentum", "L")}${given.inside ? ` (with ${key("inside", "h")}, which the body carries along)` : ""}${path}${motion.wheels.length ? `; ${key("inside", "discs")}: its wheels, not to scale, turning relative to it` : ""}`;
   element("second-caption").innerHTML = second === "poinsot"
     ? `Poinsot: the ellipsoid of inertia rolls on the plane that ${key("momentum", "L")} is normal to; the tip of ${key("omega", "\u03c9")} is where they touch`
     : `In the body: ${key("omega", "\u03c9")} on the ellipsoid of inertia; its path, the polhode${given.moments[0] < given.moments[1] && given.moments[1] < given.moments[2] ? `; ${key("ink", "dark")}, the separatrix` : ""}`;
@@ -135,7 +138,7 @@ function choose(name) {
 
 document.title = element("title").textContent = given.title;
 document.body.classList.toggle("is-embedded", wanted.isEmbedded);
-for (const one of speeds(rate, given.time_unit)) element("speed").append(new Option(speedName(one, given.time_unit), String(one), false, one === rate));
+for (const one of speeds(rate, given.time_unit)) element("speed").append(new Option(speedWords(one, given.time_unit, motion.fastest), String(one), false, one === rate));
 element("speed").addEventListener("change", (event) => { speed = Number(event.target.value); });
 element("play").addEventListener("click", () => play(!playing));
 element("slider").addEventListener("input", (event) => show(start + span * event.target.value));
@@ -154,7 +157,7 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { re
 addEventListener("hashchange", () => { const word = asked(location.hash, start, end); if (word.t !== null) show(word.t); if (word.view) choose(word.view); });
 element("share").hidden = location.protocol === "about:"; // in a notebook there is no file
 const file = decodeURIComponent(location.pathname.split("/").pop() || "motion.html").replace(/["&<>]/g, "");
-element("frame").value = `<iframe src="${file}#embed" title="${given.title.replace(/["&<>]/g, "")}" width="640" height="420" loading="lazy" style="border:0"></iframe>`;
+element("frame").value = `<iframe src="${file}#embed" title="${given.title.replace(/["&<>]/g, "")}" width="640" height="420" loading="lazy" allowfullscreen style="border:0"></iframe>`;
 element("copy").addEventListener("click", () => { element("frame").select(); navigator.clipboard?.writeText(element("frame").value).catch(() => document.execCommand("copy")); });
 if (given.free) {
   element("live").hidden = false;
@@ -163,4 +166,4 @@ if (given.free) {
 play(playing);
 choose(wanted.view === "poinsot" && !given.free ? "body" : view);
 if (playing) requestAnimationFrame(tick);
-globalThis.polhode = { FreeBody, frames, motion, views, show, play, draw, colors, stateAt: (t) => motion.at(t), get now() { return now; }, get playing() { return playing; } };
+globalThis.polhode = { FreeBody, slowed, frames, motion, views, show, play, draw, colors, stateAt: (t) => motion.at(t), get now() { return now; }, get playing() { return playing; } };

@@ -1,12 +1,12 @@
 // The body: triangles with a colour each, the far ones first. Few calls of the pen: those of one shade in a row are one path.
 
+import { TINTS } from "./shared.js";
 import { rotate } from "./vectors.js";
 
 const SHADES = 24;
 const BUCKETS = 2048;
 const PIECES = 16; // of the size of a body: triangles are cut to that
 const MOST = 2500;
-const TINTS = [[158, 197, 224], [240, 190, 150], [158, 214, 196], [110, 160, 200], [222, 150, 96], [98, 178, 150]];
 
 export class Solid {
   /** vertices and faces as flat arrays, three numbers each; colors: red, green, blue of each face. */
@@ -124,7 +124,7 @@ export function boxOf(moments, axes) {
         for (let k = 0; k < 3; k++) vertices.push(axes[0][k] * p[0] + axes[1][k] * p[1] + axes[2][k] * p[2]);
       }
       faces.push(first, first + 1, first + 2, first, first + 2, first + 3);
-      for (let k = 0; k < 2; k++) colors.push(...TINTS[sense > 0 ? axis : axis + 3]);
+      for (let k = 0; k < 2; k++) colors.push(...TINTS[2 * axis + (sense > 0 ? 0 : 1)]);
     }
   }
   return new Solid(new Float32Array(vertices), new Uint32Array(faces), new Uint8Array(colors));

@@ -8,7 +8,7 @@ const BODY = 0.85;
 const LONGEST = 2.5; // of a semi-axis without end, in lengths of the longest ω
 
 /** The body, L, ω and their ways in space; of a top its pivot and the path of its axis. */
-export function drawSpace(view, now, motion, shown) {
+export function drawSpace(view, now, motion, shown, speed) {
   if (!view.begin()) return;
   const { q, omega, momentum, inside } = now, trail = motion.trail.upTo(now.since), fixed = [];
   for (const [axis, name] of [[[1, 0, 0], "x"], [[0, 1, 0], "y"], [[0, 0, 1], "z"]]) {
@@ -32,7 +32,11 @@ export function drawSpace(view, now, motion, shown) {
     });
   };
   pathOf(false);
-  motion.solid.draw(view, q, BODY / motion.solid.reach);
+  const size = BODY / motion.solid.reach, depth = (wheel) => dot(rotate(q, wheel.middle), view.toward);
+  const wheels = [...motion.wheels].sort((a, b) => depth(a) - depth(b));
+  for (const wheel of wheels) if (!wheel.isNear(view, q)) wheel.draw(view, now, size, speed);
+  motion.solid.draw(view, q, size);
+  for (const wheel of wheels) if (wheel.isNear(view, q)) wheel.draw(view, now, size, speed);
   pathOf(true);
   if (shown.axes) {
     motion.axes.forEach((axis, i) => {

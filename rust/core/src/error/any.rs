@@ -131,6 +131,19 @@ pub enum Error {
 
 impl Error {
     /// The kind of mistake.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::nalgebra::Matrix3;
+    /// use polhode::nalgebra::Vector3;
+    /// use polhode::RigidBody;
+    /// use polhode::error::Kind;
+    ///
+    /// let tensor = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 3.0));
+    /// let error = RigidBody::new(1.0, &tensor, &Vector3::zeros(), 0.0).unwrap_err();
+    /// assert_eq!(error.kind(), Kind::Inertia);
+    /// ```
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {

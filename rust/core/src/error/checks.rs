@@ -4,6 +4,7 @@ use super::any::Error;
 use super::body::BodyFault;
 
 /// `Ok` with a finite number, else [`Error::NonFinite`].
+#[inline]
 pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, Error> {
     if value.is_finite() {
         Ok(value)
@@ -13,6 +14,7 @@ pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, Error> {
 }
 
 /// `Ok` when every number is finite, else [`Error::NonFinite`] with the first that is not.
+#[inline]
 pub(crate) fn all_finite<'a>(
     what: &'static str,
     values: impl IntoIterator<Item = &'a f64>,
@@ -23,6 +25,7 @@ pub(crate) fn all_finite<'a>(
 }
 
 /// `Ok` with a finite mass property, else [`BodyFault::NonFinite`].
+#[inline]
 pub(crate) fn finite_of_body(what: &'static str, value: f64) -> Result<f64, Error> {
     if value.is_finite() {
         Ok(value)
@@ -32,6 +35,7 @@ pub(crate) fn finite_of_body(what: &'static str, value: f64) -> Result<f64, Erro
 }
 
 /// `Ok` when every mass property is finite, else [`BodyFault::NonFinite`] with the first that is not.
+#[inline]
 pub(crate) fn all_finite_of_body<'a>(
     what: &'static str,
     values: impl IntoIterator<Item = &'a f64>,
@@ -42,6 +46,7 @@ pub(crate) fn all_finite_of_body<'a>(
 }
 
 /// 0 ≤ rtol < 1.
+#[inline]
 pub(crate) fn check_rtol(rtol: f64) -> Result<(), Error> {
     finite("rtol", rtol)?;
     if (0.0..1.0).contains(&rtol) {

@@ -21,6 +21,21 @@ const CHUNK: usize = 1024;
 /// The length is checked against the header before anything is allocated; the stored normals and attributes are not read,
 /// since the order of the corners says the same.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::io::stl;
+///
+/// let mut bytes = vec![0_u8; 80]; // a header, the count of triangles, and each with its normal and its corners
+/// bytes.extend(1_u32.to_le_bytes());
+/// for number in [0.0_f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+///     bytes.extend(number.to_le_bytes());
+/// }
+/// bytes.extend([0, 0]);
+/// let mesh = stl::read(&bytes[..], bytes.len() as u64).unwrap();
+/// assert_eq!((mesh.faces.len(), mesh.vertices[1]), (1, [1.0, 0.0, 0.0]));
+/// ```
+///
 /// # Errors
 /// When reading fails or the length is not what the header promises.
 pub fn read(mut source: impl Read, held: u64) -> Result<TriangleMesh, StreamError> {

@@ -35,7 +35,7 @@ impl Amount {
     }
 
     /// Mass or density, positive and finite.
-    fn checked(self) -> Result<f64, Error> {
+    pub(crate) fn checked(self) -> Result<f64, Error> {
         let (what, value) = match self {
             Self::Mass(mass) => ("mass", mass),
             Self::Density(density) => ("density", density),

@@ -64,6 +64,17 @@ impl RigidBody {
 
     /// What is left of the body when `part` is taken out of it: a cavity, a hole.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    ///
+    /// let density = Amount::Density(1.0);
+    /// let shell = solids::sphere(2.0, density)?.without(&solids::sphere(1.0, density)?)?;
+    /// assert!(shell.is_close(&solids::hollow_sphere(1.0, 2.0, density)?, 1e-14, 1e-14));
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`BodyFault::NoRemainder`] when what is left is no body: its mass or its second moment along some axis is negative.
     pub fn without(&self, part: &Self) -> Result<Self, Error> {

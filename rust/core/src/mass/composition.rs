@@ -14,8 +14,20 @@ use crate::principal::{PrincipalAxes, with_sign_rule};
 impl RigidBody {
     /// The body moved by `d`.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// let ball = solids::sphere(1.0, Amount::Mass(1.0))?.translated(&Vector3::new(1.0, 2.0, 3.0))?;
+    /// assert_eq!(ball.center_of_mass().z, 3.0);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// When the new centre of mass is not finite.
+    #[inline]
     pub fn translated(&self, d: &Vector3<f64>) -> Result<Self, Error> {
         all_finite("displacement", d)?;
         let center_of_mass = self.center_of_mass + d;
@@ -28,6 +40,20 @@ impl RigidBody {
     }
 
     /// The body turned about the origin by the rotation matrix R: `C → R C`, `I → R I Rᵀ`; its moments stay as they are.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::nalgebra::Rotation3;
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// let rod = solids::cuboid(&[0.0, 0.0, 6.0], Amount::Mass(1.0))?;
+    /// let quarter = Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+    /// let lying = rod.rotated(&quarter.into_inner())?;
+    /// assert!((lying.inertia()[(2, 2)] - 3.0).abs() < 1e-14); // along y now
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     ///
     /// # Errors
     /// When R is not a rotation; a turned centre of mass or tensor that is not finite.
@@ -57,6 +83,17 @@ impl RigidBody {
     }
 
     /// The same shape `length` times as large and `mass` times as heavy: `m → k m`, `C → s C`, `I → k s² I`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    ///
+    /// let ball = solids::sphere(1.0, Amount::Mass(5.0))?.scaled(2.0, 3.0)?; // twice as long, three times as heavy
+    /// assert_eq!(ball.mass(), 15.0);
+    /// assert!((ball.principal().moments[0] - 24.0).abs() < 1e-13);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     ///
     /// # Errors
     /// When a factor is not positive and finite, or the result is beyond the range of float64 with all its digits.

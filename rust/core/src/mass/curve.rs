@@ -33,6 +33,20 @@ impl Corners<2> for Polyline<'_> {
 /// `amount` is the total mass or the mass per length λ. A closed wire ends at its first point. `watch` is asked about every
 /// 20 ms whether to go on.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::Amount;
+/// use polhode::mass::curve::curve;
+/// use std::ops::ControlFlow;
+///
+/// let points = [[0.0; 3], [6.0, 0.0, 0.0]];
+/// let wire = curve(&points, Amount::Density(0.5), &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!(wire.mass(), 3.0);
+/// assert!((wire.principal().moments[2] - 9.0).abs() < 1e-14); // m l²/12
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When a coordinate is not finite, the wire has no length, or the amount is not positive; [`Error::Stopped`] where `watch`
 /// said so.

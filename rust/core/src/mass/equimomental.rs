@@ -40,6 +40,20 @@ const SQRT_3_2: f64 = 1.224_744_871_391_589;
 /// `s_k = (I_i + I_j − I_k)/2` of S and the corners u of a regular simplex, centred at the origin and of unit spread.
 /// Source: mex143; Routh, Dynamics of a System of Rigid Bodies, elementary part, §34.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::mass::equimomental::equimomental_particles;
+/// use polhode::mass::particles::particles;
+///
+/// let brick = solids::cuboid(&[1.0, 2.0, 3.0], Amount::Mass(4.0))?;
+/// let found = equimomental_particles(&brick)?;
+/// assert_eq!(found.masses, [1.0; 4]);
+/// assert!(particles(&found.masses, &found.positions)?.is_close(&brick, 1e-14, 1e-14));
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// [`BodyFault::TriangleInequality`] for a body that was admitted (`rtol`) with moments that no masses have; a body larger than
 /// any number, `√(I/m)`, or whose mass has no parts that are normal numbers.
@@ -107,6 +121,17 @@ fn spreads(moments: &[f64; 3]) -> Result<([f64; 3], &'static [[f64; 3]]), Error>
 /// through C. The moment about every parallel axis agrees too, `I₀ + m x²`. The stick lies along z with C at the origin:
 /// positions a, −b and 0, in this order.
 /// Source: mex143.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::equimomental::stick;
+///
+/// // A rod of 12 kg and 1 m: 2 kg at each end and 8 kg in the middle.
+/// let found = stick(12.0, 12.0 / 12.0, 0.5, 0.5)?;
+/// assert_eq!(found.masses, [2.0, 2.0, 8.0]);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`BodyFault::NegativeCentralMass`] where `m₀ < 0`; distances and mass that are not positive, a negative moment.

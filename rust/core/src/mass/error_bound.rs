@@ -26,13 +26,20 @@ impl ErrorBound {
     /// Of sums over `terms` particles: the mass, the first moments and the second moments about a point within the body,
     /// whose trace is `spread`.
     #[must_use]
-    pub fn of_sums(terms: usize, mass: f64, center_of_mass: &Vector3<f64>, spread: f64) -> Self {
+    #[inline]
+    pub(crate) fn of_sums(
+        terms: usize,
+        mass: f64,
+        center_of_mass: &Vector3<f64>,
+        spread: f64,
+    ) -> Self {
         Self::of_additions(depth(terms), mass, center_of_mass, spread)
     }
 
     /// As [`Self::of_sums`], for sums whose terms pass that many additions on their way to the total.
     #[must_use]
-    pub fn of_additions(
+    #[inline]
+    pub(crate) fn of_additions(
         additions: f64,
         mass: f64,
         center_of_mass: &Vector3<f64>,
@@ -50,7 +57,8 @@ impl ErrorBound {
 
     /// Of a closed form of a few operations.
     #[must_use]
-    pub fn of_closed_form(mass: f64, trace: f64) -> Self {
+    #[inline]
+    pub(crate) fn of_closed_form(mass: f64, trace: f64) -> Self {
         Self {
             mass: 16.0 * UNIT * mass,
             center_of_mass: 0.0,
@@ -60,6 +68,7 @@ impl ErrorBound {
 
     /// The same, and a few more roundings of a tensor with this trace and of this centre of mass. Where products of the bounds
     /// leave float64 there is none.
+    #[inline]
     pub(crate) fn rounded(self, center_of_mass: &Vector3<f64>, trace: f64) -> Self {
         let bound = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
         Self {

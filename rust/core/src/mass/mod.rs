@@ -31,6 +31,48 @@
 //! | thin wires | [`curve`] |
 //! | powers of two as units, so that nothing under- or overflows on the way | `units` |
 //! | equimomental systems: few particles with the moments of a body | [`equimomental`] |
+//!
+//! # Examples
+//!
+//! A body in the forms of other libraries, and back:
+//!
+//! ```
+//! use polhode::RigidBody;
+//! use polhode::mass::forms::SpatialOrder;
+//! use polhode::mass::{Amount, solids};
+//! use polhode::nalgebra::Vector3;
+//!
+//! let brick = solids::cuboid(&[1.0, 2.0, 3.0], Amount::Mass(12.0))?;
+//! let brick = brick.translated(&Vector3::new(1.0, 0.0, 0.0))?;
+//! let order = SpatialOrder::AngularLinear; // or LinearAngular
+//! assert_eq!(brick.spatial_inertia(order)[(3, 3)], 12.0); // the mass stands where forces meet accelerations
+//! assert!((brick.pseudo_inertia()[(0, 0)] - 13.0).abs() < 1e-13); // ∫ x² dm = m (a²/12 + C²)
+//! let (moments, products) = brick.positive_products(); // products with plus where the tensor has minus
+//! for again in [
+//!     RigidBody::from_parameters(&brick.parameters(), 0.0)?, // m, m C, the tensor about O
+//!     RigidBody::from_pseudo_inertia(&brick.pseudo_inertia(), 0.0)?,
+//!     RigidBody::from_spatial_inertia(&brick.spatial_inertia(order), order, 0.0)?,
+//!     RigidBody::from_log_cholesky(&brick.log_cholesky()?)?, // any ten numbers are a body
+//!     RigidBody::from_positive_products(12.0, &moments, &products, &brick.center_of_mass(), 0.0)?,
+//! ] {
+//!     assert!(again.is_close(&brick, 1e-13, 1e-13));
+//! }
+//! # Ok::<(), polhode::Error>(())
+//! ```
+//!
+//! What a body knows of itself:
+//!
+//! ```
+//! use polhode::mass::provenance::{Checks, MomentsFrom, Source};
+//! use polhode::mass::{Amount, solids};
+//!
+//! let ball = solids::sphere(1.0, Amount::Density(3.0))?;
+//! assert!((ball.mass() - 4.0 * std::f64::consts::PI).abs() <= ball.error_bound().mass);
+//! let provenance = ball.provenance();
+//! assert_eq!((provenance.source, provenance.moments), (Source::Solid, MomentsFrom::SecondMoment));
+//! assert!(!provenance.checks.contains(Checks::UNCHECKED.and(Checks::CLOSED)));
+//! # Ok::<(), polhode::Error>(())
+//! ```
 
 pub mod accumulator;
 pub mod amount;

@@ -5,6 +5,17 @@ use nalgebra::{Matrix3, Vector3};
 /// `m (d·d 1 − d dᵀ)`: the inertia tensor about P of a particle of mass `m` at the displacement `d` from P.
 ///
 /// Each diagonal element is a sum of squares, so that nothing cancels.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Matrix3;
+/// use polhode::nalgebra::Vector3;
+/// use polhode::mass::parallel_axis::point_inertia;
+///
+/// let inertia = point_inertia(2.0, &Vector3::new(3.0, 0.0, 0.0)); // m (d² 1 − d dᵀ)
+/// assert_eq!(inertia, Matrix3::from_diagonal(&Vector3::new(0.0, 18.0, 18.0)));
+/// ```
 #[doc(alias = "point mass")]
 #[must_use]
 pub fn point_inertia(mass: f64, d: &Vector3<f64>) -> Matrix3<f64> {
@@ -19,6 +30,18 @@ pub fn point_inertia(mass: f64, d: &Vector3<f64>) -> Matrix3<f64> {
 /// `inertia`: about C, in any axes. `d`: from C to P or from P to C (its sign does not matter), same axes.
 /// Valid only *from* C: between two other points go through C.
 /// Source: mex69; Goldstein, Classical Mechanics, §5.3.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Matrix3;
+/// use polhode::nalgebra::Vector3;
+/// use polhode::mass::parallel_axis::from_center_of_mass;
+///
+/// // A ball of 2/5 m r² = 1 kg m² rolls about the line that it touches: m r² more.
+/// let about = from_center_of_mass(&Matrix3::identity(), 2.5, &Vector3::new(0.0, 0.0, 1.0));
+/// assert_eq!(about[(0, 0)], 1.0 + 2.5);
+/// ```
 #[doc(alias = "Steiner")]
 #[doc(alias = "Huygens")]
 #[must_use]
@@ -30,7 +53,20 @@ pub fn from_center_of_mass(inertia: &Matrix3<f64>, mass: f64, d: &Vector3<f64>) 
 ///
 /// `inertia`: about P. `d`: from C to P or back. The difference loses digits when P is many radii of gyration away;
 /// whether it is a possible tensor is for [`RigidBody`](crate::RigidBody) to say.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Matrix3;
+/// use polhode::nalgebra::Vector3;
+/// use polhode::mass::parallel_axis::{from_center_of_mass, to_center_of_mass};
+///
+/// let (central, d) = (Matrix3::identity(), Vector3::new(1.0, 2.0, 3.0));
+/// let about = from_center_of_mass(&central, 2.0, &d);
+/// assert_eq!(to_center_of_mass(&about, 2.0, &d), central);
+/// ```
 #[must_use]
+#[inline]
 pub fn to_center_of_mass(inertia: &Matrix3<f64>, mass: f64, d: &Vector3<f64>) -> Matrix3<f64> {
     inertia - point_inertia(mass, d)
 }

@@ -194,14 +194,28 @@ impl Checks {
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
+
+    /// Their names.
+    pub(crate) fn names(self) -> impl Iterator<Item = &'static str> {
+        let is_in = move |bit: &usize| self.0 >> bit & 1 == 1;
+        (0..Self::NAMES.len())
+            .filter(is_in)
+            .map(|bit| Self::NAMES[bit])
+    }
+
+    /// The check of this name.
+    #[cfg(feature = "serde")]
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        let bit = Self::NAMES.iter().position(|known| *known == name)?;
+        Some(Self(1 << bit))
+    }
 }
 
 impl fmt::Display for Checks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names = (0..Self::NAMES.len()).filter(|bit| self.0 >> bit & 1 == 1);
-        for (place, bit) in names.enumerate() {
+        for (place, name) in self.names().enumerate() {
             f.write_str(if place > 0 { ", " } else { "" })?;
-            f.write_str(Self::NAMES[bit])?;
+            f.write_str(name)?;
         }
         Ok(())
     }
@@ -234,7 +248,7 @@ pub struct Provenance {
 impl Provenance {
     /// Of matter of a kind whose second moment was summed or is known.
     #[must_use]
-    pub fn of_matter(source: Source, elements: usize, checks: Checks) -> Self {
+    pub(crate) fn of_matter(source: Source, elements: usize, checks: Checks) -> Self {
         Self {
             source,
             elements,
@@ -252,7 +266,7 @@ impl Provenance {
 
     /// The same, the moments from sums in the body's own axes.
     #[must_use]
-    pub fn in_own_axes(self) -> Self {
+    pub(crate) fn in_own_axes(self) -> Self {
         Self {
             moments: MomentsFrom::OwnAxes,
             ..self
@@ -261,7 +275,7 @@ impl Provenance {
 
     /// Of two bodies put together: what was done to either was done to both.
     #[must_use]
-    pub fn of_both(&self, other: &Self) -> Self {
+    pub(crate) fn of_both(&self, other: &Self) -> Self {
         let parts = |part: &Self| match part.source {
             Source::Bodies => part.elements,
             _ => 1,

@@ -15,6 +15,19 @@ use crate::principal::principal_axes;
 /// moments of the one given. A tensor that [`RigidBody::new`] accepts comes back as it is, at distance zero; one with an
 /// element that is not finite gives NaN.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Matrix3;
+/// use polhode::nalgebra::Vector3;
+/// use polhode::mass::realizable::nearest_valid;
+///
+/// // The third moment exceeds the sum of the others by 1: each gives way by a third of it.
+/// let (nearest, _) = nearest_valid(&Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 3.0)))?;
+/// assert!((nearest[(2, 2)] - nearest[(0, 0)] - nearest[(1, 1)]).abs() < 1e-14);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When the tensor is not symmetric.
 pub fn nearest_valid(inertia: &Matrix3<f64>) -> Result<(Matrix3<f64>, f64), Error> {
@@ -63,6 +76,20 @@ pub struct BoxVerdict {
 /// `∫ (x − a)(b − x) dm ≥ 0`, which limits the spread, `S_xx ≤ m (C_x − a)(b − C_x)` (Bhatia and Davis); for two axes
 /// `∫ (x − a)(y − c) dm ≥ 0` and its three mirror images, which limit the products of inertia near the walls. They decide
 /// exactly for every axis and every pair of axes; what all three axes together forbid beyond that is not tested.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::nalgebra::Vector3;
+/// use polhode::mass::realizable::within_box;
+///
+/// let ball = solids::sphere(1.0, Amount::Mass(1.0))?;
+/// let within = |half: f64| within_box(&ball, &Vector3::repeat(-half), &Vector3::repeat(half));
+/// assert!(within(1.0)?.margin > 0.0);
+/// assert!(within(0.4)?.margin < 0.0); // two points at ±√(1/5) of each axis are the least
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When a corner is not finite or `low` is not below `high`; a flat box is allowed.

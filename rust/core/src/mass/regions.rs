@@ -106,6 +106,25 @@ impl Region {
 
     /// Cylinder along z, hollow when the inner radius is not zero.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::nalgebra::Vector3;
+    /// use polhode::Error;
+    /// use polhode::mass::density::{Effort, from_density};
+    /// use polhode::mass::regions::Region;
+    ///
+    /// let drum = Region::cylinder(1.0, 2.0, &Vector3::zeros(), 0.0)?;
+    /// let even = |_: &[[f64; 3]], out: &mut [f64]| {
+    ///     out.fill(3.0);
+    ///     Ok::<_, Error>(())
+    /// };
+    /// let effort = Effort { rtol: 1e-10, max_evaluations: 1_000_000 };
+    /// let body = from_density(&drum, even, effort)?.converged()?;
+    /// assert!((body.mass() - 6.0 * std::f64::consts::PI).abs() < 1e-9);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// When a number is not finite, the radii do not leave any volume or the height is not positive.
     pub fn cylinder(

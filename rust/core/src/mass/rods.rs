@@ -8,6 +8,19 @@ use crate::error::{Error, finite};
 
 /// Thin rod of length L along z: `I_x = I_y = m L²/12`, `I_z = 0`.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, rods};
+///
+/// let body = rods::rod(6.0, Amount::Mass(2.0))?;
+/// let expected = [0.0, 6.0, 6.0]; // m l²/12
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When the length is negative or not finite, or the amount is not positive.
 pub fn rod<X: Size>(length: X, amount: Amount) -> Result<X::Body, Error> {
@@ -22,6 +35,19 @@ pub fn rod<X: Size>(length: X, amount: Amount) -> Result<X::Body, Error> {
 }
 
 /// Thin ring of radius R about z: `I_z = m R²`, `I_x = I_y = ½ m R²`.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, rods};
+///
+/// let body = rods::ring(2.0, Amount::Mass(1.0))?;
+/// let expected = [2.0, 2.0, 4.0]; // m r²/2, m r²
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When the radius is negative or not finite, or the amount is not positive.
@@ -40,6 +66,18 @@ pub fn ring<X: Size>(radius: X, amount: Amount) -> Result<X::Body, Error> {
 /// Thin arc of a circle of radius R in the x-y plane that spans the angle α, its middle toward +x and the centre of the
 /// circle at `x = −R sin(α/2)/(α/2)` from C:
 /// `s_y = ½ m R² (1 − sin α/α)`, `s_x = ½ m R² (1 + sin α/α) − m R² (sin(α/2)/(α/2))²`.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, rods};
+/// use std::f64::consts::PI;
+///
+/// // Half a ring is as heavy as it is long.
+/// let arc = rods::arc(1.0, PI, Amount::Density(3.0))?;
+/// assert!((arc.mass() - 3.0 * PI).abs() < 1e-14);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When the radius is negative or not finite, the angle is not within 0 to 2π, or the amount is not positive.

@@ -28,7 +28,24 @@ impl SecondMoment {
     /// From sums about a reference point: mass, `∫ d dm` and `∫ d dᵀ dm` with `d = r − reference`.
     ///
     /// The reference should lie within the body: the parallel-axis step then costs no digits.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::RigidBody;
+    /// use polhode::mass::{ErrorBound, SecondMoment};
+    /// use polhode::nalgebra::{Matrix3, Vector3};
+    ///
+    /// // A rod along x from 0 to 6, of 1 kg: ∫ x dm = 3, ∫ x² dm = 12.
+    /// let first = Vector3::new(3.0, 0.0, 0.0);
+    /// let second = Matrix3::from_diagonal(&Vector3::new(12.0, 0.0, 0.0));
+    /// let rod = SecondMoment::about_reference(&Vector3::zeros(), 1.0, &first, &second, ErrorBound::default());
+    /// assert_eq!(rod.inertia()[(2, 2)], 3.0); // m l²/12
+    /// assert_eq!(RigidBody::from_second_moment(&rod)?.center_of_mass().x, 3.0);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
+    #[inline]
     pub fn about_reference(
         reference: &Vector3<f64>,
         mass: f64,
@@ -48,6 +65,7 @@ impl SecondMoment {
 
     /// `S` in body axes.
     #[must_use]
+    #[inline]
     pub fn in_body_axes(&self) -> Matrix3<f64> {
         if self.axes == Matrix3::identity() {
             return self.central;
@@ -58,6 +76,7 @@ impl SecondMoment {
 
     /// Inertia tensor about C in body axes, `I = tr(S) 1 − S`, each diagonal element a sum of two of S's.
     #[must_use]
+    #[inline]
     pub fn inertia(&self) -> Matrix3<f64> {
         let s = self.in_body_axes();
         let (xy, xz, yz) = (0.0 - s[(0, 1)], 0.0 - s[(0, 2)], 0.0 - s[(1, 2)]); // no negative zeros
@@ -69,7 +88,7 @@ impl SecondMoment {
     ///
     /// The largest principal value of S belongs to the axis of the smallest moment.
     #[must_use]
-    pub fn principal_axes(&self, s: &Eigen3) -> PrincipalAxes {
+    pub(crate) fn principal_axes(&self, s: &Eigen3) -> PrincipalAxes {
         // S is a sum of squares: a negative value is rounding, and zero is what it stands for. More than that is none, as of a
         // mesh that nobody checked, and stays for all to see.
         let rounding = 1e-12 * s.values[2].abs() + 4.0 * self.error_bound.inertia;

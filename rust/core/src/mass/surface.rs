@@ -18,6 +18,19 @@ use crate::principal::principal_axes;
 /// `amount` is the total mass or the mass per area σ. Open or closed, the winding does not matter. `watch` is asked about
 /// every 20 ms whether to go on.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::Amount;
+/// use polhode::mass::surface::surface;
+/// use std::ops::ControlFlow;
+///
+/// let square = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+/// let faces = [[0_usize, 1, 2], [0, 2, 3]];
+/// let sheet = surface(&square, &faces, Amount::Mass(3.0), &mut |_| ControlFlow::Continue(())).unwrap();
+/// assert!((sheet.principal().moments[2] - 2.0).abs() < 1e-14); // m (a² + b²)/12
+/// ```
+///
 /// # Errors
 /// [`MeshFault`] when a face names no vertex, a coordinate is not finite or there is no area; [`Halt::Stopped`] where
 /// `watch` said so.
@@ -67,6 +80,17 @@ pub fn surface<I: Index>(
 }
 
 /// Area of a triangle mesh, open or closed.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::surface::area;
+/// use std::ops::ControlFlow;
+///
+/// let triangle = [[0.0; 3], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+/// assert_eq!(area(&triangle, &[[0_usize, 1, 2]], &mut |_| ControlFlow::Continue(()))?, 6.0);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When a face names no vertex or a coordinate is not finite; [`Error::Stopped`] where `watch` said so.

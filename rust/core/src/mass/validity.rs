@@ -22,6 +22,14 @@ pub(super) fn check_mass(mass: f64) -> Result<(), Error> {
 
 /// m ≥ 0, of matter that may be missing; NaN passes.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::validity::check_not_negative_mass;
+///
+/// assert!(check_not_negative_mass(0.0).is_ok() && check_not_negative_mass(-1.0).is_err());
+/// ```
+///
 /// # Errors
 /// [`Error::OutOfDomain`].
 pub fn check_not_negative_mass(mass: f64) -> Result<(), Error> {
@@ -78,6 +86,18 @@ pub(super) fn symmetrized(
 }
 
 /// `|a_ij − a_ji| ≤ allowed · max |a|`; a tensor with an element that is not finite passes.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Matrix3;
+/// use polhode::mass::validity::{ASYMMETRY, check_symmetry};
+///
+/// let mut tensor = Matrix3::identity();
+/// tensor[(0, 1)] = 0.1;
+/// assert!(check_symmetry("inertia", &tensor, ASYMMETRY).is_err());
+/// assert!(check_symmetry("inertia", &tensor, 0.1).is_ok());
+/// ```
 ///
 /// # Errors
 /// [`BodyFault::NotSymmetric`] with the first pair that differs.

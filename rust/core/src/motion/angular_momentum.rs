@@ -28,6 +28,22 @@ impl AngularMomentum {
 ///
 /// The point P of the body (`about`, from the origin of B) is at R (`position`) and moves with v (`velocity`) while the
 /// body turns with ω (`omega`); all components in B. `c_P = C − P`.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::angular_momentum::angular_momentum;
+///
+/// // A ball on an orbit: its spin I ω, and r × m v.
+/// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+/// let (spin, velocity) = (Vector3::new(0.0, 0.0, 3.0), Vector3::new(0.0, 2.0, 0.0));
+/// let place = Vector3::new(10.0, 0.0, 0.0);
+/// let found = angular_momentum(&ball, &spin, &velocity, &place, &Vector3::zeros());
+/// assert!((found.total().z - (2.0 * 3.0 + 5.0 * 10.0 * 2.0)).abs() < 1e-12);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[must_use]
 pub fn angular_momentum(
     body: &RigidBody,

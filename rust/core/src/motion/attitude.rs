@@ -11,8 +11,20 @@ const UNIT: f64 = 1e-8;
 
 /// The rotation with the components (x, y, z, w), which must have unit length to rounding; `what` names them in errors.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::attitude::{components, from_components};
+///
+/// let half = from_components("attitude", &[0.0, 0.0, 1.0, 0.0])?; // half a turn about z
+/// assert_eq!(components(&half), [0.0, 0.0, 1.0, 0.0]);
+/// assert!(from_components("attitude", &[0.0, 0.0, 1.0, 1.0]).is_err());
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When a component is not finite or the norm is not one.
+#[inline]
 pub fn from_components(
     what: &'static str,
     components: &[f64; 4],
@@ -29,14 +41,28 @@ pub fn from_components(
 
 /// Components (x, y, z, w).
 #[must_use]
+#[inline]
 pub fn components(q: &UnitQuaternion<f64>) -> [f64; 4] {
     [q.i, q.j, q.k, q.w]
 }
 
 /// The quaternion of a rotation matrix, w ≥ 0.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Matrix3;
+/// use polhode::motion::attitude::{components, from_matrix};
+///
+/// let quarter = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+/// let [_, _, z, w] = components(&from_matrix(&quarter)?);
+/// assert!((z - 0.5_f64.sqrt()).abs() < 1e-15 && (w - z).abs() < 1e-15);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When the matrix is not a rotation.
+#[inline]
 pub fn from_matrix(rotation: &Matrix3<f64>) -> Result<UnitQuaternion<f64>, Error> {
     check_rotation("matrix", rotation)?;
     Ok(from_axes(rotation))
@@ -44,6 +70,7 @@ pub fn from_matrix(rotation: &Matrix3<f64>) -> Result<UnitQuaternion<f64>, Error
 
 /// The quaternion of a matrix that is known to be a rotation, w ≥ 0.
 #[must_use]
+#[inline]
 pub fn from_axes(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
     let q = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation));
     let q = UnitQuaternion::new_normalize(q.into_inner());
@@ -60,6 +87,7 @@ pub fn from_axes(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
 /// rounded length are too long on the average, by 10⁻¹⁶. A rotation by them is then not quite one, and the force of a potential
 /// not quite its slope: over a million rotations that shows in the energy.
 #[must_use]
+#[inline]
 pub fn restored(q: &Quaternion<f64>) -> UnitQuaternion<f64> {
     let squares = (q.coords.iter()).fold(DoubleDouble::from(-1.0), |sum, &x| {
         sum + DoubleDouble::product(x, x)
@@ -69,6 +97,18 @@ pub fn restored(q: &Quaternion<f64>) -> UnitQuaternion<f64> {
 }
 
 /// `q̇ = ½ q ∘ (ω, 0)` for the attitude `q_NB` and ω of B relative to N, components in B.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::attitude::rate;
+/// use polhode::nalgebra::Quaternion;
+///
+/// // q̇ = ½ q∘ω
+/// let found = rate(&Quaternion::identity(), &Vector3::new(0.0, 0.0, 2.0));
+/// assert_eq!((found.w, found.k), (0.0, 1.0));
+/// ```
 #[inline(always)]
 #[must_use]
 pub fn rate(q: &Quaternion<f64>, omega: &Vector3<f64>) -> Quaternion<f64> {

@@ -72,6 +72,7 @@ impl EulerEquations {
 
     /// Principal axes about P (columns, in B).
     #[must_use]
+    #[inline]
     pub fn axes(&self) -> &Matrix3<f64> {
         &self.axes
     }
@@ -80,6 +81,7 @@ impl EulerEquations {
     ///
     /// # Errors
     /// [`MotionFault::TorqueAlongMasslessAxis`].
+    #[inline]
     pub fn angular_acceleration(
         &self,
         omega: &Vector3<f64>,

@@ -17,6 +17,18 @@ pub enum Frame {
 /// `arm`: r, from the point P of the body to the point asked for. `omega`: of B relative to N. `velocity`: `v_P`, of P
 /// relative to N. All components in the same axes, whichever; in those the result is.
 /// Source: mln24.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::kinematics::point_velocity;
+///
+/// // The top of a wheel of radius 1 that rolls with 2 m/s is twice as fast, the place that touches at rest.
+/// let (spin, velocity) = (Vector3::new(0.0, 2.0, 0.0), Vector3::new(2.0, 0.0, 0.0));
+/// assert_eq!(point_velocity(&Vector3::z(), &spin, &velocity).x, 4.0);
+/// assert_eq!(point_velocity(&-Vector3::z(), &spin, &velocity).x, 0.0);
+/// ```
 #[inline(always)]
 #[must_use]
 pub fn point_velocity(
@@ -33,6 +45,16 @@ pub fn point_velocity(
 /// `acceleration`: `a_P`, of P relative to N. All components in the same axes, whichever; in those the result is.
 /// (ω̇ needs no frame: `(dω/dt)_N = (dω/dt)_B`, since ω×ω = 0.)
 /// Source: mln24.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::kinematics::point_acceleration;
+///
+/// let (arm, spin, none) = (Vector3::x() * 0.5, Vector3::z() * 4.0, Vector3::zeros());
+/// assert_eq!(point_acceleration(&arm, &spin, &none, &none).x, -8.0); // −ω² r
+/// ```
 #[inline(always)]
 #[must_use]
 pub fn point_acceleration(
@@ -49,6 +71,17 @@ pub fn point_acceleration(
 /// `rate_in_frame`: derivatives of the components of A in F. `frame_omega`: Ω, of F relative to N. All components in the
 /// same axes, whichever; in those the result is. From N back to F the same formula serves with −Ω.
 /// Source: mln27; for A = L and F = B it gives Euler's equations.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::kinematics::transport;
+///
+/// // A vector at rest in a frame that turns: ω × v.
+/// let rate = transport(&Vector3::zeros(), &Vector3::x(), &(Vector3::z() * 3.0));
+/// assert_eq!(rate, Vector3::new(0.0, 3.0, 0.0));
+/// ```
 #[doc(alias = "Coriolis theorem")]
 #[inline(always)]
 #[must_use]

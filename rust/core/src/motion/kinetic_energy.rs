@@ -28,6 +28,21 @@ impl KineticEnergy {
 ///
 /// `omega`, `velocity`: relative to N, components in B. `about`: P, from the origin of B; `c_P = C − P`.
 /// Source: mln25, mex67.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::kinetic_energy::kinetic_energy;
+///
+/// // A ball that rolls: 7/10 m v².
+/// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+/// let (spin, velocity) = (Vector3::new(0.0, 2.0, 0.0), Vector3::new(2.0, 0.0, 0.0));
+/// let energy = kinetic_energy(&ball, &spin, &velocity, &Vector3::zeros());
+/// assert!((energy.total() - 0.7 * 5.0 * 4.0).abs() < 1e-14);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[must_use]
 pub fn kinetic_energy(
     body: &RigidBody,

@@ -17,7 +17,7 @@
 //! | symmetric top in a uniform field: steady precession, sleeping | [`heavy_top`] |
 //! | attitude, ω, position and velocity together | [`state`] |
 //! | what acts on the body | [`loads`] |
-//! | what is asked of a method, and what it gives | [`problem`] |
+//! | what is asked of a method, and what it gives | `problem` |
 //! | motion under a load at the times asked for | [`mod@simulate`] |
 //! | the steppers | [`integrate`] |
 
@@ -35,7 +35,7 @@ pub mod kinetic_energy;
 pub mod loads;
 pub mod nutation_damping;
 pub mod pivot_reaction;
-pub mod problem;
+pub(crate) mod problem;
 pub mod simulate;
 pub mod stability;
 pub mod state;

@@ -8,6 +8,15 @@
 /// an asymmetric body, from which departures grow as exp(t √−value). Zero: neither; the axis is one of two or three with
 /// equal moments, and a disturbed spin drifts to a neighbouring one. A zero moment is that of a thin symmetric rod.
 /// Source: linearized Euler's equations; Landau and Lifshitz, Mechanics, §37.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::stability::stability;
+///
+/// let [least, middle, greatest] = stability(&[1.0, 2.0, 3.0], 1.0);
+/// assert_eq!((least, middle, greatest), (1.0 / 3.0, -1.0 / 3.0, 1.0)); // the middle axis is not stable
+/// ```
 #[doc(alias = "tennis racket theorem")]
 #[doc(alias = "intermediate axis theorem")]
 #[must_use]

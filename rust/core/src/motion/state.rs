@@ -20,6 +20,7 @@ pub struct State {
 impl State {
     /// What stands where nothing was computed.
     #[must_use]
+    #[inline]
     pub fn nan() -> Self {
         let nan = f64::NAN;
         Self {
@@ -47,6 +48,7 @@ pub struct Phase {
 impl Phase {
     /// A body that turns in place: the reference point at rest at the origin of N.
     #[must_use]
+    #[inline]
     pub fn in_place(state: &State) -> Self {
         Self {
             attitude: state.attitude,
@@ -59,6 +61,7 @@ impl Phase {
 
     /// The part that turns.
     #[must_use]
+    #[inline]
     pub fn state(&self) -> State {
         State {
             attitude: self.attitude,
@@ -68,6 +71,7 @@ impl Phase {
 
     /// What stands where nothing was computed.
     #[must_use]
+    #[inline]
     pub fn nan() -> Self {
         let unknown = Vector3::repeat(f64::NAN);
         Self {
@@ -79,6 +83,7 @@ impl Phase {
 
     /// What stands where nothing was computed of a motion like this.
     #[must_use]
+    #[inline]
     pub fn unknown(&self) -> Self {
         Self {
             own: vec![f64::NAN; self.own.len()].into(),
@@ -88,6 +93,7 @@ impl Phase {
 
     /// The numbers of the body, without those that the load has of its own, in the order x, y, z, w of the quaternion, ω, position, velocity.
     #[must_use]
+    #[inline]
     pub fn numbers(&self) -> [f64; 13] {
         let (q, w, r, v) = (self.attitude, self.omega, self.position, self.velocity);
         [
@@ -97,6 +103,7 @@ impl Phase {
 
     /// Whether all its numbers are.
     #[must_use]
+    #[inline]
     pub fn is_finite(&self) -> bool {
         (self.numbers().iter())
             .chain(&self.own)
@@ -113,6 +120,7 @@ pub trait ClosedForm: Sync {
     ///
     /// # Errors
     /// [`MotionFault::BeyondReach`].
+    #[inline]
     fn reaches(&self, t: f64) -> Result<(), Error> {
         let reach = self.reach();
         if t.is_finite() && t.abs() > reach {

@@ -6,7 +6,7 @@ use super::elliptic::Real;
 
 /// `re + i im`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Complex<T> {
+pub(crate) struct Complex<T> {
     /// Real part.
     pub re: T,
     /// Imaginary part.
@@ -17,70 +17,70 @@ impl<T: Real> Complex<T> {
     /// From real and imaginary part.
     #[inline]
     #[must_use]
-    pub fn new(re: T, im: T) -> Self {
+    pub(crate) fn new(re: T, im: T) -> Self {
         Self { re, im }
     }
 
     /// Zero.
     #[inline]
     #[must_use]
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self::new(0.0.into(), 0.0.into())
     }
 
     /// One.
     #[inline]
     #[must_use]
-    pub fn one() -> Self {
+    pub(crate) fn one() -> Self {
         Self::new(1.0.into(), 0.0.into())
     }
 
     /// `i z`.
     #[inline]
     #[must_use]
-    pub fn times_i(self) -> Self {
+    pub(crate) fn times_i(self) -> Self {
         Self::new(-self.im, self.re)
     }
 
     /// `z̄`.
     #[inline]
     #[must_use]
-    pub fn conjugate(self) -> Self {
+    pub(crate) fn conjugate(self) -> Self {
         Self::new(self.re, -self.im)
     }
 
     /// `k z` for a real k.
     #[inline]
     #[must_use]
-    pub fn times(self, k: T) -> Self {
+    pub(crate) fn times(self, k: T) -> Self {
         Self::new(k * self.re, k * self.im)
     }
 
     /// `z` times a power of two.
     #[inline]
     #[must_use]
-    pub fn scaled(self, power_of_two: f64) -> Self {
+    pub(crate) fn scaled(self, power_of_two: f64) -> Self {
         Self::new(self.re.scaled(power_of_two), self.im.scaled(power_of_two))
     }
 
     /// `|z|²`.
     #[inline]
     #[must_use]
-    pub fn norm_squared(self) -> T {
+    pub(crate) fn norm_squared(self) -> T {
         self.re * self.re + self.im * self.im
     }
 
     /// |z| rounded.
     #[inline]
     #[must_use]
-    pub fn size(self) -> f64 {
+    pub(crate) fn size(self) -> f64 {
         self.re.rounded().hypot(self.im.rounded())
     }
 
     /// `z²`.
     #[inline]
     #[must_use]
-    pub fn squared(self) -> Self {
+    pub(crate) fn squared(self) -> Self {
         let product = self.re * self.im;
         Self::new(
             (self.re - self.im) * (self.re + self.im),
@@ -91,14 +91,14 @@ impl<T: Real> Complex<T> {
     /// `a/b`; not a number where b is zero.
     #[inline]
     #[must_use]
-    pub fn over(self, b: Self) -> Self {
+    pub(crate) fn over(self, b: Self) -> Self {
         let inverse = T::from(1.0) / b.norm_squared();
         (self * b.conjugate()).times(inverse)
     }
 
     /// The square root in the right half plane.
     #[must_use]
-    pub fn sqrt(self) -> Self {
+    pub(crate) fn sqrt(self) -> Self {
         let size = self.norm_squared().sqrt();
         let larger = ((size + self.re.abs()).scaled(0.5)).sqrt();
         if larger.rounded() == 0.0 {
@@ -117,7 +117,7 @@ impl<T: Real> Complex<T> {
     /// Whether `Re(a b̄) < 0`: a and b point to opposite sides.
     #[inline]
     #[must_use]
-    pub fn is_opposite_to(self, b: Self) -> bool {
+    pub(crate) fn is_opposite_to(self, b: Self) -> bool {
         self.re.rounded() * b.re.rounded() + self.im.rounded() * b.im.rounded() < 0.0
     }
 }

@@ -7,6 +7,15 @@ const ROUNDING: f64 = 1e-13;
 
 /// S with `S Sᵀ = Σ`, both square and by rows; columns beyond the rank of Σ are zero.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::random::factor;
+///
+/// assert_eq!(factor(&[4.0, 0.0, 0.0, 9.0])?, [0.0, 2.0, 3.0, 0.0]); // S Sᵀ is what was given
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When the matrix is not symmetric, or some combination of the numbers would have a negative variance.
 pub fn factor(covariance: &[f64]) -> Result<Vec<f64>, Error> {

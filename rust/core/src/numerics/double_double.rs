@@ -9,7 +9,7 @@ use super::power_of_two::times_power_of_two;
 /// `a + b = s + e` exactly, s the rounded sum (Knuth); for doubles and for [lanes](super::lane::Lane).
 #[inline(always)]
 #[must_use]
-pub fn two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T) {
+pub(crate) fn two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T) {
     let s = a + b;
     let t = s - a;
     (s, (a - (s - t)) + (b - t))
@@ -18,7 +18,7 @@ pub fn two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T
 /// `a + b = s + e` exactly when |a| ≥ |b| or a is zero (Dekker).
 #[inline(always)]
 #[must_use]
-pub fn fast_two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T) {
+pub(crate) fn fast_two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T) {
     let s = a + b;
     (s, b - (s - a))
 }
@@ -28,7 +28,7 @@ pub fn fast_two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> 
 /// Written with Veltkamp's splitting, since a fused multiply-add is a slow library call on machines without one.
 #[inline(always)]
 #[must_use]
-pub fn two_product(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
     let p = a * b;
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     (
@@ -48,7 +48,19 @@ fn split(a: f64) -> (f64, f64) {
 /// A number as the unevaluated sum of two doubles, `low` at most half a unit in the last place of `high`: 106 bits.
 ///
 /// Every operation is accurate to a few units of 2⁻¹⁰⁶ (Joldes, Muller, Popescu 2017), within the range that
-/// [`two_product`] states.
+/// `two_product` states.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::DoubleDouble;
+///
+/// let exact = DoubleDouble::sum(1.0, 1e-20); // no digit is lost
+/// assert_eq!((exact - DoubleDouble::from(1.0)).rounded(), 1e-20);
+/// let root = DoubleDouble::from(2.0).sqrt();
+/// assert!((root * root - DoubleDouble::from(2.0)).rounded().abs() < 1e-30);
+/// assert_eq!(DoubleDouble::product(3.0, 4.0).scaled(0.5).rounded(), 6.0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DoubleDouble {
     /// The number rounded to a double.
@@ -78,7 +90,7 @@ impl DoubleDouble {
         low: -9.839_338_337_591_243e-18,
     };
 
-    /// The product of two doubles, exactly within the range that [`two_product`] states.
+    /// The product of two doubles, exactly within the range that `two_product` states.
     #[inline]
     #[must_use]
     pub fn product(a: f64, b: f64) -> Self {
@@ -126,6 +138,7 @@ impl DoubleDouble {
 
     /// Times `2^e`, which need not be a number.
     #[must_use]
+    #[inline]
     pub fn times_power_of_two(self, e: i32) -> Self {
         Self {
             high: times_power_of_two(self.high, e),

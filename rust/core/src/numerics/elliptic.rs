@@ -8,7 +8,7 @@ use super::double_double::DoubleDouble;
 use super::quad_double::QuadDouble;
 
 /// What the chain of means needs of a number: doubles, [`DoubleDouble`] and [`QuadDouble`].
-pub trait Real:
+pub(crate) trait Real:
     Copy
     + From<f64>
     + Add<Output = Self>
@@ -119,7 +119,7 @@ const STEPS: usize = 24;
 /// The complete elliptic integral of the first kind,
 /// `K = ∫₀^{π/2} dφ/√(cos²φ + k′² sin²φ)`, for k′ > 0 (infinite at zero).
 #[must_use]
-pub fn complete_first<T: Real>(k_prime: T) -> T {
+pub(crate) fn complete_first<T: Real>(k_prime: T) -> T {
     let (mut arithmetic, mut geometric, mut doubled) = (T::from(1.0), k_prime, 1.0);
     for _ in 0..STEPS {
         let before = arithmetic;
@@ -139,7 +139,7 @@ pub fn complete_first<T: Real>(k_prime: T) -> T {
 /// With p = 1 and a = b = 1 it is K; with p = 1 − n and a = b = 1 it is Π(n, k). For a, b ≥ 0 all terms have one sign.
 /// Source: R. Bulirsch, Numerical calculation of elliptic integrals and elliptic functions III, Numer. Math. 13 (1969) 305.
 #[must_use]
-pub fn complete_third<T: Real>(k_prime: T, p: T, a: T, b: T) -> (T, T) {
+pub(crate) fn complete_third<T: Real>(k_prime: T, p: T, a: T, b: T) -> (T, T) {
     let two = T::from(2.0);
     let (mut mean, mut geometric, mut product) = (T::from(1.0), k_prime, k_prime);
     let mut p = p.sqrt();
@@ -174,16 +174,17 @@ pub fn carlson_rf(x: f64, y: f64, z: f64) -> f64 {
     // Each duplication divides the differences by four; what is not a number stays it.
     for _ in 0..STEPS {
         let mean = (arguments[0] + arguments[1] + arguments[2]) / 3.0;
-        let [dx, dy, dz] = arguments.map(|argument| 1.0 - argument / mean);
+        let [x, y, z] = arguments;
+        let (dx, dy, dz) = (1.0 - x / mean, 1.0 - y / mean, 1.0 - z / mean);
         if dx.abs().max(dy.abs()).max(dz.abs()) < 2e-3 {
             let (e2, e3) = (dx * dy - dz * dz, dx * dy * dz);
             let series = e2 * (-1.0 / 10.0 + e2 / 24.0 - 3.0 * e3 / 44.0 - 5.0 * e2 * e2 / 208.0)
                 + e3 * (1.0 / 14.0 + 3.0 * e3 / 104.0);
             return (1.0 + series) / mean.sqrt();
         }
-        let [rx, ry, rz] = arguments.map(f64::sqrt);
+        let (rx, ry, rz) = (x.sqrt(), y.sqrt(), z.sqrt());
         let shift = rx * (ry + rz) + ry * rz;
-        arguments = arguments.map(|argument| 0.25 * (argument + shift));
+        arguments = [0.25 * (x + shift), 0.25 * (y + shift), 0.25 * (z + shift)];
     }
     f64::NAN
 }
@@ -191,7 +192,7 @@ pub fn carlson_rf(x: f64, y: f64, z: f64) -> f64 {
 /// The integral of the first kind up to the angle with this sine and cosine,
 /// `F = ∫₀^φ dφ/√(cos²φ + k′² sin²φ)`, −π/2 ≤ φ ≤ π/2.
 #[must_use]
-pub fn incomplete_first(sine: f64, cosine: f64, k_prime: f64) -> f64 {
+pub(crate) fn incomplete_first(sine: f64, cosine: f64, k_prime: f64) -> f64 {
     let (s2, c2) = (sine * sine, cosine * cosine);
     sine * carlson_rf(c2, c2 + k_prime * k_prime * s2, 1.0)
 }

@@ -5,13 +5,13 @@ use super::split_vector::SplitVector;
 
 /// A number as a sum of doubles, exact while no product underflows; ascending, none overlapping another.
 #[derive(Clone, Debug, Default)]
-pub struct Expansion {
+pub(crate) struct Expansion {
     parts: Vec<f64>,
 }
 
 impl Expansion {
     /// Adds a double.
-    pub fn add(&mut self, x: f64) {
+    pub(crate) fn add(&mut self, x: f64) {
         let mut sum = x;
         let mut kept = 0;
         for k in 0..self.parts.len() {
@@ -28,7 +28,7 @@ impl Expansion {
 
     /// The double that is nearest, or its neighbour.
     #[must_use]
-    pub fn rounded(&self) -> f64 {
+    pub(crate) fn rounded(&self) -> f64 {
         // From the smallest part on, each sum carries what the next may need.
         let (mut sum, mut rest) = (0.0, 0.0);
         for &part in self.parts.iter().rev() {
@@ -42,7 +42,7 @@ impl Expansion {
 
 /// `det(a, b, c)`, rounded once however much of it cancels; exact while products stay above 2⁻⁹⁶⁸.
 #[must_use]
-pub fn determinant(a: &SplitVector<3>, b: &SplitVector<3>, c: &SplitVector<3>) -> f64 {
+pub(crate) fn determinant(a: &SplitVector<3>, b: &SplitVector<3>, c: &SplitVector<3>) -> f64 {
     let mut sum = Expansion::default();
     let part = |v: &SplitVector<3>, k: usize| [v.high[k], v.low[k]];
     for (sign, [i, j, k]) in [

@@ -10,7 +10,7 @@ const STEPS: usize = 24;
 /// Every step is made of sums with one sign, so that cn and dn keep their digits where they are small.
 /// Source: R. Bulirsch, Numerical calculation of elliptic integrals and elliptic functions, Numer. Math. 7 (1965) 78.
 #[must_use]
-pub fn jacobi(u: f64, k_prime: f64) -> (f64, f64, f64) {
+pub(crate) fn jacobi(u: f64, k_prime: f64) -> (f64, f64, f64) {
     if k_prime == 0.0 {
         let c = u.cosh().recip();
         return (u.tanh(), c, c);
@@ -48,13 +48,15 @@ pub fn jacobi(u: f64, k_prime: f64) -> (f64, f64, f64) {
 ///
 /// Source: B. C. Carlson, Computing elliptic integrals by duplication, Numer. Math. 33 (1979) 1.
 #[must_use]
-pub fn carlson_rd(x: f64, y: f64, z: f64) -> f64 {
+#[inline]
+pub(crate) fn carlson_rd(x: f64, y: f64, z: f64) -> f64 {
     let mut arguments = [x, y, z];
     let (mut sum, mut weight) = (0.0, 1.0);
     // Each duplication divides the differences by four; what is not a number stays it.
     for _ in 0..2 * STEPS {
         let mean = (arguments[0] + arguments[1] + 3.0 * arguments[2]) / 5.0;
-        let [dx, dy, dz] = arguments.map(|argument| 1.0 - argument / mean);
+        let [x, y, z] = arguments;
+        let (dx, dy, dz) = (1.0 - x / mean, 1.0 - y / mean, 1.0 - z / mean);
         if dx.abs().max(dy.abs()).max(dz.abs()) < 1.5e-3 {
             let (ea, eb) = (dx * dy, dz * dz);
             let (ec, ed) = (ea - eb, ea - 6.0 * eb);
@@ -63,11 +65,11 @@ pub fn carlson_rd(x: f64, y: f64, z: f64) -> f64 {
                 + dz * (ee / 6.0 + dz * (-9.0 / 22.0 * ec + dz * (3.0 / 26.0) * ea));
             return 3.0 * sum + weight * (1.0 + series) / (mean * mean.sqrt());
         }
-        let [rx, ry, rz] = arguments.map(f64::sqrt);
+        let (rx, ry, rz) = (x.sqrt(), y.sqrt(), z.sqrt());
         let shift = rx * (ry + rz) + ry * rz;
         sum += weight / (rz * (arguments[2] + shift));
         weight *= 0.25;
-        arguments = arguments.map(|argument| 0.25 * (argument + shift));
+        arguments = [0.25 * (x + shift), 0.25 * (y + shift), 0.25 * (z + shift)];
     }
     f64::NAN
 }

@@ -12,7 +12,7 @@ use super::number::{Number, Real};
 /// The derivatives stand first in memory, so that the compiler finds a register of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-pub struct Jet<const N: usize> {
+pub(crate) struct Jet<const N: usize> {
     /// Its derivatives.
     pub slopes: [f64; N],
     /// The value.
@@ -22,7 +22,7 @@ pub struct Jet<const N: usize> {
 impl<const N: usize> Jet<N> {
     /// A number that depends on none of the variables.
     #[must_use]
-    pub const fn constant(value: f64) -> Self {
+    pub(crate) const fn constant(value: f64) -> Self {
         Self {
             value,
             slopes: [0.0; N],
@@ -31,7 +31,7 @@ impl<const N: usize> Jet<N> {
 
     /// Variable number `index`.
     #[must_use]
-    pub fn variable(value: f64, index: usize) -> Self {
+    pub(crate) fn variable(value: f64, index: usize) -> Self {
         Self {
             value,
             slopes: std::array::from_fn(|k| f64::from(u8::from(k == index))),
@@ -41,7 +41,7 @@ impl<const N: usize> Jet<N> {
     /// A function of two jets: its value, and its derivatives with respect to each.
     #[inline(always)]
     #[must_use]
-    pub fn chain(value: f64, [(by_p, p), (by_q, q)]: [(f64, &Self); 2]) -> Self {
+    pub(crate) fn chain(value: f64, [(by_p, p), (by_q, q)]: [(f64, &Self); 2]) -> Self {
         Self {
             value,
             slopes: std::array::from_fn(|k| by_p * p.slopes[k] + by_q * q.slopes[k]),

@@ -72,7 +72,7 @@ impl Real for DoubleDouble {
 }
 
 /// A number of a kernel: a [`Lane`], or one of twice its precision.
-pub trait Number:
+pub(crate) trait Number:
     Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
     /// What comes in and goes out without loss.

@@ -8,7 +8,7 @@ use super::number::Real;
 
 /// `value + slope ε + bend ε²`, what follows cut off: a number as one steps from where its variables are along one line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Parabola {
+pub(crate) struct Parabola {
     /// Where it starts.
     pub value: f64,
     /// The first derivative along the line.
@@ -20,7 +20,7 @@ pub struct Parabola {
 impl Parabola {
     /// A number that stays as it is.
     #[must_use]
-    pub const fn constant(value: f64) -> Self {
+    pub(crate) const fn constant(value: f64) -> Self {
         Self {
             value,
             slope: 0.0,
@@ -30,7 +30,7 @@ impl Parabola {
 
     /// A number that moves evenly.
     #[must_use]
-    pub const fn line(value: f64, slope: f64) -> Self {
+    pub(crate) const fn line(value: f64, slope: f64) -> Self {
         Self {
             value,
             slope,
@@ -40,7 +40,7 @@ impl Parabola {
 
     /// A function of the number, with its value, first and second derivative there.
     #[must_use]
-    pub fn through(self, [value, first, second]: [f64; 3]) -> Self {
+    pub(crate) fn through(self, [value, first, second]: [f64; 3]) -> Self {
         Self {
             value,
             slope: first * self.slope,

@@ -7,13 +7,13 @@ use super::lane::Lane;
 
 /// Rows of a batch: whole registers on every machine, and few enough that fifty planes leave half of a first-level cache
 /// of 32 KiB to the rows that come and go. Twice as many cost a third of the speed on stacks that do not fit the caches.
-pub const ROWS: usize = 32;
+pub(crate) const ROWS: usize = 32;
 
 /// A formula from `K` numbers of a row to `M` others.
 ///
 /// A trait rather than a closure: a closure's body is compiled apart, without the instructions of the level, whenever it
 /// is too long to be inlined.
-pub trait Formula<const K: usize, const M: usize> {
+pub(crate) trait Formula<const K: usize, const M: usize> {
     /// The formula. Mark the implementation `#[inline(always)]`.
     fn apply<L: Lane>(numbers: [L; K]) -> [L; M];
 }
@@ -21,15 +21,15 @@ pub trait Formula<const K: usize, const M: usize> {
 /// `K` numbers for each of up to [`ROWS`] rows.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub struct Planes<const K: usize>([[f64; ROWS]; K]);
+pub(crate) struct Planes<const K: usize>([[f64; ROWS]; K]);
 
 impl<const K: usize> Planes<K> {
     /// All zero.
-    pub const ZERO: Self = Self([[0.0; ROWS]; K]);
+    pub(crate) const ZERO: Self = Self([[0.0; ROWS]; K]);
 
     /// Sets the numbers of one row.
     #[inline(always)]
-    pub fn set(&mut self, row: usize, numbers: [f64; K]) {
+    pub(crate) fn set(&mut self, row: usize, numbers: [f64; K]) {
         let mut k = 0;
         while k < K {
             self.0[k][row] = numbers[k];
@@ -40,7 +40,7 @@ impl<const K: usize> Planes<K> {
     /// The numbers of one row from plane `first` on.
     #[inline(always)]
     #[must_use]
-    pub fn get<const N: usize>(&self, row: usize, first: usize) -> [f64; N] {
+    pub(crate) fn get<const N: usize>(&self, row: usize, first: usize) -> [f64; N] {
         let mut numbers = [0.0; N];
         let mut k = 0;
         while k < N {
@@ -53,7 +53,7 @@ impl<const K: usize> Planes<K> {
     /// The numbers of one row as lanes.
     #[inline(always)]
     #[must_use]
-    pub fn lanes<L: Lane>(&self, row: usize) -> [L; K] {
+    pub(crate) fn lanes<L: Lane>(&self, row: usize) -> [L; K] {
         let mut numbers = [L::new(0.0); K];
         let mut k = 0;
         while k < K {
@@ -65,7 +65,7 @@ impl<const K: usize> Planes<K> {
 
     /// Sets the numbers of one row from lanes.
     #[inline(always)]
-    pub fn set_lanes<L: Lane>(&mut self, row: usize, numbers: [L; K]) {
+    pub(crate) fn set_lanes<L: Lane>(&mut self, row: usize, numbers: [L; K]) {
         let mut k = 0;
         while k < K {
             self.0[k][row] = numbers[k].get();
@@ -75,7 +75,7 @@ impl<const K: usize> Planes<K> {
 
     /// Writes the formula's results for the first `rows` rows to `target`.
     #[inline(always)]
-    pub fn map<L: Lane, F: Formula<K, M>, const M: usize>(
+    pub(crate) fn map<L: Lane, F: Formula<K, M>, const M: usize>(
         &self,
         rows: usize,
         target: &mut Planes<M>,
@@ -87,7 +87,7 @@ impl<const K: usize> Planes<K> {
 
     /// Replaces the numbers of the first `rows` rows by the formula's results.
     #[inline(always)]
-    pub fn update<L: Lane, F: Formula<K, K>>(&mut self, rows: usize) {
+    pub(crate) fn update<L: Lane, F: Formula<K, K>>(&mut self, rows: usize) {
         for row in 0..rows.min(ROWS) {
             self.set_lanes(row, F::apply(self.lanes::<L>(row)));
         }
@@ -96,7 +96,7 @@ impl<const K: usize> Planes<K> {
     /// Adds row i of each of the first `summed` planes to lane i mod N of its total; of the other planes, whose numbers
     /// are not negative, a lane keeps the largest.
     #[inline(always)]
-    pub fn add_to<const N: usize>(&self, totals: &mut [[f64; N]; K], summed: usize) {
+    pub(crate) fn add_to<const N: usize>(&self, totals: &mut [[f64; N]; K], summed: usize) {
         for (k, total) in totals.iter_mut().enumerate() {
             for rows in self.0[k].chunks_exact(N) {
                 let mut lane = 0;
@@ -113,7 +113,7 @@ impl<const K: usize> Planes<K> {
     /// Whether plane `k` is anywhere other than zero in the first `rows` rows.
     #[inline(always)]
     #[must_use]
-    pub fn any(&self, k: usize, rows: usize) -> bool {
+    pub(crate) fn any(&self, k: usize, rows: usize) -> bool {
         let mut any = false;
         for row in 0..rows.min(ROWS) {
             any |= self.0[k][row] != 0.0;

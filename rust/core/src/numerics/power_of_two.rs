@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 
 /// The exponent e of `|x| = 2^e·(1…2)`; zero for zero.
 #[must_use]
-pub fn exponent(x: f64) -> i32 {
+#[inline]
+pub(crate) fn exponent(x: f64) -> i32 {
     if x == 0.0 {
         return 0;
     }
@@ -19,12 +20,13 @@ pub fn exponent(x: f64) -> i32 {
 
 /// `x·2^e`, rounded only where it is a denormal number.
 #[must_use]
-pub fn times_power_of_two(x: f64, e: i32) -> f64 {
+#[inline]
+pub(crate) fn times_power_of_two(x: f64, e: i32) -> f64 {
     let (mut x, mut rest) = (x, e);
     // Upward or downward in strides that are themselves numbers.
     while rest != 0 && x != 0.0 && x.is_finite() {
         let stride = rest.clamp(-1000, 1000);
-        x *= 2.0_f64.powi(stride);
+        x *= f64::from_bits(u64::from((1023 + stride).cast_unsigned()) << 52);
         rest -= stride;
     }
     x
@@ -33,7 +35,8 @@ pub fn times_power_of_two(x: f64, e: i32) -> f64 {
 /// The power of two at or below a positive number, as a unit, kept where its reciprocal is a normal number; one of what is no
 /// positive number.
 #[must_use]
-pub fn power_below(x: f64) -> f64 {
+#[inline]
+pub(crate) fn power_below(x: f64) -> f64 {
     if x > 0.0 && x.is_finite() {
         times_power_of_two(1.0, exponent(x).clamp(-1022, 1022))
     } else {
@@ -43,7 +46,8 @@ pub fn power_below(x: f64) -> f64 {
 
 /// The length of a vector, whose squares may be beyond float64.
 #[must_use]
-pub fn length(vector: &Vector3<f64>) -> f64 {
+#[inline]
+pub(crate) fn length(vector: &Vector3<f64>) -> f64 {
     let size = exponent(vector.amax());
     let scaled = vector.map(|x| times_power_of_two(x, -size));
     times_power_of_two(scaled.norm(), size)
@@ -51,7 +55,8 @@ pub fn length(vector: &Vector3<f64>) -> f64 {
 
 /// The unit vector along another, whose squares may be beyond float64; `None` of zero.
 #[must_use]
-pub fn direction_of(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
+#[inline]
+pub(crate) fn direction_of(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
     let size = exponent(vector.amax());
     vector
         .map(|x| times_power_of_two(x, -size))
@@ -63,7 +68,8 @@ const SAFE: std::ops::Range<f64> = 1e-250..1e250;
 
 /// `k a·b`, whose parts may be beyond float64 where the whole is not.
 #[must_use]
-pub fn times_dot(k: f64, a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+#[inline]
+pub(crate) fn times_dot(k: f64, a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     let product = a.dot(b);
     if SAFE.contains(&product.abs()) {
         return k * product;
@@ -74,7 +80,8 @@ pub fn times_dot(k: f64, a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
 
 /// `k a×b`, whose parts may be beyond float64 where the whole is not.
 #[must_use]
-pub fn times_cross(k: f64, a: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
+#[inline]
+pub(crate) fn times_cross(k: f64, a: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
     let product = a.cross(b);
     if SAFE.contains(&product.amax()) {
         return product * k;
@@ -84,12 +91,14 @@ pub fn times_cross(k: f64, a: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// A vector as one near one times a power of two.
+#[inline]
 fn near_one(vector: &Vector3<f64>) -> (Vector3<f64>, i32) {
     let power = exponent(vector.amax());
     (vector.map(|x| times_power_of_two(x, -power)), power)
 }
 
 /// A number as one near one times a power of two.
+#[inline]
 fn split(x: f64) -> (f64, i32) {
     let power = exponent(x);
     (times_power_of_two(x, -power), power)
@@ -97,14 +106,16 @@ fn split(x: f64) -> (f64, i32) {
 
 /// `2^e` as two factors that are numbers, for many products: `x·a·b`, rounded only where it is a denormal number.
 #[must_use]
-pub fn halves(e: i32) -> [f64; 2] {
+#[inline]
+pub(crate) fn halves(e: i32) -> [f64; 2] {
     let half = e / 2;
     [2.0_f64.powi(half), 2.0_f64.powi(e - half)]
 }
 
 /// `√(a/b)`, where a/b may be beyond all numbers too.
 #[must_use]
-pub fn root_of_ratio(a: f64, b: f64) -> f64 {
+#[inline]
+pub(crate) fn root_of_ratio(a: f64, b: f64) -> f64 {
     let ratio = a / b;
     if ratio.is_normal() || a == 0.0 {
         ratio.sqrt()

@@ -12,11 +12,11 @@ use super::double_double::{DoubleDouble, fast_two_sum, two_product, two_sum};
 /// Sums and products are accurate to a few units of 2⁻²⁰⁸ of the larger term, quotients and roots of themselves, within the
 /// range that [`two_product`] states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct QuadDouble([f64; 4]);
+pub(crate) struct QuadDouble([f64; 4]);
 
 impl QuadDouble {
     /// π.
-    pub const PI: Self = Self([
+    pub(crate) const PI: Self = Self([
         std::f64::consts::PI,
         1.224_646_799_147_353_2e-16,
         -2.994_769_809_718_339_7e-33,
@@ -24,7 +24,7 @@ impl QuadDouble {
     ]);
 
     /// π/2.
-    pub const HALF_PI: Self = Self([
+    pub(crate) const HALF_PI: Self = Self([
         Self::PI.0[0] / 2.0,
         Self::PI.0[1] / 2.0,
         Self::PI.0[2] / 2.0,
@@ -33,32 +33,26 @@ impl QuadDouble {
 
     /// The nearest double.
     #[must_use]
-    pub fn rounded(self) -> f64 {
+    pub(crate) fn rounded(self) -> f64 {
         self.0[0]
     }
 
     /// The nearest number of twice the precision.
     #[must_use]
-    pub fn twofold(self) -> DoubleDouble {
+    pub(crate) fn twofold(self) -> DoubleDouble {
         let [a, b, c, _] = self.0;
         DoubleDouble::sum(a, b + c)
     }
 
-    /// Magnitude.
-    #[must_use]
-    pub fn abs(self) -> Self {
-        if self.0[0] < 0.0 { -self } else { self }
-    }
-
     /// The number times a power of two, exactly while nothing leaves the range of float64.
     #[must_use]
-    pub fn scaled(self, power_of_two: f64) -> Self {
+    pub(crate) fn scaled(self, power_of_two: f64) -> Self {
         Self(self.0.map(|part| part * power_of_two))
     }
 
     /// Square root; zero of zero, NaN of what is negative.
     #[must_use]
-    pub fn sqrt(self) -> Self {
+    pub(crate) fn sqrt(self) -> Self {
         if self.0[0] == 0.0 {
             return Self::default();
         }

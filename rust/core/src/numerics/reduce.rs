@@ -10,9 +10,9 @@ use std::ops::{ControlFlow, Range};
 use super::threads::{Halt, fill_blocks};
 
 /// Virtual lanes of a block.
-pub const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 /// Terms of a block.
-pub const BLOCK: usize = 4096;
+pub(crate) const BLOCK: usize = 4096;
 
 /// Blocks that a thread does at a time.
 const SHARE: usize = 8;
@@ -23,7 +23,7 @@ const SHARE: usize = 8;
 ///
 /// # Errors
 /// [`Halt::Stopped`] when `watch` said so.
-pub fn sum_blocks<const K: usize>(
+pub(crate) fn sum_blocks<const K: usize>(
     n: usize,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     block: impl Fn(Range<usize>) -> [f64; K] + Sync,
@@ -44,7 +44,7 @@ pub fn sum_blocks<const K: usize>(
 }
 
 /// `Σ term(i)` over `0..n`, for K sums at once.
-pub fn sum_terms<const K: usize>(n: usize, term: impl Fn(usize) -> [f64; K]) -> [f64; K] {
+pub(crate) fn sum_terms<const K: usize>(n: usize, term: impl Fn(usize) -> [f64; K]) -> [f64; K] {
     tree(0, n.div_ceil(BLOCK).max(1), &|block| {
         block_sum(block * BLOCK, n.min((block + 1) * BLOCK), &term)
     })
@@ -52,7 +52,7 @@ pub fn sum_terms<const K: usize>(n: usize, term: impl Fn(usize) -> [f64; K]) -> 
 
 /// The number of additions that a term passes on its way to the sum of `n`, at most.
 #[must_use]
-pub fn depth(n: usize) -> f64 {
+pub(crate) fn depth(n: usize) -> f64 {
     let within = n.min(BLOCK).div_ceil(LANES) + 3;
     let levels = n.div_ceil(BLOCK).max(1).next_power_of_two().ilog2();
     within as f64 + f64::from(levels)

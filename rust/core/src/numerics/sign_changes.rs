@@ -15,7 +15,7 @@ const HALVINGS: u32 = 50;
 /// found by it; without it the polynomial is taken to begin with its own sign. Zero counts as positive.
 /// A polynomial with a coefficient that is not finite has none.
 #[must_use]
-pub fn sign_changes(coefficients: &[f64], before: Option<f64>) -> Vec<f64> {
+pub(crate) fn sign_changes(coefficients: &[f64], before: Option<f64>) -> Vec<f64> {
     if !may_change(coefficients, before) {
         return Vec::new();
     }

@@ -4,7 +4,7 @@ use super::double_double::{two_product, two_sum};
 
 /// A vector as rounded components and what rounding left of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SplitVector<const N: usize> {
+pub(crate) struct SplitVector<const N: usize> {
     /// The components, rounded.
     pub high: [f64; N],
     /// What rounding left.
@@ -14,7 +14,8 @@ pub struct SplitVector<const N: usize> {
 impl<const N: usize> SplitVector<N> {
     /// `a − b` exactly.
     #[must_use]
-    pub fn difference(a: &[f64; N], b: &[f64; N]) -> Self {
+    #[inline]
+    pub(crate) fn difference(a: &[f64; N], b: &[f64; N]) -> Self {
         let parts: [(f64, f64); N] = std::array::from_fn(|i| two_sum(a[i], -b[i]));
         Self {
             high: parts.map(|part| part.0),
@@ -24,7 +25,8 @@ impl<const N: usize> SplitVector<N> {
 
     /// The vector times a power of two, exactly while nothing leaves the range of float64.
     #[must_use]
-    pub fn scaled(&self, power_of_two: f64) -> Self {
+    #[inline]
+    pub(crate) fn scaled(&self, power_of_two: f64) -> Self {
         Self {
             high: self.high.map(|x| x * power_of_two),
             low: self.low.map(|x| x * power_of_two),
@@ -33,7 +35,8 @@ impl<const N: usize> SplitVector<N> {
 
     /// `v·n`, rounded about once even where large terms cancel.
     #[must_use]
-    pub fn dot(&self, n: &[f64; N]) -> f64 {
+    #[inline]
+    pub(crate) fn dot(&self, n: &[f64; N]) -> f64 {
         let (mut sum, mut rest) = (0.0, 0.0);
         for ((&high, &low), &n) in self.high.iter().zip(&self.low).zip(n) {
             let (product, product_rest) = two_product(high, n);
@@ -47,7 +50,8 @@ impl<const N: usize> SplitVector<N> {
 
 /// `a × b` of two vectors of the plane, rounded about once.
 #[must_use]
-pub fn cross2(a: &SplitVector<2>, b: &SplitVector<2>) -> f64 {
+#[inline]
+pub(crate) fn cross2(a: &SplitVector<2>, b: &SplitVector<2>) -> f64 {
     let (value, rest) = difference_of_products(a.high[0], b.high[1], a.high[1], b.high[0]);
     let low = (a.high[0] * b.low[1] - a.high[1] * b.low[0])
         + (a.low[0] * b.high[1] - a.low[1] * b.high[0]);
@@ -56,17 +60,20 @@ pub fn cross2(a: &SplitVector<2>, b: &SplitVector<2>) -> f64 {
 
 /// `a × b`, each component rounded about once.
 #[must_use]
-pub fn cross(a: &SplitVector<3>, b: &SplitVector<3>) -> [f64; 3] {
+#[inline]
+pub(crate) fn cross(a: &SplitVector<3>, b: &SplitVector<3>) -> [f64; 3] {
     let plane = |v: &SplitVector<3>, j: usize, k: usize| SplitVector {
         high: [v.high[j], v.high[k]],
         low: [v.low[j], v.low[k]],
     };
-    [[1, 2], [2, 0], [0, 1]].map(|[j, k]| cross2(&plane(a, j, k), &plane(b, j, k)))
+    let along = |j: usize, k: usize| cross2(&plane(a, j, k), &plane(b, j, k));
+    [along(1, 2), along(2, 0), along(0, 1)]
 }
 
 /// `det(a, b, c)`, rounded about once.
 #[must_use]
-pub fn determinant(a: &SplitVector<3>, b: &SplitVector<3>, c: &SplitVector<3>) -> f64 {
+#[inline]
+pub(crate) fn determinant(a: &SplitVector<3>, b: &SplitVector<3>, c: &SplitVector<3>) -> f64 {
     let (mut sum, mut rest) = (0.0, 0.0);
     for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
         let (cross, cross_rest) =
@@ -83,6 +90,7 @@ pub fn determinant(a: &SplitVector<3>, b: &SplitVector<3>, c: &SplitVector<3>) -
 }
 
 /// `p q − r s` as a rounded value and its rest.
+#[inline]
 fn difference_of_products(p: f64, q: f64, r: f64, s: f64) -> (f64, f64) {
     let ((first, first_rest), (second, second_rest)) = (two_product(p, q), two_product(r, s));
     let (sum, rest) = two_sum(first, -second);

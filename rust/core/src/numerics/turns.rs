@@ -11,7 +11,7 @@ use super::lane::Lane;
 /// Within 2⁻¹⁰³ |rate·t| of the exact remainder, and one rounding of it.
 #[inline(always)]
 #[must_use]
-pub fn turns<L: Lane>(t: L, rate: DoubleDouble, start: DoubleDouble) -> L {
+pub(crate) fn turns<L: Lane>(t: L, rate: DoubleDouble, start: DoubleDouble) -> L {
     let (p, e) = t.two_product(L::new(rate.high));
     let e = t.mul_add(L::new(rate.low), e);
     // Past 2⁵³ the rest of the product has whole turns of its own.
@@ -22,13 +22,13 @@ pub fn turns<L: Lane>(t: L, rate: DoubleDouble, start: DoubleDouble) -> L {
 }
 
 /// A rate that is worth long times is known to this part of itself, 2⁻⁹⁰: so are the turns that it makes.
-pub const PHASE_ERROR: f64 = 8.1e-28;
+pub(crate) const PHASE_ERROR: f64 = 8.1e-28;
 /// After more turns than this, 2⁸⁸, a phase is not known to a quarter of one.
-pub const MOST_TURNS: f64 = 3.1e26;
+pub(crate) const MOST_TURNS: f64 = 3.1e26;
 
 /// The largest |t| at which phases of these rates, in turns for a unit of time, are known to a quarter of a turn.
 #[must_use]
-pub fn reach(rates: &[DoubleDouble]) -> f64 {
+pub(crate) fn reach(rates: &[DoubleDouble]) -> f64 {
     let fastest = rates
         .iter()
         .fold(0.0_f64, |most, rate| most.max(rate.high.abs()));
@@ -38,14 +38,14 @@ pub fn reach(rates: &[DoubleDouble]) -> f64 {
 /// x less the nearest integer.
 #[inline(always)]
 #[must_use]
-pub fn whole_off<L: Lane>(x: L) -> L {
+pub(crate) fn whole_off<L: Lane>(x: L) -> L {
     x - x.round()
 }
 
 /// Sine and cosine of x turns, |x| ≤ ½.
 #[inline(always)]
 #[must_use]
-pub fn sin_cos_turns<L: Lane>(x: L) -> (L, L) {
+pub(crate) fn sin_cos_turns<L: Lane>(x: L) -> (L, L) {
     // The nearest quarter turn, and what is left of the angle in radians.
     let quarter = (x * L::new(4.0)).round();
     let r = (x - quarter * L::new(0.25)) * L::new(std::f64::consts::TAU);
@@ -98,7 +98,7 @@ const COSINE: [f64; 6] = [
 /// `e^{−x}` for x ≥ 0, to about a unit in the last place; past 700 the value at 700.
 #[inline(always)]
 #[must_use]
-pub fn exp_minus<L: Lane>(x: L) -> L {
+pub(crate) fn exp_minus<L: Lane>(x: L) -> L {
     let x = L::new(700.0).min(x); // in this order NaN stays NaN
     let n = (x * L::new(std::f64::consts::LOG2_E)).round();
     // ln 2 in two parts, the first short enough that its multiples are exact.

@@ -10,7 +10,7 @@ use super::number::Number;
 ///
 /// As [`DoubleDouble`], with the products that the lanes of the level have. Sums are accurate relative to the larger term.
 #[derive(Clone, Copy, Debug)]
-pub struct Twofold<L> {
+pub(crate) struct Twofold<L> {
     /// The number rounded to a lane.
     pub high: L,
     /// The rest.
@@ -20,7 +20,7 @@ pub struct Twofold<L> {
 impl<L: Lane> Twofold<L> {
     /// From a number and a rest that is smaller.
     #[inline(always)]
-    pub fn renormalized(high: L, low: L) -> Self {
+    pub(crate) fn renormalized(high: L, low: L) -> Self {
         let (high, low) = fast_two_sum(high, low);
         Self { high, low }
     }

@@ -26,6 +26,18 @@ pub struct PrincipalAxes {
 /// The principal moments and axes of a symmetric tensor, of which the lower triangle is read.
 ///
 /// A tensor with an element that is not finite gives NaN throughout.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::{Matrix3, Vector3};
+/// use polhode::principal::principal_axes;
+///
+/// let tensor = Matrix3::new(3.0, -1.0, 0.0, -1.0, 3.0, 0.0, 0.0, 0.0, 5.0);
+/// let found = principal_axes(&tensor);
+/// assert!((Vector3::from(found.moments) - Vector3::new(2.0, 4.0, 5.0)).amax() < 1e-14);
+/// assert!((found.axes.column(0) - Vector3::new(1.0, 1.0, 0.0).normalize()).amax() < 1e-15);
+/// ```
 #[must_use]
 pub fn principal_axes(inertia: &Matrix3<f64>) -> PrincipalAxes {
     let Eigen3 { values, vectors } = eigen3(inertia);
@@ -39,6 +51,19 @@ pub fn principal_axes(inertia: &Matrix3<f64>) -> PrincipalAxes {
 /// are row-major. Each row has the bits of [`principal_axes`].
 ///
 /// About every 20 ms `watch` gets the fraction done; [`ControlFlow::Break`] ends the job.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::principal::principal_axes_many;
+///
+/// let tensors = [[3.0, -1.0, 0.0, -1.0, 3.0, 0.0, 0.0, 0.0, 5.0]; 2];
+/// let (mut moments, mut axes) = ([[0.0; 3]; 2], [[0.0; 9]; 2]);
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// principal_axes_many(&tensors, 0.0, &mut moments, &mut axes, go_on).unwrap();
+/// assert!((moments[1][0] - 2.0).abs() < 1e-14);
+/// ```
 ///
 /// # Errors
 /// [`Halt::Failed`] with the first row whose tensor is not symmetric: |`a_ij` − `a_ji`| > `asymmetry` · max |a|, where all
@@ -79,6 +104,18 @@ pub fn principal_axes_many(
 }
 
 /// The principal moments alone, to the bits of [`principal_axes_many`] in less time.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::principal::principal_moments_many;
+///
+/// let tensors = [[3.0, -1.0, 0.0, -1.0, 3.0, 0.0, 0.0, 0.0, 5.0]];
+/// let mut moments = [[0.0; 3]];
+/// principal_moments_many(&tensors, 0.0, &mut moments, &mut |_| ControlFlow::Continue(())).unwrap();
+/// assert!((moments[0][2] - 5.0).abs() < 1e-14);
+/// ```
 ///
 /// # Errors
 /// As [`principal_axes_many`].

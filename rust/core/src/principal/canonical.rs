@@ -22,6 +22,19 @@ const TIE: f64 = 1e-8;
 /// holds as ever. Where no two are equal, or a moment is not finite, nothing changes.
 ///
 /// V diag(I) Vᵀ then equals the tensor to `rtol` rather than to rounding.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::nalgebra::Matrix3;
+/// use polhode::principal::{TOP_RTOL, canonical};
+///
+/// // A ball has any axes: the canonical ones are those of the body frame.
+/// let ball = solids::sphere(1.0, Amount::Mass(1.0))?;
+/// assert_eq!(canonical(&ball.principal(), TOP_RTOL).axes, Matrix3::identity());
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[must_use]
 pub fn canonical(principal: &PrincipalAxes, rtol: f64) -> PrincipalAxes {
     let [i1, i2, i3] = principal.moments;

@@ -23,6 +23,18 @@ impl SymmetricTop {
     /// The closer two are the pair across the axis, the lower two where both gaps are equal, and `I_t` is their mean. Of a
     /// spherical top, for which every axis will do, that is one of three.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::principal::{SymmetricTop, TOP_RTOL};
+    ///
+    /// let coin = solids::cylinder(1.0, 0.0, Amount::Mass(4.0))?;
+    /// let top = SymmetricTop::of(&coin.principal(), TOP_RTOL)?;
+    /// assert_eq!(top.axis.z.abs(), 1.0);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`BodyFault::NotASymmetricTop`]; `rtol` that is not at least 0 and less than 1.
     pub fn of(principal: &PrincipalAxes, rtol: f64) -> Result<Self, Error> {

@@ -73,6 +73,17 @@ pub fn gaps(moments: &[f64; 3]) -> [f64; 2] {
 ///
 /// [`Top::None`] where the moments belong to no body: not finite, not ascending, negative, or I₁ + I₂ < I₃, each by more
 /// than rounding (16 ε times the sum of the moments) and by more than `rtol` times the largest.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::principal::{TOP_RTOL, Top, classify};
+///
+/// assert_eq!(classify(&[1.0, 1.0, 2.0], TOP_RTOL), Top::Oblate); // a coin
+/// assert_eq!(classify(&[0.0, 1.0, 1.0], TOP_RTOL), Top::Linear);
+/// assert_eq!(classify(&[1.0, 1.0, 3.0], TOP_RTOL), Top::None);
+/// assert_eq!(Top::Oblate.as_str(), "oblate");
+/// ```
 #[must_use]
 pub fn classify(moments: &[f64; 3], rtol: f64) -> Top {
     classify_within(moments, &[rtol; 3])
@@ -155,6 +166,16 @@ pub fn rounding_rtols(mass: f64, moments: &[f64; 3], rounding: f64) -> [f64; 3] 
 /// proportional to the moments: −1 for a prolate top, +1 for an oblate one, NaN for a spherical one.
 ///
 /// Written in the moments, κ = 2 I₁(I₃ − I₂)/(I₂(I₃ − I₁)) − 1, so that a zero moment (A infinite) has its limit −1.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::principal::ray_kappa;
+///
+/// // Ray's asymmetry of rotational constants: −1 for a cigar, 1 for a coin.
+/// assert_eq!(ray_kappa(&[1.0, 2.0, 2.0]), -1.0);
+/// assert_eq!(ray_kappa(&[1.0, 1.0, 2.0]), 1.0);
+/// ```
 #[must_use]
 pub fn ray_kappa(moments: &[f64; 3]) -> f64 {
     let &[i1, i2, i3] = moments;

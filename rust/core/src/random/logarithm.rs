@@ -18,6 +18,7 @@ const FRACTION_OF_ROOT: u64 = 0x6_A09E_667F_3BCD;
 const BIAS: u64 = 1023;
 
 /// ln x of a normal x, to less than a unit in the last place.
+#[inline]
 pub(super) fn ln(x: f64) -> f64 {
     let (fraction, exponent) = (x.to_bits() & FRACTION, x.to_bits() >> 52);
     // x = 2^k (1 + f) with 1 + f between √½ and √2.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`philox`](fn@philox) | four words from a counter and a key |
 //! | [`stream`] | the words of each member of an ensemble |
+//! | [`factor`] | a factor of a covariance, by which normal numbers get it |
 //! | [`laws`] | words as uniform and normal numbers and as rotations |
 //!
 //! A number is a function of its seed, of the name of what it is drawn for, of the member and of its place among the numbers of
@@ -15,5 +16,6 @@ mod logarithm;
 mod philox;
 pub mod stream;
 
+pub use crate::numerics::covariance::factor;
 pub use philox::philox;
 pub use stream::Stream;

@@ -8,7 +8,16 @@ const MULTIPLIERS: [u64; 2] = [0xD2E7_470E_E14C_6C93, 0xCA5A_8263_9512_1157];
 const STEPS: [u64; 2] = [0x9E37_79B9_7F4A_7C15, 0xBB67_AE85_84CA_A73B];
 
 /// The four words that belong to a counter under a key.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::random::philox;
+///
+/// assert_eq!(philox([0; 4], [0; 2])[0], 0x1655_4d9e_ca36_314c); // as Random123 publishes
+/// ```
 #[must_use]
+#[inline]
 pub fn philox(counter: [u64; 4], key: [u64; 2]) -> [u64; 4] {
     let ([mut a, mut b, mut c, mut d], [mut k, mut l]) = (counter, key);
     for _ in 0..ROUNDS {
@@ -22,6 +31,7 @@ pub fn philox(counter: [u64; 4], key: [u64; 2]) -> [u64; 4] {
 }
 
 /// The upper and the lower word of a product.
+#[inline]
 fn product(x: u64, y: u64) -> (u64, u64) {
     let both = u128::from(x) * u128::from(y);
     #[expect(

@@ -12,6 +12,21 @@ const WORDS: usize = 4;
 const SHARE: usize = 1024;
 
 /// All words of one argument: a member and a place within its words name each of them.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::random::{Stream, laws};
+///
+/// let stream = Stream::new(7, 0); // a seed, and the number of an argument
+/// let mut numbers = [0.0; 4];
+/// stream.fill(100, 1, &mut numbers, &mut |_| ControlFlow::Continue(()), laws::normal).unwrap();
+/// assert_eq!(numbers[3], laws::normal(stream.words(103, 0)[0])); // a member has its numbers wherever one begins
+/// let mut turns = [[0.0; 4]; 2];
+/// stream.fill_rotations(0, &mut turns, &mut |_| ControlFlow::Continue(())).unwrap();
+/// assert!((turns[1].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stream {
     key: [u64; 2],
@@ -29,6 +44,7 @@ impl Stream {
     /// The words of `member` from number `4 block` on. The second word of the counter is left for longer counts, the fourth for
     /// generators of others under the same key.
     #[must_use]
+    #[inline]
     pub fn words(&self, member: u64, block: u64) -> [u64; WORDS] {
         philox([block, 0, member, 0], self.key)
     }

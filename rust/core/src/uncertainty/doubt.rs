@@ -73,7 +73,7 @@ impl Doubt {
 
     /// The ten numbers along each probe, to second order.
     #[must_use]
-    pub fn probes(&self, numbers: &Ten<f64>) -> [Ten<Parabola>; PROBES] {
+    pub(crate) fn probes(&self, numbers: &Ten<f64>) -> [Ten<Parabola>; PROBES] {
         let (slopes, numbers) = (self.slopes(), numbers.to_array());
         std::array::from_fn(|probe| {
             let (slopes, bends) = (slopes[probe].to_array(), self.bends[probe].to_array());

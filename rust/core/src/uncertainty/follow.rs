@@ -150,7 +150,7 @@ fn bends(change: &dyn AnyChange, from: &Follow<'_>) -> Result<[Tangent; PROBES],
 
 /// A number with doubts along each probe: they are linear in the variables.
 #[must_use]
-pub fn line(value: f64, form: &[(Variable, f64)]) -> [Parabola; PROBES] {
+pub(crate) fn line(value: f64, form: &[(Variable, f64)]) -> [Parabola; PROBES] {
     let mut along = [Parabola::constant(value); PROBES];
     for (variable, step) in form {
         for (number, length) in along.iter_mut().zip(variable.steps()) {

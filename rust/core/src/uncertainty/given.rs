@@ -17,6 +17,17 @@ pub struct Given {
 impl Given {
     /// Independent numbers with these standard deviations; one without has no variable.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::uncertainty::{Given, Source};
+    ///
+    /// let masses = Given::independent(&[0.1, 0.2], Source::named("scales"))?;
+    /// assert!((masses.covariance(1, 1) - 0.04).abs() < 1e-17);
+    /// assert_eq!(masses.covariance(0, 1), 0.0);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// When one is negative or not finite.
     pub fn independent(sigma: &[f64], source: Source) -> Result<Self, Error> {

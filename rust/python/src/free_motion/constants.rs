@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
+use polhode::DoubleDouble;
 use polhode::motion::free::{FreeMotion, Invariants};
 use polhode::motion::stability::stability;
-use polhode::numerics::double_double::DoubleDouble;
 use pyo3::prelude::*;
 
 use super::PyFreeMotion;

@@ -2,10 +2,10 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use numpy::PyArrayDyn;
+use polhode::DoubleDouble;
 use polhode::RigidBody;
 use polhode::motion::attitude::components;
 use polhode::motion::gyrostat::GyrostatMotion;
-use polhode::numerics::double_double::DoubleDouble;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -238,7 +238,6 @@ impl PyGyrostatMotion {
             return Ok(motion);
         }
         let gyrostat = this.gyrostat.get();
-        let rotor = this.rotor(py)?;
         let centers = gyrostat
             .body
             .get()
@@ -257,7 +256,7 @@ impl PyGyrostatMotion {
         // What is carried along is computed for those who ask.
         let known = motion.getattr("__dict__")?;
         known.del_item("carried")?;
-        known.set_item("_rotor", (rotor, gyrostat.rotor(py)?.1))?;
+        known.set_item("_within", slf)?;
         Ok(motion)
     }
 

@@ -4,10 +4,8 @@
 //! |---|---|
 //! | `top` | the class, its states at any time |
 //! | `constants` | what stays constant |
-//! | `drawn` | pictures, which Python draws |
 
 mod constants;
-mod drawn;
 mod top;
 
 pub(crate) use top::PyHeavyTop;

@@ -39,7 +39,7 @@ use crate::stack::{Broadcast, Stack};
 /// Returns
 /// -------
 /// Load
-///     Where the target moves, "auto" is "dop853", and there are no derivatives.
+///     Where the target moves, "auto" is "dop853", and derivatives come by differences.
 ///
 /// Examples
 /// --------

@@ -23,7 +23,7 @@ use crate::stack::{Broadcast, Stack};
 /// ----------
 /// mu : array_like, shape (...), or Orbit, or SampledOrbit
 ///     Gravitational parameter of the attractor; or an orbit of :mod:`polhode.orbits`, alone. On one with ``j2`` or along
-///     samples "auto" is "dop853", and there are no derivatives.
+///     samples "auto" is "dop853", and derivatives come by differences.
 /// position, velocity : array_like, shape (..., 3)
 ///     Of the centre of mass relative to the attractor, in space, at the epoch.
 /// epoch : float, optional

@@ -1,4 +1,4 @@
-//! Composites: parts taken out, stacks put together.
+//! Composites: parts put to a body or taken out of it, stacks put together.
 
 use polhode::mass::composites::combined;
 use polhode::uncertainty::together;
@@ -13,6 +13,36 @@ use crate::uncertain::carried;
 
 #[pymethods]
 impl PyRigidBody {
+    fn __add__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else {
+            return Ok(PyNotImplemented::get(py).to_owned().into_any());
+        };
+        let other = other.get();
+        let grid = self.with("other", &other.bodies)?;
+        let sum = grid.try_map(py, |[a, b]| self.bodies[a].combined(&other.bodies[b]))?;
+        let sum = Self::doubtful(sum, self.with_part(py, &grid, 1.0, other)?)
+            .looking(self.joined(&grid, other, false));
+        Ok(sum.into_pyobject(py)?.into_any())
+    }
+
+    /// `sum()` starts from zero.
+    fn __radd__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if other.extract::<i64>().is_ok_and(|zero| zero == 0) {
+            let same = Self::doubtful(self.bodies.map(py, |body| *body)?, self.doubts.clone())
+                .looking(self.figures.clone());
+            return Ok(same.into_pyobject(py)?.into_any());
+        }
+        Ok(PyNotImplemented::get(py).to_owned().into_any())
+    }
+
     fn __sub__<'py>(
         &self,
         py: Python<'py>,
@@ -25,7 +55,8 @@ impl PyRigidBody {
         let shapes = [&self.bodies.shape[..], &other.bodies.shape];
         let grid = Broadcast::of(["body", "other"], shapes)?;
         let rest = grid.try_map(py, |[a, b]| self.bodies[a].without(&other.bodies[b]))?;
-        let rest = Self::doubtful(rest, self.with_part(py, &grid, -1.0, other)?);
+        let rest = Self::doubtful(rest, self.with_part(py, &grid, -1.0, other)?)
+            .looking(self.joined(&grid, other, true));
         Ok(rest.into_pyobject(py)?.into_any())
     }
 
@@ -87,7 +118,9 @@ impl PyRigidBody {
                 .collect();
             Ok(together(&parts))
         })?;
-        Ok(Self::doubtful(whole, doubts))
+        let order: Vec<usize> = rows.iter().map(|&row| to_index(row)).collect();
+        let figures = self.gathered(count, &order);
+        Ok(Self::doubtful(whole, doubts).looking(figures))
     }
 }
 

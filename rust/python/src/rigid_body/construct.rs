@@ -170,7 +170,7 @@ impl PyRigidBody {
     /// ----------
     /// path : str or os.PathLike
     /// density, mass : float
-    ///     Exactly one of the two for a mesh; neither for a molecule, whose atoms have their masses. Solids of CAD whose
+    ///     Exactly one of the two for a mesh, or a mapping of the names of its components to their densities; neither for a molecule, whose atoms have their masses. Solids of CAD whose
     ///     materials have densities need none.
     /// length_unit : str, optional
     ///     Unit of the coordinates, such as ``"mm"``: they are converted to metres. Without it the
@@ -303,6 +303,7 @@ impl PyRigidBody {
             };
             Arc::new(bodies.iter().flat_map(of).collect())
         });
-        Ok(Self::doubtful(Stack { shape, rows }, doubts))
+        let figures = Self::stacked(bodies.iter().map(Bound::get));
+        Ok(Self::doubtful(Stack { shape, rows }, doubts).looking(figures))
     }
 }

@@ -53,8 +53,9 @@ impl PyRigidBody {
         let grid = Broadcast::of(["key"], [&shape])?;
         let picked = picked.as_slice()?;
         let bodies = grid.try_map(py, |[k]| Ok(self.bodies[to_index(picked[k])]))?;
-        let doubts = self.doubts_of(picked.iter().map(|&row| to_index(row)));
-        Ok(Self::doubtful(bodies, doubts))
+        let rows = picked.iter().map(|&row| to_index(row));
+        let doubts = self.doubts_of(rows.clone());
+        Ok(Self::doubtful(bodies, doubts).looking(self.figures_of(rows)))
     }
 
     fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
@@ -79,8 +80,10 @@ impl PyRigidBody {
                 |body| *body,
             )?;
             let shape = shape.clone();
-            let doubts = self.doubts_of(i * size..(i + 1) * size);
-            parts.append(Py::new(py, Self::doubtful(Stack { shape, rows }, doubts))?)?;
+            let own = i * size..(i + 1) * size;
+            let part = Self::doubtful(Stack { shape, rows }, self.doubts_of(own.clone()))
+                .looking(self.figures_of(own));
+            parts.append(Py::new(py, part)?)?;
         }
         parts.try_iter()
     }
@@ -105,21 +108,26 @@ impl PyRigidBody {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = py.get_type::<Self>().getattr("_from_numbers")?;
         let numbers = write_of(py, &self.bodies, RigidBody::to_array)?.into_any();
-        let state = match self.stored_doubts(py)? {
-            None => PyTuple::new(py, [numbers])?,
-            Some(doubts) => PyTuple::new(py, [numbers, doubts.into_any()])?,
+        let doubts = self.stored_doubts(py)?;
+        let state = match self.stored_figures(py)? {
+            None => match doubts {
+                None => (numbers,).into_pyobject(py)?,
+                Some(doubts) => (numbers, doubts).into_pyobject(py)?,
+            },
+            Some(figures) => (numbers, doubts, figures).into_pyobject(py)?,
         };
         Ok((restore, state))
     }
 
     /// The bodies that `__reduce__` took apart, shape (..., 34), or (..., 33) without the rounding of coordinates, as before
-    /// it was kept, and their doubts if they have some; for pickle.
+    /// it was kept, their doubts if they have some, and their shapes if those are known; for pickle.
     #[staticmethod]
-    #[pyo3(signature = (numbers, doubts=None))]
+    #[pyo3(signature = (numbers, doubts=None, figures=None))]
     fn _from_numbers(
         py: Python<'_>,
         numbers: &Bound<'_, PyAny>,
         doubts: Option<&Bound<'_, PyDict>>,
+        figures: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let all = read::<[f64; 34]>(numbers, "numbers").or_else(|fault| {
             let before = read::<[f64; 33]>(numbers, "numbers").map_err(|_| fault)?;
@@ -128,7 +136,11 @@ impl PyRigidBody {
             })
         })?;
         let bodies = Self::from_numbers(&all, py)?;
-        doubts.map_or(Ok(bodies.clone()), |doubts| bodies.with_doubts(doubts))
+        let bodies = doubts.map_or(Ok(bodies.clone()), |doubts| bodies.with_doubts(doubts))?;
+        match figures {
+            None => Ok(bodies),
+            Some(figures) => bodies.with_figures(figures),
+        }
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

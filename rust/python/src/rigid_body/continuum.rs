@@ -5,7 +5,7 @@ use polhode::error::CellFault;
 use polhode::mass::density::{Effort, Estimate, from_density, from_radial_density};
 use polhode::mass::regions::Region;
 use polhode::mass::tetrahedra::{CellDensity, tetrahedra};
-use polhode::numerics::threads;
+use polhode::parallel;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -75,7 +75,7 @@ impl PyRigidBody {
         let interrupt = Interrupt::new(None);
         let watch = &mut |_| interrupt.poll(None);
         let body = py.detach(|| tetrahedra(&nodes.rows, &cells, given, watch));
-        let body = finish(py, interrupt, body.map_err(threads::Halt::from))?;
+        let body = finish(py, interrupt, body.map_err(parallel::Halt::from))?;
         Ok(Stack::one(body).into())
     }
 

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use numpy::{PyArrayDyn, PyArrayMethods};
-use polhode::mass::polyhedron::{Options, closure, polyhedron_watched};
+use polhode::mass::polyhedron::{Index, Options, closure, outward, polyhedron_watched};
 use polhode::mass::ten::Ten;
 use polhode::mass::{Amount, curve, surface, thick_shell};
-use polhode::numerics::threads::Watch;
+use polhode::parallel::Watch;
 use polhode::uncertainty::of_mesh;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -14,11 +14,45 @@ use pyo3::prelude::*;
 use crate::arrays::read_list;
 use crate::body::PyRigidBody;
 use crate::errors::to_py;
+use crate::figure::{MOST_FACES, Outline, alone};
 use crate::interrupt::Interrupt;
 use crate::meshes::{finish, read_mesh, with_mesh};
 use crate::shapes::amount;
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{Weight, value_of};
+
+/// How the surface of a solid came from the mesh that was given.
+enum Closed {
+    AsGiven,
+    ByCaps,
+    /// By the faces of its hull instead.
+    ByHull(Vec<[i64; 3]>),
+}
+
+impl Closed {
+    /// The surface that was summed, if its faces are not too many.
+    fn outline<I: Index + TryInto<u32>>(
+        &self,
+        vertices: &[[f64; 3]],
+        faces: &[[I; 3]],
+        orient: bool,
+    ) -> Option<Outline> {
+        if faces.len() > MOST_FACES {
+            return None;
+        }
+        match self {
+            Self::AsGiven if orient => {
+                Outline::of_mesh("mesh", vertices, &outward(vertices, faces))
+            }
+            Self::AsGiven => Outline::of_mesh("mesh", vertices, faces),
+            Self::ByHull(hull) => Outline::of_mesh("mesh", vertices, &outward(vertices, hull)),
+            Self::ByCaps => {
+                let (vertices, faces) = closure::with_caps(vertices, faces).ok()?;
+                Outline::of_mesh("mesh", &vertices, &outward(&vertices, &faces))
+            }
+        }
+    }
+}
 
 #[pymethods]
 impl PyRigidBody {
@@ -94,13 +128,17 @@ impl PyRigidBody {
         let options = Options { orient, check };
         let interrupt = Interrupt::new(None);
         let watch = &mut |_| interrupt.poll(None);
+        let mut closed_by = Closed::AsGiven;
         let outcome = match closure {
             None => with_mesh!(mesh, |vertices, faces| {
                 py.detach(|| polyhedron_watched(vertices, faces, amount, options, watch))
             }),
-            Some("caps") => with_mesh!(mesh, |vertices, faces| {
-                py.detach(|| closure::capped(vertices, faces, amount, options, watch))
-            }),
+            Some("caps") => {
+                closed_by = Closed::ByCaps;
+                with_mesh!(mesh, |vertices, faces| {
+                    py.detach(|| closure::capped(vertices, faces, amount, options, watch))
+                })
+            }
             Some("hull") => {
                 let hull = py
                     .import("polhode.files.hull")?
@@ -108,6 +146,7 @@ impl PyRigidBody {
                     .cast_into::<PyArrayDyn<i64>>()?;
                 let hull = hull.readonly();
                 let hull = hull.as_slice()?.as_chunks::<3>().0;
+                closed_by = Closed::ByHull(hull.to_vec());
                 with_mesh!(mesh, |vertices, faces| {
                     py.detach(|| closure::hulled(vertices, faces, hull, amount, watch))
                 })
@@ -132,7 +171,12 @@ impl PyRigidBody {
             let doubt = found.map_err(|error| to_py(py, &error))?;
             doubts = Some(Arc::new(vec![doubt]));
         }
-        Self::doubtful(Stack::one(body), doubts).weighed([density, mass, None])
+        let outline = with_mesh!(mesh, |vertices, faces| {
+            py.detach(|| closed_by.outline(vertices, faces, orient))
+        });
+        Self::doubtful(Stack::one(body), doubts)
+            .looking(alone(outline))
+            .weighed([density, mass, None])
     }
 
     /// Shell, thin or of finite thickness, around a triangle mesh, open or closed.
@@ -214,7 +258,10 @@ impl PyRigidBody {
                 Some(t) => thick_shell::thick_shell(vertices, faces, t, amount, watch),
             })
         });
-        let body = Self::from(Stack::one(finish(py, interrupt, outcome)?));
+        let outline = with_mesh!(mesh, |vertices, faces| {
+            Outline::of_mesh("surface", vertices, faces)
+        });
+        let body = Self::from(Stack::one(finish(py, interrupt, outcome)?)).looking(alone(outline));
         body.weighed([areal_density, density, mass])
     }
 
@@ -265,7 +312,13 @@ impl PyRigidBody {
         let body = |[row]: [usize; 1], watch: &mut Watch<'_>| {
             curve::curve(&points.rows[row * n..(row + 1) * n], amount, watch)
         };
-        Self::from(grid.try_map_watched(py, body)?).weighed([linear_density, mass, None])
+        let bodies = grid.try_map_watched(py, body)?;
+        let outline = (shape.is_empty())
+            .then(|| Outline::of_points("wire", &points.rows))
+            .flatten();
+        Self::from(bodies)
+            .looking(alone(outline))
+            .weighed([linear_density, mass, None])
     }
 }
 

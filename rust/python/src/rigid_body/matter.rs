@@ -1,6 +1,8 @@
 //! Bodies of particles and of voxels.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use polhode::Error;
+use polhode::error::BodyFault;
 use polhode::mass::particles::{labelled_particles, particle_stack, particles_watched};
 use polhode::mass::voxels::{Grid, Voxel, voxels};
 use polhode::uncertainty::of_particles;
@@ -11,6 +13,7 @@ use crate::arrays::{Argument, floats, read, read_or, write};
 use crate::body::PyRigidBody;
 use crate::elsewhere::{handed_over, is_any};
 use crate::errors::{at_row, to_py};
+use crate::figure::{Outline, alone};
 use crate::particles::{ParticleArrays, read_labels, watched};
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
@@ -105,7 +108,11 @@ impl PyRigidBody {
                 )
             }
         })?;
-        stack(py, grid.shape, bodies)
+        let outline = (grid.shape.is_empty())
+            .then(|| Outline::of_particles(rows.masses, rows.positions))
+            .flatten();
+        let figures = alone(outline);
+        Ok(stack(py, grid.shape, bodies)?.looking(figures))
     }
 
     /// Bodies of particles that say which body they belong to: haloes, fragments, residues.
@@ -152,8 +159,9 @@ impl PyRigidBody {
         match bodies {
             Err((None, error)) => Err(to_py(py, &error)),
             Err((Some(label), error)) => {
+                let way_out = way_out_of_label(&error);
                 let error = to_py(py, &error);
-                let message = format!("label {label}: {}", error.value(py));
+                let message = format!("label {label}: {}{way_out}", error.value(py));
                 Err(PyErr::from_type(error.get_type(py), message))
             }
             Ok(bodies) => stack(py, vec![bodies.len()], Ok(bodies)),
@@ -253,7 +261,7 @@ fn of_uncertain_particles<'py>(
             (0..*n).map(|k| (m.row(i * n + k), r.row(j * n + k))),
         ))
     })?;
-    Ok(PyRigidBody::doubtful(bodies.bodies, doubts))
+    Ok(PyRigidBody { doubts, ..bodies })
 }
 
 /// The bodies of densities of this shape.
@@ -290,10 +298,23 @@ fn of_voxels<T: Voxel>(
 fn stack(
     py: Python<'_>,
     shape: Vec<usize>,
-    bodies: Result<Vec<polhode::RigidBody>, (usize, polhode::Error)>,
+    bodies: Result<Vec<polhode::RigidBody>, (usize, Error)>,
 ) -> PyResult<PyRigidBody> {
     match bodies {
         Ok(rows) => Ok(Stack { shape, rows }.into()),
         Err((row, error)) => Err(at_row(&shape, row, &to_py(py, &error), py)),
+    }
+}
+
+/// What to do about a label without mass.
+fn way_out_of_label(error: &Error) -> &'static str {
+    match error {
+        Error::Body(BodyFault::NoMass { count: 0, .. }) => {
+            "; every label from 0 to the largest needs a particle here: polhode.labelled.bodies takes labels with gaps"
+        }
+        Error::Body(BodyFault::NoMass { .. }) => {
+            "; give its particles their masses, or the label -1 where they belong to no body"
+        }
+        _ => "",
     }
 }

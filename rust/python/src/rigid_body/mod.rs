@@ -7,6 +7,7 @@ mod continuum;
 mod deviations;
 mod dynamics;
 mod ensemble;
+mod figures;
 mod from_shapes;
 mod matter;
 mod motion;

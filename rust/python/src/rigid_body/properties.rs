@@ -1,6 +1,6 @@
 //! What a body is, and bodies made from bodies.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use numpy::PyArrayDyn;
 use polhode::uncertainty::{Rotated, Scaled, Translated};
 use polhode::{Error, RigidBody};
@@ -14,6 +14,7 @@ use crate::arrays::{
     Argument, read, write, write_any_of, write_numbers, write_numbers_of, write_of,
 };
 use crate::body::PyRigidBody;
+use crate::figure::Place;
 use crate::interrupt::Beat;
 use crate::principal::{of_bodies, with_rtols};
 use crate::stack::{BLOCK, Broadcast, Stack};
@@ -193,7 +194,11 @@ impl PyRigidBody {
         } else {
             self.doubts_of(grid.rows().map(|[b, _]| b))
         };
-        Ok(Self::doubtful(moved, doubts))
+        let figures = self.placed(&grid, |[_, i]| Place {
+            shift: d.values[i],
+            ..Place::default()
+        });
+        Ok(Self::doubtful(moved, doubts).looking(figures))
     }
 
     /// The body turned about the origin: C → R C, I → R I Rᵀ. Its principal moments stay exactly as they are.
@@ -231,7 +236,11 @@ impl PyRigidBody {
             }
             self.changed(b, &Rotated(rotations[r]), &small)
         })?;
-        Ok(Self::doubtful(turned, doubts))
+        let figures = self.placed(&grid, |[_, r]| Place {
+            turn: rotations[r],
+            ..Place::default()
+        });
+        Ok(Self::doubtful(turned, doubts).looking(figures))
     }
 
     /// The same shape ``length`` times as large and ``mass`` times as heavy: m → k m, C → s C, I → k s² I.
@@ -268,7 +277,11 @@ impl PyRigidBody {
             }
             self.changed(b, &Scaled, &[length.row(i), mass.row(j)].concat())
         })?;
-        Ok(Self::doubtful(scaled, doubts))
+        let figures = self.placed(&grid, |[_, i, _]| Place {
+            turn: Matrix3::identity() * s[i],
+            ..Place::default()
+        });
+        Ok(Self::doubtful(scaled, doubts).looking(figures))
     }
 
     /// Whether bodies agree, one answer for each pair.
@@ -313,34 +326,6 @@ impl PyRigidBody {
     #[classattr]
     fn __array_ufunc__() -> Option<bool> {
         None
-    }
-
-    fn __add__<'py>(
-        &self,
-        py: Python<'py>,
-        other: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let Ok(other) = other.cast::<Self>() else {
-            return Ok(PyNotImplemented::get(py).to_owned().into_any());
-        };
-        let other = other.get();
-        let grid = self.with("other", &other.bodies)?;
-        let sum = grid.try_map(py, |[a, b]| self.bodies[a].combined(&other.bodies[b]))?;
-        let sum = Self::doubtful(sum, self.with_part(py, &grid, 1.0, other)?);
-        Ok(sum.into_pyobject(py)?.into_any())
-    }
-
-    /// `sum()` starts from zero.
-    fn __radd__<'py>(
-        &self,
-        py: Python<'py>,
-        other: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        if other.extract::<i64>().is_ok_and(|zero| zero == 0) {
-            let same = Self::doubtful(self.bodies.map(py, |body| *body)?, self.doubts.clone());
-            return Ok(same.into_pyobject(py)?.into_any());
-        }
-        Ok(PyNotImplemented::get(py).to_owned().into_any())
     }
 
     fn __richcmp__<'py>(

@@ -259,7 +259,10 @@ impl PyRigidBody {
                 Doubt::of([&before.tangents[..], &more.tangents].concat(), bends)
             })
             .collect();
-        Self::doubtful(bodies, Some(Arc::new(rows))).possible(py)
+        let figures = self.figures_of(own.iter().copied());
+        Self::doubtful(bodies, Some(Arc::new(rows)))
+            .looking(figures)
+            .possible(py)
     }
 
     /// The bodies, when bodies can have these doubts.

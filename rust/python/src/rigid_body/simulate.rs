@@ -305,22 +305,14 @@ const KEYWORDS: [&str; 15] = [
     "max_steps",
 ];
 
-const METHODS: [Method; 6] = [
-    Method::Auto,
-    Method::Exact,
-    Method::Taylor,
-    Method::Dop853,
-    Method::Radau,
-    Method::Splitting,
-];
-
 fn parse_method(word: &str) -> PyResult<Method> {
-    (METHODS.into_iter())
+    (Method::ALL.iter().copied())
         .find(|method| method.name() == word)
         .ok_or_else(|| {
-            let names = METHODS
+            let names: Vec<String> = (Method::ALL.iter())
                 .map(|method| format!("\"{}\"", method.name()))
-                .join(", ");
+                .collect();
+            let names = names.join(", ");
             PyValueError::new_err(format!("method: expected one of {names}, got \"{word}\""))
         })
 }

@@ -102,7 +102,10 @@ impl PyRigidBody {
                 Doubt::of(tangents, bends)
             })
             .collect();
-        Ok(Self::doubtful(self.bodies.clone(), Some(Arc::new(doubts))))
+        Ok(Self {
+            doubts: Some(Arc::new(doubts)),
+            ..self.clone()
+        })
     }
 }
 

@@ -99,10 +99,10 @@ impl PyRigidBody {
             };
             body.with_provenance(provenance)
         };
-        Ok(Self::doubtful(
-            self.bodies.map(py, of_atoms)?,
-            self.doubts.clone(),
-        ))
+        Ok(
+            Self::doubtful(self.bodies.map(py, of_atoms)?, self.doubts.clone())
+                .looking(self.figures.clone()),
+        )
     }
 
     /// The same bodies, of meshes of which so many corners were joined to others on request.
@@ -114,9 +114,9 @@ impl PyRigidBody {
             };
             body.with_provenance(provenance)
         };
-        Ok(Self::doubtful(
-            self.bodies.map(py, welded)?,
-            self.doubts.clone(),
-        ))
+        Ok(
+            Self::doubtful(self.bodies.map(py, welded)?, self.doubts.clone())
+                .looking(self.figures.clone()),
+        )
     }
 }

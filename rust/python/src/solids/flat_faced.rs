@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::read;
 use crate::body::PyRigidBody;
+use crate::figure::figures_of_lengths;
 use crate::shapes::{Amounts, Given, lengths, one, shape};
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{Quantity, carried, quantity};
@@ -41,7 +42,7 @@ pub(crate) fn cuboid(
         size,
         "size",
         (mass, density),
-        &shape!(|lengths| 3, solids::cuboid, lengths),
+        shape!(|lengths| 3, solids::cuboid, lengths),
     )
 }
 
@@ -74,7 +75,7 @@ pub(crate) fn cube(
         ["side"],
         [side],
         (mass, density),
-        &shape!(|&[side]| 1, solids::cube, side),
+        shape!(|&[side]| 1, solids::cube, side),
     )
 }
 
@@ -112,7 +113,7 @@ pub(crate) fn wedge(
         size,
         "size",
         (mass, density),
-        &shape!(|lengths| 3, solids::wedge, lengths),
+        shape!(|lengths| 3, solids::wedge, lengths),
     )
 }
 
@@ -176,7 +177,11 @@ pub(crate) fn prism(
             &Prism(whole(sides[n])?),
         )
     })?;
-    Ok(PyRigidBody::doubtful(bodies, doubts))
+    let figures = figures_of_lengths("solids::prism", grid.len(), |row| {
+        let [n, r, h, _] = grid.operands(row);
+        vec![sides[n], radius.values[r], height.values[h]]
+    });
+    Ok(PyRigidBody::doubtful(bodies, doubts).looking(figures))
 }
 
 /// A prism with so many sides, by its radius and height.
@@ -231,7 +236,7 @@ pub(crate) fn pyramid(
         size,
         "size",
         (mass, density),
-        &shape!(|lengths| 3, solids::pyramid, lengths),
+        shape!(|lengths| 3, solids::pyramid, lengths),
     )
 }
 
@@ -267,6 +272,6 @@ pub(crate) fn tetrahedron(
         ["side"],
         [side],
         (mass, density),
-        &shape!(|&[side]| 1, solids::tetrahedron, side),
+        shape!(|&[side]| 1, solids::tetrahedron, side),
     )
 }

@@ -34,7 +34,7 @@ pub(crate) fn sphere(
         ["radius"],
         [radius],
         (mass, density),
-        &shape!(|&[radius]| 1, solids::sphere, radius),
+        shape!(|&[radius]| 1, solids::sphere, radius),
     )
 }
 
@@ -67,7 +67,7 @@ pub(crate) fn ellipsoid(
         semi_axes,
         "semi_axes",
         (mass, density),
-        &shape!(|lengths| 3, solids::ellipsoid, lengths),
+        shape!(|lengths| 3, solids::ellipsoid, lengths),
     )
 }
 
@@ -101,7 +101,7 @@ pub(crate) fn hollow_sphere(
         ["inner_radius", "outer_radius"],
         [inner_radius, outer_radius],
         (mass, density),
-        &shape!(|&[inner, outer]| 2, solids::hollow_sphere, inner, outer),
+        shape!(|&[inner, outer]| 2, solids::hollow_sphere, inner, outer),
     )
 }
 
@@ -133,6 +133,6 @@ pub(crate) fn hemisphere(
         ["radius"],
         [radius],
         (mass, density),
-        &shape!(|&[radius]| 1, solids::hemisphere, radius),
+        shape!(|&[radius]| 1, solids::hemisphere, radius),
     )
 }

@@ -36,7 +36,7 @@ pub(crate) fn cylinder(
         ["radius", "height"],
         [radius, height],
         (mass, density),
-        &shape!(|&[r, h]| 2, solids::cylinder, r, h),
+        shape!(|&[r, h]| 2, solids::cylinder, r, h),
     )
 }
 
@@ -72,7 +72,7 @@ pub(crate) fn cone(
         ["radius", "height"],
         [radius, height],
         (mass, density),
-        &shape!(|&[r, h]| 2, solids::cone, r, h),
+        shape!(|&[r, h]| 2, solids::cone, r, h),
     )
 }
 
@@ -109,7 +109,7 @@ pub(crate) fn tube(
         ["inner_radius", "outer_radius", "height"],
         [inner_radius, outer_radius, height],
         (mass, density),
-        &shape!(|&[inner, outer, h]| 3, solids::tube, inner, outer, h),
+        shape!(|&[inner, outer, h]| 3, solids::tube, inner, outer, h),
     )
 }
 
@@ -149,7 +149,7 @@ pub(crate) fn frustum(
         ["bottom_radius", "top_radius", "height"],
         [bottom_radius, top_radius, height],
         (mass, density),
-        &shape!(|&[bottom, top, h]| 3, solids::frustum, bottom, top, h),
+        shape!(|&[bottom, top, h]| 3, solids::frustum, bottom, top, h),
     )
 }
 
@@ -184,7 +184,7 @@ pub(crate) fn capsule(
         ["radius", "length"],
         [radius, length],
         (mass, density),
-        &shape!(|&[r, l]| 2, solids::capsule, r, l),
+        shape!(|&[r, l]| 2, solids::capsule, r, l),
     )
 }
 
@@ -220,6 +220,6 @@ pub(crate) fn torus(
         ["major_radius", "minor_radius"],
         [major_radius, minor_radius],
         (mass, density),
-        &shape!(|&[major, minor]| 2, solids::torus, major, minor),
+        shape!(|&[major, minor]| 2, solids::torus, major, minor),
     )
 }

@@ -41,7 +41,10 @@ pub(crate) fn of_numbers(change: &impl Change, numbers: &[Number<'_>]) -> Result
 impl PyRigidBody {
     /// Bodies with their doubts.
     pub(crate) fn doubtful(bodies: Stack<polhode::RigidBody>, doubts: Doubts) -> Self {
-        Self { bodies, doubts }
+        Self {
+            doubts,
+            ..bodies.into()
+        }
     }
 
     /// The bodies, each with that relative doubt of its mass besides what it carries.
@@ -65,7 +68,10 @@ impl PyRigidBody {
             })
             .collect::<Result<_, Error>>()
             .map_err(|error| Python::attach(|py| to_py(py, &error)))?;
-        Ok(Self::doubtful(self.bodies, Some(Arc::new(doubts))))
+        Ok(Self {
+            doubts: Some(Arc::new(doubts)),
+            ..self
+        })
     }
 
     /// The doubts of a row after a change of it by some numbers.

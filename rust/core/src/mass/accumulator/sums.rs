@@ -146,6 +146,24 @@ impl MassAccumulator {
 
     /// Adds the next chunk, which another accumulator has summed at its place: as if it had been added here without one.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::MassAccumulator;
+    /// use std::ops::ControlFlow;
+    ///
+    /// let go_on = &mut |_| ControlFlow::Continue(());
+    /// let (mut first, mut second) = (MassAccumulator::new(), MassAccumulator::new());
+    /// first.add(&[1.0], &[[0.0; 3]], None, go_on)?;
+    /// second.add(&[3.0], &[[0.0, 0.0, 2.0]], None, go_on)?;
+    /// // What is sent to another machine is bytes.
+    /// let second = MassAccumulator::from_bytes(&second.to_bytes())?;
+    /// first.merge_next(&second)?; // its particles count on from those of the first
+    /// assert_eq!((first.count(), first.end()), (2, 2));
+    /// assert_eq!(first.finish()?.center_of_mass().z, 1.5);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As of [`merge`](Self::merge).
     pub fn merge_next(&mut self, next: &Self) -> Result<(), Error> {

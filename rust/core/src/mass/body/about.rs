@@ -11,6 +11,18 @@ use crate::principal::{PrincipalAxes, TOP_RTOL, principal_axes, rounding_rtols};
 
 impl RigidBody {
     /// Inertia tensor `I_P` about the point P (from the origin of the body frame).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// let rod = solids::cuboid(&[0.0, 0.0, 6.0], Amount::Mass(1.0))?;
+    /// let end = Vector3::new(0.0, 0.0, 3.0);
+    /// assert!((rod.inertia_about(&end)[(0, 0)] - 12.0).abs() < 1e-14); // m l²/3
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn inertia_about(&self, point: &Vector3<f64>) -> Matrix3<f64> {
         from_center_of_mass(&self.inertia, self.mass, &(point - self.center_of_mass))
@@ -29,6 +41,18 @@ impl RigidBody {
     }
 
     /// Principal moments and axes about the point P.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+    /// let about = ball.principal_about(&Vector3::new(1.0, 0.0, 0.0));
+    /// assert!((about.moments[2] - 7.0).abs() < 1e-14); // 2/5 m r² + m r²
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn principal_about(&self, point: &Vector3<f64>) -> PrincipalAxes {
         if *point == self.center_of_mass {
@@ -49,6 +73,18 @@ impl RigidBody {
     }
 
     /// Moment of inertia about the axis through P with direction `axis`: `n·I_P·n`, n the unit vector along `axis`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+    /// let (axis, touched) = (Vector3::new(1.0, 1.0, 0.0), Vector3::new(0.0, 0.0, -1.0));
+    /// assert!((ball.moment_about(&axis, &touched)? - 7.0).abs() < 1e-14);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     ///
     /// # Errors
     /// When `axis` is zero or not finite, or the moment is beyond all numbers.
@@ -71,6 +107,16 @@ impl RigidBody {
     }
 
     /// Radii of gyration `√(I_k / m)` about the principal axes through C, ascending.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    ///
+    /// let ring = solids::tube(2.0, 2.0, 0.0, Amount::Mass(3.0))?;
+    /// assert!((ring.radii_of_gyration()[2] - 2.0).abs() < 1e-14); // √(I/m)
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn radii_of_gyration(&self) -> [f64; 3] {
         self.principal

@@ -17,6 +17,16 @@ impl PartialEq for RigidBody {
 impl RigidBody {
     /// Whether the two agree: mass to `rtol` of itself, the tensor to `rtol` of its largest element, the centre of mass
     /// to `rtol` of its distance from the origin or of the radius of gyration, whichever is larger; each `+ atol`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    ///
+    /// let (a, b) = (solids::cube(1.0, Amount::Mass(1.0))?, solids::cube(1.001, Amount::Mass(1.0))?);
+    /// assert!(a.is_close(&b, 1e-2, 0.0) && !a.is_close(&b, 1e-6, 0.0));
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn is_close(&self, other: &Self, rtol: f64, atol: f64) -> bool {
         // The trace may be beyond all numbers, and so may the distance.

@@ -59,6 +59,18 @@ impl RigidBody {
     ///
     /// `I_C = I_O − m (c² 1 − c cᵀ)`; what that difference leaves must be the tensor of a body.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::RigidBody;
+    /// use polhode::nalgebra::{Matrix3, Vector3};
+    ///
+    /// let about_origin = Matrix3::from_diagonal(&Vector3::new(3.0, 3.0, 1.0));
+    /// let body = RigidBody::from_inertia_about_origin(2.0, &about_origin, &Vector3::new(0.0, 0.0, 1.0), 0.0)?;
+    /// assert_eq!(body.principal().moments, [1.0, 1.0, 1.0]); // 2 kg at 1 m less
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// The law that fails, with its numbers.
     pub fn from_inertia_about_origin(

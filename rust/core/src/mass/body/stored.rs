@@ -12,6 +12,20 @@ use crate::principal::PrincipalAxes;
 impl RigidBody {
     /// All that a body is, as numbers: mass, C, the upper triangle of `I_C` by rows, moments, axes by rows, bounds,
     /// provenance.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::RigidBody;
+    ///
+    /// let ball = solids::sphere(1.0, Amount::Mass(3.0))?;
+    /// let mut numbers = ball.to_array();
+    /// assert_eq!(RigidBody::from_array(&numbers)?.to_array(), numbers);
+    /// numbers[4] *= 2.0; // a tensor that its moments contradict
+    /// assert!(RigidBody::from_array(&numbers).is_err());
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn to_array(&self) -> [f64; 34] {
         let (c, i) = (&self.center_of_mass, &self.inertia);

@@ -19,6 +19,23 @@ use crate::numerics::reduce::{depth, sum_terms};
 /// The ball whose density `ρ(r)` depends on the distance from its centre alone, between the radii in `boundaries`:
 /// `m = 4π ∫ ρ r² dr`, `I = (8π/3) ∫ ρ r⁴ dr`. The density may jump at each of them.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::Error;
+/// use polhode::mass::density::{Effort, from_radial_density};
+///
+/// // A ball of radius 2 and density r: m = ∫ 4π r² r dr = 16 π.
+/// let density = |r: &[f64], out: &mut [f64]| {
+///     out.copy_from_slice(r);
+///     Ok::<_, Error>(())
+/// };
+/// let effort = Effort { rtol: 1e-10, max_evaluations: 10_000 };
+/// let ball = from_radial_density(&[0.0, 2.0], density, effort)?.converged()?;
+/// assert!((ball.mass() - 16.0 * std::f64::consts::PI).abs() < 1e-8);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// As of [`super::from_density`]; when the boundaries do not ascend from zero or more.
 pub fn from_radial_density<E: From<Error>>(

@@ -8,6 +8,19 @@ use crate::mass::ten::{Size, diagonal};
 
 /// Disk of radius R: `I_z = ½ m R²`, `I_x = I_y = ¼ m R²`.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, laminae};
+///
+/// let body = laminae::disk(2.0, Amount::Mass(1.0))?;
+/// let expected = [1.0, 1.0, 2.0]; // m r²/4, m r²/2
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When the radius is negative or not finite, or the amount is not positive.
 pub fn disk<X: Size>(radius: X, amount: Amount) -> Result<X::Body, Error> {
@@ -16,6 +29,19 @@ pub fn disk<X: Size>(radius: X, amount: Amount) -> Result<X::Body, Error> {
 }
 
 /// Disk with a concentric hole, between the radii r and R: `I_z = ½ m (R² + r²)`; for r = R a ring.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, laminae};
+///
+/// let body = laminae::annulus(1.0, 2.0, Amount::Mass(4.0))?;
+/// let expected = [5.0, 5.0, 10.0]; // m (a² + b²)/2 about its axis
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When a radius is negative or not finite, the inner one is the larger, or the amount is not positive.
@@ -40,6 +66,19 @@ pub fn annulus<X: Size>(
 
 /// Ellipse with semi-axes a along x and b along y: `I_x = ¼ m b²`, `I_y = ¼ m a²`.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, laminae};
+///
+/// let body = laminae::ellipse(&[2.0, 4.0], Amount::Mass(1.0))?;
+/// let expected = [1.0, 4.0, 5.0]; // m a²/4, m b²/4 and their sum
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
 pub fn ellipse<X: Size>(semi_axes: &[X; 2], amount: Amount) -> Result<X::Body, Error> {
@@ -56,6 +95,19 @@ pub fn ellipse<X: Size>(semi_axes: &[X; 2], amount: Amount) -> Result<X::Body, E
 }
 
 /// Rectangle with full edge lengths x and y: `I_x = m y²/12`, `I_y = m x²/12`.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, laminae};
+///
+/// let body = laminae::rectangle(&[2.0, 4.0], Amount::Mass(3.0))?;
+/// let expected = [1.0, 4.0, 5.0]; // m a²/12, m b²/12 and their sum
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.

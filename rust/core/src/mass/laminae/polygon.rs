@@ -20,6 +20,17 @@ use crate::numerics::threads::Watch;
 
 /// Triangle with these corners, in any order: `S = m (e₁e₁ᵀ + e₂e₂ᵀ + e₃e₃ᵀ)/36` with its edges e, C their mean.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, laminae};
+///
+/// let corner = laminae::triangle(&[[0.0, 0.0], [3.0, 0.0], [0.0, 3.0]], Amount::Density(2.0))?;
+/// assert_eq!(corner.mass(), 9.0);
+/// assert!((corner.center_of_mass().x - 1.0).abs() < 1e-15);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When a coordinate is not finite, or the amount is not positive.
 pub fn triangle(vertices: &[[f64; 2]; 3], amount: Amount) -> Result<RigidBody, Error> {
@@ -60,6 +71,18 @@ pub fn triangle(vertices: &[[f64; 2]; 3], amount: Amount) -> Result<RigidBody, E
 /// `∫ d dᵀ dA = Σ D (a aᵀ + b bᵀ + s sᵀ)/24` with `D = a × b` and `s = a + b`.
 ///
 /// `watch` is asked now and then whether to go on: edges that lie above each other are compared pair by pair.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, laminae};
+/// use std::ops::ControlFlow;
+///
+/// let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+/// let plate = laminae::polygon(&square, Amount::Mass(3.0), &mut |_| ControlFlow::Continue(()))?;
+/// assert!((plate.principal().moments[2] - 2.0).abs() < 1e-14); // m (a² + b²)/12
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`PolygonFault`] when edges cross or enclose nothing; when a coordinate is not finite, or the amount is not positive;

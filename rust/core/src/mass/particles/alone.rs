@@ -15,6 +15,18 @@ use crate::numerics::threads::Watch;
 /// One pass gives mass, centre of mass and second moment. For a thin body a second pass takes the second moment again in
 /// the axes that the first one found, which leaves the smallest principal moment as accurate as the coordinates are.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::particles::particles;
+///
+/// // A dumb-bell: the reduced mass times the square of the distance.
+/// let body = particles(&[1.0, 3.0], &[[0.0; 3], [0.0, 0.0, 2.0]])?;
+/// assert_eq!(body.center_of_mass().z, 1.5);
+/// assert!((body.principal().moments[2] - 0.75 * 4.0).abs() < 1e-15);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When a mass is negative, the total is not positive, or a number is not finite.
 ///
@@ -25,6 +37,17 @@ pub fn particles(masses: &[f64], positions: &[[f64; 3]]) -> Result<RigidBody, Er
 }
 
 /// As [`particles`]; about every 20 ms `watch` is asked whether to go on.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::particles::particles_watched;
+///
+/// let body = particles_watched(&[2.0], &[[1.0, 2.0, 3.0]], &mut |_| ControlFlow::Continue(()))?;
+/// assert_eq!((body.mass(), body.center_of_mass().z), (2.0, 3.0));
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`particles`], and [`Error::Stopped`] when `watch` said so.

@@ -17,6 +17,19 @@ const STRETCH: usize = 1 << 16;
 /// One pass over the particles brings those of each body together, in their order, unless they stand so already. Each body
 /// then has the bits that [`particles`](super::particles) gives its particles alone.
 ///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::particles::labelled_particles;
+///
+/// let (masses, labels) = ([1.0, 2.0, 4.0], [0, 1, 0]);
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let bodies = labelled_particles(&masses, &[[0.0; 3]; 3], &labels, go_on).map_err(|(_, error)| error)?;
+/// assert_eq!((bodies[0].mass(), bodies[1].mass()), (5.0, 2.0));
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// [`BodyFault::Label`] for a number below −1, the first body that cannot be, with its index, or [`Error::Stopped`]. Every
 /// label from zero to the largest must own some mass.

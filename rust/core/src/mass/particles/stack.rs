@@ -28,6 +28,21 @@ const LARGE: usize = 1 << 17;
 ///
 /// About every 20 ms `watch` gets the fraction done and may end the work.
 ///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::particles::{Particles, particle_stack};
+///
+/// let positions = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]];
+/// let masses = [[1.0, 1.0], [2.0, 2.0]];
+/// let row = |k: usize| Particles::new(&masses[k], &positions);
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let bodies = particle_stack(2, |_| 2, row, go_on).map_err(|(_, error)| error)?;
+/// assert_eq!(bodies[1].inertia()[(2, 2)], 4.0);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// The first body that cannot be, with its index, [`Error::NoMemory`], or [`Error::Stopped`].
 pub fn particle_stack<'a>(

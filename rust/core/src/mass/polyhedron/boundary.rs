@@ -53,15 +53,17 @@ fn place(key: &[u64; 12], [x, y, z]: Bits) -> [[u64; 2]; 2] {
 /// turned over.
 #[inline(always)]
 fn areas(key: &[u64; 12], triangle: &Triangle) -> [u64; 2] {
-    let [a, b, c] = [0, 1, 2].map(|k| place(key, bits(&triangle[k])));
-    [0, 1].map(|plane| {
+    let corner = |k: usize| place(key, bits(&triangle[k]));
+    let [a, b, c] = [corner(0), corner(1), corner(2)];
+    let area = |plane: usize| {
         let ([a, b, c], sub) = ([a[plane], b[plane], c[plane]], u64::wrapping_sub);
         let (e, f) = (
             [sub(b[0], a[0]), sub(b[1], a[1])],
             [sub(c[0], a[0]), sub(c[1], a[1])],
         );
         sub(e[0].wrapping_mul(f[1]), e[1].wrapping_mul(f[0]))
-    })
+    };
+    [area(0), area(1)]
 }
 
 /// The mark of a triangle that [`Boundary::of`] gives.
@@ -99,7 +101,8 @@ impl Boundary {
     /// Of both together.
     #[inline(always)]
     pub(super) fn and(self, other: Self) -> Self {
-        Self([0, 1].map(|k| self.0[k].wrapping_add(other.0[k])))
+        let sum = |k: usize| self.0[k].wrapping_add(other.0[k]);
+        Self([sum(0), sum(1)])
     }
 
     /// Whether every edge is run along as often one way as the other.

@@ -31,13 +31,8 @@ pub fn capped<I: Index>(
     watch: &mut Watch<'_>,
 ) -> Result<RigidBody, Halt<Error>> {
     let open = View { vertices, faces };
-    if let Some(fault) = open.find_unusable() {
-        return Err(Halt::Failed(fault.into()));
-    }
-    let mut vertices = vertices.to_vec();
-    let mut closed: Vec<[usize; 3]> = faces.iter().map(|face| face.map(Index::position)).collect();
-    let caps = caps(&mut vertices, &closed).map_err(|fault| Halt::Failed(fault.into()))?;
-    closed.extend(caps);
+    let (vertices, closed) =
+        with_caps(vertices, faces).map_err(|fault| Halt::Failed(fault.into()))?;
     instead(
         &open,
         &vertices,
@@ -46,6 +41,39 @@ pub fn capped<I: Index>(
         (amount, options),
         watch,
     )
+}
+
+/// Vertices and faces.
+pub type CappedMesh = (Vec<[f64; 3]>, Vec<[usize; 3]>);
+
+/// The mesh that [`capped`] sums: vertices and faces, the points in the middle of the holes and the caps last.
+///
+/// # Errors
+/// Faces that count vertices wrongly, or are wound inconsistently.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::polyhedron::closure::{CappedMesh, with_caps};
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let open = [[0_usize, 2, 1], [0, 1, 3], [0, 3, 2]];
+/// let (vertices, faces): CappedMesh = with_caps(&vertices, &open)?;
+/// assert_eq!((vertices.len(), faces.len()), (5, 6)); // a point in the middle of the hole, three caps around it
+/// # Ok::<(), polhode::error::MeshFault>(())
+/// ```
+pub fn with_caps<I: Index>(
+    vertices: &[[f64; 3]],
+    faces: &[[I; 3]],
+) -> Result<CappedMesh, MeshFault> {
+    if let Some(fault) = (View { vertices, faces }).find_unusable() {
+        return Err(fault);
+    }
+    let mut vertices = vertices.to_vec();
+    let mut closed: Vec<[usize; 3]> = faces.iter().map(|face| face.map(Index::position)).collect();
+    let caps = caps(&mut vertices, &closed)?;
+    closed.extend(caps);
+    Ok((vertices, closed))
 }
 
 /// The solid of a mesh replaced by a hull of the same vertices, in any orientation.

@@ -16,6 +16,22 @@ use crate::numerics::threads::{Halt, Watch};
 /// vertex. With `orient` an inverted mesh is turned, and so is a component that is wound like a cavity but lies in no other;
 /// else it is an error. Several components and cavities (inner surfaces wound inward) are counted as they are.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::Amount;
+/// use polhode::mass::polyhedron::polyhedron;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0_usize, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let corner = polyhedron(&vertices, &faces, Amount::Density(6.0), false)?;
+/// assert!((corner.mass() - 1.0).abs() < 1e-15); // the volume is 1/6
+/// // Without a face it has no inside.
+/// let open = polyhedron(&vertices, &faces[..3], Amount::Density(6.0), false);
+/// assert!(open.unwrap_err().to_string().contains("closed"));
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// [`MeshFault`](crate::error::MeshFault) names the face, edge or vertex that keeps the mesh from bounding a solid.
 pub fn polyhedron<I: Index>(
@@ -44,6 +60,46 @@ pub fn polyhedron_watched<I: Index>(
     watch: &mut Watch<'_>,
 ) -> Result<RigidBody, Halt<Error>> {
     solid_of_faces(vertices, faces, amount, options, watch).map(|(body, _)| body)
+}
+
+/// The faces of a closed mesh, wound as they count where `orient` is asked for: counter-clockwise seen from outside.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::polyhedron::outward;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let inverted = [[0_u32, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+/// assert_eq!(outward(&vertices, &inverted)[0], [0, 2, 1]);
+/// ```
+#[must_use]
+pub fn outward<I: Index>(vertices: &[[f64; 3]], faces: &[[I; 3]]) -> Vec<[I; 3]> {
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let options = Options {
+        orient: true,
+        ..Options::default()
+    };
+    let mut mesh = Faces::new(vertices, faces, go_on);
+    // What is wrong with the mesh is not asked here.
+    let _outcome = solid(&mut mesh, Amount::Density(1.0), options);
+    let faces = match mesh.inside_out {
+        Some(found) => found.turned(faces),
+        None => faces.to_vec(),
+    };
+    let is_outward = polyhedron_watched(
+        vertices,
+        &faces,
+        Amount::Density(1.0),
+        Options::default(),
+        go_on,
+    )
+    .is_ok();
+    if is_outward {
+        faces
+    } else {
+        faces.iter().map(|&[a, b, c]| [a, c, b]).collect()
+    }
 }
 
 /// The solid inside triangles in memory, components turned where that is asked for, and its volume.

@@ -28,7 +28,7 @@ pub mod stream;
 pub mod streamed;
 mod view;
 
-pub use in_memory::{polyhedron, polyhedron_watched};
+pub use in_memory::{outward, polyhedron, polyhedron_watched};
 pub(super) use matter::{in_units, is_settled, matter};
 pub(super) use nesting::find_components;
 pub use solid::Options;

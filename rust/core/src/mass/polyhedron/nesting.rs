@@ -145,6 +145,7 @@ impl Parts {
         Ok(Some(parts))
     }
 
+    #[inline]
     fn root(&self, mut at: usize) -> usize {
         loop {
             let parent = self.0[at].load(Ordering::Relaxed);
@@ -160,6 +161,7 @@ impl Parts {
         }
     }
 
+    #[inline]
     fn join(&self, a: usize, b: usize) {
         loop {
             let (a, b) = (self.root(a), self.root(b));

@@ -20,7 +20,7 @@ use crate::mass::solids::Amount;
 use crate::numerics::threads::{Halt, Watch};
 
 /// So many triangles are kept, to be looked at as a mesh in memory.
-pub const KEPT: usize = 1 << 18;
+pub(crate) const KEPT: usize = 1 << 18;
 
 /// A solid from a stream, and what only going through the triangles can tell.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +39,7 @@ pub struct StreamedSolid {
 ///
 /// Once through the file for an ordinary body, again for a thin one or to find what is wrong, and once more for every eight
 /// million triangles or so, to look for faces that stand twice. Corners with the same coordinates are one vertex. That
-/// components wound inward lie in others is checked of [`KEPT`] triangles and fewer; of more the provenance does not list it.
+/// components wound inward lie in others is checked of 262 144 triangles and fewer; of more the provenance does not list it.
 ///
 /// # Errors
 /// As [`polyhedron`](super::polyhedron), and when the file cannot be read.

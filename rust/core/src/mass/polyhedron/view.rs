@@ -44,10 +44,12 @@ impl<I: Index> Corners<3> for View<'_, I> {
 
     #[inline(always)]
     fn corners(&self, index: usize) -> Triangle {
-        self.faces[index].map(|k| {
+        let [a, b, c] = self.faces[index];
+        let corner = |k: I| {
             let vertex = self.vertices.get(k.position());
             vertex.copied().unwrap_or([f64::NAN; 3])
-        })
+        };
+        [corner(a), corner(b), corner(c)]
     }
 }
 

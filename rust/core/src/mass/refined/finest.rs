@@ -20,7 +20,7 @@ pub(super) enum Source {
 
 /// The principal moments, ascending, with their axes, to four times the precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finest {
+pub(crate) struct Finest {
     /// I₁ ≤ I₂ ≤ I₃.
     pub moments: [QuadDouble; 3],
     /// The axes, one after the other, right-handed; components in B.
@@ -59,7 +59,7 @@ const SMALL: f64 = 1e-30;
 impl Finest {
     /// A vector of B by its components along the principal axes.
     #[must_use]
-    pub fn components(&self, vector: &Vector3<f64>) -> Vector4 {
+    pub(crate) fn components(&self, vector: &Vector3<f64>) -> Vector4 {
         let vector = [vector.x, vector.y, vector.z].map(QuadDouble::from);
         self.axes.map(|axis| dot(&axis, &vector))
     }

@@ -12,6 +12,5 @@ mod jacobi;
 mod principal;
 mod vectors;
 
-pub use finest::Finest;
 pub use principal::RefinedPrincipal;
 pub use vectors::Vector;

@@ -190,7 +190,7 @@ impl RefinedPrincipal {
 
     /// Moments and axes to four times the precision.
     #[must_use]
-    pub fn finest(&self) -> Finest {
+    pub(crate) fn finest(&self) -> Finest {
         self.source.refined(&self.moments, &self.axes)
     }
 
@@ -208,7 +208,7 @@ impl RefinedPrincipal {
 
     /// The axes as columns, rounded.
     #[must_use]
-    pub fn rounded_axes(&self) -> Matrix3<f64> {
+    pub(crate) fn rounded_axes(&self) -> Matrix3<f64> {
         Matrix3::from(self.axes.map(|axis| axis.map(DoubleDouble::rounded)))
     }
 

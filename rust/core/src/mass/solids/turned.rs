@@ -8,6 +8,19 @@ use crate::error::Error;
 
 /// Cylinder of radius R and height h along z: `I_z = ½ m R²`, `I_x = m (3R² + h²)/12` (mex252).
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+///
+/// let body = solids::cylinder(2.0, 6.0, Amount::Mass(1.0))?;
+/// let expected = [2.0, 4.0, 4.0]; // m r²/2, m (3 r² + h²)/12
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
 pub fn cylinder<X: Size>(radius: X, height: X, amount: Amount) -> Result<X::Body, Error> {
@@ -24,6 +37,19 @@ pub fn cylinder<X: Size>(radius: X, height: X, amount: Amount) -> Result<X::Body
 }
 
 /// Tube along z between the radii r and R: `I_z = ½ m (R² + r²)`, `s_z = m h²/12`; for r = R the thin shell.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+///
+/// let body = solids::tube(1.0, 1.0, 6.0, Amount::Mass(2.0))?;
+/// let expected = [2.0, 7.0, 7.0]; // a thin one: m r², m (6 r² + h²)/12
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When a length is negative or not finite, the inner radius is the larger, or the amount is not positive.
@@ -51,6 +77,19 @@ pub fn tube<X: Size>(
 /// Cone of base radius R and height h along z, apex toward +z at 3h/4 from C:
 /// `I_z = (3/10) m R²`, `I_x = (3/20) m (R² + h²/4)` (mex71).
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+///
+/// let body = solids::cone(2.0, 4.0, Amount::Mass(10.0))?;
+/// let expected = [12.0, 12.0, 12.0]; // 3/10 m r², 3/80 m (4 r² + h²)
+/// for (moment, expected) in body.principal().moments.iter().zip(expected) {
+///     assert!((moment - expected).abs() < 1e-14);
+/// }
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
 pub fn cone<X: Size>(radius: X, height: X, amount: Amount) -> Result<X::Body, Error> {
@@ -70,6 +109,19 @@ pub fn cone<X: Size>(radius: X, height: X, amount: Amount) -> Result<X::Body, Er
 ///
 /// With `Q = R² + R r + r²`: `V = π h Q/3`, the lower end at `−h (R² + 2Rr + 3r²)/(4Q)` from C,
 /// `s_x = (3/20) m (R⁴ + R³r + R²r² + Rr³ + r⁴)/Q`, `s_z = (3/80) m h² (R⁴ + 4R³r + 10R²r² + 4Rr³ + r⁴)/Q²`.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+///
+/// // With equal radii it is a cylinder, with none on top a cone.
+/// let same = solids::frustum(2.0, 2.0, 6.0, Amount::Mass(1.0))?;
+/// assert!(same.is_close(&solids::cylinder(2.0, 6.0, Amount::Mass(1.0))?, 1e-14, 0.0));
+/// let pointed = solids::frustum(2.0, 0.0, 4.0, Amount::Mass(1.0))?;
+/// assert!(pointed.is_close(&solids::cone(2.0, 4.0, Amount::Mass(1.0))?, 1e-14, 1e-14));
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When a length is negative or not finite, both radii are zero, or the amount is not positive.
@@ -121,6 +173,17 @@ pub fn frustum<X: Size>(
 /// `s_x = m R² (w/4 + (1 − w)/5)`, `s_z = m (w L²/12 + (1 − w) (R²/5 + 3 R L/8 + L²/4))`. Without length a ball, without
 /// radius a rod.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+///
+/// // Without its cylinder it is a ball.
+/// let capsule = solids::capsule(1.0, 0.0, Amount::Mass(5.0))?;
+/// assert!((capsule.principal().moments[0] - 2.0).abs() < 1e-14);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When a length is negative or not finite, or the amount is not positive.
 pub fn capsule<X: Size>(radius: X, length: X, amount: Amount) -> Result<X::Body, Error> {
@@ -146,6 +209,16 @@ pub fn capsule<X: Size>(radius: X, length: X, amount: Amount) -> Result<X::Body,
 
 /// Torus about z: a disk of radius r led along a circle of radius R ≥ r. `I_z = m (R² + ¾ r²)`,
 /// `I_x = m (½ R² + ⅝ r²)`; for r = 0 a ring.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+///
+/// let ring = solids::torus(2.0, 1.0, Amount::Mass(4.0))?;
+/// assert!((ring.principal().moments[2] - 4.0 * (4.0 + 0.75)).abs() < 1e-13); // m (R² + 3/4 r²)
+/// # Ok::<(), polhode::Error>(())
+/// ```
 ///
 /// # Errors
 /// When a radius is negative or not finite, the minor one is the larger, or the amount is not positive.

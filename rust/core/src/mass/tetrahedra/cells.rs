@@ -20,6 +20,19 @@ const AGAIN: usize = 4;
 /// Cells are what they cover: their volumes are counted as positive, and cells that overlap count twice. `watch` is asked about
 /// every 20 ms whether to go on.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::tetrahedra::{CellDensity, tetrahedra};
+/// use std::ops::ControlFlow;
+///
+/// let nodes = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let density = CellDensity::PerNode(&[0.0, 0.0, 0.0, 24.0]); // linear between the nodes
+/// let body = tetrahedra(&nodes, &[[0, 1, 2, 3]], density, &mut |_| ControlFlow::Continue(()))?;
+/// assert!((body.mass() - 1.0).abs() < 1e-15); // the mean of the densities times 1/6
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// [`CellFault`](crate::error::CellFault) names the cell, node or density that is at fault;
 /// [`BodyFault::OutOfRange`](crate::error::BodyFault::OutOfRange) a mass or moment that is too large or too small for float64;

@@ -67,8 +67,10 @@ impl<'a> Cells<'a> {
         let mut high = Vector3::repeat(f64::NEG_INFINITY);
         let mut volumes: Vec<Volume> = Vec::with_capacity(cells.len());
         each_watched(cells.iter(), watch, |cell| {
-            let corners = cell.map(|k| nodes[k]);
-            for corner in corners.map(Vector3::from) {
+            let [i, j, k, l] = *cell;
+            let corners = [nodes[i], nodes[j], nodes[k], nodes[l]];
+            for &corner in &corners {
+                let corner = Vector3::from(corner);
                 (low, high) = (low.inf(&corner), high.sup(&corner));
             }
             volumes.push(sixfold(&corners));
@@ -138,19 +140,23 @@ impl<'a> Cells<'a> {
         axes: &Matrix3<f64>,
         watch: &mut Watch<'_>,
     ) -> Result<Sums, Error> {
-        let columns: [[f64; 3]; 3] = axes.data.0;
+        let [x, y, z] = &axes.data.0;
         let origin: [f64; 3] = (*reference).into();
         let inverse = 1.0 / self.frame.unit;
         let of_cell = |cell: usize| {
-            let corners = self.corners[cell].map(|k| self.nodes[k]);
+            let [i, j, k, l] = self.corners[cell];
             let Weight {
                 volume: v,
                 density: [a, b],
             } = self.weights[cell];
-            let rho = densities(self.corners, self.density, cell).map(|rho| rho * a * b);
+            let mut rho = densities(self.corners, self.density, cell);
+            for rho in &mut rho {
+                *rho = *rho * a * b;
+            }
+            let corners = [self.nodes[i], self.nodes[j], self.nodes[k], self.nodes[l]];
             let d = corners.map(|r| {
                 let from = SplitVector::difference(&r, &origin).scaled(inverse);
-                Vector3::from(columns.map(|axis| from.dot(&axis)))
+                Vector3::new(from.dot(x), from.dot(y), from.dot(z))
             });
             let p: f64 = rho.iter().sum();
             let s = d[0] + d[1] + d[2] + d[3];
@@ -222,11 +228,15 @@ impl<'a> Cells<'a> {
 }
 
 /// At the four corners of a cell.
+#[inline]
 fn densities(cells: &[[usize; 4]], density: CellDensity<'_>, cell: usize) -> [f64; 4] {
     match density {
         CellDensity::Uniform(rho) => [rho; 4],
         CellDensity::PerCell(rho) => [rho[cell]; 4],
-        CellDensity::PerNode(rho) => cells[cell].map(|k| rho[k]),
+        CellDensity::PerNode(rho) => {
+            let [i, j, k, l] = cells[cell];
+            [rho[i], rho[j], rho[k], rho[l]]
+        }
     }
 }
 

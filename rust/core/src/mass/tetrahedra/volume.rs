@@ -21,7 +21,8 @@ const LOST: f64 = f64::MIN_POSITIVE;
 
 /// `|det(b − a, c − a, d − a)|`.
 pub(super) fn sixfold([a, b, c, d]: &[[f64; 3]; 4]) -> Volume {
-    let mut edges = [b, c, d].map(|to| SplitVector::difference(to, a));
+    let edge = |to| SplitVector::difference(to, a);
+    let mut edges = [edge(b), edge(c), edge(d)];
     let mut power = 0;
     // Each coordinate in its own unit: a cell that is thin along an axis is none.
     for k in 0..3 {

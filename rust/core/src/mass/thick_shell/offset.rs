@@ -59,7 +59,8 @@ pub(super) fn offset<I: Index>(
     let mut around = vec![Around::default(); mesh.vertices.len()];
     let mut normals = Vec::with_capacity(faces.len());
     each_watched(faces.iter().zip(&numbers), watch, |(corners, &face)| {
-        let [a, b, c] = corners.map(|k| &mesh.vertices[k]);
+        let [i, j, k] = *corners;
+        let [a, b, c] = [&mesh.vertices[i], &mesh.vertices[j], &mesh.vertices[k]];
         let edge = |to: &[f64; 3]| SplitVector::difference(to, a).scaled(1.0 / unit);
         let (to_b, to_c) = (edge(b), edge(c));
         let (e, f) = (Vector3::from(to_b.high), Vector3::from(to_c.high));
@@ -154,6 +155,7 @@ impl Default for Around {
 }
 
 impl Around {
+    #[inline]
     fn add(&mut self, normal: &Vector3<f64>, angle: f64) {
         self.weight += angle;
         self.sum += normal * angle;
@@ -164,6 +166,7 @@ impl Around {
     ///
     /// Planes that nearly are one, or nearly share a line, may meet far away: a vertex that would go aside by more than
     /// twice the angle over which the normals spread goes the way of the fewer planes that they nearly are.
+    #[inline]
     fn way(&self) -> Way {
         if self.weight <= 0.0 {
             return Way::default();
@@ -226,6 +229,7 @@ impl Way {
     }
 
     /// Counts what the face with this normal misses.
+    #[inline]
     fn miss(&mut self, normal: &Vector3<f64>, angle: f64) {
         let normal_split = SplitVector {
             high: (*normal).into(),
@@ -237,6 +241,7 @@ impl Way {
     }
 
     /// Goes where less is missed, and counts anew.
+    #[inline]
     fn refine(&mut self, weight: f64) {
         if weight > 0.0 {
             self.direction += self.inverse * (self.missed / weight);
@@ -278,8 +283,9 @@ impl Offset {
             thickness: f64::INFINITY,
         };
         each_watched(self.faces.iter().enumerate(), watch, |(face, corners)| {
-            let [a, b, c] = corners.map(|k| Vector3::from(vertices[k]));
-            let d = corners.map(|k| self.directions[k]);
+            let [i, j, k] = *corners;
+            let [a, b, c] = [vertices[i], vertices[j], vertices[k]].map(Vector3::from);
+            let d = [self.directions[i], self.directions[j], self.directions[k]];
             let ((e, f), (de, df)) = (((b - a) / unit, (c - a) / unit), (d[1] - d[0], d[2] - d[0]));
             let (still, linear, square) = (e.cross(&f), de.cross(&f) + e.cross(&df), de.cross(&df));
             for d in d {
@@ -298,6 +304,7 @@ impl Offset {
 }
 
 /// The least |s| with `a + b s + c s² = 0`; zero where a is not positive.
+#[inline]
 fn first_root(a: f64, b: f64, c: f64) -> f64 {
     if a <= 0.0 {
         return 0.0;

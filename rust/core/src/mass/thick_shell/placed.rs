@@ -77,14 +77,13 @@ impl<'a> Placed<'a> {
     }
 
     /// What one face sweeps.
+    #[inline]
     fn terms(&self, face: usize) -> [f64; TERMS] {
         /// √(3/5), with the weight 5/9; the middle has 8/9.
         const NODE: f64 = 0.774_596_669_241_483_4;
         let corners = self.offset.faces[face];
-        let (v, d) = (
-            corners.map(|k| self.corners[k]),
-            corners.map(|k| self.directions[k]),
-        );
+        let of_face = |of: &[Vector3<f64>]| [of[corners[0]], of[corners[1]], of[corners[2]]];
+        let (v, d) = (of_face(&self.corners), of_face(&self.directions));
         let longest = d.iter().fold(0.0_f64, |longest, d| longest.max(d.norm()));
         let worst = corners
             .iter()
@@ -92,10 +91,10 @@ impl<'a> Placed<'a> {
         let mut terms = [0.0; TERMS];
         for (node, weight) in [(-NODE, 5.0), (0.0, 8.0), (NODE, 5.0)] {
             let (s, weight) = (node * self.half, weight * self.weight / 9.0);
-            let r = [0, 1, 2].map(|i| v[i] + d[i] * s);
+            let r = [v[0] + d[0] * s, v[1] + d[1] * s, v[2] + d[2] * s];
             let (e, f) = (r[1] - r[0], r[2] - r[0]);
             let area = e.cross(&f);
-            let j = d.map(|d| d.dot(&area));
+            let j = [d[0].dot(&area), d[1].dot(&area), d[2].dot(&area)];
             let (g, sum) = (j[0] + j[1] + j[2], r[0] + r[1] + r[2]);
             let weighted = r[0] * j[0] + r[1] * j[1] + r[2] * j[2];
             // ∫ λ_i x xᵀ dλ = (s sᵀ + Σ x_j x_jᵀ + x_i sᵀ + s x_iᵀ + 2 x_i x_iᵀ)/120, s = Σ x_j.

@@ -21,6 +21,20 @@ use crate::principal::principal_axes;
 /// planes meet. That the shell does not fold over itself is checked face by face; sheets far apart along the surface that
 /// come to overlap count twice. `watch` is asked about every 20 ms whether to go on.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::Amount;
+/// use polhode::mass::thick_shell::thick_shell;
+/// use std::ops::ControlFlow;
+///
+/// let square = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+/// let faces = [[0_usize, 1, 2], [0, 2, 3]];
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let plate = thick_shell(&square, &faces, 0.25, Amount::Density(8.0), go_on).unwrap();
+/// assert!((plate.mass() - 8.0).abs() < 1e-13); // 8 · 2 · 2 · 1/4
+/// ```
+///
 /// # Errors
 /// [`Error::OutOfDomain`] for a thickness that is not positive; [`MeshFault`] when the surface is not one or the shell
 /// folds over itself, naming the face; [`Halt::Stopped`] where `watch` said so.

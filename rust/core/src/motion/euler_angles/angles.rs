@@ -13,15 +13,29 @@ pub const SINGULAR: f64 = 1e-12;
 impl Sequence {
     /// The attitude `q_NB` with these angles (radians).
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::motion::euler_angles::Sequence;
+    ///
+    /// let sequence: Sequence = "ZXZ".parse()?;
+    /// let attitude = sequence.to_quaternion(&[0.1, 0.2, 0.3])?;
+    /// let [a, b, c] = sequence.from_quaternion(&attitude)?;
+    /// assert!((a - 0.1).abs() < 1e-15 && (b - 0.2).abs() < 1e-15 && (c - 0.3).abs() < 1e-15);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// When an angle is not finite.
+    #[inline]
     pub fn to_quaternion(self, angles: &[f64; 3]) -> Result<UnitQuaternion<f64>, Error> {
         all_finite("angles", angles)?;
-        let mut turns = [0, 1, 2].map(|k| {
+        let turn = |k: usize| {
             let mut axis = Vector3::zeros();
             axis[self.axes[k]] = (0.5 * angles[k]).sin();
             Quaternion::from_parts((0.5 * angles[k]).cos(), axis)
-        });
+        };
+        let mut turns = [turn(0), turn(1), turn(2)];
         if !self.intrinsic {
             turns.reverse();
         }
@@ -76,6 +90,7 @@ impl Sequence {
 }
 
 /// The same angle in [−π, π].
+#[inline]
 fn wrapped(angle: f64) -> f64 {
     if angle > PI {
         angle - TAU

@@ -35,6 +35,21 @@ impl Sequence {
     /// For ZXZ in B: `(φ̇ sin θ sin ψ + θ̇ cos ψ, φ̇ sin θ cos ψ − θ̇ sin ψ, φ̇ cos θ + ψ̇)`; in N:
     /// `(θ̇ cos φ + ψ̇ sin θ sin φ, θ̇ sin φ − ψ̇ sin θ cos φ, φ̇ + ψ̇ cos θ)`. Defined at every angle.
     /// Source: msl26; Goldstein, Classical Mechanics, §4.9; Landau and Lifshitz, Mechanics, §35.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::nalgebra::Vector3;
+    /// use polhode::motion::euler_angles::Sequence;
+    /// use polhode::motion::kinematics::Frame;
+    ///
+    /// let sequence: Sequence = "ZXZ".parse()?;
+    /// let (angles, rates) = ([0.4, 1.1, -0.2], [2.0, 0.0, 0.0]); // precession alone
+    /// let omega = sequence.angular_velocity(&angles, &rates, Frame::Space);
+    /// assert!((omega - Vector3::new(0.0, 0.0, 2.0)).amax() < 1e-15);
+    /// assert!((sequence.rates(&angles, &omega, Frame::Space)?[0] - 2.0).abs() < 1e-14);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn angular_velocity(
         self,

@@ -64,6 +64,7 @@ impl fmt::Display for Sequence {
 
 impl Sequence {
     /// Whether the first and the third axis are the same.
+    #[inline]
     pub(super) fn is_proper(self) -> bool {
         self.axes[0] == self.axes[2]
     }

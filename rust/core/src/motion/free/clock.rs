@@ -27,6 +27,7 @@ pub(super) struct Clock {
 
 impl Clock {
     /// At a time within half of a half period, |t| ≤ K/λ, in the units of the motion.
+    #[inline]
     pub(super) fn at(motion: &Invariants, t: f64) -> Self {
         let (p, q, k_prime) = motion.fast_and_slow();
         if p == 0.0 {
@@ -36,6 +37,7 @@ impl Clock {
     }
 
     /// p = q = 0: a body that does not drive its ω.
+    #[inline]
     fn without_rate(t: f64) -> Self {
         Self {
             value: [t, 1.0, 1.0],
@@ -78,6 +80,7 @@ impl Clock {
     }
 
     /// c and d, p and q exchanged where p < q.
+    #[inline]
     fn with_roles_of(self, motion: &Invariants) -> Self {
         if motion.circles_third() {
             return self;
@@ -106,6 +109,7 @@ pub(super) struct HalfPeriod {
 
 impl HalfPeriod {
     /// Of a motion with finite T: for p ≥ q, `∂T/∂q = ½ ∫₀ᵀ y²/d² dt` and, by the scaling law, `2(p ∂_p + q ∂_q)T = −T`.
+    #[inline]
     pub(super) fn of(motion: &Invariants) -> Self {
         let (p, _, k_prime) = motion.fast_and_slow();
         let m1 = k_prime * k_prime;
@@ -121,6 +125,7 @@ impl HalfPeriod {
 
 impl Invariants {
     /// The larger and the smaller of p and q, and k′.
+    #[inline]
     fn fast_and_slow(&self) -> (f64, f64, f64) {
         let (p, q) = (self.short_square.high, self.long_square.high);
         let (fast, slow) = if self.circles_third() { (p, q) } else { (q, p) };

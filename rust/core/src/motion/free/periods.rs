@@ -67,6 +67,7 @@ impl Invariants {
     }
 
     /// 2K/λ in the units of the motion, in twice the precision.
+    #[inline]
     pub(super) fn half_period(&self) -> DoubleDouble {
         let square = self.rate_square();
         if square.high == 0.0 || self.discriminant.high == 0.0 {

@@ -178,6 +178,22 @@ impl PivotedTop {
     /// For θ = 0 it is the sleeping limit: upright, the top is stable where `I_s² ω_s² ≥ 4 I_t m g l`. `inclination`: θ, of
     /// the axis (from O to C) from the upward vertical. `gravity`: only its size g matters. Infinite for a top without axial moment.
     /// Source: part II; Landau and Lifshitz, Mechanics, §35, problem 2; Goldstein, Classical Mechanics, §5.7.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::RigidBody;
+    /// use polhode::motion::heavy_top::PivotedTop;
+    /// use polhode::nalgebra::{Matrix3, Vector3};
+    ///
+    /// let (moments, centre) = ([1.0, 1.0, 2.0], Vector3::z());
+    /// let body = RigidBody::from_principal(1.0, &moments, &Matrix3::identity(), &centre, 0.0)?;
+    /// let top = PivotedTop::of(&body, 1e-9)?;
+    /// let gravity = Vector3::new(0.0, 0.0, -9.0);
+    /// let asleep = 2.0 * (2.0_f64 * 9.0).sqrt() / 2.0; // 2 √(I₁ m g l)/I₃, I₁ about the pivot
+    /// assert!((top.least_spin(0.0, &gravity) - asleep).abs() < 1e-14);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[doc(alias = "sleeping top")]
     #[must_use]
     pub fn least_spin(&self, inclination: f64, gravity: &Vector3<f64>) -> f64 {

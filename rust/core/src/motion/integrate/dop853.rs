@@ -16,7 +16,7 @@ const EXPONENT: f64 = 1.0 / 8.0;
 
 /// An integration under way.
 #[derive(Clone, Debug)]
-pub struct Dop853<const N: usize> {
+pub(crate) struct Dop853<const N: usize> {
     progress: Progress<N>,
     /// The slopes of the last accepted step; the thirteenth is the slope at its end.
     slopes: [SVector<f64, N>; EXTENDED_STAGES],
@@ -105,6 +105,7 @@ impl<const N: usize> Dop853<N> {
     ///
     /// # Errors
     /// What the equations refuse in the three more evaluations it takes.
+    #[inline]
     fn polynomial<S: System<N>>(&mut self, system: &mut S) -> Result<Dense<N>, S::Error> {
         let (start, y, h) = self.last;
         for stage in STAGES + 1..EXTENDED_STAGES {
@@ -128,6 +129,7 @@ impl<const N: usize> Dop853<N> {
         })
     }
 
+    #[inline]
     fn stage_slope<S: System<N>>(
         &mut self,
         system: &mut S,
@@ -153,6 +155,7 @@ impl<const N: usize> Dop853<N> {
     }
 
     /// The estimate of order 5, damped by that of order 3, in units of what is allowed.
+    #[inline]
     fn error<S: System<N>>(
         &self,
         system: &S,
@@ -181,6 +184,7 @@ struct Dense<const N: usize> {
 
 impl<const N: usize> Dense<N> {
     /// The state at `elapsed` since the start of the integration.
+    #[inline]
     fn at(&self, elapsed: f64) -> SVector<f64, N> {
         let x = (elapsed - self.start) / self.step;
         let mut y = SVector::zeros();

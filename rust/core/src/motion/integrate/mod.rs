@@ -3,23 +3,23 @@
 //! | method | file | for |
 //! |---|---|---|
 //! | Taylor series | [`taylor`] | analytic loads: as accurate as the numbers can be |
-//! | DOP853 | [`dop853`] | loads that are smooth but not analytic to us: callbacks |
-//! | Radau IIA | [`radau`] | stiff loads: strong damping, stiff control |
+//! | DOP853 | `dop853` | loads that are smooth but not analytic to us: callbacks |
+//! | Radau IIA | `radau` | stiff loads: strong damping, stiff control |
 //! | Taylor series with derivatives | [`variation`] | how a motion under analytic loads depends on what it is computed from |
-//! | splitting | [`splitting`] | loads without damping over long times: the energy does not drift |
+//! | splitting | `splitting` | loads without damping over long times: the energy does not drift |
 
-pub mod dop853;
+pub(crate) mod dop853;
 mod first_step;
-pub mod radau;
+pub(crate) mod radau;
 mod runge_kutta;
-pub mod splitting;
+pub(crate) mod splitting;
 mod system;
 mod tableau;
 pub mod taylor;
 pub mod variation;
 
-pub use dop853::Dop853;
-pub use radau::Radau;
-pub use runge_kutta::{Progress, RungeKutta};
-pub use splitting::Splitting;
-pub use system::{Compensated, System};
+pub(crate) use dop853::Dop853;
+pub(crate) use radau::Radau;
+pub(crate) use runge_kutta::RungeKutta;
+pub(crate) use splitting::Splitting;
+pub(crate) use system::{Compensated, System};

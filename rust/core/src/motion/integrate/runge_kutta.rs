@@ -9,7 +9,7 @@ use crate::numerics::double_double::fast_two_sum;
 
 /// How far an integration has come.
 #[derive(Clone, Debug)]
-pub struct Progress<const N: usize> {
+pub(crate) struct Progress<const N: usize> {
     /// The time at which it starts, and the time from there to the end, negative backward in time.
     pub(super) start: f64,
     pub(super) span: f64,
@@ -115,6 +115,7 @@ impl<const N: usize> Progress<N> {
         })
     }
 
+    #[inline]
     fn stuck(&self, step: f64) -> Error {
         Error::Motion(MotionFault::StepTooSmall {
             time: self.start + self.elapsed.0,
@@ -124,7 +125,7 @@ impl<const N: usize> Progress<N> {
 }
 
 /// A Runge-Kutta method under way.
-pub trait RungeKutta<const N: usize>: Sized {
+pub(crate) trait RungeKutta<const N: usize>: Sized {
     /// At the state `y` at time `start`, on the way to `end`, with `step` to try first or one of its own choice.
     ///
     /// # Errors
@@ -157,21 +158,26 @@ pub trait RungeKutta<const N: usize>: Sized {
     ) -> Result<SVector<f64, N>, S::Error>;
 
     /// Time since the start.
+    #[inline]
     fn elapsed(&self) -> f64 {
         self.progress().elapsed.0
     }
 
     /// The step that would be tried next.
+    #[inline]
     fn step(&self) -> f64 {
         self.progress().step
     }
 
     /// Whether the end is reached.
+    #[cfg(test)]
+    #[inline]
     fn is_finished(&self) -> bool {
         self.elapsed() == self.progress().span
     }
 
     /// The state now.
+    #[inline]
     fn state(&self) -> &SVector<f64, N> {
         &self.progress().state.value
     }

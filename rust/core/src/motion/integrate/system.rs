@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::numerics::double_double::two_sum;
 
 /// The equations that a stepper solves.
-pub trait System<const N: usize> {
+pub(crate) trait System<const N: usize> {
     /// What evaluating the equations may go wrong with, besides what the stepper itself may refuse.
     type Error: From<Error>;
 
@@ -30,7 +30,7 @@ pub trait System<const N: usize> {
 
 /// A state with the rounding errors of its increments carried along, so that many small steps add up as few large ones.
 #[derive(Clone, Copy, Debug)]
-pub struct Compensated<const N: usize> {
+pub(crate) struct Compensated<const N: usize> {
     /// The rounded state.
     pub value: SVector<f64, N>,
     /// What rounding has left out so far.
@@ -40,7 +40,8 @@ pub struct Compensated<const N: usize> {
 impl<const N: usize> Compensated<N> {
     /// The state `value`, exactly.
     #[must_use]
-    pub fn new(value: SVector<f64, N>) -> Self {
+    #[inline]
+    pub(crate) fn new(value: SVector<f64, N>) -> Self {
         Self {
             value,
             rest: SVector::zeros(),
@@ -49,7 +50,8 @@ impl<const N: usize> Compensated<N> {
 
     /// The state with `increment` added.
     #[must_use]
-    pub fn plus(&self, increment: &SVector<f64, N>) -> Self {
+    #[inline]
+    pub(crate) fn plus(&self, increment: &SVector<f64, N>) -> Self {
         let mut sum = *self;
         for i in 0..N {
             (sum.value[i], sum.rest[i]) = two_sum(self.value[i], increment[i] + self.rest[i]);
@@ -59,7 +61,8 @@ impl<const N: usize> Compensated<N> {
 
     /// What rounding has left out of `value`.
     #[must_use]
-    pub fn rest(&self) -> &SVector<f64, N> {
+    #[inline]
+    pub(crate) fn rest(&self) -> &SVector<f64, N> {
         &self.rest
     }
 }

@@ -41,6 +41,7 @@ pub struct Callback<F, E> {
 impl<E: From<Error>, F: FnMut(f64, &Phase) -> Result<Wrench, E>> Callback<F, E> {
     /// A force in N and a torque in B about the reference point, of time and state.
     #[must_use]
+    #[inline]
     pub fn wrench(wrench: F) -> Self {
         Self {
             wrench,
@@ -56,6 +57,7 @@ impl<E: From<Error>, F: FnMut(f64, &Phase) -> Result<Wrench, E>> Callback<F, E> 
 impl<E: From<Error>> Callback<(), E> {
     /// A torque in B about the reference point, of time and state.
     #[must_use]
+    #[inline]
     pub fn torque<G: FnMut(f64, &Phase) -> Result<Vector3<f64>, E>>(
         mut torque: G,
     ) -> Callback<impl FnMut(f64, &Phase) -> Result<Wrench, E>, E> {
@@ -117,6 +119,7 @@ impl<E: From<Error>, F: FnMut(f64, &Phase) -> Result<Wrench, E>> Load for Callba
         Ok(())
     }
 
+    #[inline]
     fn wrench(&mut self, t: f64, phase: &Phase) -> Result<Wrench, E> {
         let [low, high] = self.span;
         (self.wrench)(t.max(low).min(high), phase)

@@ -10,26 +10,24 @@ use crate::numerics::number::Real;
 
 /// The parts of a load that go with the time, around one time; times and rates in units of the unit of rates.
 #[derive(Clone, Debug)]
-pub struct Forcing<X> {
+pub(crate) struct Forcing<X> {
     /// Torques in principal axes over the moments: coefficients of a cubic.
     pub in_body: [Vector3<X>; 4],
     /// Torques in N: coefficients of a cubic.
     pub in_space: [Vector3<X>; 4],
     /// One for each gravity gradient that acts.
     pub orbits: Vec<OnOrbit<X>>,
-    /// `r·v` of each of them as the step before foretells it; none where none has been.
-    pub foretold: Vec<f64>,
+    /// Whether these are known already and not asked for.
+    pub has_orbits: bool,
 }
 
-/// A state on an orbit, lengths over the distance r₀ of this time.
+/// A state on an orbit, lengths over the distance r₀ of this time, times in the unit of rates.
 #[derive(Clone, Copy, Debug)]
-pub struct OnOrbit<X> {
+pub(crate) struct OnOrbit<X> {
     /// From the attractor, in N: a unit vector.
     pub position: Vector3<X>,
     /// In N.
     pub velocity: Vector3<X>,
-    /// r₀.
-    pub distance: X,
     /// μ/r₀³.
     pub pull: X,
     /// 3μ/r₀³ times the factor of the load.
@@ -42,29 +40,28 @@ impl<X: Real> Default for Forcing<X> {
             in_body: [Vector3::zeros(); 4],
             in_space: [Vector3::zeros(); 4],
             orbits: Vec::new(),
-            foretold: Vec::new(),
+            has_orbits: false,
         }
     }
 }
 
 impl<X: Real> Forcing<X> {
-    /// Nothing acts, and nothing is foretold.
-    pub fn clear(&mut self) {
+    /// Nothing acts, and nothing is known.
+    pub(crate) fn clear(&mut self) {
         self.in_body = [Vector3::zeros(); 4];
         self.in_space = [Vector3::zeros(); 4];
         self.orbits.clear();
-        self.foretold.clear();
+        self.has_orbits = false;
     }
 }
 
 impl<X: Real> OnOrbit<X> {
     /// That of a term that does not act.
     #[must_use]
-    pub fn none() -> Self {
+    pub(crate) fn none() -> Self {
         Self {
             position: Vector3::new(X::zero(), X::zero(), X::one()),
             velocity: Vector3::zeros(),
-            distance: X::one(),
             pull: X::zero(),
             strength: X::zero(),
         }
@@ -73,7 +70,7 @@ impl<X: Real> OnOrbit<X> {
 
 /// A time at which a step begins.
 #[derive(Clone, Copy, Debug)]
-pub struct When<X> {
+pub(crate) struct When<X> {
     /// Since the start of the motion, and when that was.
     pub elapsed: X,
     /// The start of the motion.
@@ -87,7 +84,7 @@ pub struct When<X> {
 }
 
 /// A law that depends on the time.
-pub trait Timed<X: Exact>: Debug {
+pub(crate) trait Timed<X: Exact>: Debug {
     /// Adds what it does in a step to `forcing`, where torques are not yet over the moments.
     fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>);
 

@@ -117,7 +117,6 @@ impl Law for GravityGradient {
             keeps: Kept::Nothing,
             has_series: self.path.as_kepler().is_some(),
             parts: Parts {
-                is_timed: true,
                 gradients: 1,
                 ..Parts::default()
             },
@@ -174,13 +173,15 @@ impl Law for GravityGradient {
 
 impl<X: Exact> Timed<X> for GravityGradient {
     fn force(&self, forcing: &mut Forcing<X>, axes: &Axes<'_, X>, when: &When<X>) {
+        if forcing.has_orbits {
+            return;
+        }
         // Others have no series.
         let Some((orbit, epoch)) = self.path.as_kepler() else {
             return forcing.orbits.push(OnOrbit::none());
         };
         let elapsed = when.time - epoch.unwrap_or(axes.subject.start);
-        let foretold = forcing.foretold.get(forcing.orbits.len()).copied();
-        let (r, v) = (axes.variables).on_orbit(orbit, elapsed, foretold, axes.first);
+        let (r, v) = (axes.variables).on_orbit(orbit, elapsed, axes.first);
         let (distance, unit) = (r.dot(&r).root(), X::from(when.unit));
         let cube = distance * distance * distance * unit * unit;
         let mu = axes.number(self.mu(), 0);
@@ -188,7 +189,6 @@ impl<X: Exact> Timed<X> for GravityGradient {
         forcing.orbits.push(OnOrbit {
             position: r / distance,
             velocity: v / (distance * unit),
-            distance,
             pull: mu / cube,
             strength: (X::from(self.coefficient()) + more) / cube,
         });

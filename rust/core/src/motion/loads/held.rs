@@ -7,6 +7,16 @@ use super::parameter::Parameter;
 use crate::error::{Error, MotionFault, all_finite, finite};
 
 /// A number that changes at known times.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::loads::Held;
+///
+/// let torque = Held::table("torque", &[0.0, 2.0], &[1.0, 3.0])?;
+/// assert_eq!((torque.value(0.5), torque.times()), (Held::constant("torque", 1.0)?.value(9.0), &[0.0, 2.0][..]));
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Held {
     /// Ascending; none of a constant.

@@ -22,6 +22,23 @@ const TURN: DoubleDouble = DoubleDouble {
 ///
 /// All numbers are kept in units of length and time that are powers of two near the orbit's own, so that neither
 /// molecules nor galaxies leave the range of float64.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::loads::kepler::Orbit;
+///
+/// // Where the Earth's gravity turns a satellite once in a sidereal day.
+/// let (mu, radius) = (3.986_004_418e14_f64, 42_164_172.0);
+/// let speed = (mu / radius).sqrt();
+/// let orbit = Orbit::new(mu, &(Vector3::x() * radius), &(Vector3::y() * speed))?;
+/// assert!((orbit.period() - 86_164.1).abs() < 0.1);
+/// let (place, _) = orbit.at(orbit.period() / 4.0);
+/// assert!((place.y - radius).abs() < 1e-3);
+/// assert_eq!(orbit.mu(), mu);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
     mu: f64,
@@ -164,22 +181,13 @@ impl Orbit {
     /// first. Source: Stumpff, Himmelsmechanik I, §41; Danby, Fundamentals of Celestial Mechanics, §6.9.
     #[must_use]
     pub fn at(&self, elapsed: f64) -> (Vector3<f64>, Vector3<f64>) {
-        self.at_about(elapsed, None)
-    }
-
-    /// As [`Self::at`], where `r·v` is known to be about `sigma`.
-    pub(super) fn at_about(
-        &self,
-        elapsed: f64,
-        sigma: Option<f64>,
-    ) -> (Vector3<f64>, Vector3<f64>) {
         if elapsed == 0.0 {
             let [position, velocity] = self.given;
             return (position * self.length, velocity * (self.length / self.time));
         }
         let t = self.reduced(elapsed / self.time - self.home);
         let (r0, mu) = (self.distance, self.scaled_mu);
-        let functions = self.solve(t, sigma).1;
+        let functions = self.solve(t).1;
         let ([_, g1, g2, _], r) = (functions, self.distance_at(&functions));
         let (f, g) = (1.0 - mu * g2 / r0, r0 * g1 + self.sigma * g2);
         let (f_rate, g_rate) = (-mu * g1 / (r * r0), 1.0 - mu * g2 / r);
@@ -197,7 +205,6 @@ impl Orbit {
     pub(super) fn varied<const N: usize>(
         &self,
         elapsed: f64,
-        sigma: Option<f64>,
         variable: impl Fn(f64, usize) -> Jet<N>,
     ) -> (Vector3<Jet<N>>, Vector3<Jet<N>>) {
         let number = |x: f64| Jet::<N>::constant(x);
@@ -223,7 +230,7 @@ impl Orbit {
             v0 = Vector3::from_fn(|i, _| with(self.velocity[i], apse.velocity[i]));
             time = with(t, apse.since);
         }
-        let s = self.solve(t, sigma).0;
+        let s = self.solve(t).0;
         let distance = with(self.distance, r0.dot(&r0).root());
         let sigma = with(self.sigma, r0.dot(&v0));
         if self.frequency.high > 0.0 {

@@ -138,7 +138,7 @@ impl Parts {
 }
 
 /// An analytic law of a load: one file each.
-pub trait Law: Sized {
+pub(super) trait Law: Sized {
     /// What it depends on and does, on a pivoted body or on a free one.
     fn character(&self, pivoted: bool) -> Character;
 

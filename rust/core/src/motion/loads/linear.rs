@@ -7,7 +7,7 @@ use super::forcing::Timed;
 
 /// Torques about the reference point in principal axes, linear in what varies, and what is not linear besides.
 #[derive(Clone, Debug)]
-pub struct Linear<'a, X: Exact> {
+pub(crate) struct Linear<'a, X: Exact> {
     /// Constant in the body.
     pub constant: Vector3<X>,
     /// Times ω.
@@ -49,7 +49,7 @@ impl<X: Exact> Default for Linear<'_, X> {
 
 /// A state z of the load's own: what it does to the body, and what becomes of it. Vectors in principal axes.
 #[derive(Clone, Copy, Debug)]
-pub struct Own<X: Exact> {
+pub(crate) struct Own<X: Exact> {
     /// The torque `z p` about the reference point.
     pub torque: Vector3<X>,
     /// The momentum `z g` that turns with the body: a torque `−ω × z g`.

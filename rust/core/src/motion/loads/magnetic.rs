@@ -89,6 +89,19 @@ impl MagneticField {
 }
 
 /// The field `B = 3 (M·r) r/r⁵ − M/r³` of a dipole at the position r from it, and its rate for one that moves with v.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::loads::magnetic::field_and_rate;
+///
+/// // On the axis of a dipole the field is twice that on its equator.
+/// let (dipole, still) = (Vector3::z(), Vector3::zeros());
+/// let [pole, _] = field_and_rate(&dipole, &(Vector3::z() * 2.0), &still);
+/// let [equator, _] = field_and_rate(&dipole, &(Vector3::x() * 2.0), &still);
+/// assert_eq!((pole.z, equator.z), (0.25, -0.125));
+/// ```
 #[must_use]
 pub fn field_and_rate(
     strength: &Vector3<f64>,
@@ -219,8 +232,9 @@ impl Law for Magnetic {
     }
 
     fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
-        let [field, rate] = (self.field.at(subject.start, t))
-            .map(|vector| phase.attitude.inverse_transform_vector(&vector));
+        let [field, rate] = self.field.at(subject.start, t);
+        let in_body = |vector| phase.attitude.inverse_transform_vector(vector);
+        let (field, rate) = (in_body(&field), in_body(&rate));
         let seen = rate - phase.omega.cross(&field);
         let moment = self
             .gain

@@ -16,7 +16,7 @@
 //! | any of them on and off | windows of time | [`schedule`] |
 //! | what the caller knows | a closure of time and state | `callback` |
 //!
-//! A law more is a file more here, which answers what a [`Law`] is asked, and its name in the list in `term.rs`.
+//! A law more is a file more here, which answers what a `Law` is asked, and its name in the list in `term.rs`.
 
 mod aim;
 mod analytic;
@@ -58,7 +58,8 @@ mod wrench;
 
 pub use self::aim::{Aim, Sampling};
 pub use self::analytic::Analytic;
-pub use self::axes::{Axes, Exact};
+pub use self::axes::Axes;
+pub(crate) use self::axes::Exact;
 pub use self::bearing::Bearing;
 pub use self::callback::Callback;
 pub use self::carried::Carried;
@@ -67,14 +68,14 @@ pub use self::constant_torque::ConstantTorque;
 pub use self::damping::Damping;
 pub use self::drive::Drive;
 pub use self::feedback::Feedback;
-pub use self::forcing::{Forcing, OnOrbit, Timed, When};
+pub(crate) use self::forcing::{Forcing, OnOrbit, When};
 pub use self::gravity_gradient::GravityGradient;
 pub use self::held::Held;
-pub use self::law::{Character, Kept, Law, Parts};
-pub use self::linear::{Linear, Own};
+pub use self::law::Kept;
+pub(crate) use self::law::Parts;
+pub(crate) use self::linear::{Linear, Own};
 pub use self::load::Load;
 pub use self::magnetic::{Magnetic, MagneticField};
-pub use self::now::Now;
 pub use self::oblate::Oblate;
 pub use self::parameter::Parameter;
 pub use self::path::Path;

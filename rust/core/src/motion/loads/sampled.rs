@@ -20,6 +20,21 @@ use crate::motion::state::Phase;
 ///
 /// The first two pieces are one cubic, and the last two ("not a knot"); three samples make a parabola, two a straight line.
 /// Beyond the first and last time it is not known. Source: de Boor, A Practical Guide to Splines, chapter IV.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::Vector3;
+/// use polhode::motion::loads::{Frame, Sampled};
+///
+/// let times = [0.0, 1.0, 2.0, 3.0];
+/// let values = times.map(|t| Vector3::z() * t);
+/// let torque = Sampled::new(&times, &values, Frame::Body)?;
+/// assert!((torque.at(1.5).z - 1.5).abs() < 1e-15);
+/// assert!(torque.check_at(4.0).is_err());
+/// assert_eq!((torque.frame(), torque.knots()), (Frame::Body, &times[..]));
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampled {
     spline: Arc<Spline>,

@@ -3,6 +3,19 @@
 use crate::error::{Error, MotionFault, finite};
 
 /// Windows of time, ascending and apart: switched on at the start of each and off at its end.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::loads::Windows;
+///
+/// let burns = Windows::new(&[(0.0, 1.0), (5.0, f64::INFINITY)])?;
+/// assert!(burns.contains(0.5) && !burns.contains(1.0) && burns.contains(1e9));
+/// assert_eq!(burns.switches(), [0.0, 1.0, 5.0]);
+/// let day = Windows::new(&[(0.5, 6.0)])?;
+/// assert_eq!(burns.within(&day).as_slice(), [(0.5, 1.0), (5.0, 6.0)]);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Windows(Vec<(f64, f64)>);
 
@@ -33,6 +46,12 @@ impl Windows {
             previous = off;
         }
         Ok(Self(windows.to_vec()))
+    }
+
+    /// The windows: when each opens and closes.
+    #[must_use]
+    pub fn as_slice(&self) -> &[(f64, f64)] {
+        &self.0
     }
 
     /// Whether it is on at `t`; half-open, so that one of two windows that touch would count.

@@ -45,15 +45,8 @@ pub trait Variables<X: Real>: Copy + Debug + Send + Sync {
     /// The first column of each term that has so many numbers; none where nothing is varied.
     fn columns(self, counts: &mut dyn Iterator<Item = usize>) -> Vec<usize>;
 
-    /// Position and velocity on an orbit, μ, position and velocity at its epoch being the variables from `column` on; `r·v` there
-    /// may be known to be about `sigma`.
-    fn on_orbit(
-        self,
-        orbit: &Orbit,
-        elapsed: f64,
-        sigma: Option<f64>,
-        column: usize,
-    ) -> (Vector3<X>, Vector3<X>);
+    /// Position and velocity on an orbit, μ, position and velocity at its epoch being the variables from `column` on.
+    fn on_orbit(self, orbit: &Orbit, elapsed: f64, column: usize) -> (Vector3<X>, Vector3<X>);
 
     /// A vector whose components are variables.
     fn vector(self, value: &Vector3<f64>, first: usize) -> Vector3<X> {
@@ -88,21 +81,15 @@ impl<X: Real> Variables<X> for Fixed {
         Vec::new()
     }
 
-    fn on_orbit(
-        self,
-        orbit: &Orbit,
-        elapsed: f64,
-        sigma: Option<f64>,
-        _: usize,
-    ) -> (Vector3<X>, Vector3<X>) {
-        let (r, v) = orbit.at_about(elapsed, sigma);
+    fn on_orbit(self, orbit: &Orbit, elapsed: f64, _: usize) -> (Vector3<X>, Vector3<X>) {
+        let (r, v) = orbit.at(elapsed);
         (r.map(X::from), v.map(X::from))
     }
 }
 
 /// Those whose columns begin with `first`.
 #[derive(Clone, Copy, Debug)]
-pub struct Block {
+pub(crate) struct Block {
     /// The first column.
     pub first: usize,
 }
@@ -138,10 +125,9 @@ impl Variables<Varied> for Block {
         self,
         orbit: &Orbit,
         elapsed: f64,
-        sigma: Option<f64>,
         column: usize,
     ) -> (Vector3<Varied>, Vector3<Varied>) {
         let number = |value, n| self.number(value, column + n);
-        orbit.varied(elapsed, sigma, number)
+        orbit.varied(elapsed, number)
     }
 }

@@ -20,6 +20,7 @@ pub struct Wrench {
 impl Wrench {
     /// A torque alone.
     #[must_use]
+    #[inline]
     pub fn couple(torque: Vector3<f64>) -> Self {
         Self {
             force: Vector3::zeros(),
@@ -31,6 +32,7 @@ impl Wrench {
 impl Add for Wrench {
     type Output = Self;
 
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self {
             force: self.force + other.force,
@@ -40,12 +42,14 @@ impl Add for Wrench {
 }
 
 impl AddAssign for Wrench {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl Sum for Wrench {
+    #[inline]
     fn sum<I: Iterator<Item = Self>>(wrenches: I) -> Self {
         wrenches.fold(Self::default(), Add::add)
     }
@@ -65,6 +69,7 @@ pub(super) fn in_body(
 }
 
 /// `factor` times the vector of a load.
+#[inline]
 pub(super) fn times(vector: &Vector3<f64>, factor: f64) -> Result<Vector3<f64>, Error> {
     let product = vector * factor;
     all_finite("the load times its factor", &product).map(|()| product)

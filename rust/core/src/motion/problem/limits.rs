@@ -41,6 +41,15 @@ pub(crate) const HELD: u32 = 3;
 
 /// Checks the output times of a simulation.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::simulate::check_times;
+///
+/// assert!(check_times(&[0.0, 1.0, 2.0]).is_ok() && check_times(&[0.0, -1.0, -2.0]).is_ok());
+/// assert!(check_times(&[0.0, 2.0, 1.0]).is_err());
+/// ```
+///
 /// # Errors
 /// When there is none, one is not finite, or they do not run strictly in one direction.
 pub fn check_times(times: &[f64]) -> Result<(), Error> {

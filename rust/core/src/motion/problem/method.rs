@@ -21,6 +21,24 @@ pub enum Method {
 }
 
 impl Method {
+    /// Every method, in the order of this page.
+    ///
+    /// ```
+    /// use polhode::motion::simulate::Method;
+    ///
+    /// let named = |name| Method::ALL.iter().find(|method| method.name() == name);
+    /// assert_eq!(named("radau"), Some(&Method::Radau));
+    /// assert_eq!(named("euler"), None);
+    /// ```
+    pub const ALL: &'static [Self] = &[
+        Self::Auto,
+        Self::Exact,
+        Self::Taylor,
+        Self::Dop853,
+        Self::Radau,
+        Self::Splitting,
+    ];
+
     /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {

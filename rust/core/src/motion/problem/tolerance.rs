@@ -51,6 +51,7 @@ impl Tolerance {
 
     /// The same with fewer steps at most.
     #[must_use]
+    #[inline]
     pub fn within(self, most_steps: u64) -> Self {
         Self {
             most_steps: most_steps.min(MOST_STEPS),
@@ -60,6 +61,7 @@ impl Tolerance {
 
     /// Whether it is tighter than doubles can serve.
     #[must_use]
+    #[inline]
     pub fn is_beyond_doubles(&self) -> bool {
         self.relative < TIGHTEST
     }

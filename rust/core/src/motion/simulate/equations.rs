@@ -94,6 +94,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
     }
 
     /// In principal axes.
+    #[inline]
     pub(super) fn principal(&self, phase: &Phase) -> SVector<f64, N> {
         let q = (phase.attitude * self.axes.q_bp).into_inner();
         let w = self.axes.columns.tr_mul(&phase.omega);
@@ -136,6 +137,7 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
     }
 
     /// How many states the load has of its own.
+    #[inline]
     fn own(&self) -> usize {
         self.scales.own.len()
     }
@@ -169,10 +171,12 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
     }
 }
 
+#[inline]
 fn quaternion<const N: usize>(y: &SVector<f64, N>) -> Quaternion<f64> {
     Quaternion::new(y[3], y[0], y[1], y[2])
 }
 
+#[inline]
 fn vector<const N: usize>(y: &SVector<f64, N>, from: usize) -> Vector3<f64> {
     Vector3::new(y[from], y[from + 1], y[from + 2])
 }
@@ -217,6 +221,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
     }
 
     /// By the norms of attitude, ω, position and velocity, since single components pass through zero every turn.
+    #[inline]
     fn error_norm(
         &self,
         _: &SVector<f64, N>,
@@ -269,6 +274,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         own.fold(body, |most, part| largest_or_nan(most, &part))
     }
 
+    #[inline]
     fn accept(&mut self, y: &mut Compensated<N>) {
         self.scales.omega = self.scales.omega.max(vector(&y.value, 4).norm());
         if N >= MOVING {

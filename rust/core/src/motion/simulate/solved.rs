@@ -38,33 +38,40 @@ impl<'a, L: Load, M: RungeKutta<N>, const N: usize> Solved<'a, L, M, N> {
 impl<L: Load, M: RungeKutta<N>, const N: usize> Dense for Solved<'_, L, M, N> {
     type Error = L::Error;
 
+    #[inline]
     fn elapsed(&self) -> f64 {
         self.method.elapsed()
     }
 
+    #[inline]
     fn phase(&self) -> Phase {
         (self.equations).phase(self.start + self.elapsed(), self.method.state())
     }
 
+    #[inline]
     fn within(&mut self, elapsed: f64) -> Result<Phase, L::Error> {
         let y = self.method.within(&mut self.equations, elapsed)?;
         Ok(self.equations.phase(self.start + elapsed, &y))
     }
 
+    #[inline]
     fn over_limit(&self, state: usize, elapsed: f64, phase: &Phase) -> f64 {
         (self.equations).over_limit(state, self.start + elapsed, phase)
     }
 
+    #[inline]
     fn held(&mut self, bearing: &Bearing, elapsed: f64, phase: &Phase) -> Result<f64, L::Error> {
         self.equations.held(bearing, self.start + elapsed, phase)
     }
 }
 
 impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> {
+    #[inline]
     fn advance(&mut self) -> Result<(), L::Error> {
         self.method.advance(&mut self.equations)
     }
 
+    #[inline]
     fn effort(&self) -> Effort {
         let progress = self.method.progress();
         Effort {
@@ -73,6 +80,7 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> 
         }
     }
 
+    #[inline]
     fn carry(&self) -> Carry {
         Carry {
             scales: self.equations.scales.clone(),
@@ -81,6 +89,7 @@ impl<L: Load, M: RungeKutta<N>, const N: usize> Stepper for Solved<'_, L, M, N> 
         }
     }
 
+    #[inline]
     fn changes(&self) -> Vec<Change> {
         self.equations.changes()
     }

@@ -16,6 +16,7 @@ pub struct Eigen3 {
 
 /// The decomposition of one matrix.
 #[must_use]
+#[inline]
 pub fn eigen3(a: &Matrix3<f64>) -> Eigen3 {
     let [[a00, a10, a20], [_, a11, a21], [_, _, a22]] = a.data.0;
     let (values, vectors) = dispatch(One([a00, a10, a20, a10, a11, a21, a20, a21, a22]));

@@ -8,7 +8,7 @@ use crate::numerics::lane::Lane;
 
 /// A rotation under the sign rule: the same axes, turned by half turns about one of them.
 #[must_use]
-pub fn with_sign_rule(rotation: &Matrix3<f64>) -> Matrix3<f64> {
+pub(crate) fn with_sign_rule(rotation: &Matrix3<f64>) -> Matrix3<f64> {
     dispatch(SignRule(rotation))
 }
 

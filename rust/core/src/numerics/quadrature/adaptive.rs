@@ -6,7 +6,7 @@ use super::rule::Rule;
 
 /// Integrals over the whole.
 #[derive(Clone, Debug)]
-pub struct Cubature<const D: usize, const K: usize> {
+pub(crate) struct Cubature<const D: usize, const K: usize> {
     /// The boxes, with the integrals over each.
     pub leaves: Vec<Leaf<D, K>>,
     /// The sum of the leaves' relative errors.
@@ -22,7 +22,7 @@ pub struct Cubature<const D: usize, const K: usize> {
 ///
 /// # Errors
 /// Whatever the integrand fails with.
-pub fn integrate<const D: usize, const K: usize, F: Integrand<D, K>>(
+pub(crate) fn integrate<const D: usize, const K: usize, F: Integrand<D, K>>(
     integrand: &mut F,
     cells: &[Cell<D>],
     rule: &Rule,

@@ -2,7 +2,7 @@
 
 /// A box of parameters, in one of the charts that cover the region.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cell<const D: usize> {
+pub(crate) struct Cell<const D: usize> {
     /// Which chart.
     pub chart: usize,
     /// Where the box begins along each axis.
@@ -14,7 +14,7 @@ pub struct Cell<const D: usize> {
 impl<const D: usize> Cell<D> {
     /// The middle of the box.
     #[must_use]
-    pub fn middle(&self) -> [f64; D] {
+    pub(crate) fn middle(&self) -> [f64; D] {
         std::array::from_fn(|axis| 0.5 * self.low[axis] + 0.5 * self.high[axis])
     }
 
@@ -29,7 +29,7 @@ impl<const D: usize> Cell<D> {
 
     /// Boxes of equal size that fill this one, so many along each axis.
     #[must_use]
-    pub fn divided(&self, counts: [u32; D]) -> Vec<Self> {
+    pub(crate) fn divided(&self, counts: [u32; D]) -> Vec<Self> {
         let mut cells = vec![*self];
         for (axis, &count) in counts.iter().enumerate() {
             cells = cells
@@ -51,7 +51,7 @@ impl<const D: usize> Cell<D> {
 
 /// A box with the integrals over it.
 #[derive(Clone, Copy, Debug)]
-pub struct Leaf<const D: usize, const K: usize> {
+pub(crate) struct Leaf<const D: usize, const K: usize> {
     /// The box.
     pub cell: Cell<D>,
     /// The K integrals by the Kronrod rule.
@@ -63,7 +63,7 @@ pub struct Leaf<const D: usize, const K: usize> {
 }
 
 /// K functions over boxes of D parameters.
-pub trait Integrand<const D: usize, const K: usize> {
+pub(crate) trait Integrand<const D: usize, const K: usize> {
     /// What evaluating them may fail with.
     type Error;
 

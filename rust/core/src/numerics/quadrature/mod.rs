@@ -21,6 +21,6 @@ mod cells;
 mod probes;
 mod rule;
 
-pub use adaptive::{Cubature, integrate};
-pub use cells::{Cell, Integrand, Leaf};
-pub use rule::Rule;
+pub(crate) use adaptive::integrate;
+pub(crate) use cells::{Cell, Integrand, Leaf};
+pub(crate) use rule::Rule;

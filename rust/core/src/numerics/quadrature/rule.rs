@@ -4,7 +4,7 @@ use super::cells::{Cell, Leaf};
 
 /// A pair of rules on the interval from 0 to 1.
 #[derive(Clone, Debug)]
-pub struct Rule {
+pub(crate) struct Rule {
     pub(super) nodes: Vec<f64>,
     kronrod: Vec<f64>,
     /// The Gauss weights over the Kronrod ones, zero at nodes that are not Gauss's.
@@ -37,13 +37,13 @@ const FIFTEEN: Table<8> = [
 impl Rule {
     /// Gauss 3, Kronrod 7: exact to degree 5 and 11.
     #[must_use]
-    pub fn seven() -> Self {
+    pub(crate) fn seven() -> Self {
         Self::from_table(&SEVEN)
     }
 
     /// Gauss 7, Kronrod 15: exact to degree 13 and 23.
     #[must_use]
-    pub fn fifteen() -> Self {
+    pub(crate) fn fifteen() -> Self {
         Self::from_table(&FIFTEEN)
     }
 
@@ -65,7 +65,7 @@ impl Rule {
 
     /// The number of points in a box of D dimensions.
     #[must_use]
-    pub fn points<const D: usize>(&self) -> usize {
+    pub(crate) fn points<const D: usize>(&self) -> usize {
         (0..D).map(|_| self.nodes.len()).product()
     }
 

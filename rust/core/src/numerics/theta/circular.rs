@@ -7,7 +7,7 @@ use crate::numerics::lane::Lane;
 
 /// Cosines and sines of z = πu/2K and its multiples up to 8 z.
 #[derive(Clone, Copy, Debug)]
-pub struct Argument<L> {
+pub(crate) struct Argument<L> {
     /// cos nz.
     pub cos: [L; 9],
     /// sin nz.
@@ -18,7 +18,7 @@ impl<L: Lane> Argument<L> {
     /// From sine and cosine of z.
     #[inline(always)]
     #[must_use]
-    pub fn new(sine: L, cosine: L) -> Self {
+    pub(crate) fn new(sine: L, cosine: L) -> Self {
         let (zero, one, two) = (L::new(0.0), L::new(1.0), L::new(2.0));
         let twice = |s: L, c: L| (two * s * c, one - two * s * s);
         let sum = |(s, c): (L, L), (t, d): (L, L)| (s * d + c * t, c * d - s * t);
@@ -46,7 +46,7 @@ impl<L: Lane> Argument<L> {
 
 /// Jacobi's functions by `sn = (ϑ₃/ϑ₂)(0) ϑ₁/ϑ₄`, `cn = (ϑ₄/ϑ₂)(0) ϑ₂/ϑ₄`, `dn = (ϑ₄/ϑ₃)(0) ϑ₃/ϑ₄`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Jacobi {
+pub(crate) struct Jacobi {
     /// q, q⁴, q⁹, q¹⁶ of ϑ₃ and ϑ₄, doubled.
     even: [f64; 4],
     /// q², q⁶, q¹² of ϑ₁ and ϑ₂.
@@ -58,7 +58,7 @@ pub struct Jacobi {
 impl Jacobi {
     /// For the nome q ≤ 0.11.
     #[must_use]
-    pub fn new(q: f64) -> Self {
+    pub(crate) fn new(q: f64) -> Self {
         let even = [1, 4, 9, 16].map(|n| 2.0 * q.powi(n));
         let odd = [2, 6, 12].map(|n| q.powi(n));
         let theta_2 = 1.0 + odd[0] + odd[1] + odd[2]; // over 2 q^{1/4}
@@ -74,7 +74,7 @@ impl Jacobi {
     /// (sn, cn, dn).
     #[inline(always)]
     #[must_use]
-    pub fn values<L: Lane>(&self, z: &Argument<L>) -> [L; 3] {
+    pub(crate) fn values<L: Lane>(&self, z: &Argument<L>) -> [L; 3] {
         let [q1, q4, q9, q16] = self.even.map(L::new);
         let [q2, q6, q12] = self.odd.map(L::new);
         let [sn, cn, dn] = self.factors.map(L::new);
@@ -95,7 +95,7 @@ impl Jacobi {
 
 /// Θ(u + ia) for a fixed a, to N terms beside the one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shifted<const N: usize> {
+pub(crate) struct Shifted<const N: usize> {
     cosines: [f64; N],
     sines: [f64; N],
 }
@@ -103,7 +103,7 @@ pub struct Shifted<const N: usize> {
 impl<const N: usize> Shifted<N> {
     /// With a itself, |a| ≤ K′.
     #[must_use]
-    pub fn near_axis(half: HalfPeriods, a: f64) -> Self {
+    pub(crate) fn near_axis(half: HalfPeriods, a: f64) -> Self {
         Self::of_powers(|n| {
             let decay = n * half.imaginary;
             (
@@ -115,7 +115,7 @@ impl<const N: usize> Shifted<N> {
 
     /// With the distance d = K′ − a from the zero, 0 ≤ d ≤ K′.
     #[must_use]
-    pub fn near_zero(half: HalfPeriods, d: f64) -> Self {
+    pub(crate) fn near_zero(half: HalfPeriods, d: f64) -> Self {
         Self::of_powers(|n| {
             let (less, more) = ((n - 1.0) * half.imaginary, (n + 1.0) * half.imaginary);
             (
@@ -127,7 +127,7 @@ impl<const N: usize> Shifted<N> {
 
     /// Where K′ is infinite and d is `−(K/π) ln ratio`: `1 − ratio·e^{−iπu/K}`.
     #[must_use]
-    pub fn single(ratio: f64) -> Self {
+    pub(crate) fn single(ratio: f64) -> Self {
         let mut single = Self {
             cosines: [0.0; N],
             sines: [0.0; N],
@@ -153,7 +153,7 @@ impl<const N: usize> Shifted<N> {
     /// Real and imaginary part.
     #[inline(always)]
     #[must_use]
-    pub fn value<L: Lane>(&self, z: &Argument<L>) -> (L, L) {
+    pub(crate) fn value<L: Lane>(&self, z: &Argument<L>) -> (L, L) {
         let (mut re, mut im) = (L::new(0.0), L::new(0.0));
         let mut n = N;
         while n > 0 {

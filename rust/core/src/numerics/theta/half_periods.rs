@@ -2,7 +2,7 @@
 
 /// The half periods: K along the real axis, K′ along the imaginary one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfPeriods {
+pub(crate) struct HalfPeriods {
     /// K.
     pub real: f64,
     /// K′.

@@ -11,7 +11,7 @@ use crate::numerics::turns::exp_minus;
 
 /// The decays of u, |u| ≤ K, and its sign.
 #[derive(Clone, Copy, Debug)]
-pub struct Argument<L> {
+pub(crate) struct Argument<L> {
     /// `e^{−π|u|/2K′}`.
     pub from_middle: L,
     /// `e^{−π(K − |u|)/2K′}`.
@@ -24,7 +24,7 @@ impl<L: Lane> Argument<L> {
     /// From W = πu/2K′ and its value πK/2K′ at the end of the half period.
     #[inline(always)]
     #[must_use]
-    pub fn new(w: L, end: L) -> Self {
+    pub(crate) fn new(w: L, end: L) -> Self {
         let size = w.abs();
         Self {
             from_middle: exp_minus(size),
@@ -36,7 +36,7 @@ impl<L: Lane> Argument<L> {
 
 /// Jacobi's functions: the quotients of [`circular`](super::circular::Jacobi) with ϑ₂ and ϑ₄ exchanged and q′ for q.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Jacobi {
+pub(crate) struct Jacobi {
     q: f64,
     /// What stands before sn, cn, dn.
     factors: [f64; 3],
@@ -45,7 +45,7 @@ pub struct Jacobi {
 impl Jacobi {
     /// For the nome `q′ = e^{−πK/K′} ≤ 0.05`.
     #[must_use]
-    pub fn new(q: f64) -> Self {
+    pub(crate) fn new(q: f64) -> Self {
         let theta_2 = 1.0 + q * q * (1.0 + q.powi(4) * (1.0 + q.powi(6))); // over 2 q^{1/4}
         let theta_3 = 1.0 + 2.0 * q * (1.0 + q.powi(3) * (1.0 + q.powi(5)));
         let theta_4 = 1.0 - 2.0 * q * (1.0 - q.powi(3) * (1.0 - q.powi(5)));
@@ -62,7 +62,7 @@ impl Jacobi {
     /// (sn, cn, dn).
     #[inline(always)]
     #[must_use]
-    pub fn values<L: Lane>(&self, u: &Argument<L>) -> [L; 3] {
+    pub(crate) fn values<L: Lane>(&self, u: &Argument<L>) -> [L; 3] {
         let (g, one) = (u.from_middle, L::new(1.0));
         let q = L::new(self.q);
         let [sn, cn, dn] = self.factors.map(L::new);
@@ -104,7 +104,7 @@ impl Jacobi {
 ///
 /// [`Shifted::value`] has to be turned by a phase that grows with u: [`Shifted::slope`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shifted<const N: usize> {
+pub(crate) struct Shifted<const N: usize> {
     cosines: [f64; N],
     sines: [f64; N],
     slope: f64,
@@ -113,7 +113,7 @@ pub struct Shifted<const N: usize> {
 impl<const N: usize> Shifted<N> {
     /// With a itself, |a| ≤ K′: Θ(u + ia) is the [value](Self::value) times `e^{2πi slope u}`.
     #[must_use]
-    pub fn near_axis(half: HalfPeriods, a: f64) -> Self {
+    pub(crate) fn near_axis(half: HalfPeriods, a: f64) -> Self {
         let b = FRAC_PI_2 * a / half.imaginary;
         Self::of_angles(half, -a, |n| {
             let angle = f64::from(2 * n + 1) * b;
@@ -124,7 +124,7 @@ impl<const N: usize> Shifted<N> {
     /// With the distance d = K′ − a from the zero, 0 ≤ d ≤ K′: `e^{iπu/2K} Θ(u + ia)` is the [value](Self::value) times
     /// `e^{2πi slope u}`.
     #[must_use]
-    pub fn near_zero(half: HalfPeriods, d: f64) -> Self {
+    pub(crate) fn near_zero(half: HalfPeriods, d: f64) -> Self {
         let b = FRAC_PI_2 * d / half.imaginary;
         Self::of_angles(half, d, |n| {
             let angle = f64::from(2 * n + 1) * b;
@@ -150,7 +150,7 @@ impl<const N: usize> Shifted<N> {
 
     /// Turns of phase for each unit of u that the value lacks; zero where K is infinite.
     #[must_use]
-    pub fn slope(&self) -> f64 {
+    pub(crate) fn slope(&self) -> f64 {
         self.slope
     }
 
@@ -158,7 +158,7 @@ impl<const N: usize> Shifted<N> {
     /// `Σ q′^{n²} yⁿ [cos((2n+1) πa/2K′)(1 + g^{2n+1}) + i sign(u) sin((2n+1) πa/2K′)(1 − g^{2n+1})]`.
     #[inline(always)]
     #[must_use]
-    pub fn value<L: Lane>(&self, g: L, y: L, sign: L) -> (L, L) {
+    pub(crate) fn value<L: Lane>(&self, g: L, y: L, sign: L) -> (L, L) {
         let one = L::new(1.0);
         let (mut re, mut im) = (L::new(0.0), L::new(0.0));
         let (g2, mut power, mut decay) = (g * g, g, one);

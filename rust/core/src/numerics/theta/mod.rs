@@ -18,11 +18,11 @@
 //! | sums of hyperbolic functions | [`hyperbolic`] |
 //! | quotients of shifted functions | [`quotients`] |
 
-pub mod circular;
+pub(crate) mod circular;
 mod half_periods;
-pub mod hyperbolic;
-pub mod quotients;
+pub(crate) mod hyperbolic;
+pub(crate) mod quotients;
 #[cfg(test)]
 mod tests;
 
-pub use half_periods::HalfPeriods;
+pub(crate) use half_periods::HalfPeriods;

@@ -38,6 +38,7 @@ impl FreeMotion {
 
 impl Sensitivity {
     /// From the units of a motion to those of its arguments: δ has no unit.
+    #[inline]
     fn in_units_of(mut self, inertia_unit: f64, rate_unit: f64) -> Self {
         self.moments /= inertia_unit;
         (self.state.fixed_view_mut::<3, 3>(0, 3)).apply(|x| *x /= rate_unit);
@@ -128,6 +129,7 @@ impl Invariants {
     }
 
     /// `∫₀ᵗ ω_k² dt`, from that of ω₂².
+    #[inline]
     fn square_integrals(&self, t: f64, middle: f64) -> [f64; 3] {
         let [a1, a2, a3] = self.contrasts;
         let [first, second, third] = self.omega.component_mul(&self.omega).into();
@@ -144,6 +146,7 @@ impl Invariants {
 }
 
 /// At rest, or for a rod that turns about itself: every direction keeps its own in space, `δ_N = δ_N(0) + t δω_N(0)`.
+#[inline]
 fn without_momentum(t: f64, turn: &Matrix3<f64>) -> SMatrix<f64, 6, 6> {
     let mut state = SMatrix::<f64, 6, 6>::zeros();
     state.fixed_view_mut::<3, 3>(0, 0).copy_from(turn);

@@ -27,6 +27,7 @@ pub(super) struct Rates {
 impl Invariants {
     /// ω at t with its derivatives: in stretches over what whole half periods leave of t, each from the exact ω at its
     /// beginning, then those half periods T, with `ω(t) = ω(t − nT)` but for signs.
+    #[inline]
     pub(super) fn rates(&self, t: f64, omega_at: impl Fn(f64) -> Vector3<f64>) -> Rates {
         let half_period = self.half_period();
         let mut rates = Rates {
@@ -60,6 +61,7 @@ impl Invariants {
     }
 
     /// p and q of an ω on the polhode, with their derivatives.
+    #[inline]
     fn squares(&self, w: &[Slopes; 3]) -> [Slopes; 2] {
         let [a1, a2, a3] = self.contrast_slopes();
         let around_first = a3 * w[1] * w[1] + a2 * w[2] * w[2];
@@ -68,6 +70,7 @@ impl Invariants {
     }
 
     /// The contrasts, with their derivatives by the moments.
+    #[inline]
     fn contrast_slopes(&self) -> [Slopes; 3] {
         let i: [Slopes; 3] = std::array::from_fn(|k| Jet::variable(self.moments[k], 3 + k));
         let slopes = [
@@ -90,6 +93,7 @@ impl Invariants {
 
 impl Rates {
     /// By whole half periods `T`, back: `dω = −ω̇ n dT`, and the signs that an odd number gives.
+    #[inline]
     fn skip(&mut self, motion: &Invariants, periods: &Periods) {
         let whole = HalfPeriod::of(motion);
         let start = std::array::from_fn(|k| Jet::variable(motion.omega[k], k));
@@ -120,6 +124,7 @@ impl Rates {
     }
 
     /// By the time of a clock that is set to zero now.
+    #[inline]
     fn advance(&mut self, motion: &Invariants, clock: &Clock) {
         let w: [Slopes; 3] = std::array::from_fn(|k| Jet::variable(self.omega[k], k));
         let [a1, a2, a3] = motion.contrast_slopes();

@@ -92,6 +92,7 @@ impl<const N: usize> Factors<N> {
     }
 
     /// A rate of component i, in the units.
+    #[inline]
     fn inward(&self, rate: f64, i: usize) -> f64 {
         times_power_of_two(rate, self.time - self.units[i])
     }

@@ -20,7 +20,7 @@ const EXPONENT: f64 = 0.25;
 
 /// An integration under way.
 #[derive(Clone, Debug)]
-pub struct Radau<const N: usize> {
+pub(crate) struct Radau<const N: usize> {
     progress: Progress<N>,
     /// The slope at the state.
     slope: SVector<f64, N>,

@@ -18,4 +18,4 @@ mod tableau;
 #[cfg(test)]
 mod tests;
 
-pub use method::Radau;
+pub(crate) use method::Radau;

@@ -25,7 +25,7 @@ const FASTER: f64 = 1.05;
 /// step and all after it are shorter. They never become longer within a span: a change is rare, so that what equal
 /// steps keep is kept.
 #[derive(Clone, Debug)]
-pub struct Splitting {
+pub(crate) struct Splitting {
     body: Body,
     scheme: Scheme,
     tolerance: f64,
@@ -58,7 +58,7 @@ impl Splitting {
     ///
     /// # Errors
     /// What the load refuses; a torque along an axis without a moment; more than [`MOST_STEPS`] steps.
-    pub fn new<L: Load>(
+    pub(crate) fn new<L: Load>(
         euler: &EulerEquations,
         mass: Option<f64>,
         [start, end]: [f64; 2],
@@ -163,19 +163,19 @@ impl Splitting {
 
     /// The scheme and the length of a step.
     #[must_use]
-    pub fn step(&self) -> (Scheme, f64) {
+    pub(crate) fn step(&self) -> (Scheme, f64) {
         (self.scheme, self.chosen)
     }
 
     /// Accepted steps.
     #[must_use]
-    pub fn steps(&self) -> u64 {
+    pub(crate) fn steps(&self) -> u64 {
         self.steps
     }
 
     /// Time since the start.
     #[must_use]
-    pub fn elapsed(&self) -> f64 {
+    pub(crate) fn elapsed(&self) -> f64 {
         self.time(self.taken)
     }
 
@@ -188,7 +188,7 @@ impl Splitting {
 
     /// The state now.
     #[must_use]
-    pub fn phase(&self) -> Phase {
+    pub(crate) fn phase(&self) -> Phase {
         self.body.phase(&self.point)
     }
 
@@ -196,7 +196,7 @@ impl Splitting {
     ///
     /// # Errors
     /// What the load refuses; a state that is not finite.
-    pub fn advance<L: Load>(&mut self, load: &mut L) -> Result<(), L::Error> {
+    pub(crate) fn advance<L: Load>(&mut self, load: &mut L) -> Result<(), L::Error> {
         let speed = self.body.speed(&self.point);
         let is_due = self.unchecked >= self.patience || speed > FASTER * self.speed;
         let point = if is_due {
@@ -247,7 +247,11 @@ impl Splitting {
     ///
     /// # Errors
     /// What the load refuses.
-    pub fn within<L: Load>(&mut self, elapsed: f64, load: &mut L) -> Result<Phase, L::Error> {
+    pub(crate) fn within<L: Load>(
+        &mut self,
+        elapsed: f64,
+        load: &mut L,
+    ) -> Result<Phase, L::Error> {
         let from = self.time(self.taken.saturating_sub(1));
         let mut point = self.before;
         let at = self.start + from;

@@ -14,11 +14,11 @@
 
 mod body;
 mod method;
-pub mod scheme;
+pub(crate) mod scheme;
 mod short_turn;
 mod step_length;
 #[cfg(test)]
 mod tests;
 
-pub use self::method::Splitting;
-pub use self::scheme::Scheme;
+pub(crate) use self::method::Splitting;
+pub(crate) use self::scheme::Scheme;

@@ -2,7 +2,7 @@
 
 /// A symmetric composition of drifts and kicks that begins and ends with a drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scheme {
+pub(crate) enum Scheme {
     /// Half a drift, a kick, half a drift: order 2, one kick a step.
     Strang,
     /// SRKN6(14a): order 6 for kinetic energies that are quadratic in the momenta, fourteen kicks a step.
@@ -49,11 +49,11 @@ const ABA864_KICKS: [f64; 4] = [
 
 impl Scheme {
     /// All of them, those of fewest kicks first.
-    pub const ALL: [Self; 3] = [Self::Strang, Self::NearlyFree864, Self::RungeKuttaNystrom6];
+    pub(crate) const ALL: [Self; 3] = [Self::Strang, Self::NearlyFree864, Self::RungeKuttaNystrom6];
 
     /// Kicks in a step.
     #[must_use]
-    pub fn kicks(self) -> usize {
+    pub(crate) fn kicks(self) -> usize {
         match self {
             Self::Strang => 1,
             Self::NearlyFree864 => 7,
@@ -63,7 +63,7 @@ impl Scheme {
 
     /// The order of what a step errs by, for a load that is not weak.
     #[must_use]
-    pub fn order(self) -> i32 {
+    pub(crate) fn order(self) -> i32 {
         match self {
             Self::Strang => 2,
             Self::NearlyFree864 => 4,
@@ -73,7 +73,7 @@ impl Scheme {
 
     /// How long the drift before kick i is, or the last one, in steps.
     #[must_use]
-    pub fn drift(self, i: usize) -> f64 {
+    pub(crate) fn drift(self, i: usize) -> f64 {
         let i = i.min(self.kicks() - i);
         match self {
             Self::Strang => 0.5,
@@ -84,7 +84,7 @@ impl Scheme {
 
     /// How strong kick i is, in steps.
     #[must_use]
-    pub fn kick(self, i: usize) -> f64 {
+    pub(crate) fn kick(self, i: usize) -> f64 {
         let i = i.min(self.kicks() - 1 - i);
         match self {
             Self::Strang => 1.0,

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::almanac::{Almanac, Place, rounded};
 use super::field::Field;
 use super::frame::Precision;
 use super::gradient::Gradient;
@@ -9,7 +10,7 @@ use super::pack::{Pack, plus};
 use super::series::Series;
 use super::terms::{Analytic, Forced, Quadratic};
 use crate::motion::loads::{Forcing, OnOrbit, Parts};
-use crate::numerics::number::{Number, Real};
+use crate::numerics::number::Number;
 
 /// Those that the load has; most loads have none.
 #[derive(Clone, Debug)]
@@ -18,8 +19,11 @@ pub(super) struct Extras<T> {
     quadratic: Option<Box<Quadratic<T>>>,
     forced: Option<Box<Forced<T>>>,
     gradients: Vec<Gradient<T>>,
-    /// The rows whose orbits have come from the step before: their states, or where they are about.
+    /// The rows whose orbits have come from the step before.
     are_carried: Vec<bool>,
+    /// Where the rows are, and in which unit of rates, whose orbits' series are to be found; and those of motions that were there before.
+    places: Vec<Option<(Place, f64)>>,
+    pub(super) almanac: Almanac,
 }
 
 impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
@@ -30,7 +34,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             gradients.push(Gradient::new());
         }
         Self {
-            is_empty: !parts.quadratic && !parts.is_timed,
+            is_empty: !parts.quadratic && !parts.is_timed && parts.gradients == 0,
             quadratic: if parts.quadratic {
                 Some(Box::new(Quadratic::new()))
             } else {
@@ -43,65 +47,99 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             },
             gradients,
             are_carried: vec![false; R],
+            places: vec![None; R],
+            almanac: Almanac::default(),
         }
+    }
+
+    /// Whether nothing but orbits goes with the time.
+    #[inline(always)]
+    pub(super) fn has_orbits_alone(&self) -> bool {
+        self.forced.is_none()
     }
 
     #[inline(always)]
     pub(super) fn is_timed(&self) -> bool {
-        self.forced.is_some()
+        self.forced.is_some() || !self.gradients.is_empty()
     }
 
-    /// What depends on time in one row, at the start of a step in the attitude `q`.
+    /// What depends on time in one row, at the start of a step.
     #[inline(never)]
     pub(super) fn set(
         &mut self,
         row: usize,
         forcing: &Forcing<L::Real>,
         inverse_moments: &Vector3<L::Real>,
-        q: &[Pack<L, R>; 4],
     ) {
         if let Some(forced) = &mut self.forced {
             forced.set(row, forcing, inverse_moments);
         }
-        if L::Real::CARRIES_ORBITS && self.are_carried[row] {
+        if !forcing.has_orbits {
+            let mut orbits = forcing.orbits.iter();
+            for gradient in &mut self.gradients {
+                gradient.set(row, orbits.next().unwrap_or(&OnOrbit::none()));
+            }
+        }
+    }
+
+    /// Whether motions in doubles side by side look up their orbits.
+    const LOOKS_UP: bool = R > 1 && !L::VARIES && !L::Real::CARRIES_ORBITS;
+
+    /// Whether the orbits of one row, where a step begins, are known already.
+    #[inline(always)]
+    pub(super) fn recall(
+        &mut self,
+        row: usize,
+        order: usize,
+        place: impl FnOnce() -> (Place, f64),
+    ) -> bool {
+        if !Self::LOOKS_UP || self.gradients.is_empty() {
+            return L::Real::CARRIES_ORBITS && self.are_carried[row];
+        }
+        let (place, unit) = place();
+        let known = self.almanac.find(&place, unit);
+        if let Some(page) = known {
+            page.give(unit, &mut self.gradients, row, order);
+        }
+        self.places[row] = known.is_none().then_some((place, unit));
+        known.is_some()
+    }
+
+    /// The series of the orbits, where they are not known.
+    #[inline(always)]
+    pub(super) fn expand(&mut self, order: usize) {
+        if Self::LOOKS_UP && self.places.iter().all(Option::is_none) {
             return;
         }
-        let q = [
-            q[0].real(row),
-            q[1].real(row),
-            q[2].real(row),
-            q[3].real(row),
-        ];
-        let mut orbits = forcing.orbits.iter();
         for gradient in &mut self.gradients {
-            let orbit = orbits.next().copied().unwrap_or_else(OnOrbit::none);
-            let position = seen_by(&q, &orbit.position);
-            let velocity = seen_by(&q, &orbit.velocity);
-            gradient.set(row, &orbit, &position, &velocity);
+            gradient.expand(order);
+        }
+        for (row, place) in self.places.iter_mut().enumerate() {
+            if let Some((place, unit)) = place.take() {
+                self.almanac
+                    .put(place, unit, &mut self.gradients, row, order);
+            }
+        }
+    }
+
+    /// A step from `now`, as long ago as that is, shortened so that orbits may be looked up at its end.
+    #[inline(always)]
+    pub(super) fn shortened(&self, now: (f64, f64), h: f64) -> f64 {
+        if self.gradients.is_empty() || L::VARIES || L::Real::CARRIES_ORBITS {
+            h
+        } else {
+            rounded(now, h)
         }
     }
 
     /// Goes on to the end of a step of length `h`.
     #[inline(always)]
     pub(super) fn advance(&mut self, order: usize, h: Pack<L, R>) {
-        if !self.gradients.is_empty() {
+        if L::Real::CARRIES_ORBITS {
             for gradient in &mut self.gradients {
-                if L::Real::CARRIES_ORBITS {
-                    gradient.advance(order, h);
-                } else {
-                    gradient.foresee(order, h);
-                }
+                gradient.advance(order, h);
             }
             self.are_carried.fill(true);
-        }
-    }
-
-    /// Says of each orbit of one row, which is reckoned anew, what `r·v` is about; `unit` is that of rates.
-    #[inline(always)]
-    pub(super) fn foretell(&self, row: usize, unit: f64, forcing: &mut Forcing<L::Real>) {
-        if !L::Real::CARRIES_ORBITS && self.are_carried[row] {
-            let foretold = self.gradients.iter().map(|it| it.foretold(row) * unit);
-            forcing.foretold.extend(foretold);
         }
     }
 
@@ -120,13 +158,18 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     /// Leaves one row without such terms.
     pub(super) fn vacate(&mut self, row: usize) {
         self.restart(row);
-        let upright = Pack::new(0.0);
-        let q = [upright, upright, upright, Pack::new(1.0)];
-        self.set(row, &Forcing::default(), &Vector3::zeros(), &q);
+        self.set(row, &Forcing::default(), &Vector3::zeros());
     }
 
     #[inline(always)]
-    pub(super) fn start(&mut self, fastest: &[f64; R]) {
+    pub(super) fn start<const B: usize>(
+        &mut self,
+        fastest: &[f64; R],
+        field: &Field<Pack<L, R>, B>,
+    ) {
+        for gradient in &mut self.gradients {
+            gradient.start(field);
+        }
         if let Some(quadratic) = &mut self.quadratic {
             quadratic.start(fastest);
         }
@@ -224,12 +267,4 @@ fn is_damped<L: Number, const R: usize, const B: usize>(
 fn size<L: Number, const R: usize>(w: &[Pack<L, R>; 3], row: usize) -> f64 {
     let (x, y, z) = (w[0].get(row), w[1].get(row), w[2].get(row));
     (x * x + y * y + z * z).sqrt()
-}
-
-/// A vector of N as seen in the attitude (x, y, z, w).
-fn seen_by<X: Real>(q: &[X; 4], vector: &Vector3<X>) -> Vector3<X> {
-    let [x, y, z, w] = *q;
-    let u = Vector3::new(x, y, z);
-    let t = u.cross(vector) * X::from(2.0);
-    vector - t * w + u.cross(&t)
 }

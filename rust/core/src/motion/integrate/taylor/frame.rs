@@ -163,7 +163,7 @@ impl Principal<Varied> {
 /// (x, y, z, w) of a rotation matrix, from the largest of the four.
 ///
 /// Source: Shepperd, Journal of Guidance and Control 1 (1978) 223.
-fn of_matrix<X: Real>(m: &Matrix3<X>) -> [X; 4] {
+pub(super) fn of_matrix<X: Real>(m: &Matrix3<X>) -> [X; 4] {
     let [x, y, z] = [0, 1, 2].map(|i| m[(i, i)]);
     let one = X::one();
     let squares = [

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::abreast::Abreast;
+use super::almanac::Almanac;
 use super::alone::Alone;
 use super::drive::{Job, See, Settings, drive};
 use super::twin::Twin;
@@ -33,10 +34,11 @@ impl Kernel for Precisely<'_, '_> {
             watch,
             see,
         } = self;
+        let almanac = &mut Almanac::default();
         match settings.parts.directions {
-            0 => drive::<Twofold<L>, Twin<L, 0, 4>, 0, 1>(settings, jobs, watch, see),
-            1 => drive::<Twofold<L>, Twin<L, 1, 8>, 1, 1>(settings, jobs, watch, see),
-            _ => drive::<Twofold<L>, Twin<L, 3, 16>, 3, 1>(settings, jobs, watch, see),
+            0 => drive::<Twofold<L>, Twin<L, 0, 4>, 0, 1>(settings, jobs, watch, see, almanac),
+            1 => drive::<Twofold<L>, Twin<L, 1, 8>, 1, 1>(settings, jobs, watch, see, almanac),
+            _ => drive::<Twofold<L>, Twin<L, 3, 16>, 3, 1>(settings, jobs, watch, see, almanac),
         }
     }
 }
@@ -60,10 +62,11 @@ impl Kernel for OneByOne<'_, '_> {
             watch,
             see,
         } = self;
+        let almanac = &mut Almanac::default();
         match settings.parts.directions {
-            0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch, see),
-            1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch, see),
-            _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch, see),
+            0 => drive::<L, Alone<L, 0>, 0, 1>(settings, jobs, watch, see, almanac),
+            1 => drive::<L, Alone<L, 1>, 1, 1>(settings, jobs, watch, see, almanac),
+            _ => drive::<L, Alone<L, 3>, 3, 1>(settings, jobs, watch, see, almanac),
         }
     }
 }
@@ -73,6 +76,7 @@ pub(super) struct SideBySide<'a, 'b> {
     pub(super) settings: Settings,
     pub(super) jobs: &'b mut dyn Iterator<Item = Job<'a, f64>>,
     pub(super) watch: &'b mut dyn FnMut(f64) -> ControlFlow<()>,
+    pub(super) almanac: &'b mut Almanac,
 }
 
 impl Kernel for SideBySide<'_, '_> {
@@ -84,11 +88,12 @@ impl Kernel for SideBySide<'_, '_> {
             settings,
             jobs,
             watch,
+            almanac,
         } = self;
         match settings.parts.directions {
-            0 => drive::<L, Abreast<L, 0, ROWS>, 0, ROWS>(settings, jobs, watch, None),
-            1 => drive::<L, Abreast<L, 1, ROWS>, 1, ROWS>(settings, jobs, watch, None),
-            _ => drive::<L, Abreast<L, 3, ROWS>, 3, ROWS>(settings, jobs, watch, None),
+            0 => drive::<L, Abreast<L, 0, ROWS>, 0, ROWS>(settings, jobs, watch, None, almanac),
+            1 => drive::<L, Abreast<L, 1, ROWS>, 1, ROWS>(settings, jobs, watch, None, almanac),
+            _ => drive::<L, Abreast<L, 3, ROWS>, 3, ROWS>(settings, jobs, watch, None, almanac),
         }
     }
 }

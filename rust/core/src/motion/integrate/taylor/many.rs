@@ -1,8 +1,10 @@
 //! The motions of many tasks, on all cores.
 
 use std::ops::{ControlFlow, Range};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use super::almanac::Almanac;
 use super::course::parts;
 use super::job::{rows, settings};
 use super::kernels::{OneByOne, Precisely, ROWS, SideBySide};
@@ -10,7 +12,7 @@ use crate::error::Error;
 use crate::motion::loads::{Parts, Term};
 use crate::motion::problem::{Run, Task};
 use crate::numerics::dispatch::dispatch;
-use crate::numerics::threads::{fill_blocks, thread_count};
+use crate::numerics::threads::{fill_blocks, locked, thread_count};
 
 /// The most motions that a thread takes at a time.
 const MOST: usize = 1024;
@@ -46,6 +48,7 @@ pub fn solve_many<'a, E: From<Error> + Send>(
         terms,
         begun: &begun,
         ask: &ask,
+        almanacs: &Mutex::default(),
     };
     // Where a run is stopped, what was done by then is kept.
     let _ended = fill_blocks(runs, block, &mut |_| ask(), |first, slots| {
@@ -67,6 +70,8 @@ struct Tasks<'a, 'b> {
     terms: &'b (dyn Fn(usize) -> &'a [Term] + Sync),
     begun: &'b AtomicUsize,
     ask: &'b (dyn Fn() -> ControlFlow<()> + Sync),
+    /// Those that no thread has in hand.
+    almanacs: &'b Mutex<Vec<Almanac>>,
 }
 
 impl Tasks<'_, '_> {
@@ -106,11 +111,15 @@ impl Tasks<'_, '_> {
                     see: None,
                 })
             } else {
-                dispatch(SideBySide {
+                let mut almanac = locked(self.almanacs).pop().unwrap_or_default();
+                let flow = dispatch(SideBySide {
                     settings,
                     jobs,
                     watch,
-                })
+                    almanac: &mut almanac,
+                });
+                locked(self.almanacs).push(almanac);
+                flow
             }
         };
         (runs, flow)

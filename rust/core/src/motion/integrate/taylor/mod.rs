@@ -6,6 +6,7 @@
 //! | `course` | one motion: its load in principal axes, from break to break, in a unit of its own |
 //! | `field` | the equations that are linear in the coefficients of one order |
 //! | `terms`, `gradient`, `extras` | the recurrences of terms that are not |
+//! | `circuit`, `almanac` | the series of an orbit, and where motions look them up |
 //! | `series` | the coefficients, and what is asked of the sums of their products |
 //! | `alone`, `abreast` | these sums, the lanes over the components of one motion or over motions |
 //! | `twin` | these sums in numbers of twice the precision |
@@ -29,8 +30,10 @@
 )]
 
 mod abreast;
+mod almanac;
 mod alone;
 mod carried;
+mod circuit;
 mod course;
 mod derived;
 mod directions;

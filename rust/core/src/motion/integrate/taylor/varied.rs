@@ -3,6 +3,7 @@
 use std::iter::once;
 use std::ops::ControlFlow;
 
+use super::almanac::Almanac;
 use super::course::{Course, parts_of};
 use super::derived::Derived;
 use super::drive::{Job, Settings, Tell, drive};
@@ -46,10 +47,11 @@ pub(in crate::motion::integrate) fn run_varied(
         tell: Some(&mut tell),
     };
     let jobs = &mut once(job);
+    let almanac = &mut Almanac::default();
     let _stopped = match parts.directions {
-        0 => drive::<Varied, Derived<0>, 0, 1>(settings, jobs, watch, None),
-        1 => drive::<Varied, Derived<1>, 1, 1>(settings, jobs, watch, None),
-        _ => drive::<Varied, Derived<3>, 3, 1>(settings, jobs, watch, None),
+        0 => drive::<Varied, Derived<0>, 0, 1>(settings, jobs, watch, None, almanac),
+        1 => drive::<Varied, Derived<1>, 1, 1>(settings, jobs, watch, None, almanac),
+        _ => drive::<Varied, Derived<3>, 3, 1>(settings, jobs, watch, None, almanac),
     };
     match run.end {
         End::Complete => Ok(()),

@@ -9,21 +9,10 @@ const NEAR: f64 = 1e-6;
 const SMALL: f64 = 1e-4;
 
 impl Orbit {
-    /// s at the time `t` and its functions; `r·v` there may be known to be about `sigma`.
-    ///
-    /// From `dσ/ds = μ − β r` follows `μ s = σ − σ₀ + β t`: a good σ makes one round of the iteration enough.
-    pub(super) fn solve(&self, t: f64, sigma: Option<f64>) -> (f64, [f64; 4]) {
+    /// s at the time `t` and its functions.
+    pub(super) fn solve(&self, t: f64) -> (f64, [f64; 4]) {
         if t == 0.0 || !t.is_finite() {
             return (t, functions(self.beta, t));
-        }
-        if let Some(sigma) = sigma {
-            let sigma = sigma / self.length / self.length * self.time;
-            let s = (sigma - self.sigma + self.beta * t) / self.scaled_mu;
-            let g = functions(self.beta, s);
-            let (change, is_last) = self.change(s, t, &g);
-            if is_last {
-                return self.end_at(s, &g, change);
-            }
         }
         self.search(t)
     }

@@ -8,7 +8,7 @@ use crate::numerics::theta::{HalfPeriods, circular};
 
 /// By sines and cosines of z, for K ≤ K′ or somewhat above.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circular {
+pub(crate) struct Circular {
     /// 2q, 2q⁴, 2q⁹ of ϑ₄.
     below: [f64; 3],
     /// For each function the coefficients of its real and of its imaginary part.
@@ -18,7 +18,7 @@ pub struct Circular {
 impl Circular {
     /// With the shifts `a = 2Ky/π`, |a| ≤ K′. Where K′ is infinite a may be.
     #[must_use]
-    pub fn new(half: HalfPeriods, shifts: [f64; 3]) -> Self {
+    pub(crate) fn new(half: HalfPeriods, shifts: [f64; 3]) -> Self {
         let rate = FRAC_PI_2 / half.real;
         // ln q; the series end where q is zero.
         let log_q = -PI * half.imaginary / half.real;
@@ -61,7 +61,7 @@ impl Circular {
 
     /// Each function times a factor.
     #[must_use]
-    pub fn scaled(mut self, factors: [f64; 3]) -> Self {
+    pub(crate) fn scaled(mut self, factors: [f64; 3]) -> Self {
         for (function, factor) in self.above.iter_mut().zip(factors) {
             for coefficient in function.as_flattened_mut() {
                 *coefficient *= factor;
@@ -73,7 +73,7 @@ impl Circular {
     /// The three at z.
     #[inline(always)]
     #[must_use]
-    pub fn values<L: Lane>(&self, z: &circular::Argument<L>) -> Values<L> {
+    pub(crate) fn values<L: Lane>(&self, z: &circular::Argument<L>) -> Values<L> {
         let odd = |of: &[L; 9]| [of[1], of[3], of[5], of[7]];
         let (sines, cosines) = (odd(&z.sin), odd(&z.cos));
         let [q1, q4, q9] = self.below;

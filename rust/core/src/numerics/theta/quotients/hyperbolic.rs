@@ -10,7 +10,7 @@ use crate::numerics::theta::{HalfPeriods, hyperbolic};
 ///
 /// A [value](Self::values) has to be turned by a phase that grows with u: [`Hyperbolic::slopes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hyperbolic {
+pub(crate) struct Hyperbolic {
     /// `q′^{n²}` and `q′^{n²+n}` of ϑ₂.
     below: [f64; 4],
     below_far: [f64; 3],
@@ -26,7 +26,7 @@ pub struct Hyperbolic {
 impl Hyperbolic {
     /// With the shifts a, |a| ≤ K′.
     #[must_use]
-    pub fn new(half: HalfPeriods, shifts: [f64; 3]) -> Self {
+    pub(crate) fn new(half: HalfPeriods, shifts: [f64; 3]) -> Self {
         let q = (-PI * half.real / half.imaginary).exp();
         let near = [0, 1, 4, 9].map(|n| q.powi(n));
         let far = [0, 2, 6].map(|n| q.powi(n));
@@ -66,7 +66,7 @@ impl Hyperbolic {
 
     /// Each function times a factor.
     #[must_use]
-    pub fn scaled(mut self, factors: [f64; 3]) -> Self {
+    pub(crate) fn scaled(mut self, factors: [f64; 3]) -> Self {
         for (k, factor) in factors.into_iter().enumerate() {
             for coefficient in self.above[k].as_flattened_mut() {
                 *coefficient *= factor;
@@ -81,14 +81,14 @@ impl Hyperbolic {
     /// The phases that are still to be added, in turns for each full 2K: that of ϑ₁ times u/2K, those of ϑ₂ times
     /// `(|u| − K)/2K` with the sign of u.
     #[must_use]
-    pub fn slopes(&self) -> [f64; 3] {
+    pub(crate) fn slopes(&self) -> [f64; 3] {
         self.slopes
     }
 
     /// The three at u but for those phases.
     #[inline(always)]
     #[must_use]
-    pub fn values<L: Lane>(&self, u: &hyperbolic::Argument<L>) -> Values<L> {
+    pub(crate) fn values<L: Lane>(&self, u: &hyperbolic::Argument<L>) -> Values<L> {
         let one = L::new(1.0);
         let (g2, y2) = (u.from_middle * u.from_middle, u.from_end * u.from_end);
         let (g4, y4) = (g2 * g2, y2 * y2);

@@ -18,6 +18,6 @@ mod series;
 #[cfg(test)]
 mod tests;
 
-pub use circular::Circular;
-pub use hyperbolic::Hyperbolic;
-pub use series::Values;
+pub(crate) use circular::Circular;
+pub(crate) use hyperbolic::Hyperbolic;
+pub(crate) use series::Values;

@@ -3,7 +3,7 @@
 use crate::numerics::lane::Lane;
 
 /// The values of the three: real and imaginary parts.
-pub type Values<L> = [[L; 2]; 3];
+pub(crate) type Values<L> = [[L; 2]; 3];
 
 /// `Σ aₙ xₙ`, from the end, where the small terms are.
 #[inline(always)]

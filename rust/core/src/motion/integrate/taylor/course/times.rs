@@ -2,6 +2,7 @@
 
 use super::segments::Course;
 use crate::error::Error;
+use crate::motion::integrate::taylor::almanac::Place;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::problem::limits::check_steps;
 use crate::numerics::double_double::two_sum;
@@ -24,6 +25,17 @@ impl<X: Precision> Course<'_, X> {
 
     pub(in crate::motion::integrate::taylor) fn time(&self, now: (f64, f64)) -> f64 {
         self.task.times[0] + (now.0 + now.1) / self.unit
+    }
+
+    /// Where a step that begins at `now` stands in an almanac, and the unit of rates.
+    #[inline(always)]
+    pub(in crate::motion::integrate::taylor) fn place(&self, now: (f64, f64)) -> (Place, f64) {
+        let (start, unit) = (self.task.times[0], self.unit);
+        let place = Place {
+            when: [now.0 / unit, now.1 / unit, start].map(f64::to_bits),
+            terms: (self.terms.as_ptr().addr(), self.terms.len()),
+        };
+        (place, unit)
     }
 
     /// The whole length of the motion.

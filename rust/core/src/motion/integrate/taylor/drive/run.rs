@@ -1,10 +1,12 @@
 //! Until all motions are done.
 
+use std::mem::swap;
 use std::ops::ControlFlow;
 
 use super::lanes::{Job, Lanes};
 use super::settings::Settings;
 use super::shown::See;
+use crate::motion::integrate::taylor::almanac::Almanac;
 use crate::motion::integrate::taylor::frame::Precision;
 use crate::motion::integrate::taylor::pack::Pack;
 use crate::motion::integrate::taylor::series::Series;
@@ -16,7 +18,7 @@ const PATIENCE: u32 = 64;
 const PATIENCE_OF_DERIVATIVES: u32 = 4;
 
 /// Runs all motions that `jobs` gives. About every 64 steps `watch` gets the fraction of the first lane's motion that is
-/// done, and may stop them. `see` is for motions one after the other.
+/// done, and may stop them. `see` is for motions one after the other; orbits are looked up in the almanac and put down there.
 #[inline(always)]
 pub(in crate::motion::integrate::taylor) fn drive<
     L: Number<Real: Precision>,
@@ -27,9 +29,23 @@ pub(in crate::motion::integrate::taylor) fn drive<
     settings: Settings,
     jobs: &mut dyn Iterator<Item = Job<'_, L::Real>>,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    mut see: Option<See>,
+    see: Option<See>,
+    almanac: &mut Almanac,
 ) -> ControlFlow<()> {
     let mut lanes = Lanes::<L, S, B, R>::new(settings);
+    swap(&mut lanes.extras.almanac, almanac);
+    let flow = run(&mut lanes, jobs, watch, see);
+    swap(&mut lanes.extras.almanac, almanac);
+    flow
+}
+
+#[inline(always)]
+fn run<'a, L: Number<Real: Precision>, S: Series<Pack<L, R>, B>, const B: usize, const R: usize>(
+    lanes: &mut Lanes<'a, L, S, B, R>,
+    jobs: &mut dyn Iterator<Item = Job<'a, L::Real>>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    mut see: Option<See>,
+) -> ControlFlow<()> {
     let looks_after = if L::VARIES {
         PATIENCE_OF_DERIVATIVES
     } else {

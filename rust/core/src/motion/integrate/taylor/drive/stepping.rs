@@ -34,6 +34,9 @@ where
         }
         let mut eventful = self.settings.parts.may_flip();
         for row in 0..R {
+            let (now, rest) = self.now[row];
+            let ago = (now * self.direction[row], rest * self.direction[row]);
+            h[row] = self.extras.shortened(ago, h[row]);
             let (now, gap) = (self.now[row].0, self.gap(row));
             // What is not a number is an event too.
             let is_plain = (h[row] < gap) & (h[row] > f64::EPSILON * now.abs());
@@ -110,14 +113,20 @@ where
             for row in 0..R {
                 if let Some(lead) = &self.leads[row] {
                     let course = &lead.job.course;
+                    let now = self.now[row];
                     self.forcing.clear();
-                    self.extras.foretell(row, course.unit(), &mut self.forcing);
-                    course.force(&mut self.forcing, self.now[row]);
-                    (self.extras).set(row, &self.forcing, course.inverse_moments(), &q);
+                    self.forcing.has_orbits =
+                        (self.extras).recall(row, order, || course.place(now));
+                    if self.forcing.has_orbits && self.extras.has_orbits_alone() {
+                        continue;
+                    }
+                    course.force(&mut self.forcing, now);
+                    (self.extras).set(row, &self.forcing, course.inverse_moments());
                 }
             }
+            self.extras.expand(order);
         }
-        self.extras.start(&self.fastest);
+        self.extras.start(&self.fastest, &self.field);
         if let Some(carried) = &mut self.carried {
             carried.start();
         }

@@ -1,0 +1,227 @@
+//! The series of orbits at the starts of steps, for all motions that come by.
+
+use std::array::from_fn;
+
+use super::gradient::{AT_START, Gradient};
+use super::pack::Pack;
+use crate::numerics::number::Number;
+
+/// How many shelves there are, as a power of two, and pages on each.
+const SHELVES: u32 = 10;
+const PAGES: usize = 4;
+/// Of two to the power of 64, the golden section.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+/// How far units of rates may lie apart for numbers of one to be used in the other: no power of their ratio leaves the range of
+/// float64.
+const APART: f64 = 1_048_576.0;
+
+/// A part of a step's length below which its end is rounded.
+const GRAIN: f64 = 1.0 / 16.0;
+
+/// What tells one start of a step from another: what acts, and when.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    /// The bits of the time since the start of the motion and of what rounding leaves out of it, and of that start.
+    pub(super) when: [u64; 3],
+    /// The address of the terms of the load, which outlive the almanac, and how many they are.
+    pub(super) terms: (usize, usize),
+}
+
+/// The orbits of a load at starts of steps, as numbers of [`Gradient`]: found once for all motions on the same orbits.
+///
+/// They depend on the place alone, and on the unit of rates, which is a power of two, to the bit: so a motion is the same whether or
+/// not another one has been there before.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Almanac {
+    /// None before the first is put down.
+    pages: Vec<Option<Page>>,
+    /// How many there have been.
+    put: usize,
+}
+
+/// Numbers in a unit of rates.
+#[derive(Clone, Debug)]
+pub(super) struct Page {
+    place: Place,
+    unit: f64,
+    numbers: Vec<f64>,
+}
+
+impl Place {
+    /// The first page of its shelf.
+    #[inline(always)]
+    fn shelf(&self) -> usize {
+        let mixed = self.when.iter().fold(self.terms.0 as u64, |sum, bits| {
+            (sum.rotate_left(5) ^ bits).wrapping_mul(GOLDEN)
+        });
+        PAGES * (mixed >> (64 - SHELVES)) as usize
+    }
+}
+
+impl Almanac {
+    /// What stands of a place, if it does.
+    #[inline(always)]
+    pub(super) fn find(&self, place: &Place, unit: f64) -> Option<&Page> {
+        let first = place.shelf();
+        let shelf = self.pages.get(first..first + PAGES)?.iter().flatten();
+        let page = shelf.into_iter().find(|page| page.place == *place)?;
+        let ratio = page.unit / unit;
+        (ratio <= APART && 1.0 <= ratio * APART).then_some(page)
+    }
+
+    /// Puts down the orbits of one row.
+    #[inline(never)]
+    pub(super) fn put<L: Number, const R: usize>(
+        &mut self,
+        place: Place,
+        unit: f64,
+        gradients: &mut [Gradient<Pack<L, R>>],
+        row: usize,
+        order: usize,
+    ) {
+        if self.pages.is_empty() {
+            self.pages.resize(PAGES << SHELVES, None);
+        }
+        let first = place.shelf();
+        let shelf = &mut self.pages[first..first + PAGES];
+        let is_free = |page: &Option<Page>| page.as_ref().is_none_or(|page| page.place == place);
+        let free = shelf.iter().position(is_free);
+        let slot = &mut shelf[free.unwrap_or(self.put % PAGES)];
+        self.put += 1;
+        let mut numbers = slot.take().map_or_else(Vec::new, |page| page.numbers);
+        numbers.clear();
+        for gradient in gradients {
+            numbers.extend(gradient.at_start(row).map(|x| L::of(x).get()));
+            let half_turn = &gradient.orbit().half_turn()[1..order];
+            numbers.extend(half_turn.iter().flatten().map(|x| x.get(row)));
+        }
+        *slot = Some(Page {
+            place,
+            unit,
+            numbers,
+        });
+    }
+}
+
+impl Page {
+    /// Gives its numbers to one row.
+    #[inline(always)]
+    pub(super) fn give<L: Number, const R: usize>(
+        &self,
+        unit: f64,
+        gradients: &mut [Gradient<Pack<L, R>>],
+        row: usize,
+        order: usize,
+    ) {
+        let ratio = self.unit / unit;
+        let mut numbers = self.numbers.as_slice();
+        for gradient in gradients {
+            let (at_start, rest) = numbers.split_at(AT_START);
+            let (half_turn, rest) = rest.split_at(2 * order - 2);
+            gradient.start_at(row, from_fn(|i| at_start[i].into()));
+            gradient.rescale(row, ratio);
+            let mut power = 1.0;
+            let pairs = half_turn.as_chunks().0.iter().map(|&[a, b]: &[f64; 2]| {
+                power *= ratio;
+                [(a * power).into(), (b * power).into()]
+            });
+            gradient.orbit().put_half_turn(row, pairs);
+            numbers = rest;
+        }
+    }
+}
+
+/// A step from `now` (as long ago as that is) made shorter by a sixteenth at most, so that it ends at a rounder time: motions on the
+/// same orbit meet there.
+#[inline(always)]
+pub(super) fn rounded(now: (f64, f64), h: f64) -> f64 {
+    let power = f64::from_bits(h.to_bits() & (0x7ff << 52));
+    let grain = power * GRAIN;
+    if grain > 0.0 && grain < f64::INFINITY {
+        let end = ((now.0 + h) / grain).floor() * grain;
+        let shorter = (end - now.0) - now.1;
+        if shorter > 0.5 * h && shorter <= h {
+            shorter
+        } else {
+            h
+        }
+    } else {
+        h
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::lane::Double;
+
+    type Pair = Pack<Double<false>, 2>;
+
+    fn place(time: f64) -> Place {
+        Place {
+            when: [time.to_bits(), 0, 0],
+            terms: (4096, 1),
+        }
+    }
+
+    #[test]
+    fn steps_end_at_round_times() {
+        for (now, h) in [
+            (0.0, 0.7),
+            (0.3, 0.7),
+            (1e6, 0.7),
+            (3.25, 1e-9),
+            (1e-9, 64.0),
+        ] {
+            let shorter = rounded((now, 0.0), h);
+            assert!(shorter <= h && shorter > 0.93 * h, "{now} {h}: {shorter}");
+            let end: f64 = now + shorter;
+            // The sixteenth of the power of two at or below h.
+            let grain = h.log2().floor().exp2() / 16.0;
+            assert_eq!((end / grain).fract(), 0.0, "{now} {h}");
+        }
+        // From either side of a round time.
+        assert_eq!(rounded((0.0, 0.0), 1.0), 1.0);
+        assert_eq!(rounded((0.0, 0.0), 1.0_f64.next_down()), 1.0 - 1.0 / 32.0);
+        // No step is lost where there is nothing to round.
+        for h in [0.0, f64::INFINITY, f64::MIN_POSITIVE / 8.0] {
+            assert_eq!(rounded((1.0, 0.0), h), h);
+        }
+        assert!(rounded((1.0, 0.0), f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn another_unit_gets_the_bits_that_it_would_find() {
+        let rates = [0.3, 0.7, 0.4];
+        let begun = |unit: f64| {
+            let mut gradient = Gradient::<Pair>::new();
+            let [a, b, c] = [rates[0] / unit, rates[1] / unit, rates[2] / unit / unit];
+            gradient.start_at(1, [0.1, 0.2, 0.3, 0.9, a, b, c, 3.0 * c]);
+            gradient.expand(8);
+            [gradient]
+        };
+        let mut almanac = Almanac::default();
+        assert!(almanac.find(&place(1.0), 1.0).is_none());
+        almanac.put(place(1.0), 1.0, &mut begun(1.0), 1, 8);
+        for unit in [1.0, 0.25, 64.0] {
+            let mut taken = [Gradient::<Pair>::new()];
+            let page = almanac.find(&place(1.0), unit).expect("a page");
+            page.give(unit, &mut taken, 1, 8);
+            let mut own = begun(unit);
+            assert_eq!(taken[0].at_start(1), own[0].at_start(1));
+            for k in 0..8 {
+                let [taken, own] = [&mut taken, &mut own].map(|it| it[0].orbit().half_turn()[k]);
+                assert_eq!(taken.map(|x| x.get(1)), own.map(|x| x.get(1)), "{unit} {k}");
+            }
+        }
+        assert!(almanac.find(&place(1.0), APART).is_some());
+        assert!(almanac.find(&place(1.0), 2.0 * APART).is_none());
+        assert!(almanac.find(&place(2.0), 1.0).is_none());
+        // More than there is room for: what was put last is there.
+        for k in 0..3 * (PAGES << SHELVES) {
+            almanac.put(place(k as f64), 1.0, &mut begun(1.0), 1, 2);
+            assert!(almanac.find(&place(k as f64), 1.0).is_some());
+        }
+        assert_eq!(almanac.pages.len(), PAGES << SHELVES);
+    }
+}

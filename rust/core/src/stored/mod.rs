@@ -1,0 +1,15 @@
+//! Values as `serde` stores them, and read again by way of the checks of their constructors.
+//!
+//! | what | file |
+//! |---|---|
+//! | from a value to its stored form and back | `form` |
+//! | bodies, and what is told of them | `mass` |
+//! | where the numbers of a body come from | `provenance` |
+//! | states, methods, events | `motion` |
+//! | loads that are plain numbers | `loads` |
+
+mod form;
+mod loads;
+mod mass;
+mod motion;
+mod provenance;

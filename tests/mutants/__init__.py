@@ -1,0 +1,14 @@
+"""Mutants: small faults put into a copy of the sources, and whether a test finds each of them.
+
+``python -m mutants`` in `tests` draws them, builds them all into one copy and runs tests on each; it goes on
+where it ended, prints the score and the survivors, and needs ``pip install tree-sitter tree-sitter-rust``.
+
+| file | knows |
+|---|---|
+| `rules` | where in Rust a small rule makes a mutant |
+| `draw` | which are tried: those of a seed, and those named in `named.toml` |
+| `build` | the copy that holds all of them, with a switch (`switch.rs`), and what of it compiles |
+| `in_pytest` | pytest with one test after the other on each mutant that it reaches |
+| `__main__` | the run, its record, and the score |
+| `equivalent.toml` | survivors that no test can kill, and why |
+"""

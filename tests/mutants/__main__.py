@@ -1,0 +1,169 @@
+"""Draw mutants, run tests on them, print the score: see the package's first lines."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+from quick import tests_of
+
+from mutants import build, draw
+from mutants.draw import HERE, Mutant
+
+RECORD = build.TARGET / "mutants.jsonl"
+
+
+def recorded() -> dict[str, str]:
+    """What killed each dead mutant, by its key. A test that was begun on it and did not end has."""
+    dead, begun = {}, {}
+    for line in RECORD.read_text(encoding="utf-8").splitlines() if RECORD.exists() else []:
+        row = json.loads(line)
+        if "begun" in row:
+            begun[row["key"]] = row["begun"]
+        else:
+            begun.pop(row["key"], None)
+        if row.get("killed"):
+            dead[row["key"]] = row["killed"]
+    return dead | {key: f"{test} (did not end)" for key, test in begun.items()}
+
+
+def note(key: str, killed: str | None) -> None:
+    """Add a line to the record."""
+    with RECORD.open("a", encoding="utf-8") as file:
+        file.write(json.dumps({"key": key, "killed": killed}) + "\n")
+
+
+def by_cargo(living: dict[int, Mutant], programs: list[Path], most: float) -> None:
+    """The tests of the core on each mutant, quick programs first; one that takes too long has found it."""
+    for number, mutant in living.items():
+        killed = None
+        for program in programs:
+            environment = {**os.environ, "POLHODE_MUTANT": str(number)}
+            core = build.TREE / "rust" / "core"
+            try:
+                told = subprocess.run(
+                    [program, "-q"], cwd=core, env=environment, capture_output=True, timeout=most, check=False
+                )
+            except subprocess.TimeoutExpired:
+                killed = f"{program.stem} (did not end)"
+                break
+            if told.returncode:
+                failed = [line for line in told.stdout.decode().splitlines() if line.startswith("    ")]
+                killed = f"{program.stem.rsplit('-', 1)[0]}: {failed[-1].strip() if failed else 'crash'}"
+                break
+        note(mutant.key, killed)
+        print(f"{mutant.what}: {killed or 'lives'}", flush=True)
+
+
+def by_pytest(living: dict[int, Mutant], tests: list[str], seconds: float, longest: float) -> None:
+    """Tests of the package on all mutants, one process after the other as long as one dies of a mutant."""
+    task = build.TARGET / "mutants.json"
+    while True:
+        dead = recorded()
+        left = {number: mutant.key for number, mutant in living.items() if mutant.key not in dead}
+        task.write_text(
+            json.dumps({"living": left, "seconds": seconds, "longest": longest, "record": str(RECORD)}),
+            encoding="utf-8",
+        )
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "mutants.in_pytest", "-p", "no:cacheprovider"]
+        command += ["-m", "not long and not alone", "-o", "timeout=0", *tests]
+        python = os.pathsep.join([str(build.TREE / "python"), str(build.TREE / "tests")])
+        told = subprocess.run(
+            command,
+            cwd=build.TREE,
+            env={**os.environ, "PYTHONPATH": python, "POLHODE_MUTANTS": str(task)},
+            check=False,
+        )
+        if 0 <= told.returncode <= 5 or not left:
+            return
+        print(f"pytest ended with {told.returncode}; on without those that are dead", flush=True)
+
+
+def by_text(mutants: list[Mutant]) -> None:
+    """Mutants of the package, one after the other in the copy, each with the tests of its row."""
+    for mutant in mutants:
+        file = build.TREE / mutant.file
+        data = file.read_bytes()
+        try:
+            file.write_bytes(data[: mutant.start] + mutant.text.encode() + data[mutant.end :])
+            command = [
+                sys.executable,
+                "-m",
+                "pytest",
+                "-q",
+                "-x",
+                "-p",
+                "no:cacheprovider",
+                *(f"tests/{name}" for name in mutant.tests),
+            ]
+            environment = {**os.environ, "PYTHONPATH": str(build.TREE / "python")}
+            told = subprocess.run(
+                command, cwd=build.TREE, env=environment, capture_output=True, text=True, check=False
+            )
+        finally:
+            file.write_bytes(data)
+        killed = next((line for line in told.stdout.splitlines() if line.startswith("FAILED")), None)
+        note(mutant.key, killed)
+        print(f"{mutant.key}: {killed or 'lives'}", flush=True)
+
+
+def score(mutants: list[Mutant], title: str) -> None:
+    """How many are dead, and which are not."""
+    reasons = {
+        row["key"]: row["why"]
+        for row in tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf-8"))["mutant"]
+    }
+    dead = recorded()
+    alive = [mutant for mutant in mutants if mutant.key not in dead]
+    same = [mutant for mutant in alive if mutant.key in reasons]
+    print(
+        f"{title}: {len(mutants) - len(alive)} of {len(mutants)} killed, {len(same)} of the others equivalent"
+    )
+    for mutant in alive:
+        print(f"  {mutant.key}  {mutant.what}\n            {reasons.get(mutant.key, 'NO TEST KILLS IT')}")
+
+
+def main() -> None:
+    """Run what is not recorded yet."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=220, help="mutants of a seed")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--score", action="store_true", help="print the score of the record alone")
+    parser.add_argument("--seconds", type=float, default=60.0, help="of tests in Python on one mutant")
+    parser.add_argument("--longest", type=float, default=1.5, help="no test that takes more seconds")
+    parser.add_argument("--only", choices=("cargo", "pytest", "text"), help="this part alone")
+    given = parser.parse_args()
+    os.chdir(draw.ROOT)
+    named, drawn = draw.named(), draw.drawn(given.count, given.seed)
+    numbers = build.compiling(build.apart([mutant for mutant in [*named, *drawn] if mutant.is_rust]))
+    if not given.score:
+        programs = build.build()
+        dead = recorded()
+        living = {number: mutant for number, mutant in numbers.items() if mutant.key not in dead}
+        if given.only in (None, "text"):
+            by_text([mutant for mutant in named if not mutant.is_rust and mutant.key not in dead])
+        if given.only in (None, "pytest"):
+            tests = [
+                test
+                for mutant in living.values()
+                for test in [f"tests/{name}" for name in mutant.tests]
+                or map(str, tests_of(Path(mutant.file)))
+            ]
+            by_pytest(living, list(dict.fromkeys(tests)), given.seconds, given.longest)
+        if given.only in (None, "cargo"):
+            start, dead = time.monotonic(), recorded()
+            left = {number: mutant for number, mutant in living.items() if mutant.key not in dead}
+            by_cargo(left, programs, 120.0)
+            print(f"cargo: {time.monotonic() - start:.0f} s")
+    score(named, "named")
+    score([mutant for mutant in numbers.values() if mutant in drawn], f"seed {given.seed}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+"""The table of mutants fits the sources; `python -m mutants` runs them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+TABLES = ROOT / "tests" / "mutants"
+
+
+def rows(name: str) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = tomllib.loads((TABLES / name).read_text(encoding="utf-8"))["mutant"]
+    return found
+
+
+@pytest.mark.parametrize("row", rows("named.toml"), ids=lambda row: str(row["name"]))
+def test_a_named_mutant_has_its_place(row: dict[str, Any]) -> None:
+    assert (ROOT / row["file"]).read_text(encoding="utf-8").count(row["old"]) == 1
+    assert row["new"] != row["old"]
+    assert all((ROOT / "tests" / name).is_file() for name in row["tests"])
+
+
+def test_named_mutants_have_names_of_their_own() -> None:
+    names = [row["name"] for row in rows("named.toml")]
+    assert len(set(names)) == len(names) >= 42
+
+
+def test_each_survivor_has_a_reason() -> None:
+    keys = [row["key"] for row in rows("equivalent.toml")]
+    assert len(set(keys)) == len(keys)
+    assert all(re.fullmatch(r"[0-9a-f]{8}|[a-z-]+", key) for key in keys)
+    assert all(row["why"].endswith(".") for row in rows("equivalent.toml"))
+
+
+@pytest.mark.parametrize(
+    ("source", "found"),
+    [
+        (
+            "fn f(a: f64) -> bool { a < 1.5 }",
+            ["comparison: a < 1.5 → a <= 1.5", "constant: 1.5 → 10.0 * 1.5"],
+        ),
+        ("const A: f64 = 1.0 + 2.0; fn f() -> f64 { A }", ["constant: A → 10.0 * A"]),
+        ("fn f(a: &mut i32) { *a += 1 }", ["sum: *a += 1 → *a -= 1"]),
+        ("fn f(a: f64) -> f64 { a.max(0.0) }", ["min, max: a.max(0.0) → a.min(0.0)"]),
+        ("fn f(a: bool, b: bool) -> bool { !a && b }", ["and, or: !a && b → !a || b", "not: !a → a"]),
+        ("fn f(a: bool) -> i32 { if a { return 1; } 2 }", ["return: a → (a)"]),
+        ("fn f() { assert!(1 + 1 < 3); } // 1 + 1", []),
+        ("#[cfg(test)] mod tests { fn f() -> i32 { 1 + 1 } }", []),
+        ("const fn f() -> i32 { 1 + 1 }", []),
+    ],
+)
+def test_a_rule_makes_mutants(tmp_path: Path, source: str, found: list[str]) -> None:
+    pytest.importorskip("tree_sitter_rust")
+    from mutants.rules import places
+
+    (tmp_path / "a.rs").write_text(source)
+    assert [f"{place.rule}: {place.old} → {place.new}" for place in places(tmp_path / "a.rs")] == found
