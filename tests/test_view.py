@@ -11,7 +11,7 @@ import polhode
 import pytest
 from oracles.bodies import matrix
 from oracles.meshes import cube
-from polhode import RigidBody, Trajectory, solids, view
+from polhode import RigidBody, Trajectory, loads, solids, view
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -199,9 +199,14 @@ class TestWheels:
         assert "motion-wheel-1-mark-5" in plotter.actors
         assert "motion-wheel-1-mark-6" not in plotter.actors
 
-    def test_states_tell_the_momentum_alone(self) -> None:
+    def test_states_keep_their_wheels(self) -> None:
         plotter = view.motion(self.gyrostat().at(np.linspace(0.0, 2.0, 21)))
-        assert "wheels: speed not known" in plotter.actors["motion-time"].GetText(2)
+        assert "wheel: 2.5 rad/s" in plotter.actors["motion-time"].GetText(2)
+
+    def test_a_rotor_tells_its_momentum_alone(self) -> None:
+        brick = solids.box(SIDES, mass=1.0)
+        run = brick.simulate(np.linspace(0.0, 2.0, 21), (0.3, 0.9, 0.1), load=loads.rotor((0.0, 0.0, 2.0)))
+        assert "rotor: speed not known" in view.motion(run).actors["motion-time"].GetText(2)
 
     def test_ends(self) -> None:
         with pytest.raises(ValueError, match="end: a motion in closed form has no end of its own"):
