@@ -82,6 +82,20 @@ class TestTensors:
         projection = np.eye(3)[first] - axis[first] * axis
         assert abs(found @ projection) == pytest.approx(np.linalg.norm(projection), abs=1e-12)
 
+    @pytest.mark.parametrize(("times", "is_let"), [(0.9, True), (1.2, False), (9.0, False)])
+    def test_a_negative_moment_of_rounding(self, times: float, is_let: bool) -> None:
+        """Of a tensor, 16 ε of the trace; of moments, 16 ε of the largest."""
+        small = -times * 16 * ULP
+        for make in (
+            lambda: RigidBody(1.0, np.diag([2.0 * small, 1.0, 1.0])),
+            lambda: RigidBody.from_principal(1.0, (small, 1.0, 1.0)),
+        ):
+            if is_let:
+                assert make().principal_moments.tolist() == [0.0, 1.0, 1.0]
+            else:
+                with pytest.raises(InvalidInertiaError, match="no negative principal moment"):
+                    make()
+
     def test_equal_moments_of_a_derivative_without_a_tolerance(self) -> None:
         tangent = np.eye(3)[[1, 0, 2]]
         equal, apart = (principal_axes(np.diag([1.0, 1.0 + gap, 2.0])) for gap in (0.0, ULP))
@@ -109,6 +123,32 @@ class TestPolygons:
     def test_a_corner_beyond_an_edge(self) -> None:
         with pytest.raises(PolhodeError, match="the edge from vertex 0 crosses the edge from vertex"):
             laminae.polygon([(0, 0), (2, 0), (2, 2), (1, -1e-12), (0, 2)], mass=1.0)
+
+    def test_a_corner_on_an_edge_whose_products_round(self) -> None:
+        """On y = 3 x exactly, differences longer than a float: what their products leave is no side."""
+        rng = np.random.default_rng(3)
+        for _ in range(200):
+            lengths = sorted(rng.integers(1, 2**51, 3).tolist(), key=int)
+            scales = np.sort(rng.integers(-60, 0, 3)).tolist()
+            (p, c, q) = (length * 2.0 ** (scale - 51) for length, scale in zip(lengths, scales, strict=True))
+            corners = [(p, 3 * p), (q, 3 * q), (-2 * q, 4 * q), (c, 3 * c), (-2 * p, 4 * p)]
+            exact = [(Fraction(x), Fraction(y)) for x, y in corners]
+            assert p < c < q
+            assert all(exact[k][1] == 3 * exact[k][0] for k in (0, 1, 3))
+            pairs = zip(exact, [*exact[1:], exact[0]], strict=True)
+            area = sum(a[0] * b[1] - a[1] * b[0] for a, b in pairs) / 2
+            found = laminae.polygon(corners, density=1.0)
+            assert abs(Fraction(float(found.mass)) - area) <= Fraction(1e-14) * area
+
+    @pytest.mark.parametrize(("beyond", "is_let"), [(-(2.0**-98), True), (2.0**-98, False)])
+    def test_a_corner_a_little_beyond_a_slanted_edge(self, beyond: float, is_let: bool) -> None:
+        """Beyond by 2⁻⁹⁹ of the edge's length, or short of it by as much."""
+        corners = [(0.0, beyond), (1.0, 3.0), (-2.0, 4.0), (0.5, 1.5), (-2.0, 1.0)]
+        if is_let:
+            assert laminae.polygon(corners, density=1.0).mass > 0
+        else:
+            with pytest.raises(PolhodeError, match="crosses the edge from vertex"):
+                laminae.polygon(corners, density=1.0)
 
 
 TETRAHEDRON = [[(0, 0, 0), (0, 1, 0), (1, 0, 0)], [(0, 0, 0), (1, 0, 0), (0, 0, 1)]]
@@ -200,6 +240,14 @@ class TestRows:
             RigidBody([1.0, -1.0, -2.0], np.eye(3))
         with pytest.raises(InvalidInertiaError, match=r"row \(1, 0\): mass must be positive, got -3.0"):
             RigidBody([[1.0, 2.0], [-3.0, -1.0]], np.eye(3))
+
+    def test_the_first_row_is_named_whoever_comes_to_it_first(self) -> None:
+        """The last rows of a block fail, and the first of those behind: other threads are there sooner."""
+        for rows, first in ((1 << 16, 20 * 1024), (1 << 16, 40 * 1024)):
+            masses = np.where(np.arange(rows) < first, 1.0, -1.0)
+            for _ in range(20):
+                with pytest.raises(InvalidInertiaError, match=f"row {first}: mass must be positive"):
+                    RigidBody(masses, np.eye(3))
 
     @pytest.mark.parametrize(
         ("size", "is_let"), [("[1.0, 1, 1]", True), ("[true, 1, 1]", False), ("[1, 1, false]", False)]

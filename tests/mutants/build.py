@@ -15,6 +15,7 @@ from mutants.draw import HERE, ROOT, Mutant
 
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
 TREE = TARGET / "mutants"
+EXTENSION = "python/polhode/_core.abi3.so"
 REFUSED = TARGET / "mutants-refused.json"
 # One level of instructions: the laws are the same, and the build takes a third of the time.
 FLAGS = {"RUSTFLAGS": "--cfg baseline_alone --cap-lints allow", "CARGO_TARGET_DIR": str(TARGET)}
@@ -22,7 +23,10 @@ CARGO = {**os.environ, **FLAGS, "PYO3_PYTHON": sys.executable}
 
 
 def write(mutants: dict[int, Mutant]) -> dict[str, list[tuple[int, int, int]]]:
-    """Write the copy anew where it differs; in each file, where the mutants of a number begin and end."""
+    """Write the copy anew where it differs; in each file, where the mutants of a number begin and end.
+
+    What is no source any more is removed: a test that was renamed would run twice.
+    """
     listed = subprocess.check_output(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT
     )
@@ -31,7 +35,9 @@ def write(mutants: dict[int, Mutant]) -> dict[str, list[tuple[int, int, int]]]:
         if mutant.is_rust:
             by_file[mutant.file].append((number, mutant))
     where: dict[str, list[tuple[int, int, int]]] = defaultdict(list)
-    for name in filter(None, listed.decode().split("\0")):
+    names = {name for name in listed.decode().split("\0") if name and (ROOT / name).is_file()}
+    stale(TREE, {*names, "rust/core/src/mutant.rs", EXTENSION})
+    for name in sorted(names):
         data = (ROOT / name).read_bytes()
         parts, last, length = [], 0, 0
         for number, mutant in sorted(by_file[name], key=lambda row: row[1].start):
@@ -46,6 +52,16 @@ def write(mutants: dict[int, Mutant]) -> dict[str, list[tuple[int, int, int]]]:
         put(TREE / name, data)
     put(TREE / "rust/core/src/mutant.rs", (HERE / "switch.rs").read_bytes())
     return where
+
+
+def stale(tree: Path, names: set[str]) -> None:
+    """Remove the files of a folder that have none of these names, and folders that are left empty."""
+    for path in sorted(tree.rglob("*"), reverse=True):
+        if path.is_dir() and not path.is_symlink():
+            if not any(path.iterdir()):
+                path.rmdir()
+        elif path.relative_to(tree).as_posix() not in names:
+            path.unlink()
 
 
 def put(path: Path, data: bytes) -> None:
@@ -105,5 +121,5 @@ def build() -> list[Path]:
     programs = [Path(path) for path in re.findall(r"Executable .*\((\S+)\)$", told, re.MULTILINE)]
     command = ["cargo", "build", "--locked", "--package", "polhode-python", "--profile", "test"]
     subprocess.run(command, cwd=TREE, env=CARGO, check=True)
-    shutil.copy(TARGET / "debug" / "lib_core.so", TREE / "python" / "polhode" / "_core.abi3.so")
+    shutil.copy(TARGET / "debug" / "lib_core.so", TREE / EXTENSION)
     return programs
