@@ -9,7 +9,7 @@ RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -
 # All commands fill one environment.
 .NOTPARALLEL:
 
-.PHONY: help setup build demo quick test licences test-rust test-python test-long fuzz coverage lint format docs figures package bench clean
+.PHONY: help setup build demo quick test licences test-rust test-python test-long fuzz coverage mutants lint format docs figures package bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -44,6 +44,9 @@ fuzz: build setup ## hostile input, TIME= seconds a harness, going on where the 
 
 coverage: build setup ## lines of the core that tests execute; needs llvm-tools of rustup or LLVM as new as rustc's
 	$(BIN)/python rust/coverage.py --least 95
+
+mutants: build setup ## small faults put into core, bindings and package, and which of them no test finds; an hour, going on where it ended
+	cd tests && $(abspath $(BIN))/python -m mutants
 
 lint: build setup licences ## formatting, lints, types, stubs
 	cargo fmt --all --check

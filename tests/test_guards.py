@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 
@@ -86,10 +87,11 @@ class TestTensors:
     def test_a_negative_moment_of_rounding(self, times: float, is_let: bool) -> None:
         """Of a tensor, 16 ε of the trace; of moments, 16 ε of the largest."""
         small = -times * 16 * ULP
-        for make in (
+        makers: list[Callable[[], RigidBody]] = [
             lambda: RigidBody(1.0, np.diag([2.0 * small, 1.0, 1.0])),
             lambda: RigidBody.from_principal(1.0, (small, 1.0, 1.0)),
-        ):
+        ]
+        for make in makers:
             if is_let:
                 assert make().principal_moments.tolist() == [0.0, 1.0, 1.0]
             else:
@@ -136,7 +138,7 @@ class TestPolygons:
             assert p < c < q
             assert all(exact[k][1] == 3 * exact[k][0] for k in (0, 1, 3))
             pairs = zip(exact, [*exact[1:], exact[0]], strict=True)
-            area = sum(a[0] * b[1] - a[1] * b[0] for a, b in pairs) / 2
+            area = sum((a[0] * b[1] - a[1] * b[0] for a, b in pairs), Fraction(0)) / 2
             found = laminae.polygon(corners, density=1.0)
             assert abs(Fraction(float(found.mass)) - area) <= Fraction(1e-14) * area
 

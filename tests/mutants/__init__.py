@@ -1,7 +1,7 @@
 """Mutants: small faults put into a copy of the sources, and whether a test finds each of them.
 
 ``python -m mutants`` in `tests` draws them, builds them all into one copy and runs tests on each; it goes on
-where it ended, prints the score and the survivors, and needs ``pip install tree-sitter tree-sitter-rust``.
+where it ended, prints the survivors and writes the score. `make mutants` does it with all that it needs.
 
 | file | knows |
 |---|---|
@@ -10,5 +10,6 @@ where it ended, prints the score and the survivors, and needs ``pip install tree
 | `build` | the copy that holds all of them, with a switch (`switch.rs`), and what of it compiles |
 | `in_pytest` | pytest with one test after the other on each mutant that it reaches |
 | `__main__` | the run, its record, and the score |
+| `score.md` | what the last run found, by kind |
 | `equivalent.toml` | survivors that no test can kill, and why |
 """

@@ -9,6 +9,8 @@ import subprocess
 import sys
 import time
 import tomllib
+from collections import defaultdict
+from datetime import UTC, datetime
 from pathlib import Path
 
 from quick import tests_of
@@ -80,8 +82,10 @@ def by_pytest(living: dict[int, Mutant], tests: list[str], seconds: float, longe
             env={**os.environ, "PYTHONPATH": python, "POLHODE_MUTANTS": str(task)},
             check=False,
         )
-        if 0 <= told.returncode <= 5 or not left:
+        if told.returncode in (0, 1, 5):
             return
+        if told.returncode in (2, 3, 4):  # it was stopped, or could not begin: no mutant's doing
+            raise SystemExit(f"pytest ended with {told.returncode}")
         print(f"pytest ended with {told.returncode}; on without those that are dead", flush=True)
 
 
@@ -113,20 +117,30 @@ def by_text(mutants: list[Mutant]) -> None:
         print(f"{mutant.key}: {killed or 'lives'}", flush=True)
 
 
-def score(mutants: list[Mutant], title: str) -> None:
-    """How many are dead, and which are not."""
+def score(mutants: list[Mutant], seed: int) -> None:
+    """Print which are not dead; write how many are into the table, by kind."""
     reasons = {
         row["key"]: row["why"]
         for row in tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf-8"))["mutant"]
     }
     dead = recorded()
-    alive = [mutant for mutant in mutants if mutant.key not in dead]
-    same = [mutant for mutant in alive if mutant.key in reasons]
-    print(
-        f"{title}: {len(mutants) - len(alive)} of {len(mutants)} killed, {len(same)} of the others equivalent"
+    kinds: dict[str, list[Mutant]] = defaultdict(list)
+    for mutant in mutants:
+        kinds[mutant.kind].append(mutant)
+        if mutant.key not in dead:
+            print(f"  {mutant.key}  {mutant.what}\n            {reasons.get(mutant.key, 'NO TEST KILLS IT')}")
+    rows = []
+    for kind, ones in [*kinds.items(), ("drawn", [one for one in mutants if one.kind != "named"])]:
+        killed = sum(one.key in dead for one in ones)
+        same = sum(one.key in reasons and one.key not in dead for one in ones)
+        rows.append(f"| {kind} | {killed} | {same} | {len(ones) - killed - same} | {len(ones)} |")
+    head = (
+        f"Mutants on {datetime.now(UTC):%Y-%m-%d}, drawn with seed {seed}; `make mutants` writes this table."
     )
-    for mutant in alive:
-        print(f"  {mutant.key}  {mutant.what}\n            {reasons.get(mutant.key, 'NO TEST KILLS IT')}")
+    columns = ["| kind | killed | equivalent | neither so far | all |", "|---|---|---|---|---|"]
+    text = "\n".join([head, "", *columns, *rows, ""])
+    print(text)
+    (HERE / "score.md").write_text(text, encoding="utf-8")
 
 
 def main() -> None:
@@ -161,8 +175,7 @@ def main() -> None:
             left = {number: mutant for number, mutant in living.items() if mutant.key not in dead}
             by_cargo(left, programs, 120.0)
             print(f"cargo: {time.monotonic() - start:.0f} s")
-    score(named, "named")
-    score([mutant for mutant in numbers.values() if mutant in drawn], f"seed {given.seed}")
+    score([*named, *(mutant for mutant in numbers.values() if mutant in drawn)], given.seed)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ class Mutant:
     text: str
     what: str
     tests: tuple[str, ...] = ()
+    kind: str = "named"
 
     @property
     def is_rust(self) -> bool:
@@ -71,7 +72,9 @@ def drawn(count: int, seed: int) -> list[Mutant]:
                 text = switched(file, place.old, place.new)
             old, new = (" ".join(words.split()) for words in (place.old, place.new))
             what = f"{file}:{place.line}: {place.rule}: {old} → {new}"
-            by_rule[place.rule].append((key, Mutant(key, file, place.start, place.end, text, what)))
+            by_rule[place.rule].append(
+                (key, Mutant(key, file, place.start, place.end, text, what, kind=place.rule))
+            )
     parts = {rule: math.sqrt(len(rows)) for rule, rows in by_rule.items()}
     share = count / sum(parts.values())
     return [
