@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import polhode
 import pytest
 from polhode import RigidBody, _core, molecules, solids
 
@@ -175,9 +176,10 @@ def test_every_dtype_and_layout_has_the_same_numbers(dtype: str, order: str) -> 
         [(1.0, 2.0, 3.0)] * 100_000,
         [np.ones(3)] * 100_000,
         [True] * 300_000,
+        [1.5] * 299_999 + [True],
         [2**63] * 300_000,
     ],
-    ids=range(9),
+    ids=range(10),
 )
 def test_long_lists_have_the_numbers_that_numpy_reads(rows: Any) -> None:
     got = _core.real_numbers(rows, "rows")
@@ -199,3 +201,42 @@ def test_what_an_object_raises_comes_back_as_it_is() -> None:
         with pytest.raises(type(failure)) as caught:
             MADE(Failing(), np.eye(3))
         assert caught.value is failure
+
+
+NUMBERS = ["read", "rows", "tensor", "rotation", "point", "times", "voxels", "float32 voxels", "windows"]
+NUMBERS += ["damping", "molecules", "trajectory"]
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("kind", ["array", "list", "one among floats"])
+def test_true_and_false_are_one_and_zero(name: str, kind: str) -> None:
+    """As in NumPy, in calls; in files they are refused."""
+    _, read, good = READERS[name]
+    given: Any = good.astype(bool)
+    if kind == "list":
+        given = given.tolist()
+    elif kind == "one among floats":
+        cells = np.empty(good.shape, dtype=object)
+        cells[...] = good.astype(float)
+        cells.flat[0] = bool(good.flat[0])
+        given = cells.tolist()
+    np.testing.assert_equal(read_out(read(given)), read_out(read(good.astype(float))))
+
+
+def read_out(found: Any) -> Any:
+    """The numbers of what a reader gives."""
+    if isinstance(found, RigidBody):
+        return [found.mass, found.center_of_mass, found.inertia]
+    if isinstance(found, polhode.Trajectory):
+        return [found.t, found.omega, found.quaternion]
+    if isinstance(found, polhode.loads.Load):
+        return found.torque(0.5, (1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0), body=BODY, start=0.0)
+    return repr(found) if type(found).__module__.startswith("polhode") else found
+
+
+@pytest.mark.parametrize("true", [True, np.True_])
+def test_true_beside_a_number_with_a_sigma_is_one(true: Any) -> None:
+    uncertainties = pytest.importorskip("uncertainties")
+    masses = [uncertainties.ufloat(2.0, 0.1)] * 3
+    bodies = [MADE.from_particles([*masses, one], CORNERS) for one in (true, 1.0)]
+    assert repr(bodies[0]) == repr(bodies[1])

@@ -33,6 +33,9 @@ class TestNumbers:
         assert nested.value.shape == (2, 1, 1)
         assert joined(EDGE).sigma == pytest.approx(0.02, rel=1e-15)
         assert joined(THEIRS).value == 3.0
+        for true in (True, np.True_):  # as in a list without numbers that have a sigma
+            assert joined([EDGE, true]).value.tolist() == [2.0, 1.0]
+            assert joined([EDGE, true]).sigma.tolist() == [pytest.approx(0.02, rel=1e-15), 0.0]
 
     def test_none_is_none(self) -> None:
         for plain in ([1.0, 2.0], np.eye(3), "text", None, [[1.0], [2.0, 3.0]], []):
@@ -45,7 +48,7 @@ class TestNumbers:
             joined([EDGE, PLACE])
         with pytest.raises(TypeError, match="rotation"):
             joined([EDGE, Uncertain(Rotation.identity(), 0.1)])
-        for other in ("2", "a", None, True, 1j):
+        for other in ("2", "a", None, 1j):
             with pytest.raises(TypeError, match="no number"):
                 joined([EDGE, other])
         itself: list[Any] = [EDGE]

@@ -106,7 +106,9 @@ def _cells(values: Any, kinds: tuple[type, ...], above: tuple[int, ...]) -> Any:
         if id(values) in above:
             raise ValueError("numbers with a sigma: a list holds itself")
         return [_cells(one, kinds, (*above, id(values))) for one in values]
-    if isinstance(values, bool) or not isinstance(values, Real):
+    if isinstance(values, np.bool_):
+        values = bool(values)  # 1 and 0, as where no number has a sigma
+    if not isinstance(values, Real):
         message = f"numbers with a sigma: {values!r} among them is no number"
         raise TypeError(message)
     return _Number(values, {})
