@@ -117,6 +117,15 @@ class TestConventions:
         with pytest.raises(ValueError, match="quaternion"):
             euler_angles.from_quaternion(wrong)
 
+    @pytest.mark.parametrize("sense", [1.0, -1.0])
+    @pytest.mark.parametrize("sequence", ["ZYX", "xyz", "YXZ", "yzx"])
+    def test_half_a_turn_keeps_its_sign(self, sequence: str, sense: float) -> None:
+        """π and −π are the same attitude; which of them is told is SciPy's choice too."""
+        for axis in (sequence[0], sequence[2]):
+            q = sense * np.eye(4)["xyz".index(axis.lower())]
+            want = Rotation.from_quat(q).as_euler(sequence)
+            assert np.abs(euler_angles.from_quaternion(q, sequence) - want).max() < 1e-15
+
     def test_scipys_rotation_is_taken_as_it_is(self, rng: np.random.Generator) -> None:
         turn = Rotation.from_rotvec(rng.normal(size=(5, 3)))
         assert np.array_equal(

@@ -233,6 +233,15 @@ class TestEquality:
         assert bool(body[0].isclose(body[0])) is True
         assert body.isclose(body[0]).tolist() == [True, False, False]
 
+    @pytest.mark.parametrize(("apart", "is_close"), [(0.9, True), (1.1, False)])
+    def test_isclose_measures_places_by_the_size_of_the_body(self, apart: float, is_close: bool) -> None:
+        """The other's √(tr I/m): √½ of the edge of a cube whose centre is the origin."""
+        cube = solids.box((1.0, 1.0, 1.0), mass=2.0)
+        size = 2.0 * np.sqrt(np.trace(cube.inertia / 4) / 2.0)
+        assert size == pytest.approx(np.sqrt(0.5), rel=1e-14)
+        moved = cube.translated((apart * 1e-3 * size, 0.0, 0.0))
+        assert moved.isclose(cube, rtol=1e-3) == is_close
+
 
 class TestCopies:
     @pytest.mark.parametrize("protocol", range(2, pickle.HIGHEST_PROTOCOL + 1))
