@@ -9,7 +9,7 @@ RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -
 # All commands fill one environment.
 .NOTPARALLEL:
 
-.PHONY: help setup build demo quick test licences test-rust test-python test-long fuzz coverage mutants lint format docs figures package bench clean
+.PHONY: help setup build demo quick test licences test-rust test-python test-long fuzz coverage mutants lint declare format docs figures package bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -67,6 +67,9 @@ licences: ## licences and sources of the crates that are compiled in, where carg
 		cargo deny --locked --manifest-path $$manifest check --config $(CURDIR)/packaging/deny.toml --hide-inclusion-graph \
 			--allow license-exception-not-encountered licenses bans sources || exit 1; \
 	done
+
+declare: build ## write what Python declares of solids, laminae, rods and loads: stubs and the names of their modules
+	$(BIN)/python rust/python/declared.py
 
 format: setup ## put all sources in form
 	cargo fmt --all

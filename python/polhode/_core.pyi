@@ -680,11 +680,16 @@ def oblate_states(
 ) -> tuple[_Floats, _Floats]: ...
 def local_frames(orbit: object, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 def sampled_states(times: ArrayLike, position: ArrayLike, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
-def constant_torque(vector: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
-def constant_force(
-    vector: ArrayLike, frame: Literal["body", "space"] = "body", point: ArrayLike | None = None
+# loads: written by rust/python/declared.py
+def feedback(
+    K: ArrayLike,  # noqa: N803
+    D: ArrayLike,  # noqa: N803
+    target: _Attitude | Orbit | None = None,
+    *,
+    rate: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+    epoch: float | None = None,
 ) -> Load: ...
-def uniform_gravity(gravity: ArrayLike) -> Load: ...
 def gravity_gradient(
     mu: ArrayLike | Orbit | SampledOrbit,
     position: ArrayLike | None = None,
@@ -698,18 +703,6 @@ def magnetic(
     gain: ArrayLike | None = None,
     times: ArrayLike | None = None,
 ) -> Load: ...
-def damping(matrix: ArrayLike, quadratic: ArrayLike | None = None) -> Load: ...
-def sampled(t: ArrayLike, torque: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
-def schedule(load: Load, windows: ArrayLike) -> Load: ...
-def feedback(
-    K: ArrayLike,  # noqa: N803
-    D: ArrayLike,  # noqa: N803
-    target: _Attitude | Orbit | SampledOrbit | None = None,
-    *,
-    rate: ArrayLike | None = None,
-    times: ArrayLike | None = None,
-    epoch: float | None = None,
-) -> Load: ...
 def torque_callback(function: Callable[[float, _Floats, _Floats], ArrayLike]) -> Load: ...
 def callback(
     function: Callable[[float, _Floats, _Floats, _Floats, _Floats], tuple[ArrayLike, ArrayLike]],
@@ -722,6 +715,24 @@ def compiled(
     name: str = "states",
     scale: ArrayLike | None = None,
 ) -> Load: ...
+def with_states(
+    rates: _WithStates | None,
+    initial: ArrayLike,
+    wrench: _WithStates | None = None,
+    name: str = "states",
+    *,
+    update: _WithStates | None = None,
+    period: float | None = None,
+    scale: ArrayLike | None = None,
+) -> Load: ...
+def constant_torque(vector: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
+def constant_force(
+    vector: ArrayLike, frame: Literal["body", "space"] = "body", point: ArrayLike | None = None
+) -> Load: ...
+def uniform_gravity(gravity: ArrayLike) -> Load: ...
+def damping(matrix: ArrayLike, quadratic: ArrayLike | None = None) -> Load: ...
+def sampled(t: ArrayLike, torque: ArrayLike, frame: Literal["body", "space"] = "body") -> Load: ...
+def schedule(load: Load, windows: ArrayLike) -> Load: ...
 def rotor(momentum: ArrayLike) -> Load: ...
 def wheel(
     axis: ArrayLike,
@@ -737,29 +748,30 @@ def wheel(
     name: str = "wheel",
 ) -> Load: ...
 def slug(inertia: ArrayLike, damping: ArrayLike, name: str = "slug") -> Load: ...
-def with_states(
-    rates: _WithStates | None,
-    initial: ArrayLike,
-    wrench: _WithStates | None = None,
-    name: str = "states",
-    *,
-    update: _WithStates | None = None,
-    period: float | None = None,
-    scale: ArrayLike | None = None,
-) -> Load: ...
+# end of loads
+# solids: written by rust/python/declared.py
 def box(size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def cube(side: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
+def wedge(size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
+def prism(
+    sides: ArrayLike,
+    radius: _Numbers,
+    height: _Numbers,
+    *,
+    mass: _Numbers | None = None,
+    density: _Numbers | None = None,
+) -> RigidBody: ...
+def pyramid(
+    size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
+) -> RigidBody: ...
+def tetrahedron(
+    side: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
+) -> RigidBody: ...
 def sphere(
     radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def ellipsoid(
     semi_axes: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
-) -> RigidBody: ...
-def cylinder(
-    radius: _Numbers, height: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
-) -> RigidBody: ...
-def cone(
-    radius: _Numbers, height: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def hollow_sphere(
     inner_radius: _Numbers,
@@ -767,6 +779,15 @@ def hollow_sphere(
     *,
     mass: _Numbers | None = None,
     density: _Numbers | None = None,
+) -> RigidBody: ...
+def hemisphere(
+    radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
+) -> RigidBody: ...
+def cylinder(
+    radius: _Numbers, height: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
+) -> RigidBody: ...
+def cone(
+    radius: _Numbers, height: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
 def tube(
     inner_radius: _Numbers,
@@ -794,24 +815,8 @@ def torus(
     mass: _Numbers | None = None,
     density: _Numbers | None = None,
 ) -> RigidBody: ...
-def hemisphere(
-    radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
-) -> RigidBody: ...
-def tetrahedron(
-    side: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
-) -> RigidBody: ...
-def prism(
-    sides: ArrayLike,
-    radius: _Numbers,
-    height: _Numbers,
-    *,
-    mass: _Numbers | None = None,
-    density: _Numbers | None = None,
-) -> RigidBody: ...
-def pyramid(
-    size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
-) -> RigidBody: ...
-def wedge(size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
+# end of solids
+# laminae: written by rust/python/declared.py
 def disk(radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def annulus(
     inner_radius: _Numbers,
@@ -832,6 +837,8 @@ def triangle(
 def polygon(
     vertices: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
+# end of laminae
+# rods: written by rust/python/declared.py
 def rod(length: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def ring(radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
 def arc(
@@ -842,6 +849,7 @@ def arc(
     density: _Numbers | None = None,
     degrees: bool = False,
 ) -> RigidBody: ...
+# end of rods
 def region_box(low: ArrayLike, high: ArrayLike) -> Region: ...
 def region_ball(
     radius: float, center: ArrayLike = (0.0, 0.0, 0.0), *, inner_radius: float = 0.0

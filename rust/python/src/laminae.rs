@@ -6,140 +6,95 @@ use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
 use crate::figure::{Outline, alone, figures_of_lengths};
-use crate::shapes::{Amounts, Given, lengths, one, shape};
+use crate::shapes::{Amounts, Given, shape_function};
 use crate::stack::Broadcast;
 use crate::uncertain::{Quantity, carried, quantity, quantity_list};
 
-/// Disk about z: I_z = ½ m R², I_x = ¼ m R².
-///
-/// Parameters
-/// ----------
-/// radius : array_like, shape (...)
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two; the density is mass per area.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import laminae
-/// >>> laminae.disk(2.0, mass=3.0).principal_moments
-/// array([3., 3., 6.])
-#[pyfunction]
-#[pyo3(signature = (radius, *, mass=None, density=None))]
-pub(crate) fn disk(
-    radius: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    lengths(
-        ["radius"],
-        [radius],
-        (mass, density),
-        shape!(|&[radius]| 1, laminae::disk, radius),
-    )
+shape_function! {
+    /// Disk about z: I_z = ½ m R², I_x = ¼ m R².
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : array_like, shape (...)
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two; the density is mass per area.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import laminae
+    /// >>> laminae.disk(2.0, mass=3.0).principal_moments
+    /// array([3., 3., 6.])
+    disk(radius) = laminae::disk
 }
 
-/// Disk with a concentric hole: I_z = ½ m (R² + r²). With equal radii a ring.
-///
-/// Parameters
-/// ----------
-/// inner_radius, outer_radius : array_like, shape (...)
-///     r and R, r ≤ R.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two; the density is mass per area.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import laminae
-/// >>> laminae.annulus(inner_radius=1.0, outer_radius=3.0, mass=2.0).principal_moments
-/// array([ 5.,  5., 10.])
-#[pyfunction]
-#[pyo3(signature = (inner_radius, outer_radius, *, mass=None, density=None))]
-pub(crate) fn annulus(
-    inner_radius: &Bound<'_, PyAny>,
-    outer_radius: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    lengths(
-        ["inner_radius", "outer_radius"],
-        [inner_radius, outer_radius],
-        (mass, density),
-        shape!(|&[inner, outer]| 2, laminae::annulus, inner, outer),
-    )
+shape_function! {
+    /// Disk with a concentric hole: I_z = ½ m (R² + r²). With equal radii a ring.
+    ///
+    /// Parameters
+    /// ----------
+    /// inner_radius, outer_radius : array_like, shape (...)
+    ///     r and R, r ≤ R.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two; the density is mass per area.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import laminae
+    /// >>> laminae.annulus(inner_radius=1.0, outer_radius=3.0, mass=2.0).principal_moments
+    /// array([ 5.,  5., 10.])
+    annulus(inner_radius, outer_radius) = laminae::annulus
 }
 
-/// Ellipse with its axes along x and y: I_x = ¼ m b², I_y = ¼ m a².
-///
-/// Parameters
-/// ----------
-/// semi_axes : array_like, shape (..., 2)
-///     a, b: half the lengths along x, y.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two; the density is mass per area.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import laminae
-/// >>> laminae.ellipse((4.0, 2.0), mass=1.0).principal_moments
-/// array([1., 4., 5.])
-#[pyfunction]
-#[pyo3(signature = (semi_axes, *, mass=None, density=None))]
-pub(crate) fn ellipse(
-    semi_axes: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    one(
-        semi_axes,
-        "semi_axes",
-        (mass, density),
-        shape!(|lengths| 2, laminae::ellipse, lengths),
-    )
+shape_function! {
+    /// Ellipse with its axes along x and y: I_x = ¼ m b², I_y = ¼ m a².
+    ///
+    /// Parameters
+    /// ----------
+    /// semi_axes : array_like, shape (..., 2)
+    ///     a, b: half the lengths along x, y.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two; the density is mass per area.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import laminae
+    /// >>> laminae.ellipse((4.0, 2.0), mass=1.0).principal_moments
+    /// array([1., 4., 5.])
+    ellipse([semi_axes; 2]) = laminae::ellipse
 }
 
-/// Rectangle with its edges along x and y: I_x = m y²/12, I_y = m x²/12.
-///
-/// Parameters
-/// ----------
-/// size : array_like, shape (..., 2)
-///     Full edge lengths.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two; the density is mass per area.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import laminae
-/// >>> laminae.rectangle((2.0, 4.0), mass=3.0).inertia.diagonal()
-/// array([4., 1., 5.])
-#[pyfunction]
-#[pyo3(signature = (size, *, mass=None, density=None))]
-pub(crate) fn rectangle(
-    size: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    one(
-        size,
-        "size",
-        (mass, density),
-        shape!(|lengths| 2, laminae::rectangle, lengths),
-    )
+shape_function! {
+    /// Rectangle with its edges along x and y: I_x = m y²/12, I_y = m x²/12.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : array_like, shape (..., 2)
+    ///     Full edge lengths.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two; the density is mass per area.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import laminae
+    /// >>> laminae.rectangle((2.0, 4.0), mass=3.0).inertia.diagonal()
+    /// array([4., 1., 5.])
+    rectangle([size; 2]) = laminae::rectangle
 }
 
 /// Triangle in the x-y plane, where its corners are.

@@ -4,71 +4,49 @@ use polhode::mass::rods;
 use pyo3::prelude::*;
 
 use crate::body::PyRigidBody;
-use crate::shapes::{Given, lengths, shape};
+use crate::shapes::{Given, lengths, shape, shape_function};
 
-/// Thin rod along z: I_x = I_y = m L²/12, I_z = 0.
-///
-/// Parameters
-/// ----------
-/// length : array_like, shape (...)
-///     Full length L.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two; the density is mass per length.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import rods
-/// >>> rods.rod(2.0, mass=3.0).principal_moments
-/// array([0., 1., 1.])
-#[pyfunction]
-#[pyo3(signature = (length, *, mass=None, density=None))]
-pub(crate) fn rod(
-    length: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    lengths(
-        ["length"],
-        [length],
-        (mass, density),
-        shape!(|&[length]| 1, rods::rod, length),
-    )
+shape_function! {
+    /// Thin rod along z: I_x = I_y = m L²/12, I_z = 0.
+    ///
+    /// Parameters
+    /// ----------
+    /// length : array_like, shape (...)
+    ///     Full length L.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two; the density is mass per length.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import rods
+    /// >>> rods.rod(2.0, mass=3.0).principal_moments
+    /// array([0., 1., 1.])
+    rod(length) = rods::rod
 }
 
-/// Thin ring about z: I_z = m R², I_x = I_y = ½ m R².
-///
-/// Parameters
-/// ----------
-/// radius : array_like, shape (...)
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two; the density is mass per length.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import rods
-/// >>> rods.ring(2.0, mass=1.0).principal_moments
-/// array([2., 2., 4.])
-#[pyfunction]
-#[pyo3(signature = (radius, *, mass=None, density=None))]
-pub(crate) fn ring(
-    radius: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    lengths(
-        ["radius"],
-        [radius],
-        (mass, density),
-        shape!(|&[radius]| 1, rods::ring, radius),
-    )
+shape_function! {
+    /// Thin ring about z: I_z = m R², I_x = I_y = ½ m R².
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : array_like, shape (...)
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two; the density is mass per length.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import rods
+    /// >>> rods.ring(2.0, mass=1.0).principal_moments
+    /// array([2., 2., 4.])
+    ring(radius) = rods::ring
 }
 
 /// Thin arc of a circle in the x-y plane, its middle toward +x, its centre of mass at the origin.
@@ -119,6 +97,6 @@ pub(crate) fn arc(
         );
         return lengths(names, sizes, (mass, density), turned);
     }
-    let turned = shape!(|&[r, angle]| 2, rods::arc, r, angle);
+    let turned = shape!("rods::arc", |&[r, angle]| 2, rods::arc, r, angle);
     lengths(names, sizes, (mass, density), turned)
 }

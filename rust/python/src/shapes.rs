@@ -31,12 +31,9 @@ pub(crate) type Named<'a, const N: usize> = (&'static str, &'a dyn AnyShape<N>);
 
 /// The shape that an expression of the core makes of its lengths, for plain numbers and for numbers with derivatives.
 macro_rules! shape {
-    (|$lengths:pat_param| $n:literal, $function:path, $($argument:expr),+) => {
-        shape!(stringify!($function), |$lengths| $n, $function, $($argument),+)
-    };
-    ($name:expr, |$lengths:pat_param| $n:literal, $function:path, $($argument:expr),+) => {{
+    ($name:expr, |$lengths:pat_param| $n:expr, $function:path, $($argument:expr),+) => {{
         struct Shape;
-        impl polhode::uncertainty::Shape<$n> for Shape {
+        impl polhode::uncertainty::Shape<{ $n }> for Shape {
             fn of<X: polhode::mass::ten::Size>(
                 &self,
                 $lengths: &[X; $n],
@@ -45,10 +42,57 @@ macro_rules! shape {
                 $function($($argument,)+ amount)
             }
         }
-        ($name, &Shape as &dyn $crate::shapes::AnyShape<$n>)
+        ($name, &Shape as &dyn $crate::shapes::AnyShape<{ $n }>)
     }};
 }
 pub(crate) use shape;
+
+/// Declares the function of Python that makes a body of some lengths, or of one list of them, by a function of the core:
+/// `cone(radius, height) = solids::cone`, `wedge([size; 3]) = solids::wedge`. Mass or density, stacks, sigmas and what pictures
+/// need come by themselves.
+macro_rules! shape_function {
+    ($(#[$attribute:meta])* $name:ident($($length:ident),+) = $function:path) => {
+        #[pyfunction]
+        $(#[$attribute])*
+        #[pyo3(signature = ($($length,)+ *, mass=None, density=None))]
+        pub(crate) fn $name(
+            $($length: &pyo3::Bound<'_, pyo3::PyAny>,)+
+            mass: $crate::shapes::Given<'_, '_>,
+            density: $crate::shapes::Given<'_, '_>,
+        ) -> pyo3::PyResult<$crate::body::PyRigidBody> {
+            const NAMES: &[&str] = &[$(stringify!($length)),+];
+            $crate::shapes::lengths(
+                [$(stringify!($length)),+],
+                [$($length),+],
+                (mass, density),
+                $crate::shapes::shape!(
+                    stringify!($function),
+                    |&[$($length),+]| NAMES.len(),
+                    $function,
+                    $($length),+
+                ),
+            )
+        }
+    };
+    ($(#[$attribute:meta])* $name:ident([$size:ident; $n:literal]) = $function:path) => {
+        #[pyfunction]
+        $(#[$attribute])*
+        #[pyo3(signature = ($size, *, mass=None, density=None))]
+        pub(crate) fn $name(
+            $size: &pyo3::Bound<'_, pyo3::PyAny>,
+            mass: $crate::shapes::Given<'_, '_>,
+            density: $crate::shapes::Given<'_, '_>,
+        ) -> pyo3::PyResult<$crate::body::PyRigidBody> {
+            $crate::shapes::one(
+                $size,
+                stringify!($size),
+                (mass, density),
+                $crate::shapes::shape!(stringify!($function), |lengths| $n, $function, lengths),
+            )
+        }
+    };
+}
+pub(crate) use shape_function;
 
 /// A [`Shape`], whichever it is: what is done with its lengths is compiled once for each number of them.
 pub(crate) trait AnyShape<const N: usize>: Sync {

@@ -25,7 +25,7 @@ use crate::stack::{Broadcast, Stack};
 /// ----------
 /// K, D : array_like, shape (..., 3, 3), or a number
 ///     Gains in the body frame; a number stands for that times the identity.
-/// target : array_like, shape (..., 4), or rotation, or Orbit, optional
+/// target : array_like, shape (..., 4), or rotation, or Orbit, or SampledOrbit, optional
 ///     R_NB to reach as (x, y, z, w), or anything with ``as_quat()``; the identity by default. Of an orbit of
 ///     :mod:`polhode.orbits` its local frame, which points down.
 /// rate : array_like, shape (..., 3), optional

@@ -9,112 +9,80 @@ use pyo3::prelude::*;
 use crate::arrays::read;
 use crate::body::PyRigidBody;
 use crate::figure::figures_of_lengths;
-use crate::shapes::{Amounts, Given, lengths, one, shape};
+use crate::shapes::{Amounts, Given, shape_function};
 use crate::stack::{Broadcast, Stack};
 use crate::uncertain::{Quantity, carried, quantity};
 
-/// Box with its faces normal to the axes: I_x = m (y² + z²)/12.
-///
-/// Parameters
-/// ----------
-/// size : array_like, shape (..., 3)
-///     Full edge lengths along x, y, z.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import solids
-/// >>> solids.box((1, 2, 3), mass=12.0).principal_moments
-/// array([ 5., 10., 13.])
-#[pyfunction]
-#[pyo3(name = "box", signature = (size, *, mass=None, density=None))]
-pub(crate) fn cuboid(
-    size: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    one(
-        size,
-        "size",
-        (mass, density),
-        shape!(|lengths| 3, solids::cuboid, lengths),
-    )
+shape_function! {
+    /// Box with its faces normal to the axes: I_x = m (y² + z²)/12.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : array_like, shape (..., 3)
+    ///     Full edge lengths along x, y, z.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.box((1, 2, 3), mass=12.0).principal_moments
+    /// array([ 5., 10., 13.])
+    #[pyo3(name = "box")]
+    cuboid([size; 3]) = solids::cuboid
 }
 
-/// Cube with its faces normal to the axes: I = m a²/6.
-///
-/// Parameters
-/// ----------
-/// side : array_like, shape (...)
-///     Full edge length.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import solids
-/// >>> solids.cube(2.0, density=1.0).mass
-/// 8.0
-#[pyfunction]
-#[pyo3(signature = (side, *, mass=None, density=None))]
-pub(crate) fn cube(
-    side: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    lengths(
-        ["side"],
-        [side],
-        (mass, density),
-        shape!(|&[side]| 1, solids::cube, side),
-    )
+shape_function! {
+    /// Cube with its faces normal to the axes: I = m a²/6.
+    ///
+    /// Parameters
+    /// ----------
+    /// side : array_like, shape (...)
+    ///     Full edge length.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.cube(2.0, density=1.0).mass
+    /// 8.0
+    cube(side) = solids::cube
 }
 
-/// Wedge: half of a box, cut along a diagonal of its x-z faces, the right angle at −x, −z.
-///
-/// With the box's edges x, y, z the corners are (−x/3, ±y/2, −z/3), (2x/3, ±y/2, −z/3) and (−x/3, ±y/2, 2z/3).
-/// The second moments are m x²/18, m y²/12, m z²/18, and ∫ x z dm = −m x z/36.
-///
-/// Parameters
-/// ----------
-/// size : array_like, shape (..., 3)
-///     Edge lengths of the box along x, y, z.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import solids
-/// >>> solids.wedge((6, 2, 6), mass=36.0).inertia
-/// array([[ 84.,   0.,  36.],
-///        [  0., 144.,   0.],
-///        [ 36.,   0.,  84.]])
-#[pyfunction]
-#[pyo3(signature = (size, *, mass=None, density=None))]
-pub(crate) fn wedge(
-    size: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    one(
-        size,
-        "size",
-        (mass, density),
-        shape!(|lengths| 3, solids::wedge, lengths),
-    )
+shape_function! {
+    /// Wedge: half of a box, cut along a diagonal of its x-z faces, the right angle at −x, −z.
+    ///
+    /// With the box's edges x, y, z the corners are (−x/3, ±y/2, −z/3), (2x/3, ±y/2, −z/3) and (−x/3, ±y/2, 2z/3).
+    /// The second moments are m x²/18, m y²/12, m z²/18, and ∫ x z dm = −m x z/36.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : array_like, shape (..., 3)
+    ///     Edge lengths of the box along x, y, z.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.wedge((6, 2, 6), mass=36.0).inertia
+    /// array([[ 84.,   0.,  36.],
+    ///        [  0., 144.,   0.],
+    ///        [ 36.,   0.,  84.]])
+    wedge([size; 3]) = solids::wedge
 }
 
 /// Upright prism over a regular polygon: I_z = m R² (2 + cos 2π/n)/6. One corner is toward +x.
@@ -207,71 +175,49 @@ fn whole(value: f64) -> Result<u32, Error> {
     Err(Error::OutOfDomain { what, law, value })
 }
 
-/// Pyramid over a rectangle, its apex toward +z, at 3z/4 from the centre of mass: I_z = m (x² + y²)/20.
-///
-/// Parameters
-/// ----------
-/// size : array_like, shape (..., 3)
-///     x and y of the base, and the height z.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import solids
-/// >>> solids.pyramid((2, 4, 4), mass=20.0).inertia.diagonal().round(12)
-/// array([28., 16., 20.])
-#[pyfunction]
-#[pyo3(signature = (size, *, mass=None, density=None))]
-pub(crate) fn pyramid(
-    size: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    one(
-        size,
-        "size",
-        (mass, density),
-        shape!(|lengths| 3, solids::pyramid, lengths),
-    )
+shape_function! {
+    /// Pyramid over a rectangle, its apex toward +z, at 3z/4 from the centre of mass: I_z = m (x² + y²)/20.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : array_like, shape (..., 3)
+    ///     x and y of the base, and the height z.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.pyramid((2, 4, 4), mass=20.0).inertia.diagonal().round(12)
+    /// array([28., 16., 20.])
+    pyramid([size; 3]) = solids::pyramid
 }
 
-/// Regular tetrahedron, its apex toward +z: I = m a²/20 about every axis through the centre of mass.
-///
-/// The corners are (0, 0, a√6/4), (a/√3, 0, −a/√24) and (−a/√12, ±a/2, −a/√24). Any other tetrahedron:
-/// :meth:`RigidBody.from_tetrahedra`.
-///
-/// Parameters
-/// ----------
-/// side : array_like, shape (...)
-///     Length of an edge.
-/// mass, density : array_like, shape (...)
-///     Exactly one of the two.
-///
-/// Returns
-/// -------
-/// RigidBody
-///
-/// Examples
-/// --------
-/// >>> from polhode import solids
-/// >>> solids.tetrahedron(2.0, mass=5.0).principal_moments
-/// array([1., 1., 1.])
-#[pyfunction]
-#[pyo3(signature = (side, *, mass=None, density=None))]
-pub(crate) fn tetrahedron(
-    side: &Bound<'_, PyAny>,
-    mass: Given<'_, '_>,
-    density: Given<'_, '_>,
-) -> PyResult<PyRigidBody> {
-    lengths(
-        ["side"],
-        [side],
-        (mass, density),
-        shape!(|&[side]| 1, solids::tetrahedron, side),
-    )
+shape_function! {
+    /// Regular tetrahedron, its apex toward +z: I = m a²/20 about every axis through the centre of mass.
+    ///
+    /// The corners are (0, 0, a√6/4), (a/√3, 0, −a/√24) and (−a/√12, ±a/2, −a/√24). Any other tetrahedron:
+    /// :meth:`RigidBody.from_tetrahedra`.
+    ///
+    /// Parameters
+    /// ----------
+    /// side : array_like, shape (...)
+    ///     Length of an edge.
+    /// mass, density : array_like, shape (...)
+    ///     Exactly one of the two.
+    ///
+    /// Returns
+    /// -------
+    /// RigidBody
+    ///
+    /// Examples
+    /// --------
+    /// >>> from polhode import solids
+    /// >>> solids.tetrahedron(2.0, mass=5.0).principal_moments
+    /// array([1., 1., 1.])
+    tetrahedron(side) = solids::tetrahedron
 }
