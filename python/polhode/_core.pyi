@@ -680,11 +680,12 @@ def oblate_states(
 ) -> tuple[_Floats, _Floats]: ...
 def local_frames(orbit: object, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
 def sampled_states(times: ArrayLike, position: ArrayLike, t: ArrayLike) -> tuple[_Floats, _Floats]: ...
+
 # loads: written by rust/python/declared.py
 def feedback(
     K: ArrayLike,  # noqa: N803
     D: ArrayLike,  # noqa: N803
-    target: _Attitude | Orbit | None = None,
+    target: _Attitude | Orbit | SampledOrbit | None = None,
     *,
     rate: ArrayLike | None = None,
     times: ArrayLike | None = None,
@@ -748,6 +749,7 @@ def wheel(
     name: str = "wheel",
 ) -> Load: ...
 def slug(inertia: ArrayLike, damping: ArrayLike, name: str = "slug") -> Load: ...
+
 # end of loads
 # solids: written by rust/python/declared.py
 def box(size: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
@@ -815,6 +817,7 @@ def torus(
     mass: _Numbers | None = None,
     density: _Numbers | None = None,
 ) -> RigidBody: ...
+
 # end of solids
 # laminae: written by rust/python/declared.py
 def disk(radius: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
@@ -837,6 +840,7 @@ def triangle(
 def polygon(
     vertices: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None
 ) -> RigidBody: ...
+
 # end of laminae
 # rods: written by rust/python/declared.py
 def rod(length: _Numbers, *, mass: _Numbers | None = None, density: _Numbers | None = None) -> RigidBody: ...
@@ -849,6 +853,7 @@ def arc(
     density: _Numbers | None = None,
     degrees: bool = False,
 ) -> RigidBody: ...
+
 # end of rods
 def region_box(low: ArrayLike, high: ArrayLike) -> Region: ...
 def region_ball(

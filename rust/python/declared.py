@@ -171,9 +171,9 @@ def of_stubs(text: str) -> str:
     """Write the functions that the extension has now into the stubs; all else stays as it is."""
     for module in MODULES:
         every = "\n".join(stub(module, name) for name in names(module))
-        before, rest = text.split(f"# {module}: written by rust/python/declared.py\n")
-        _, after = rest.split(f"# end of {module}\n")
-        text = f"{before}# {module}: written by rust/python/declared.py\n{every}\n# end of {module}\n{after}"
+        begins, ends = f"# {module}: written by rust/python/declared.py\n", f"\n# end of {module}\n"
+        before, rest = text.split(begins)
+        text = f"{before}{begins}{every}\n{ends}{rest.split(ends)[1]}"
     public = ["__version__", *(name for name in dir(_core) if not name.startswith("_"))]
     every = listed("__all__ = [", [f'"{name}"' for name in sorted(public)], "]")
     return re.sub(r"^__all__ = \[.*?\]", lambda _: every, text, count=1, flags=re.DOTALL | re.MULTILINE)
