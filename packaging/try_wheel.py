@@ -11,8 +11,19 @@ import re
 import subprocess
 import sys
 import tempfile
+import zipfile
 from pathlib import Path
 
+ROOT = Path(__file__).resolve().parents[1]
+#: Licences, also of what is compiled in, the bill of materials, types.
+HELD = (
+    r"/licenses/LICENSE-MIT$",
+    r"/licenses/LICENSE-APACHE$",
+    r"/licenses/LICENSE-THIRD-PARTY$",
+    r"\.cyclonedx\.json$",
+    r"^polhode/py\.typed$",
+    r"^polhode/_core\.pyi$",
+)
 #: Runs in the fresh environment: threads share a body, a load and an accumulator; the bits are those of one.
 PROGRAM = """
 import sys, threading
@@ -78,6 +89,9 @@ def main() -> None:
 
 def check(wheel: Path) -> None:
     """What can be told without running it."""
+    lacking = lacks(wheel)
+    if lacking:
+        sys.exit(f"{wheel.name}: {'; '.join(lacking)}")
     tool("twine", "check", "--strict", wheel)
     tool("check_wheel_contents", wheel)
     if "-abi3-" in wheel.name:
@@ -87,6 +101,23 @@ def check(wheel: Path) -> None:
         tag = re.search(r'platform tag:\s*"(manylinux_\d+_\d+)_', told)
         if not tag or tag[1] not in ("manylinux_2_17", "manylinux_2_12", "manylinux_2_5"):
             sys.exit(f"{wheel.name}: not for systems of 2014:\n{told}")
+
+
+def lacks(wheel: Path) -> list[str]:
+    """What a wheel should hold and does not, and links of its description that lead nowhere."""
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+        [metadata] = (name for name in names if name.endswith(".dist-info/METADATA"))
+        told = archive.read(metadata).decode()
+    lacking = [f"no {pattern}" for pattern in HELD if not any(re.search(pattern, name) for name in names)]
+    home = next(iter(re.findall(r"^Project-URL: Repository, (\S+)$", told, re.MULTILINE)), None)
+    if home is None:
+        return [*lacking, "no address of the project"]
+    for target in re.findall(r"\]\(([^)\s]+)\)", told):
+        within = re.fullmatch(re.escape(home) + r"/(?:raw|tree|blob)/v[^/]+/([^#]+)(?:#.*)?", target)
+        if not (ROOT / within[1]).exists() if within else not target.startswith("https://"):
+            lacking.append(f"a link leads nowhere: {target}")
+    return lacking
 
 
 def tried(dist: Path, folder: Path) -> None:

@@ -8,7 +8,11 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-ITEM = re.compile(r"^pub (?:const |unsafe )*(fn|struct|enum|trait|const|static|type) (\w+)", re.MULTILINE)
+ITEM = re.compile(
+    r"^(#\[doc\(hidden\)\]\n(?:#.*\n)*)?"
+    r"pub (?:const |unsafe )*(?:fn|struct|enum|trait|const|static|type) (\w+)",
+    re.MULTILINE,
+)
 IMPL = re.compile(r"^impl(?:<(?:[^<>]|<[^<>]*>)*>)? (?:(\S.*?) for )?([\w:]+)", re.MULTILINE)
 METHOD = re.compile(r"^    pub (?:const )?fn (\w+)", re.MULTILINE)
 FENCE = re.compile(r"^ *(?:///|//!) ?(.*)$", re.MULTILINE)
@@ -34,8 +38,9 @@ def public(source: Path) -> Public:
     texts = {path: without_tests(path.read_text("utf-8")) for path in sorted(source.rglob("*.rs"))}
     homes: dict[str, str] = {}
     for path, text in texts.items():
-        for _, name in ITEM.findall(text):
-            homes.setdefault(name, path.relative_to(source).as_posix())
+        for hidden, name in ITEM.findall(text):
+            if not hidden:
+                homes.setdefault(name, path.relative_to(source).as_posix())
     opened(source / "lib.rs", texts, found, source, homes)
     types = set(found.items)
     for path, text in texts.items():
@@ -52,8 +57,9 @@ def public(source: Path) -> Public:
 def opened(path: Path, texts: dict[Path, str], found: Public, source: Path, homes: dict[str, str]) -> None:
     """A public module: its items, the modules below it, and the names that it hands on."""
     text = texts[path]
-    for _, name in ITEM.findall(text):
-        found.items[name] = path.relative_to(source).as_posix()
+    for hidden, name in ITEM.findall(text):
+        if not hidden:
+            found.items[name] = path.relative_to(source).as_posix()
     folder = path.parent if path.name in ("lib.rs", "mod.rs") else path.with_suffix("")
     for hidden, name in re.findall(r"^(#\[doc\(hidden\)\]\n)?pub mod (\w+);", text, re.MULTILINE):
         if not hidden:

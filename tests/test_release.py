@@ -65,7 +65,33 @@ class TestLinks:
             if path.is_file() and path.suffix in (".toml", ".md", ".yml", ".yaml", ".cff", ".py")
             if address in path.read_text("utf-8")
         ]
-        assert holding == ["Cargo.toml"]
+        # A source distribution is dressed: there links and addresses are whole.
+        dressed = ["README.md", "pyproject.toml"] if (ROOT / "PKG-INFO").exists() else []
+        assert sorted(holding) == sorted(["Cargo.toml", *dressed])
+
+    @pytest.mark.parametrize(
+        ("target", "held"),
+        [
+            ("{}/blob/v0.1.0/README.md#a", True),
+            ("{}/tree/v0.1.0/docs", True),
+            ("https://b.c/d", True),
+            ("{}/blob/v0.1.0/GONE.md", False),
+            ("docs/index.md", False),
+        ],
+    )
+    def test_links_of_a_wheel(self, script: Any, tmp_path: Path, target: str, held: bool) -> None:
+        found = script("try_wheel")
+        home = script("dress")["address"]()
+        with zipfile.ZipFile(tmp_path / "a.whl", "w") as archive:
+            for name in ("licenses/LICENSE-MIT", "licenses/LICENSE-APACHE", "sboms/a.cyclonedx.json"):
+                archive.writestr(f"a.dist-info/{name}", "")
+            for name in ("polhode/py.typed", "polhode/_core.pyi"):
+                archive.writestr(name, "")
+            link = f"[words]({target.format(home)})"
+            archive.writestr("a.dist-info/METADATA", f"Project-URL: Repository, {home}\n\n{link}\n")
+        lacking = found["lacks"](tmp_path / "a.whl")
+        assert lacking.pop(0) == r"no /licenses/LICENSE-THIRD-PARTY$"
+        assert (lacking == []) == held
 
 
 class TestVersions:
@@ -125,7 +151,7 @@ class TestVersions:
 
     def test_the_places_of_wheels_are_those_of_the_changelog(self) -> None:
         workflow = (ROOT / ".github" / "workflows" / "release.yml").read_text("utf-8")
-        places = re.findall(r"triple: (\w+)-(\w+-[\w-]+)", workflow)
+        places = re.findall(r"target: \w+, triple: (\w+)-(\w+-[\w-]+)", workflow)
         systems = {system for _, system in places}
         assert len(places) == 2 * len(systems) == 8
         assert {system.split("-")[-1] for system in systems} == {"gnu", "musl", "darwin", "msvc"}
@@ -148,7 +174,7 @@ class TestLicences:
         assert "licenses bans sources" in rule
         workflow = (ROOT / ".github" / "workflows" / "release.yml").read_text("utf-8")
         assert "- run: make licences\n" in workflow
-        assert "check --config packaging/deny.toml advisories\n" in workflow
+        assert "--config packaging/deny.toml check advisories\n" in workflow
 
     def test_both_licences_stand_in_the_crate(self) -> None:
         for name in ("LICENSE-MIT", "LICENSE-APACHE"):
@@ -200,6 +226,66 @@ def test_the_program_that_tries_a_wheel_runs_here(script: Any) -> None:
     done = subprocess.run([sys.executable, "-c", program], check=False, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(r"polhode \S+ on 3\.\S+ with(out)? the lock\n", done.stdout)
+
+
+class TestStrangers:
+    def test_the_source_distribution_holds_all_files(self, script: Any, tmp_path: Path) -> None:
+        for name in ("tests/a/b.py", "docs/c.md", "Makefile", ".ci/run"):
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_text("", "utf-8")
+        told = tomllib.loads(f"include = [{script('dress')['everything'](tmp_path)}]")["include"]
+        assert [line["path"] for line in told] == [".ci/**/*", "Makefile", "docs/**/*", "tests/**/*"]
+        assert {line["format"] for line in told} == {"sdist"}
+        held = {path for line in told for path in tmp_path.glob(line["path"]) if path.is_file()}
+        assert len(held) == 4
+
+    def test_what_dressing_replaces_is_there(self, script: Any) -> None:
+        text = (ROOT / "pyproject.toml").read_text("utf-8")
+        if not (ROOT / "PKG-INFO").exists():
+            assert text.count(script("dress")["SOME"]) == 1
+        assert text.count("[project.scripts]") == text.count('"LICENSE-APACHE"') == 1
+
+    def test_words_after_two_dashes_go_to_pytest(self, script: Any) -> None:
+        divided = script("try_tests")["divided"]
+        assert divided(["dist", "--quick", "--", "-k", "x"]) == (["dist", "--quick"], ["-k", "x"])
+        assert divided(["dist"]) == (["dist"], [])
+
+    def test_the_pythons_of_this_machine(self, script: Any) -> None:
+        tests = script("try_tests")
+        found = tests["found"]()
+        mine = tests["mine"]()
+        if mine.endswith("t"):
+            assert mine not in found
+        else:
+            assert found[mine] == sys.executable
+        for version, path in found.items():
+            told = subprocess.check_output([path, "-c", "import sys; print(*sys.version_info[:2], sep='.')"])
+            assert told.decode().strip() == version
+
+    def test_all_tests_are_run_but_in_a_quick_share(self, script: Any) -> None:
+        asked = script("try_tests")["tests"]
+        assert [word for word in asked(quick=False) if word.endswith(".py")] == []
+        makefile = (ROOT / "Makefile").read_text("utf-8")
+        assert asked(quick=False)[3:5] == ["-m", "not long and not alone"]
+        assert '-m pytest -m "not long and not alone"' in makefile
+        assert "packaging/try_tests.py dist --other --quick\n" in makefile
+        assert makefile.count("packaging/try_tests.py dist\n") == 1
+
+    def test_the_quick_share_is_there(self, script: Any) -> None:
+        for name in script("try_tests")["QUICK"]:
+            assert (ROOT / "tests" / f"test_{name}.py").exists()
+
+    def test_a_folder_without_both_files_is_refused(
+        self,
+        script: Any,
+        tmp_path: Path,
+        monkeypatch: pytest.MonkeyPatch,
+        capsys: pytest.CaptureFixture[str],
+    ) -> None:
+        monkeypatch.setattr(sys, "argv", ["try_tests.py", str(tmp_path)])
+        with pytest.raises(SystemExit):
+            script("try_tests")["main"]()
+        assert "one source distribution and one wheel" in capsys.readouterr().err
 
 
 class TestFiles:

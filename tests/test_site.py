@@ -1,6 +1,6 @@
 """The site as `make docs` has built it: no dead link, nothing from the network, and what a browser shows.
 
-Without a site that is as new as its pages these tests are skipped; `.ci/run` builds it before.
+Without a site that is as new as its pages these tests are skipped; `make test` builds it before.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@
 //!
 //! set_thread_limit(NonZeroUsize::new(1));
 //! assert_eq!(thread_count(), 1);
+//! assert!(Level::best().is_available()); // the widest instruction set of this machine, which is taken
 //! set_level(Level::Baseline);
 //! assert_eq!(level(), Level::Baseline);
 //!

@@ -56,6 +56,7 @@ impl Amount {
 }
 
 /// What a density is counted by, and how much of it a shape has.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub enum Measure<X> {
     /// Of a solid.
@@ -111,6 +112,7 @@ impl Measure<f64> {
 }
 
 /// The unit `2^u` of a shape's lengths: their squares and their volume are numbers in it.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit(pub(super) i32);
 

@@ -19,6 +19,23 @@ use crate::principal::{PrincipalAxes, principal_axes, with_sign_rule};
 /// origin lose nothing. Where the sum is thin its moments come from the parts' own second moments, turned into the axes of
 /// the sum: collinear rods and particles keep the smallest moment that they have.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::composites::combined;
+/// use polhode::mass::{Amount, solids};
+/// use polhode::nalgebra::Vector3;
+///
+/// // A dumbbell: two balls of 1 kg, 2 m apart.
+/// let ball = solids::sphere(0.1, Amount::Mass(1.0))?;
+/// let at = |x: f64| ball.translated(&Vector3::new(x, 0.0, 0.0));
+/// let dumbbell = combined(&[at(-1.0)?, at(1.0)?])?;
+/// assert!((dumbbell.principal().moments[2] - (2.0 + 2.0 * 0.004)).abs() < 1e-15); // 2 m d² + 2 (2/5) m r²
+/// // The same, one after the other.
+/// assert!(at(-1.0)?.combined(&at(1.0)?)?.is_close(&dumbbell, 1e-15, 1e-15));
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When there are none, or the sum overflows.
 pub fn combined(bodies: &[RigidBody]) -> Result<RigidBody, Error> {

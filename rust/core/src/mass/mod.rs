@@ -63,7 +63,7 @@
 //! What a body knows of itself:
 //!
 //! ```
-//! use polhode::mass::provenance::{Checks, MomentsFrom, Source};
+//! use polhode::mass::provenance::{Checks, MomentsFrom, Provenance, Source};
 //! use polhode::mass::{Amount, solids};
 //!
 //! let ball = solids::sphere(1.0, Amount::Density(3.0))?;
@@ -71,6 +71,9 @@
 //! let provenance = ball.provenance();
 //! assert_eq!((provenance.source, provenance.moments), (Source::Solid, MomentsFrom::SecondMoment));
 //! assert!(!provenance.checks.contains(Checks::UNCHECKED.and(Checks::CLOSED)));
+//! // The same numbers, summed elsewhere from the atoms of a cluster.
+//! let summed = ball.with_provenance(Provenance::of_particles(60));
+//! assert_eq!((summed.provenance().source, summed.provenance().elements), (Source::Particles, 60));
 //! # Ok::<(), polhode::Error>(())
 //! ```
 

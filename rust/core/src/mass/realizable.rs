@@ -62,6 +62,21 @@ fn nearest_moments(&[x, y, z]: &[f64; 3]) -> [f64; 3] {
 }
 
 /// What a box says of the second moments of a body inside: which condition leaves least room, and how much.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::mass::realizable::{BoxVerdict, within_box};
+/// use polhode::nalgebra::Vector3;
+///
+/// // A rod of 2 m along z does not fit into a box that is 1 m high: the spread along z is too wide.
+/// let rod = solids::cuboid(&[0.0, 0.0, 2.0], Amount::Mass(1.0))?;
+/// let BoxVerdict { margin, axes } = within_box(&rod, &Vector3::repeat(-0.5), &Vector3::repeat(0.5))?;
+/// assert_eq!(axes, [2, 2]);
+/// assert!((margin - (0.25 - 1.0 / 3.0)).abs() < 1e-12); // l²/12 = 1/3 where (h/2)² = 1/4 has room
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxVerdict {
     /// The room left by the tightest condition, relative to what the size of the box allows; negative when it is broken.

@@ -64,6 +64,24 @@ impl SecondMoment {
     }
 
     /// `S` in body axes.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{ErrorBound, SecondMoment};
+    /// use polhode::nalgebra::{Matrix3, Rotation3, Vector3};
+    ///
+    /// // A rod whose own axis lies along y of the body frame.
+    /// let rod = SecondMoment {
+    ///     mass: 1.0,
+    ///     center_of_mass: Vector3::zeros(),
+    ///     central: Matrix3::from_diagonal(&Vector3::new(3.0, 0.0, 0.0)),
+    ///     axes: Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2).into_inner(),
+    ///     error_bound: ErrorBound::default(),
+    /// };
+    /// assert!((rod.in_body_axes()[(1, 1)] - 3.0).abs() < 1e-15);
+    /// assert!((rod.inertia()[(0, 0)] - 3.0).abs() < 1e-15); // I = tr(S) 1 − S
+    /// ```
     #[must_use]
     #[inline]
     pub fn in_body_axes(&self) -> Matrix3<f64> {

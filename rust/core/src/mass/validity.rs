@@ -5,6 +5,21 @@ use nalgebra::Matrix3;
 use crate::error::{BodyFault, Error, all_finite, all_finite_of_body, check_rtol, finite_of_body};
 
 /// Violations of a law up to this times the trace of the tensor are rounding, not physics.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::RigidBody;
+/// use polhode::mass::validity::ROUNDING;
+/// use polhode::nalgebra::{Matrix3, Vector3};
+///
+/// // A flat body, I₁ + I₂ = I₃, with a deficit on either side of what rounding may do.
+/// let body = |deficit: f64| {
+///     let moments = Vector3::new(1.0, 1.0, 2.0 + 4.0 * deficit);
+///     RigidBody::new(1.0, &Matrix3::from_diagonal(&moments), &Vector3::zeros(), 0.0)
+/// };
+/// assert!(body(0.9 * ROUNDING).is_ok() && body(1.1 * ROUNDING).is_err());
+/// ```
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Asymmetry up to this times the largest element is rounding: the mean of the two elements is taken.

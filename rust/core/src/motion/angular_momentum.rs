@@ -6,6 +6,24 @@ use crate::mass::RigidBody;
 use crate::numerics::power_of_two::times_cross;
 
 /// `L = m R×v + m [R×(ω×c_P) + c_P×v] + I_P ω` about the inertial origin.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::angular_momentum::{AngularMomentum, angular_momentum};
+/// use polhode::nalgebra::Vector3;
+///
+/// // A wheel of 10 kg rolls along x, 3 m beside the origin: its spin is about −y of space, its path about −z.
+/// let wheel = solids::cylinder(0.5, 0.1, Amount::Mass(10.0))?;
+/// let (spin, velocity) = (Vector3::new(0.0, 0.0, 4.0), Vector3::new(2.0, 0.0, 0.0));
+/// let AngularMomentum { orbital, mixed, spin } =
+///     angular_momentum(&wheel, &spin, &velocity, &Vector3::new(0.0, 3.0, 0.0), &Vector3::zeros());
+/// assert_eq!(orbital.z, -60.0);
+/// assert_eq!(mixed, Vector3::zeros()); // about the centre of mass
+/// assert!((spin.z - 5.0).abs() < 1e-14); // ½ m r² ω
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngularMomentum {
     /// `m R×v`, of a particle of the body's mass at P.

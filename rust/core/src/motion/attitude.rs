@@ -86,6 +86,18 @@ pub fn from_axes(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
 /// Rounded, |q|² is one wherever it is within half a unit below or a whole one above, so that quaternions divided by their
 /// rounded length are too long on the average, by 10⁻¹⁶. A rotation by them is then not quite one, and the force of a potential
 /// not quite its slope: over a million rotations that shows in the energy.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::attitude::{from_axes, restored};
+/// use polhode::nalgebra::{Matrix3, Quaternion};
+///
+/// // A quaternion that a long product left a little too long.
+/// let drifted = Quaternion::new(1.0 + 1e-9, 0.0, 0.0, 0.0);
+/// assert!((restored(&drifted).w - 1.0).abs() < 1e-17_f64.max(2e-18));
+/// assert_eq!(from_axes(&Matrix3::identity()).w, 1.0);
+/// ```
 #[must_use]
 #[inline]
 pub fn restored(q: &Quaternion<f64>) -> UnitQuaternion<f64> {

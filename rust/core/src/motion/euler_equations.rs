@@ -13,6 +13,31 @@ use crate::principal::PrincipalAxes;
 /// Euler's equations of one body about one point: its principal moments and axes there.
 ///
 /// The point is the centre of mass of a body that moves freely, or a point of the body that is fixed in space.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::refined::RefinedPrincipal;
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::euler_equations::EulerEquations;
+/// use polhode::nalgebra::Vector3;
+///
+/// // A brick of 12 kg, its moments 5, 8 and 5 kg m² about x, y and z … in ascending order 15, 37 and 52.
+/// let brick = solids::cuboid(&[6.0, 3.0, 2.0_f64.sqrt() * 2.0], Amount::Mass(12.0))?;
+/// let equations = EulerEquations::about(&brick, &Vector3::zeros());
+/// let (omega, torque) = (Vector3::new(0.1, 2.0, 0.3), Vector3::new(1.0, 0.0, -2.0));
+/// // ω̇₁ = (N₁ + (I₂ − I₃) ω₂ ω₃)/I₁ along the principal axes,
+/// let ([i1, ..], [d1, ..]) = (equations.moments(), equations.differences());
+/// let along = equations.principal_acceleration(&omega, &torque)?;
+/// assert!((along.x - (1.0 + d1 * 2.0 * 0.3) / i1).abs() < 1e-15);
+/// // and in the body frame the torque that it takes is the one that was given.
+/// let found = equations.angular_acceleration(&omega, &torque)?;
+/// assert!((equations.torque(&omega, &found) - torque).amax() < 1e-13);
+/// // For long motions the moments are found to twice the precision first.
+/// let refined = EulerEquations::refined_about(&brick, &Vector3::zeros());
+/// assert_eq!(refined, EulerEquations::of_refined(&RefinedPrincipal::of(&brick)));
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EulerEquations {
     moments: [f64; 3],

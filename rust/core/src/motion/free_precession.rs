@@ -31,6 +31,24 @@ pub struct FreePrecession {
 /// With L along z the Euler angles (ZXZ, third axis n) are θ = `nutation`, `φ̇ = space_rate`, `ψ̇ = −body_rate`.
 /// Source: part II; Landau and Lifshitz, Mechanics, §33 and §36; Goldstein, Classical Mechanics, §5.6.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::free_precession::{FreePrecession, free_precession};
+/// use polhode::nalgebra::Vector3;
+/// use polhode::principal::{SymmetricTop, TOP_RTOL};
+///
+/// // A plate thrown into the air: it wobbles nearly twice as fast as it spins.
+/// let plate = solids::cylinder(0.1, 0.0, Amount::Mass(0.3))?;
+/// let top = SymmetricTop::of(&plate.principal(), TOP_RTOL)?;
+/// let FreePrecession { space_rate, body_rate, nutation, .. } = free_precession(&top, &Vector3::new(0.1, 0.0, 10.0))?;
+/// assert!((body_rate - 10.0).abs() < 1e-12); // (I_s − I_t)/I_t = 1
+/// assert!((space_rate - 20.0).abs() < 0.01);
+/// assert!((nutation.tan() - 0.1 / 20.0).abs() < 1e-15);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::OutOfDomain`] for a point, which has no moment of inertia.
 pub fn free_precession(top: &SymmetricTop, omega: &Vector3<f64>) -> Result<FreePrecession, Error> {

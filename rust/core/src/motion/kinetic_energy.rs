@@ -6,6 +6,22 @@ use crate::mass::RigidBody;
 use crate::numerics::power_of_two::times_dot;
 
 /// `T = ½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω`.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::kinetic_energy::{KineticEnergy, kinetic_energy};
+/// use polhode::nalgebra::Vector3;
+///
+/// // A ball of 5 kg swings about a point 1 m beside its centre: ½ (I + m d²) ω² in one part, with the point at rest.
+/// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+/// let (spin, pivot) = (Vector3::new(0.0, 0.0, 2.0), Vector3::new(1.0, 0.0, 0.0));
+/// let KineticEnergy { translational, mixed, rotational } = kinetic_energy(&ball, &spin, &Vector3::zeros(), &pivot);
+/// assert_eq!((translational, mixed), (0.0, 0.0));
+/// assert!((rotational - 0.5 * 7.0 * 4.0).abs() < 1e-14);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KineticEnergy {
     /// `½ m v²`, of a particle of the body's mass that moves with P.

@@ -20,6 +20,24 @@ pub struct NutationDamping {
 /// `top`: about C. `momentum`: |L|. `inertia`, `damping`: J and k of the slug, see [`Slug`](super::loads::Slug). Source: Hughes,
 /// Spacecraft Attitude Dynamics, chapter 5; Rahn, Barba, Journal of Guidance 14 (1991) 424.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::nutation_damping::{NutationDamping, nutation_damping};
+/// use polhode::principal::{PrincipalAxes, SymmetricTop, TOP_RTOL};
+/// use polhode::nalgebra::Matrix3;
+///
+/// // The same damper steadies a coin and unsettles a cigar, as it did Explorer 1.
+/// let rate = |moments| {
+///     let top = SymmetricTop::of(&PrincipalAxes { moments, axes: Matrix3::identity() }, TOP_RTOL)?;
+///     let NutationDamping { rate } = nutation_damping(&top, 100.0, 0.1, 2.0)?;
+///     Ok::<_, polhode::Error>(rate)
+/// };
+/// assert!(rate([10.0, 10.0, 15.0])? < 0.0);
+/// assert!(rate([5.0, 10.0, 10.0])? > 0.0);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// For moments, momentum, J or k that are not positive, and where the rate leaves float64.
 pub fn nutation_damping(

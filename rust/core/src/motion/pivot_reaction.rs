@@ -11,6 +11,22 @@ use crate::mass::RigidBody;
 /// `attitude`: `R_NB`. `omega`, `angular_acceleration`: of B relative to N, components in B. `gravity`: g, and `force`: F,
 /// the sum of all other forces but the reaction, components in N. The result: force on the body, components in N.
 /// Source: mln24.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::pivot_reaction::pivot_reaction;
+/// use polhode::nalgebra::{UnitQuaternion, Vector3};
+///
+/// // A stone of 2 kg on a rod of 0.5 m, at its lowest place with 6 rad/s: m (g + ω² l).
+/// let stone = solids::sphere(0.0, Amount::Mass(2.0))?.translated(&Vector3::new(0.0, 0.0, -0.5))?;
+/// let (omega, gravity) = (Vector3::new(6.0, 0.0, 0.0), Vector3::new(0.0, 0.0, -9.81));
+/// let zero = Vector3::zeros();
+/// let force = pivot_reaction(&stone, &UnitQuaternion::identity(), &omega, &zero, &gravity, &zero, &zero);
+/// assert!((force.z - 2.0 * (9.81 + 36.0 * 0.5)).abs() < 1e-13);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[must_use]
 pub fn pivot_reaction(
     body: &RigidBody,

@@ -31,6 +31,20 @@ impl State {
 }
 
 /// All six degrees of freedom and their rates: a point of phase space. Beside them the states of what the body carries.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::state::{Phase, State};
+/// use polhode::nalgebra::{UnitQuaternion, Vector3};
+///
+/// let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::new(0.0, 0.0, 3.0) };
+/// let phase = Phase::in_place(&state);
+/// assert!(phase.is_finite() && phase.position == Vector3::zeros());
+/// assert_eq!(phase.state(), state);
+/// // What stands where nothing was computed, as after the end of a run.
+/// assert!(!Phase::nan().is_finite() && !phase.unknown().is_finite() && State::nan().omega.x.is_nan());
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
     /// `q_NB`.
@@ -112,6 +126,28 @@ impl Phase {
 }
 
 /// A motion in closed form: its state at any time costs the same.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::free::FreeMotion;
+/// use polhode::motion::state::{ClosedForm, sample_many};
+/// use polhode::nalgebra::{UnitQuaternion, Vector3};
+///
+/// // A box thrown with a hundred different spins, each at two times, on all cores.
+/// let body = solids::cuboid(&[0.3, 0.2, 0.1], Amount::Mass(1.0))?;
+/// let thrown = |k: i32| FreeMotion::of(&body, &Vector3::new(f64::from(k), 5.0, 0.0), &UnitQuaternion::identity());
+/// let motions = (0..100).map(thrown).collect::<Result<Vec<_>, _>>()?;
+/// let times = [0.0, 1.5];
+/// let (mut attitudes, mut omegas) = (vec![[0.0; 4]; 200], vec![[0.0; 3]; 200]);
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// sample_many(&motions, &times, &mut attitudes, &mut omegas, go_on).unwrap();
+/// assert_eq!(omegas[2 * 7 + 1], <[f64; 3]>::from(motions[7].at(1.5).omega));
+/// assert!(motions[7].reach() > 1e20);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 pub trait ClosedForm: Sync {
     /// The largest |t| at which the state is known: what multiplies the time is, to 2⁻⁹⁰ of itself. Beyond, states are NaN.
     fn reach(&self) -> f64;

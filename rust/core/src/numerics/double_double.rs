@@ -137,6 +137,15 @@ impl DoubleDouble {
     }
 
     /// Times `2^e`, which need not be a number.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::DoubleDouble;
+    ///
+    /// let third = DoubleDouble::from(1.0) / DoubleDouble::from(3.0);
+    /// assert_eq!(third.times_power_of_two(3).rounded(), 8.0 / 3.0); // no digit is lost
+    /// ```
     #[must_use]
     #[inline]
     pub fn times_power_of_two(self, e: i32) -> Self {

@@ -15,6 +15,21 @@ use crate::numerics::threads::{Halt, fill_blocks};
 const BLOCK: usize = 1024;
 
 /// Principal moments and axes of a tensor of inertia, or of any symmetric tensor.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::{Matrix3, Rotation3, Vector3};
+/// use polhode::principal::{PrincipalAxes, with_sign_rule};
+///
+/// let flip = Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 1.0));
+/// let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.5).into_inner();
+/// let found = PrincipalAxes { moments: [1.0, 2.0, 2.5], axes: with_sign_rule(turn * flip) };
+/// // The largest component of the first two axes is positive, the third one is their product.
+/// assert!((found.axes - turn).amax() < 1e-15);
+/// let tensor = found.axes * Matrix3::from_diagonal(&found.moments.into()) * found.axes.transpose();
+/// assert!((tensor.trace() - 5.5).abs() < 1e-14);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalAxes {
     /// The principal moments, ascending.

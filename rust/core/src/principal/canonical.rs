@@ -71,6 +71,19 @@ pub fn canonical(principal: &PrincipalAxes, rtol: f64) -> PrincipalAxes {
 ///
 /// About every 20 ms `watch` gets the fraction done; [`ControlFlow::Break`] ends the job.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::principal::{TOP_RTOL, canonical_many};
+/// use std::ops::ControlFlow;
+///
+/// // A coin whose free axes came out along the diagonals: they are turned to x and y.
+/// let half = 0.5_f64.sqrt();
+/// let mut axes = [[half, -half, 0.0, half, half, 0.0, 0.0, 0.0, 1.0]];
+/// canonical_many(&[[1.0, 1.0, 2.0]], &mut axes, TOP_RTOL, &mut |_| ControlFlow::Continue(())).unwrap();
+/// assert!((axes[0][0] - 1.0).abs() < 1e-15 && axes[0][1].abs() < 1e-15);
+/// ```
+///
 /// # Errors
 /// [`Halt::Stopped`] if `watch` said so.
 ///

@@ -35,6 +35,23 @@ pub struct PrincipalDerivative {
 /// times the largest magnitude count as equal.
 ///
 /// At a relative gap g between two moments the rotation between their axes carries a relative error of about ε/g.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::nalgebra::{Matrix3, Vector3};
+/// use polhode::principal::derivative::PAIRS;
+/// use polhode::principal::{DEGENERATE_RTOL, PrincipalDerivative, derivative, principal_axes};
+///
+/// // A product of inertia between the axes 1 and 2 turns them by I_xy/(I₂ − I₁) and changes no moment.
+/// let principal = principal_axes(&Matrix3::from_diagonal(&Vector3::new(1.0, 3.0, 3.5)));
+/// let mut tangent = Matrix3::zeros();
+/// (tangent[(0, 1)], tangent[(1, 0)]) = (1e-3, 1e-3);
+/// let PrincipalDerivative { moments, axes, degenerate } = derivative(&principal, &tangent, DEGENERATE_RTOL);
+/// assert_eq!(moments, [0.0; 3]);
+/// assert!((axes[(0, 1)] - 1e-3 / 2.0).abs() < 1e-18);
+/// assert_eq!(degenerate, PAIRS.map(|_| false));
+/// ```
 #[must_use]
 pub fn derivative(
     principal: &PrincipalAxes,

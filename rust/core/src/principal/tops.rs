@@ -133,6 +133,19 @@ pub fn classify_within(moments: &[f64; 3], &[zero, lower, upper]: &[f64; 3]) -> 
 /// the axis itself is turned: by the minimax theorem of Courant and Fischer, in the other plane of the pair's nearer member
 /// with the third axis, it is at most `√(x² + o'²) − x`, half the distance to the third moment being `x + o'`. And the
 /// moment of a straight line is `Σ m d² ≤ M δ²` about the line through the rounded places. These bounds hold to all orders.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::principal::{Top, classify_within, gaps, rounding_rtols};
+///
+/// // Atoms whose coordinates are printed to 0.01: these moments may be those of a coin.
+/// let moments = [1.0, 1.002, 2.001];
+/// assert!((gaps(&moments)[0] - 0.002 / 2.001).abs() < 1e-15);
+/// let told = rounding_rtols(4.0, &moments, 0.005);
+/// assert_eq!(classify_within(&moments, &told), Top::Oblate);
+/// assert_eq!(classify_within(&moments, &rounding_rtols(4.0, &moments, 0.5e-6)), Top::Asymmetric);
+/// ```
 #[must_use]
 pub fn rounding_rtols(mass: f64, moments: &[f64; 3], rounding: f64) -> [f64; 3] {
     let &[i1, i2, i3] = moments;

@@ -1,4 +1,68 @@
 //! The ways to a body and from body to body, for numbers with derivatives.
+//!
+//! # Examples
+//!
+//! ```
+//! use polhode::Error;
+//! use polhode::mass::ten::{Size, Ten};
+//! use polhode::mass::{Amount, solids};
+//! use polhode::nalgebra::Matrix3;
+//! use polhode::uncertainty::changes::TensorAbout;
+//! use polhode::uncertainty::{
+//!     Change, Follow, FromPositiveProducts, FromTensor, FromTensorAboutOrigin, Given, OfPolygon, OfShape, Rotated, Scaled,
+//!     Shape, Source, follow,
+//! };
+//!
+//! // The deviations of all ten numbers, where each of a body's has one.
+//! let sigmas = [0.01, 1e-3, 1e-3, 1e-3, 0.02, 0.02, 0.02, 0.001, 0.001, 0.001];
+//! let given = Given::independent(&sigmas, Source::fresh())?;
+//! let values = [2.0, 0.5, 0.0, 0.0, 1.0, 1.2, 1.4, 0.1, 0.0, 0.0];
+//! let numbers: Vec<_> = values.into_iter().zip(given.forms.iter().map(Vec::as_slice)).collect();
+//! let deviation = |change: &dyn Fn() -> Result<polhode::uncertainty::Doubt, Error>, k: usize| -> Result<f64, Error> {
+//!     let doubt = change()?;
+//!     Ok(doubt.covariance_with(&doubt)[(k, k)].sqrt())
+//! };
+//! let from = Follow { bodies: &[], numbers: &numbers };
+//! assert!((deviation(&|| follow(&FromTensor, from), 7)? - 0.001).abs() < 1e-17);
+//! assert!((deviation(&|| follow(&FromPositiveProducts, from), 7)? - 0.001).abs() < 1e-17);
+//! // I_C = I_O − m d²: the moment about y has the doubts of mass and place too.
+//! let expected = (0.02_f64.powi(2) + (0.01 * 0.25_f64).powi(2) + (2.0 * 2.0 * 0.5 * 1e-3_f64).powi(2)).sqrt();
+//! assert!((deviation(&|| follow(&FromTensorAboutOrigin, from), 5)? - expected).abs() < 1e-12);
+//!
+//! // From body to body: a mass scaled by 2 ± 0.1, a turn by a small angle, a tensor about another point.
+//! let exact = polhode::uncertainty::Doubt::default();
+//! let brick = Ten::of(&solids::cuboid(&[2.0, 1.0, 1.0], Amount::Mass(12.0))?);
+//! let bodies = [(brick, &exact)];
+//! let doubt = Given::independent(&[0.1], Source::fresh())?;
+//! let scale = [(1.0, [].as_slice()), (2.0, &doubt.forms[0])];
+//! let from = Follow { bodies: &bodies, numbers: &scale };
+//! assert!((deviation(&|| follow(&Scaled, from), 0)? - 1.2).abs() < 1e-15);
+//! let turn = [(0.0, [].as_slice()), (0.0, &[]), (0.0, &doubt.forms[0])];
+//! let from = Follow { bodies: &bodies, numbers: &turn };
+//! assert!((deviation(&|| follow(&Rotated(Matrix3::identity()), from), 7)? - 0.1 * 3.0).abs() < 1e-12); // (I_y − I_x) θ
+//! let from = Follow { bodies: &bodies, numbers: &[] };
+//! assert_eq!(deviation(&|| follow(&TensorAbout([1.0, 0.0, 0.0]), from), 5)?, 0.0);
+//!
+//! // From a shape's lengths, then the factor of its mass: a ball with a radius of 1 m ± 1 mm.
+//! struct Ball;
+//! impl Shape<1> for Ball {
+//!     fn of<X: Size>(&self, [radius]: &[X; 1], amount: Amount) -> Result<X::Body, Error> {
+//!         solids::sphere(*radius, amount)
+//!     }
+//! }
+//! let radius = Given::independent(&[1e-3], Source::fresh())?;
+//! let lengths = [(1.0, radius.forms[0].as_slice()), (1.0, &[])];
+//! let from = Follow { bodies: &[], numbers: &lengths };
+//! let change = OfShape(&Ball, Amount::Mass(5.0));
+//! assert!((deviation(&|| follow(&change, from), 4)? - 2.0 * 2e-3).abs() < 1e-12); // 2/5 m r², so 2 I σ/r
+//!
+//! // From the corners of a triangle, one of which is known to a millimetre.
+//! let corners = [(0.0, [].as_slice()), (0.0, &[]), (1.0, &radius.forms[0]), (0.0, &[]), (0.0, &[]), (1.0, &[]), (1.0, &[])];
+//! let from = Follow { bodies: &[], numbers: &corners };
+//! let change = OfPolygon(Amount::Density(2.0));
+//! assert!((deviation(&|| follow(&change, from), 0)? - 1e-3).abs() < 1e-15); // ρ h σ/2
+//! # Ok::<(), polhode::Error>(())
+//! ```
 
 use nalgebra::Matrix3;
 

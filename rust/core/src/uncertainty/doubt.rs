@@ -13,6 +13,24 @@ pub type Tangent = Ten<f64>;
 pub type Covariance = SMatrix<f64, 10, 10>;
 
 /// The doubts of one body.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::uncertainty::doubt::{Covariance, slopes};
+/// use polhode::uncertainty::{Doubt, PROBES, Source, Tangent};
+///
+/// // A body whose mass is known to 2 g, and nothing else of it is uncertain.
+/// let scales = Source::named("scales").variable(0);
+/// let tangent = Tangent { mass: 0.002, ..Tangent::default() };
+/// let doubt = Doubt::of(vec![(scales, tangent)], [Tangent::default(); PROBES]);
+/// let covariance: Covariance = doubt.covariance_with(&doubt);
+/// assert!((covariance[(0, 0)] - 4e-6).abs() < 1e-20);
+/// // Along the probes the mass goes up and down: on average by its deviation.
+/// assert_eq!(doubt.slopes(), slopes(&doubt.tangents));
+/// let square: f64 = doubt.slopes().iter().map(|slope| slope.mass.powi(2)).sum();
+/// assert!((square / PROBES as f64 - 4e-6).abs() < 1e-18);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
     /// What one standard deviation of each variable does to the body's ten numbers, to first order; in the order of the

@@ -161,6 +161,20 @@ pub(crate) fn line(value: f64, form: &[(Variable, f64)]) -> [Parabola; PROBES] {
 }
 
 /// A form as doubts of a single one of the ten numbers, or of several by one form each: of a body that is given by them.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::uncertainty::follow::directly;
+/// use polhode::uncertainty::{Form, Source};
+///
+/// // The mass alone has a deviation, of 1 %.
+/// let scales = Source::named("scales").variable(0);
+/// let mut forms: [Form; 10] = Default::default();
+/// forms[0] = vec![(scales, 0.01)];
+/// let doubt = directly(&forms);
+/// assert_eq!(doubt.tangents[0].1.mass, 0.01);
+/// ```
 #[must_use]
 pub fn directly(forms: &[Form; 10]) -> Doubt {
     let tangents = (forms.iter().enumerate())

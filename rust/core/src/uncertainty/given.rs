@@ -57,6 +57,18 @@ impl Given {
 
     /// Numbers with this covariance, by rows: forms of as many variables as it has ranks.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::uncertainty::{Given, Source};
+    ///
+    /// // Two lengths from one ruler, their correlation ½.
+    /// let lengths = Given::correlated(&[0.04, 0.03, 0.03, 0.09], Source::named("ruler"))?;
+    /// assert!((lengths.covariance(0, 1) - 0.03).abs() < 1e-15);
+    /// assert!(Given::correlated(&[0.04, 0.07, 0.07, 0.09], Source::fresh()).is_err()); // correlation 7/6
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// When the matrix is not symmetric, or some combination of the numbers would have a negative variance.
     pub fn correlated(covariance: &[f64], source: Source) -> Result<Self, Error> {

@@ -26,6 +26,28 @@ const BLOCK: usize = 4096;
 /// The doubts of a homogeneous solid with these numbers: three forms for each vertex. Of a solid whose mass was given the
 /// density changes with the volume.
 ///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::polyhedron::polyhedron;
+/// use polhode::mass::{Amount, ten::Ten};
+/// use polhode::uncertainty::{Given, Source, of_mesh};
+///
+/// // The corner of a cube, one vertex of which is known to 1 mm along x.
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0_usize, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let body = polyhedron(&vertices, &faces, Amount::Density(6.0), false)?;
+/// let mut sigmas = [0.0; 12];
+/// sigmas[3] = 1e-3;
+/// let given = Given::independent(&sigmas, Source::fresh())?;
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let doubt = of_mesh(&Ten::of(&body), &vertices, &faces, &given.forms, false, go_on)?;
+/// let sigma = doubt.covariance_with(&doubt)[(0, 0)].sqrt();
+/// assert!((sigma - 1e-3).abs() < 1e-15); // the volume is x/6
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Stopped`] when `watch` asks for it.
 pub fn of_mesh<I: Index>(

@@ -15,6 +15,26 @@ const KNOWN: f64 = 1e-9;
 
 /// Checks that a body can have these doubts.
 ///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, laminae};
+/// use polhode::uncertainty::{Form, Source, check_possible, follow::directly};
+///
+/// // A disk without thickness: its moments are ½ I₃ each, and cannot have deviations of their own.
+/// let disk = laminae::disk(1.0, Amount::Mass(1.0))?;
+/// let with_sigma_of = |which: &[usize]| {
+///     let mut forms: [Form; 10] = Default::default();
+///     for &k in which {
+///         forms[k] = vec![(Source::named("bench").variable(k as u32), 0.01)];
+///     }
+///     directly(&forms)
+/// };
+/// assert!(check_possible(&disk, &with_sigma_of(&[0])).is_ok());
+/// assert!(check_possible(&disk, &with_sigma_of(&[4, 5, 6])).is_err());
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// [`UncertaintyFault::NoBody`] when a second moment that is zero has a variance.
 pub fn check_possible(body: &RigidBody, doubt: &Doubt) -> Result<(), Error> {

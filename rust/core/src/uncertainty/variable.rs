@@ -67,6 +67,23 @@ fn random() -> u64 {
 }
 
 /// A standard normal variable, independent of all others.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::uncertainty::{PROBES, Source, Variable};
+///
+/// let scales = Source::named("scales");
+/// assert_ne!(scales.variable(0), scales.variable(1));
+/// assert_eq!(scales, Source::named("scales")); // a name is one source wherever it is said
+/// assert_ne!(Source::fresh(), Source::fresh());
+/// // To a file and back.
+/// let variable = scales.variable(7);
+/// assert_eq!(Variable::from_words(variable.to_words()), variable);
+/// // Along the probes it takes steps with a mean square of 1.
+/// let square: f64 = variable.steps().iter().map(|step| step * step).sum();
+/// assert!((square - PROBES as f64).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Variable {
     origin: u64,

@@ -183,6 +183,7 @@ impl Addend<SUMS> for Precise {
         sums
     }
 
+    #[inline(always)]
     fn merge(a: [f64; SUMS], b: [f64; SUMS]) -> [f64; SUMS] {
         let mut merged = [a[BELOW] + b[BELOW]; SUMS];
         for k in (0..BELOW).step_by(2) {

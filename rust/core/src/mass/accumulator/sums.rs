@@ -122,6 +122,23 @@ impl MassAccumulator {
     /// Chunks whose places were given keep them; those of an accumulator without places come after the last particle here.
     /// Then the bits may depend on how the accumulators were merged, the result agrees within its bound.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::MassAccumulator;
+    /// use std::ops::ControlFlow;
+    ///
+    /// let go_on = &mut |_| ControlFlow::Continue(());
+    /// let (mut one, mut other) = (MassAccumulator::new(), MassAccumulator::new());
+    /// other.add(&[3.0], &[[4.0, 0.0, 0.0]], Some(1), go_on)?; // the second particle, wherever it is summed
+    /// one.add(&[1.0], &[[0.0; 3]], Some(0), go_on)?;
+    /// one.merge(&other)?;
+    /// assert_eq!(one.finish()?.principal().moments, [0.0, 12.0, 12.0]);
+    /// // What rounding can have done to them, at most:
+    /// assert!(one.moment_bounds()?.iter().all(|bound| *bound < 1e-13));
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// When a particle with the same number is in both; then nothing is added.
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {

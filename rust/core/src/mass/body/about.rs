@@ -30,6 +30,18 @@ impl RigidBody {
 
     /// Whether float64 holds the inertia tensor about the point P (from the origin of the body frame): `m d²` may not.
     ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, solids};
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// let ball = solids::sphere(1.0, Amount::Mass(5.0))?;
+    /// assert!(ball.check_about(&Vector3::new(1e100, 0.0, 0.0)).is_ok());
+    /// assert!(ball.check_about(&Vector3::new(1e200, 0.0, 0.0)).is_err()); // m d² is beyond float64
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::NonFinite`], with the moment that is not finite.
     pub fn check_about(&self, point: &Vector3<f64>) -> Result<(), Error> {
@@ -67,6 +79,23 @@ impl RigidBody {
     /// How close moments of this body, about any point, must be to be equal as far as its numbers tell, relative to the
     /// largest: for I₁ = 0, I₁ = I₂ and I₂ = I₃. [`TOP_RTOL`], and more where it is of particles whose coordinates were
     /// rounded by as much as its provenance says.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::mass::{Amount, Provenance, solids};
+    /// use polhode::principal::{Top, classify_within};
+    ///
+    /// // Atoms of a file that prints three decimals: their moments differ by that rounding.
+    /// let body = solids::ellipsoid(&[1.0, 1.0001, 3.0], Amount::Mass(1.0))?;
+    /// let provenance = Provenance { rounding: 0.5e-3, ..Provenance::of_particles(4) };
+    /// let read = body.with_provenance(provenance);
+    /// let moments = read.principal().moments;
+    /// let classified = |body: polhode::RigidBody| classify_within(&moments, &body.top_rtols(&moments));
+    /// assert_eq!(classified(read), Top::Prolate);
+    /// assert_eq!(classified(body), Top::Asymmetric);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn top_rtols(&self, moments: &[f64; 3]) -> [f64; 3] {
         rounding_rtols(self.mass, moments, self.provenance.rounding).map(|rtol| rtol.max(TOP_RTOL))

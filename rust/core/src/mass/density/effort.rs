@@ -42,6 +42,28 @@ impl Effort {
 }
 
 /// What a cubature found: the body as far as it is known, and how well.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::Error;
+/// use polhode::mass::density::{Effort, Estimate, from_density};
+/// use polhode::mass::regions::Region;
+/// use polhode::nalgebra::Vector3;
+///
+/// // A cube whose density grows from 0 to 2 along x: m = 1, C_x = 2/3.
+/// let cube = Region::cuboid(&Vector3::zeros(), &Vector3::repeat(1.0))?;
+/// let density = |points: &[[f64; 3]], out: &mut [f64]| {
+///     for (out, point) in out.iter_mut().zip(points) {
+///         *out = 2.0 * point[0];
+///     }
+///     Ok::<_, Error>(())
+/// };
+/// let found: Estimate = from_density(&cube, density, Effort { rtol: 1e-10, max_evaluations: 100_000 })?;
+/// assert!(found.error < found.rtol);
+/// assert!((found.converged()?.center_of_mass().x - 2.0 / 3.0).abs() < 1e-12);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "an estimate is a body where the cubature has converged"]
 pub struct Estimate {

@@ -33,6 +33,7 @@ const TAME: std::ops::Range<f64> =
 /// A product m d below the normal numbers is off by 2⁻¹⁰⁷⁵ at most, and so is m d·d by d times as much. A particle that
 /// has any mass has 2⁻¹⁰⁷⁴ at least, so d is at most √(2¹⁰⁷⁴ tr S): all such errors together are below
 /// n·2⁻⁵³⁸ √(tr S), which is nothing beside the roundings of a trace of 2⁻⁸⁰⁰. What overflowed is not finite.
+#[inline]
 pub(super) fn is_ordinary(matter: &SecondMoment, particles: Particles<'_>) -> bool {
     let (spread, mass) = (matter.central.trace(), matter.mass);
     if !matter.center_of_mass.iter().all(|x| x.is_finite()) {

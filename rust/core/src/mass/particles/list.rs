@@ -54,11 +54,19 @@ pub(in crate::mass) fn check(Particles { masses, positions }: Particles<'_>) -> 
 pub(in crate::mass) fn sample_center(particles: Particles<'_>) -> Vector3<f64> {
     let masses = particles.masses;
     let stride = masses.len().div_ceil(SAMPLE).max(1);
-    let sample = || (0..masses.len()).step_by(stride);
     let heaviest = |among: &mut dyn Iterator<Item = usize>| {
         among.max_by(|&i, &j| masses[i].total_cmp(&masses[j]))
     };
-    let Some(first) = sample().find(|&i| masses[i] > 0.0) else {
+    // Index by index: to say how many steps there are `step_by` would divide, which takes as long as the sample.
+    let mut index = 0;
+    let found = loop {
+        match masses.get(index) {
+            Some(&mass) if mass > 0.0 => break Some(index),
+            Some(_) => index += stride,
+            None => break None,
+        }
+    };
+    let Some(first) = found else {
         let base = heaviest(&mut (0..masses.len()));
         return base.map_or_else(Vector3::zeros, |base| {
             center_from(particles, base, stride).1
@@ -69,7 +77,8 @@ pub(in crate::mass) fn sample_center(particles: Particles<'_>) -> Vector3<f64> {
         return center;
     }
     // A light one may be so far away that its distances from the others blur them.
-    let base = heaviest(&mut sample()).unwrap_or(first);
+    let sample = &mut (0..masses.len()).step_by(stride);
+    let base = heaviest(sample).unwrap_or(first);
     center_from(particles, base, stride).1
 }
 
@@ -86,9 +95,11 @@ fn center_from(
 ) -> (f64, Vector3<f64>) {
     let base = Vector3::from(positions[base]);
     let (mut mass, mut first) = (0.0, Vector3::zeros());
-    for i in (0..masses.len()).step_by(stride) {
+    let mut i = 0;
+    while i < masses.len() {
         mass += masses[i];
         first += (Vector3::from(positions[i]) - base) * masses[i];
+        i += stride;
     }
     let center = base + first / mass;
     if center.iter().all(|x| x.is_finite()) {

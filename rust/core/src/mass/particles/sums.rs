@@ -14,7 +14,8 @@ pub(crate) trait Addend<const K: usize>: Copy + Sync {
     /// The sums with the particle of this mass at this position. Mark the implementation `#[inline(always)]`.
     fn add<L: Lane>(&self, mass: L, position: [L; 3], sums: [L; K]) -> [L; K];
 
-    /// Two sets of sums as one.
+    /// Two sets of sums as one. Mark an implementation `#[inline(always)]`.
+    #[inline(always)]
     fn merge(a: [f64; K], b: [f64; K]) -> [f64; K] {
         std::array::from_fn(|k| a[k] + b[k])
     }
@@ -26,12 +27,11 @@ pub(crate) fn block_sums<const K: usize, A: Addend<K>>(
     positions: &[[f64; 3]],
     addend: A,
 ) -> [f64; K] {
-    let lanes = dispatch(Block {
+    dispatch(Block {
         masses,
         positions,
         addend,
-    });
-    merge_lanes(lanes, A::merge)
+    })
 }
 
 struct Block<'a, const K: usize, A> {
@@ -41,7 +41,7 @@ struct Block<'a, const K: usize, A> {
 }
 
 impl<const K: usize, A: Addend<K>> Kernel for Block<'_, K, A> {
-    type Output = [[f64; K]; LANES];
+    type Output = [f64; K];
 
     #[inline(always)]
     fn run<L: Lane>(self) -> Self::Output {
@@ -58,7 +58,14 @@ impl<const K: usize, A: Addend<K>> Kernel for Block<'_, K, A> {
             positions[..odd_positions.len()].copy_from_slice(odd_positions);
             add_eight(&masses, &positions, &self.addend, &mut sums);
         }
-        std::array::from_fn(|lane| std::array::from_fn(|k| sums[k][lane].get()))
+        // The lanes are merged here, where they are still in registers.
+        let mut lanes = [[0.0; K]; LANES];
+        for (lane, own) in lanes.iter_mut().enumerate() {
+            for (sum, own) in own.iter_mut().zip(&sums) {
+                *sum = own[lane].get();
+            }
+        }
+        merge_lanes(lanes, A::merge)
     }
 }
 

@@ -21,6 +21,29 @@ use crate::numerics::threads::{Halt, Watch};
 /// The solid of a mesh whose holes are closed: each by triangles from the edges around it to the mean of their ends, which
 /// for a flat hole is the flat cap, whatever its shape.
 ///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::Amount;
+/// use polhode::mass::polyhedron::Options;
+/// use polhode::mass::polyhedron::closure::{capped, hulled};
+/// use polhode::mass::provenance::Closure;
+///
+/// // The corner of a cube without its slanted face, which either way is put in again.
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let open = [[0_usize, 2, 1], [0, 1, 3], [0, 3, 2]];
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let amount = Amount::Density(6.0);
+/// let body = capped(&vertices, &open, amount, Options::default(), go_on)?;
+/// assert!((body.mass() - 1.0).abs() < 1e-15);
+/// assert_eq!(body.provenance().closure, Some(Closure::Caps));
+/// let hull = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let body = hulled(&vertices, &open, &hull, amount, go_on)?;
+/// assert_eq!(body.provenance().closure, Some(Closure::Hull));
+/// # Ok::<(), polhode::parallel::Halt<polhode::Error>>(())
+/// ```
+///
 /// # Errors
 /// As [`polyhedron`](super::polyhedron) of the closed mesh; faces that are wound inconsistently.
 pub fn capped<I: Index>(

@@ -50,6 +50,29 @@ pub fn polyhedron<I: Index>(
 
 /// The same on several threads when the mesh is large, with `watch` asked about every 20 ms whether to go on.
 ///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::polyhedron::{Index, Options, polyhedron_watched};
+/// use polhode::mass::{Amount, RigidBody};
+///
+/// /// A solid whose faces count vertices by integers of any type, wound either way.
+/// fn solid<I: Index>(vertices: &[[f64; 3]], faces: &[[I; 3]]) -> Result<RigidBody, polhode::Error> {
+///     let options = Options { orient: true, ..Options::default() };
+///     let watch = &mut |done: f64| {
+///         println!("{:.0} %", 100.0 * done);
+///         ControlFlow::Continue(())
+///     };
+///     Ok(polyhedron_watched(vertices, faces, Amount::Density(6.0), options, watch)?)
+/// }
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let inverted = [[0_i32, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+/// assert!((solid(&vertices, &inverted)?.mass() - 1.0).abs() < 1e-15);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`polyhedron`], and [`Halt::Stopped`] where `watch` said so.
 pub fn polyhedron_watched<I: Index>(

@@ -13,6 +13,44 @@ pub type Triangle = [[f64; 3]; 3];
 pub const BLOCK: usize = crate::numerics::reduce::BLOCK;
 
 /// The triangles of a file in order, as often as asked, without all of them ever being in memory.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::Amount;
+/// use polhode::mass::polyhedron::Options;
+/// use polhode::mass::polyhedron::stream::{BLOCK, StreamError, Triangle, TriangleStream};
+/// use polhode::mass::polyhedron::streamed::streamed;
+///
+/// /// Triangles that a program makes as they are asked for: here from a list.
+/// struct Made(Vec<Triangle>);
+///
+/// impl TriangleStream for Made {
+///     fn blocks(
+///         &mut self,
+///         visit: &mut dyn FnMut(&[Triangle], f64) -> ControlFlow<()>,
+///     ) -> Result<(), StreamError> {
+///         let mut done = 0;
+///         for block in self.0.chunks(BLOCK) {
+///             done += block.len();
+///             if visit(block, done as f64 / self.0.len() as f64).is_break() {
+///                 break;
+///             }
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// let [o, x, y, z] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let mut corner = Made(vec![[o, y, x], [o, x, z], [o, z, y], [x, y, z]]);
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// // Coordinates in millimetres, by the scale.
+/// let solid = streamed(&mut corner, 1e-3, Amount::Density(6000.0), Options::default(), go_on)?;
+/// assert_eq!(solid.triangles, 4);
+/// assert!((solid.body.mass() - 1e-6).abs() < 1e-20);
+/// # Ok::<(), StreamError>(())
+/// ```
 pub trait TriangleStream {
     /// Once through: `visit` gets [`BLOCK`] triangles at a time, at the end perhaps fewer, and the fraction of the file
     /// done; where it says [`ControlFlow::Break`] there is no more.

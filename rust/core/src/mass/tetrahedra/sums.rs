@@ -153,11 +153,12 @@ impl<'a> Cells<'a> {
             for rho in &mut rho {
                 *rho = *rho * a * b;
             }
-            let corners = [self.nodes[i], self.nodes[j], self.nodes[k], self.nodes[l]];
-            let d = corners.map(|r| {
-                let from = SplitVector::difference(&r, &origin).scaled(inverse);
-                Vector3::new(from.dot(x), from.dot(y), from.dot(z))
-            });
+            // No `map`: a caller's compiler may leave its closure a function, and split the axes for each corner anew.
+            let mut d = [Vector3::zeros(); 4];
+            for (d, k) in d.iter_mut().zip([i, j, k, l]) {
+                let from = SplitVector::difference(&self.nodes[k], &origin).scaled(inverse);
+                *d = Vector3::new(from.dot(x), from.dot(y), from.dot(z));
+            }
             let p: f64 = rho.iter().sum();
             let s = d[0] + d[1] + d[2] + d[3];
             let t = d[0] * rho[0] + d[1] * rho[1] + d[2] * rho[2] + d[3] * rho[3];

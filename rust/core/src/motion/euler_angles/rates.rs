@@ -95,6 +95,22 @@ impl Sequence {
     }
 
     /// Rate of the middle angle, which is defined where those of the others are not.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::motion::euler_angles::{SINGULAR, Sequence};
+    /// use polhode::motion::kinematics::Frame;
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// // A top that stands upright and begins to lean: θ̇ is known, φ̇ and ψ̇ are not.
+    /// let sequence: Sequence = "ZXZ".parse()?;
+    /// let upright = [0.3, 0.5 * SINGULAR, 0.0];
+    /// let omega = Vector3::new(0.7, 0.0, 9.0);
+    /// assert_eq!(sequence.middle_rate(&upright, &omega, Frame::Body), 0.7);
+    /// assert!(sequence.rates(&upright, &omega, Frame::Body).is_err());
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn middle_rate(self, angles: &[f64; 3], omega: &Vector3<f64>, frame: Frame) -> f64 {
         let (_, [_, middle, _], _) = self.unwound(angles, omega, frame);

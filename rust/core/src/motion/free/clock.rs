@@ -108,15 +108,16 @@ pub(super) struct HalfPeriod {
 }
 
 impl HalfPeriod {
-    /// Of a motion with finite T: for p ≥ q, `∂T/∂q = ½ ∫₀ᵀ y²/d² dt` and, by the scaling law, `2(p ∂_p + q ∂_q)T = −T`.
+    /// Of a motion with finite T, which is given: for p ≥ q, `∂T/∂q = ½ ∫₀ᵀ y²/d² dt` and, by the scaling law,
+    /// `2(p ∂_p + q ∂_q)T = −T`.
     #[inline]
-    pub(super) fn of(motion: &Invariants) -> Self {
+    pub(super) fn of(motion: &Invariants, half_period: f64) -> Self {
         let (p, _, k_prime) = motion.fast_and_slow();
         let m1 = k_prime * k_prime;
         let over_cube = 2.0 / (3.0 * p * p.sqrt());
         let over_d = over_cube * carlson_rd(0.0, 1.0, m1);
         Self {
-            by_larger: 0.5 * (m1 * over_d - motion.half_period().high / p),
+            by_larger: 0.5 * (m1 * over_d - half_period / p),
             by_gap: -0.5 * over_d,
             square_integral: over_cube * carlson_rd(0.0, m1, 1.0),
         }

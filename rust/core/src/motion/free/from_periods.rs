@@ -29,6 +29,27 @@ impl Circled {
 }
 
 /// What two periods say of a free motion.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::RigidBody;
+/// use polhode::motion::free::{Circled, FreeMotion, FromPeriods, attitude_about};
+/// use polhode::nalgebra::{Matrix3, Vector3};
+///
+/// // The asteroid Toutatis (Ostro et al. 1995): it rotates about its long axis in 5.41 days, which precesses in 7.35.
+/// let moments = [1.0, 3.09, 3.22];
+/// let given = FromPeriods { rotation: 5.41, precession: 7.35, circled: Circled::Long, sense: 1.0, phase: 0.0 };
+/// let omega = given.omega(&moments)?;
+/// let axes = Matrix3::identity();
+/// let attitude = attitude_about(&moments, &axes, &omega, &Vector3::new(0.1, 0.0, -1.0))?; // L in space
+/// let body = RigidBody::from_principal(1.0, &moments, &axes, &Vector3::zeros(), 0.0)?;
+/// let motion = FreeMotion::of(&body, &omega, &attitude)?;
+/// assert!((motion.periods().rotation - 5.41).abs() < 1e-9);
+/// assert!((motion.periods().precession - 7.35).abs() < 1e-9);
+/// assert!(motion.normal().z < -0.99);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct FromPeriods {
     /// `P_ψ`: ω and L return in the body.

@@ -18,6 +18,41 @@
 //! | `constants.rs` | from these to what a state takes |
 //! | `propagator.rs` | the states, in lanes |
 //! | [`equilibria`] | steady rotations with one angular momentum |
+//!
+//! # Examples
+//!
+//! ```
+//! use polhode::RigidBody;
+//! use polhode::motion::gyrostat::equilibria::{Bifurcation, Equilibria, Equilibrium, Extent, Kind, Meeting, equilibria};
+//! use polhode::motion::gyrostat::{Gyrostat, GyrostatMotion, Inside};
+//! use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+//!
+//! // A satellite with a wheel of 0.1 kg m² that is held at 300 rad/s about its first axis.
+//! let body = RigidBody::from_principal(90.0, &[8.0, 10.0, 12.0], &Matrix3::identity(), &Vector3::zeros(), 0.0)?;
+//! let inside = Inside::of(&Vector3::zeros())?.with(&Vector3::x(), 0.1, 30.0, false)?;
+//! let omega = Vector3::new(0.05, -0.02, 0.1);
+//! assert_eq!(inside.rotor(&omega).map(|h| h.rounded()), [30.0, 0.0, 0.0]);
+//! let satellite = Gyrostat::of(&body, &inside)?;
+//! let motion: GyrostatMotion = satellite.free_motion(&omega, &UnitQuaternion::identity())?;
+//! assert!(motion.as_free().is_none()); // with momentum inside it is no free motion of a body
+//! let (mut attitudes, mut omegas) = ([[0.0; 4]; 1], [[0.0; 3]; 1]);
+//! motion.sample(&[motion.period.rounded()], &mut attitudes, &mut omegas);
+//! assert!((Vector3::from(omegas[0]) - omega).amax() < 1e-12);
+//!
+//! // With that much momentum it rests about the wheel's axis alone, and about the opposite one.
+//! let Equilibria { found, bifurcations } = satellite.equilibria(30.0, &omega)?;
+//! assert_eq!(found.len(), 2);
+//! let Equilibrium { kind, extent, direction, .. } = &found[0];
+//! assert!((direction[0].abs() - 1.0).abs() < 1e-12);
+//! assert!(matches!((kind, extent), (Kind::Minimum | Kind::Maximum, Extent::Point)));
+//! // The others come in, as the wheel is slowed, where a pair parts from these.
+//! let Bifurcation { meeting, rotor, .. } = &bifurcations[0];
+//! assert!(*meeting == Meeting::Pitchfork && *rotor < 30.0);
+//! // The same from principal moments and h, in their axes, and turned into those of the body.
+//! let again = equilibria(&[8.0, 10.0, 12.0].map(Into::into), &[30.0, 0.0, 0.0].map(Into::into), 30.0.into());
+//! assert_eq!(again.turned(&Matrix3::identity()).found.len(), 2);
+//! # Ok::<(), polhode::Error>(())
+//! ```
 
 mod constants;
 mod curve;

@@ -11,6 +11,41 @@ use crate::motion::attitude::components;
 const QUARTER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// The attitude `q_target` (of N from the target's frame) that a feedback turns the body toward.
+///
+/// # Examples
+///
+/// ```
+/// use std::sync::Arc;
+/// use polhode::motion::loads::{Aim, Feedback, Path, Switch, kepler::Orbit};
+/// use polhode::motion::simulate::{Phase, State};
+/// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+///
+/// let about_z = |angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+/// // Toward an attitude that stays, with the stiffness 2 N m and the damping 1 N m s:
+/// let (stiffness, damping) = (Matrix3::identity() * 2.0, Matrix3::identity());
+/// let feedback = Feedback::new(&stiffness, &damping, &about_z(0.0))?;
+/// assert_eq!(feedback.aim.fixed(), Some(&about_z(0.0)));
+/// // one that turns at 0.1 rad/s, from the start of the motion on or from a time that is said,
+/// let turning = Aim::turning(&about_z(0.0), &Vector3::new(0.0, 0.0, 0.1), None)?;
+/// assert!(turning.needs_epoch() && !turning.clone().anchored(5.0).needs_epoch());
+/// assert!(turning.at(5.0, 7.0).0.angle_to(&about_z(0.2)) < 1e-15);
+/// // one through samples, which is known between them alone,
+/// let sampled = Aim::sampled(&[0.0, 1.0, 2.0], &[about_z(0.0), about_z(0.5), about_z(1.0)])?;
+/// assert!(matches!(sampled, Aim::Sampled(_)));
+/// assert_eq!(sampled.breaks(), [0.0, 1.0, 2.0]);
+/// assert!(sampled.check(0.0, 0.0, 2.0).is_ok() && sampled.check(0.0, 0.0, 3.0).is_err());
+/// // and down along an orbit.
+/// let orbit = Orbit::new(1.0, &Vector3::x(), &Vector3::y())?;
+/// let down = Feedback::toward(&stiffness, &damping, Aim::Down(Path::kepler(&orbit, None)?))?;
+/// assert!((down.aim.at(0.0, 0.0).0 * Vector3::z() + Vector3::x()).amax() < 1e-15);
+///
+/// // The law takes the shorter way round, by a sign that changes half a turn away from the target.
+/// let there = Phase::in_place(&State { attitude: about_z(3.0), omega: Vector3::new(0.0, 0.0, 1.0) });
+/// let [value, rate] = Switch::toward(&feedback.aim, 0.0, 0.0, &there).value_and_rate(0.0, &there);
+/// assert!((value - 1.5_f64.cos()).abs() < 1e-15 && (rate + 0.5 * 1.5_f64.sin()).abs() < 1e-15);
+/// # let _: &Arc<Aim> = &down.aim;
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Aim {
     /// One that stays.
@@ -31,6 +66,20 @@ pub enum Aim {
 }
 
 /// A smooth attitude through samples: a cubic spline through each component of the quaternions, at unit length.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::loads::{Aim, Sampling};
+/// use polhode::nalgebra::UnitQuaternion;
+///
+/// let Aim::Sampled(attitudes) = Aim::sampled(&[0.0, 1.0], &[UnitQuaternion::identity(); 2])? else {
+///     unreachable!("it was made of samples")
+/// };
+/// let attitudes: Sampling = attitudes;
+/// assert_eq!(attitudes, attitudes.clone());
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampling {
     vector: Spline,

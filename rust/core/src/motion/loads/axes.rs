@@ -10,7 +10,7 @@ use crate::numerics::number::Real;
 use crate::numerics::quaternion::normalized;
 
 /// A number in which laws can be stated.
-pub trait Exact: Real {
+pub(crate) trait Exact: Real {
     /// What tells which of the numbers of a problem are varied.
     type Variables: Variables<Self>;
 
@@ -64,7 +64,7 @@ impl Exact for Varied {
 
 /// The principal axes of what a load acts on.
 #[derive(Clone, Copy, Debug)]
-pub struct Axes<'s, X: Exact> {
+pub(crate) struct Axes<'s, X: Exact> {
     /// What it acts on.
     pub subject: &'s Subject,
     /// Columns, in B.

@@ -71,6 +71,23 @@ impl<E: From<Error>> Callback<(), E> {
 
 impl<F, E> Callback<F, E> {
     /// The same load, which is known not to depend on ω or on the velocity: so that the splitting method can serve it.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::motion::loads::{Callback, Load, Wrench};
+    /// use polhode::motion::simulate::Phase;
+    /// use polhode::nalgebra::Vector3;
+    ///
+    /// // A spring in space, switched off at t = 2: not smooth there, and no matter how fast the body is.
+    /// let spring = |t: f64, phase: &Phase| {
+    ///     let force = if t < 2.0 { phase.position * -3.0 } else { Vector3::zeros() };
+    ///     Ok::<_, polhode::Error>(Wrench { force, torque: Vector3::zeros() })
+    /// };
+    /// let load = Callback::wrench(spring).independent_of_rates().with_breaks(&[2.0]);
+    /// assert!(load.exerts_force() && !load.depends_on_rates());
+    /// assert_eq!(load.breaks(0.0, 10.0), [2.0]);
+    /// ```
     #[must_use]
     pub fn independent_of_rates(self) -> Self {
         Self {

@@ -27,6 +27,29 @@ use crate::motion::state::Phase;
 /// ```
 ///
 /// Source: Hughes, Spacecraft Attitude Dynamics, §8.1; the second derivatives of Vallado's potential, §8.6.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::loads::{GravityGradient, Subject};
+/// use polhode::nalgebra::{UnitQuaternion, Vector3};
+///
+/// // A rod of 6 m and 10 kg on a circle about the earth, at 45° from the vertical in the plane of the orbit.
+/// let rod = solids::cuboid(&[6.0, 0.0, 0.0], Amount::Mass(10.0))?; // I = m l²/12 = 30 across
+/// let (mu, r) = (3.986_004_418e14_f64, 7e6_f64);
+/// let speed = (mu / r).sqrt();
+/// let law = GravityGradient::new(mu, &(Vector3::x() * r), &(Vector3::y() * speed), None)?;
+/// let subject = Subject::free(&rod, 0.0);
+/// let tilted = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_4);
+/// let torque = law.torque(&subject, 0.0, &tilted);
+/// assert!((torque.z / (-1.5 * mu / r.powi(3) * 30.0) - 1.0).abs() < 1e-12); // 3/2 n² ΔI sin 2α
+/// assert_eq!((law.mu(), law.coefficient()), (mu, 3.0 * mu));
+/// // A quarter of a revolution later.
+/// let quarter = std::f64::consts::FRAC_PI_2 * r / speed;
+/// assert!((law.orbit_at(&subject, quarter).0 - Vector3::y() * r).norm() < 1e-6);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct GravityGradient {
     mu: f64,

@@ -13,6 +13,20 @@ use crate::error::Error;
 use crate::motion::state::Phase;
 
 /// What of the angular momentum about the reference point a load leaves as it is.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::loads::{Kept, Term};
+/// use polhode::nalgebra::Vector3;
+///
+/// // Gravity leaves the angular momentum of a pivoted body about the vertical, and all of a free one's.
+/// let weight = Term::uniform_gravity(&Vector3::new(0.0, 0.0, -9.81))?;
+/// assert!(matches!(weight.keeps(true), Kept::Along(axis) if axis.z.abs() == 1.0));
+/// assert_eq!(weight.keeps(false), Kept::All);
+/// assert_eq!(Kept::All.and(Kept::Nothing), Kept::Nothing);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kept {
     /// All of it: the load has no torque.

@@ -9,6 +9,56 @@ use crate::error::Error;
 use crate::motion::state::Phase;
 
 /// A load as a function of time and state, whoever computes it.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::loads::{Bearing, Carried, Change, Load, Wrench};
+/// use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
+/// use polhode::nalgebra::{UnitQuaternion, Vector3};
+///
+/// /// A brake that is on for the first second. A closure would do ([`Callback`](super::Callback)); what a trait adds are
+/// /// states and laws of its own: [`Carried`], [`Change`], [`Bearing`].
+/// struct Brake {
+///     is_on: bool,
+/// }
+///
+/// impl Load for Brake {
+///     type Error = polhode::Error;
+///     fn exerts_force(&self) -> bool {
+///         false
+///     }
+///     fn depends_on_rates(&self) -> bool {
+///         true
+///     }
+///     fn breaks(&self, _: f64, _: f64) -> Vec<f64> {
+///         vec![1.0]
+///     }
+///     fn enter(&mut self, from: f64, to: f64) -> Result<(), Self::Error> {
+///         self.is_on = 0.5 * (from + to) < 1.0;
+///         Ok(())
+///     }
+///     fn wrench(&mut self, _: f64, phase: &Phase) -> Result<Wrench, Self::Error> {
+///         let torque = if self.is_on { -phase.omega } else { Vector3::zeros() };
+///         Ok(Wrench::couple(torque))
+///     }
+/// }
+///
+/// let ball = solids::sphere(1.0, Amount::Mass(5.0))?; // I = 2
+/// let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::z() };
+/// let tolerance = Tolerance::new(1e-12, 0.0)?;
+/// let task = Task::free(&ball, Phase::in_place(&state), &[0.0, 3.0], Method::Auto, tolerance);
+/// let mut brake = Brake { is_on: true };
+/// let (carried, changes, bearings): (Vec<&dyn Carried>, Vec<Change>, &[Bearing]) =
+///     (brake.carried(), brake.changes(), brake.bearings());
+/// assert!(carried.is_empty() && changes.is_empty() && bearings.is_empty());
+/// let go_on = &mut |_| ControlFlow::Continue(());
+/// let run = simulate(&task, &mut brake, &mut NoEvents::new(), go_on).into_result()?;
+/// assert!((run.phase.omega.z - (-0.5_f64).exp()).abs() < 1e-12);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 pub trait Load {
     /// What may go wrong in it, besides what the equations of motion themselves may refuse.
     type Error: From<Error>;

@@ -124,6 +124,33 @@ pub fn field_and_rate(
 ///
 /// The second part is the law that slows a satellite down ("B-dot"): `Ḃ = R_NBᵀ Ḃ_N − ω × B`.
 /// Source: Wertz, Spacecraft Attitude Determination and Control, §18.3; Stickler, Alfriend, J. Spacecraft 13 (1976) 282.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::loads::{Magnetic, MagneticField, Path, Subject, Term, kepler::Orbit};
+/// use polhode::motion::simulate::{Phase, State};
+/// use polhode::nalgebra::{UnitQuaternion, Vector3};
+///
+/// // A compass needle of 0.1 A m² across a field of 50 µT: m × B.
+/// let field = MagneticField::uniform(&Vector3::new(0.0, 5e-5, 0.0))?;
+/// let needle: Term = Magnetic::new(&Vector3::new(0.1, 0.0, 0.0), None, field)?.into();
+/// let body = solids::cuboid(&[0.05, 0.002, 0.001], Amount::Mass(0.001))?;
+/// let rest = Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega: Vector3::zeros() });
+/// let torque = needle.wrench(&Subject::free(&body, 0.0), 0.0, &rest).torque;
+/// assert!((torque.z - 5e-6).abs() < 1e-20);
+///
+/// // The field along an orbit about a dipole, twice as strong above its pole as above its equator, or through samples.
+/// let orbit = Path::kepler(&Orbit::new(1.0, &Vector3::x(), &Vector3::z())?, None)?;
+/// let dipole = MagneticField::of_dipole(&Vector3::z(), orbit)?;
+/// let [above_equator, _] = dipole.at(0.0, 0.0);
+/// let [above_pole, _] = dipole.at(0.0, std::f64::consts::FRAC_PI_2);
+/// assert!((above_pole.norm() - 2.0 * above_equator.norm()).abs() < 1e-12);
+/// let sampled = MagneticField::sampled(&[0.0, 1.0], &[Vector3::x(), Vector3::y()])?;
+/// assert_eq!(sampled.at(0.0, 0.5)[1], Vector3::new(-1.0, 1.0, 0.0)); // its rate
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Magnetic {
     dipole: Vector3<f64>,

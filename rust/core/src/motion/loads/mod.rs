@@ -17,6 +17,49 @@
 //! | what the caller knows | a closure of time and state | `callback` |
 //!
 //! A law more is a file more here, which answers what a `Law` is asked, and its name in the list in `term.rs`.
+//!
+//! # Examples
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//! use polhode::mass::{Amount, solids};
+//! use polhode::motion::loads::{
+//!     Analytic, ConstantForce, ConstantTorque, Damping, Frame, Load, Parameter, Rotor, Slug, Subject, Term, UniformGravity, Wrench,
+//! };
+//! use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
+//! use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+//!
+//! // A top of 2 kg on a table with its point at the origin, in gravity, slowed by air, a rotor and a loose part inside.
+//! let disk = solids::cylinder(0.1, 0.02, Amount::Mass(2.0))?.translated(&Vector3::new(0.0, 0.0, 0.05))?;
+//! let air = Damping::new(&(Matrix3::identity() * 1e-4), &Matrix3::zeros())?;
+//! assert_eq!(air.torque(&Vector3::new(0.0, 0.0, 10.0)).z, -1e-3);
+//! let terms = [
+//!     UniformGravity::new(&Vector3::new(0.0, 0.0, -9.81))?.into(),
+//!     air.into(),
+//!     Rotor::new(&Vector3::new(0.0, 0.0, 0.01))?.into(),
+//!     Slug::new(1e-5, 1e-4)?.into(),
+//!     ConstantTorque::new(&Vector3::new(0.0, 0.0, 1e-3), Frame::Body)?.into(),
+//!     Term::ConstantForce(ConstantForce::new(&Vector3::x(), Frame::Space, Some(&Vector3::new(0.0, 0.0, 0.06)))?),
+//! ];
+//! let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::new(0.0, 0.0, 200.0) };
+//! let tolerance = Tolerance::new(1e-12, 0.0)?;
+//! let task = Task::pivoted(&disk, Phase::in_place(&state), &[0.0, 0.5], Method::Auto, tolerance);
+//! let mut load = Analytic::new(&terms, task.subject);
+//! assert!(load.depends_on_rates());
+//! assert_eq!((load.terms().len(), load.subject()), (6, &Subject::pivoted(&disk, 0.0)));
+//! let go_on = &mut |_| ControlFlow::Continue(());
+//! let run = simulate(&task, &mut load, &mut NoEvents::new(), go_on).into_result()?;
+//! assert!(run.phase.omega.z < 200.0);
+//! assert_eq!(load.active().len(), 6); // those that act in the last span of time
+//!
+//! // Each by itself: what it exerts at a state, and its numbers by name.
+//! let Wrench { force, torque } = terms[0].wrench(&task.subject, 0.0, &run.samples[0]);
+//! assert_eq!((force.z, torque), (-19.62, Vector3::zeros()));
+//! let numbers: Vec<Parameter> = terms[0].parameters();
+//! assert_eq!(numbers[0].count(), 3);
+//! assert_eq!(Wrench::couple(Vector3::z()).force, Vector3::zeros());
+//! # Ok::<(), polhode::Error>(())
+//! ```
 
 mod aim;
 mod analytic;
@@ -58,8 +101,7 @@ mod wrench;
 
 pub use self::aim::{Aim, Sampling};
 pub use self::analytic::Analytic;
-pub use self::axes::Axes;
-pub(crate) use self::axes::Exact;
+pub(crate) use self::axes::{Axes, Exact};
 pub use self::bearing::Bearing;
 pub use self::callback::Callback;
 pub use self::carried::Carried;

@@ -19,6 +19,28 @@ const LAST: f64 = 1e-18;
 /// The motion is a chain of Taylor series, each as long as it converges well, which grows as far as it is asked for and
 /// is kept: a revolution of a circle takes about ten of them.
 /// Source: Vallado, Fundamentals of Astrodynamics and Applications, §8.6.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::loads::{Oblate, kepler::Orbit};
+/// use polhode::nalgebra::Vector3;
+///
+/// // A satellite of the earth over the poles: J₂ shortens the pull above them.
+/// let (mu, j2, earth) = (3.986_004_418e14_f64, 1.082_63e-3, 6.378_137e6);
+/// let r = 7e6;
+/// let orbit = Orbit::new(mu, &(Vector3::x() * r), &(Vector3::z() * (mu / r).sqrt()))?;
+/// let orbit = Oblate::new(&orbit, j2, earth, &Vector3::z())?;
+/// assert_eq!(orbit.pole(), &Vector3::z());
+/// assert!((orbit.bulge() / (j2 * earth * earth) - 1.0).abs() < 1e-15);
+/// let share = orbit.bulge() / (r * r);
+/// let pull = |direction: Vector3<f64>| orbit.acceleration(&(direction * r)).norm() / (mu / (r * r));
+/// assert!((pull(Vector3::x()) - (1.0 + 1.5 * share)).abs() < 1e-12);
+/// assert!((pull(Vector3::z()) - (1.0 - 3.0 * share)).abs() < 1e-12);
+/// // A day is known; a hundred years would be too many series to keep.
+/// assert!(orbit.check(86_400.0).is_ok() && orbit.check(100.0 * 3.2e7).is_err());
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Oblate {
     /// The Kepler orbit through the state at the epoch.

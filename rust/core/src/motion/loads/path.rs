@@ -11,6 +11,26 @@ use crate::error::{Error, finite};
 use crate::motion::attitude::from_axes;
 
 /// Position and velocity of C from an attractor, in N, at any time of a motion.
+///
+/// # Examples
+///
+/// ```
+/// use polhode::motion::loads::{Oblate, Path, kepler::Orbit};
+/// use polhode::nalgebra::Vector3;
+///
+/// let orbit = Orbit::new(1.0, &Vector3::x(), &Vector3::y())?;
+/// let path = Path::kepler(&orbit, None)?; // which begins with the motion
+/// assert!(path.needs_epoch() && path.as_kepler().is_some() && path.as_oblate().is_none());
+/// let begun = path.anchored(10.0);
+/// assert!((begun.at(0.0, 10.0 + std::f64::consts::PI).0 + Vector3::x()).norm() < 1e-14);
+/// let flattened = Path::oblate(Oblate::new(&orbit, 1e-3, 0.9, &Vector3::z())?, Some(0.0))?;
+/// assert!(flattened.as_oblate().is_some());
+/// // Through positions that are known at some times, and at no others.
+/// let sampled = Path::sampled(&[0.0, 1.0, 2.0], &[Vector3::x(), Vector3::y(), -Vector3::x()])?;
+/// assert_eq!(sampled.breaks(), [0.0, 1.0, 2.0]);
+/// assert!(sampled.check(0.0, 0.0, 2.0).is_ok() && sampled.check(0.0, 0.0, 2.5).is_err());
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path(Way);
 

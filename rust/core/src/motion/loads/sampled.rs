@@ -74,6 +74,20 @@ impl Sampled {
     }
 
     /// The cubic around time `t`, `Σ c_k (t − t₀)^k`: its t₀ and coefficients.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use polhode::nalgebra::Vector3;
+    /// use polhode::motion::loads::{Frame, Sampled};
+    ///
+    /// let times = [0.0, 1.0, 2.0, 3.0];
+    /// let cubic = Sampled::new(&times, &times.map(|t: f64| Vector3::z() * t.powi(3)), Frame::Body)?;
+    /// let (start, coefficients) = cubic.piece(1.5);
+    /// assert_eq!(start, 1.0);
+    /// assert!((coefficients[3].z - 1.0).abs() < 1e-14);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
     #[must_use]
     pub fn piece(&self, t: f64) -> (f64, &[Vector3<f64>; 4]) {
         self.spline.piece(t)

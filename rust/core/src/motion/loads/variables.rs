@@ -32,7 +32,7 @@ pub(in crate::motion) const WIDTH: usize = 8;
 pub(in crate::motion) type Varied = Jet<WIDTH>;
 
 /// Which variables are varied.
-pub trait Variables<X: Real>: Copy + Debug + Send + Sync {
+pub(crate) trait Variables<X: Real>: Copy + Debug + Send + Sync {
     /// The variable of a column, at its value.
     fn number(self, value: f64, column: usize) -> X;
 
@@ -61,7 +61,7 @@ pub trait Variables<X: Real>: Copy + Debug + Send + Sync {
 
 /// None of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Fixed;
+pub(crate) struct Fixed;
 
 impl<X: Real> Variables<X> for Fixed {
     #[inline(always)]

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 use crate::motion::attitude::{from_axes, rate};
 use crate::motion::euler_equations::EulerEquations;
 use crate::motion::integrate::{Compensated, System};
-use crate::motion::loads::{Bearing, Change, Load, Resting, Subject};
+use crate::motion::loads::{Bearing, Change, Load, Resting, Subject, Wrench};
 use crate::motion::problem::Tolerance;
 use crate::motion::state::Phase;
 
@@ -187,18 +187,21 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
     #[inline]
     fn derivative(&mut self, t: f64, y: &SVector<f64, N>) -> Result<SVector<f64, N>, L::Error> {
         let (q, w) = (quaternion(y), vector(y, 4));
-        let (phase, own) = (self.phase(t, y), self.own());
+        let phase = self.phase(t, y);
+        let own = self.own();
         let mut slope = SVector::<f64, N>::zeros();
         let rates = &mut slope.as_mut_slice()[N.min(MOVING)..][..own];
-        let mut wrench = self.load.act(t, &phase, rates)?;
-        if let Some(resting) = &self.resting {
-            wrench.torque = resting.hold(&phase.omega, &wrench.torque, rates);
-        }
-        let torque = if self.axes.are_of_body {
-            wrench.torque
-        } else {
-            self.axes.columns.tr_mul(&wrench.torque)
+        // Vector by vector, as they were written: a copy of the whole would wait for them.
+        let (force, mut torque) = match self.load.act(t, &phase, rates) {
+            Ok(Wrench { force, torque }) => (force, torque),
+            Err(error) => return Err(error),
         };
+        if let Some(resting) = &self.resting {
+            torque = resting.hold(&phase.omega, &torque, rates);
+        }
+        if !self.axes.are_of_body {
+            torque = self.axes.columns.tr_mul(&torque);
+        }
         let turning = self.euler.principal_acceleration(&w, &torque)?;
         let q_rate = rate(&q, &w);
         (slope[0], slope[1], slope[2], slope[3]) = (q_rate.i, q_rate.j, q_rate.k, q_rate.w);
@@ -210,7 +213,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
             let moving = if self.is_held {
                 Vector3::zeros()
             } else {
-                wrench.force / self.mass
+                force / self.mass
             };
             for i in 0..3 {
                 slope[7 + i] = y[10 + i];

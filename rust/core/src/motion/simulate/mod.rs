@@ -13,6 +13,66 @@
 //! | what Runge-Kutta methods see of the mechanics | `equations` |
 //! | what is looked for, and the look through a step | [`events`], `lookout`, `along` |
 //! | where a load changes its law with the state | `flips` |
+//!
+//! # Examples
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//! use polhode::mass::{Amount, solids};
+//! use polhode::motion::loads::{Callback, Carried, Subject, Term};
+//! use polhode::motion::simulate::{
+//!     Crossing, Direction, End, Events, Footing, MOST_STEPS, Method, Phase, Rule, Run, State, TIGHTEST, TIGHTEST_TWOFOLD, Task,
+//!     Tolerance, Watched, check_scales, simulate,
+//! };
+//! use polhode::nalgebra::{UnitQuaternion, Vector3};
+//!
+//! /// The second time at which the tip is lowest ends the run.
+//! struct Lowest;
+//!
+//! impl Events for Lowest {
+//!     type Error = polhode::Error;
+//!
+//!     fn rules(&self) -> &[Rule] {
+//!         &[Rule { direction: Direction::Rising, last: 2, watched: Watched::Function }]
+//!     }
+//!
+//!     fn value(&mut self, _: usize, _: f64, phase: &Phase) -> Result<f64, Self::Error> {
+//!         Ok((phase.attitude * phase.omega.cross(&-Vector3::z())).z)
+//!     }
+//! }
+//!
+//! // A rod of 1 m that swings about its end: the origin of its frame is fixed.
+//! let rod = solids::cuboid(&[0.0, 0.0, 1.0], Amount::Mass(2.0))?.translated(&Vector3::new(0.0, 0.0, -0.5))?;
+//! let tilted = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 0.01);
+//! let start = Phase::in_place(&State { attitude: tilted, omega: Vector3::zeros() });
+//! let tolerance = Tolerance::new(1e-12, 0.0)?.within(10_000);
+//! assert!(tolerance.most_steps < MOST_STEPS && tolerance.relative > TIGHTEST);
+//! let times = [0.0, 100.0];
+//! check_scales(&rod, true, &times)?;
+//! let footing = Footing::pivoted(&rod, times[0]);
+//! assert_eq!(footing.subject, Subject::pivoted(&rod, 0.0));
+//! let task: Task = Task::on(&footing, &rod, start, &times, Method::Auto, tolerance);
+//! assert!(Tolerance::new(1e-20, 0.0)?.is_beyond_doubles() && Tolerance::new(0.5 * TIGHTEST_TWOFOLD, 0.0).is_err());
+//!
+//! let weight = |_: f64, phase: &Phase| {
+//!     let pull = phase.attitude.inverse() * Vector3::new(0.0, 0.0, -2.0 * 9.81);
+//!     Ok::<_, polhode::Error>(Vector3::new(0.0, 0.0, -0.5).cross(&pull))
+//! };
+//! let go_on = &mut |_| ControlFlow::Continue(());
+//! let run: Run<polhode::Error> = simulate(&task, &mut Callback::torque(weight), &mut Lowest, go_on);
+//! assert_eq!(run.end, End::Event);
+//! let Crossing { time: first, .. } = run.crossings[0];
+//! let Crossing { time: second, .. } = run.crossings[1];
+//! let half = std::f64::consts::PI * (2.0 / 3.0 / 9.81_f64).sqrt(); // π √(2l/3g)
+//! assert!(((second - first) / half - 1.0).abs() < 1e-4);
+//!
+//! // Another error, as of a caller's own type; and a task whose load carries something along.
+//! assert_eq!(run.with_error(|error| error.to_string()).end, End::Event);
+//! let slug = Term::Slug(polhode::motion::loads::Slug::new(0.01, 0.1)?);
+//! let carried: Option<&dyn Carried> = slug.carried();
+//! assert_eq!(task.carrying(carried.into_iter())?.initial.own.len(), 3);
+//! # Ok::<(), polhode::Error>(())
+//! ```
 
 mod along;
 mod begin;

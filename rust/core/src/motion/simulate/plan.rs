@@ -16,6 +16,65 @@ use crate::motion::state::Phase;
 pub type Ask<'a> = dyn Fn(Option<f64>) -> ControlFlow<()> + Sync + 'a;
 
 /// Motions of bodies through the same times, by a method that serves them all.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::{Amount, RigidBody, solids};
+/// use polhode::motion::loads::{Analytic, Damping, Subject, Term};
+/// use polhode::motion::simulate::{
+///     Ask, Calls, Method, NoEvents, Phase, Plan, Refusal, Row, Rows, Run, State, Tolerance, most_demanding, simulate_many,
+/// };
+/// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+///
+/// /// Balls that start at different rates and are slowed down.
+/// struct Balls {
+///     terms: Vec<[Term; 1]>,
+/// }
+///
+/// impl Rows for Balls {
+///     type Error = polhode::Error;
+///
+///     fn calls(&self) -> Calls {
+///         Calls::Nothing
+///     }
+///
+///     fn start(&self, row: usize) -> (usize, Phase) {
+///         let omega = Vector3::new(0.0, 0.0, 1.0 + row as f64);
+///         (0, Phase::in_place(&State { attitude: UnitQuaternion::identity(), omega }))
+///     }
+///
+///     fn terms(&self, row: usize) -> &[Term] {
+///         &self.terms[row]
+///     }
+///
+///     fn run(&self, row: Row<'_>) -> Run<Self::Error> {
+///         let subject: Subject = row.subject();
+///         let terms = &self.terms[row.number];
+///         row.under(&mut Analytic::new(terms, subject), &mut NoEvents::new())
+///     }
+///
+///     fn ends_all(&self, _: &Self::Error) -> bool {
+///         false
+///     }
+/// }
+///
+/// let bodies: [RigidBody; 1] = [solids::sphere(1.0, Amount::Mass(5.0))?]; // I = 2
+/// let slowed = |k: i32| Damping::new(&(Matrix3::identity() * 0.2 * f64::from(k)), &Matrix3::zeros());
+/// let terms = (1..=20).map(|k| Ok([slowed(k)?.into()])).collect::<Result<Vec<[Term; 1]>, polhode::Error>>()?;
+/// let watch: &Ask<'_> = &|_| ControlFlow::Continue(());
+/// let (times, tolerance) = ([0.0, 1.0], Tolerance::new(1e-12, 0.0)?);
+/// let hardest = Some(most_demanding(&terms, false));
+/// let plan = Plan::new(&bodies, false, &times, Method::Auto, tolerance, hardest, watch)
+///     .map_err(|Refusal { error, .. }| error)?;
+/// assert_eq!((plan.method(), plan.pivoted(), plan.times()), (Method::Taylor, false, &times[..]));
+/// let mut runs: Vec<Option<Run<polhode::Error>>> = (0..20).map(|_| None).collect();
+/// simulate_many(&plan, &Balls { terms }, &mut runs, watch);
+/// let last = runs[19].as_ref().map(|run| run.phase.omega.z);
+/// assert!((last.unwrap() - 20.0 * (-2.0_f64).exp()).abs() < 1e-11);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a> {
     bodies: &'a [RigidBody],

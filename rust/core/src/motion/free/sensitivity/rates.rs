@@ -55,7 +55,7 @@ impl Invariants {
         }
         rates.omega = omega_at(rest);
         if periods.count != 0.0 {
-            rates.skip(self, &periods);
+            rates.skip(self, &periods, half_period.high);
         }
         rates
     }
@@ -94,8 +94,8 @@ impl Invariants {
 impl Rates {
     /// By whole half periods `T`, back: `dω = −ω̇ n dT`, and the signs that an odd number gives.
     #[inline]
-    fn skip(&mut self, motion: &Invariants, periods: &Periods) {
-        let whole = HalfPeriod::of(motion);
+    fn skip(&mut self, motion: &Invariants, periods: &Periods, half_period: f64) {
+        let whole = HalfPeriod::of(motion, half_period);
         let start = std::array::from_fn(|k| Jet::variable(motion.omega[k], k));
         let [p, q] = motion.squares(&start);
         let [b1, b2, b3] = motion.contrast_slopes();

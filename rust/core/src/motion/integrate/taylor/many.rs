@@ -25,6 +25,34 @@ const FEW: usize = 4;
 /// `task` gives the tasks and `terms` what acts in each. They may differ in body, state and numbers; times, tolerance,
 /// whether the body is pivoted and the kinds of terms are the same for all. Every thread asks `watch` about every 64 steps, with the fraction of
 /// motions that were begun; it may stop the run.
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::mass::{Amount, solids};
+/// use polhode::motion::integrate::taylor::{solve_many, solve_one};
+/// use polhode::motion::loads::{Damping, Term};
+/// use polhode::motion::simulate::{Method, Phase, Run, State, Task, Tolerance};
+/// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+///
+/// // A hundred balls that spin at different rates in oil.
+/// let ball = solids::sphere(1.0, Amount::Mass(5.0))?; // I = 2
+/// let terms: [Term; 1] = [Damping::new(&Matrix3::identity(), &Matrix3::zeros())?.into()];
+/// let tolerance = Tolerance::new(1e-12, 0.0)?;
+/// let task = |k: usize| {
+///     let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::z() * (1 + k) as f64 };
+///     Task::free(&ball, Phase::in_place(&state), &[0.0, 2.0], Method::Taylor, tolerance)
+/// };
+/// let mut runs: Vec<Option<Run<polhode::Error>>> = (0..100).map(|_| None).collect();
+/// solve_many(&task, &|_| &terms, &mut runs, &|_| ControlFlow::Continue(()));
+/// let found = runs[99].as_ref().map(|run| run.phase.omega.z);
+/// assert!((found.unwrap() - 100.0 * (-1.0_f64).exp()).abs() < 1e-10);
+/// // The bits of each alone.
+/// let alone = solve_one(&task(99), &terms, &mut |_| ControlFlow::Continue(()));
+/// assert_eq!(found, Some(alone.phase.omega.z));
+/// # Ok::<(), polhode::Error>(())
+/// ```
 pub fn solve_many<'a, E: From<Error> + Send>(
     task: &(dyn Fn(usize) -> Task<'a> + Sync),
     terms: &(dyn Fn(usize) -> &'a [Term] + Sync),

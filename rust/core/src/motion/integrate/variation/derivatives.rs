@@ -44,6 +44,32 @@ pub struct Variation {
 ///
 /// `watch` gets the fraction done and may stop it.
 ///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use polhode::RigidBody;
+/// use polhode::motion::integrate::variation::{Variation, variations};
+/// use polhode::motion::loads::Term;
+/// use polhode::motion::simulate::{Method, Phase, State, Task, Tolerance};
+/// use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+///
+/// // How ω of a freely turning body after 3 s depends on what it began with, and on a torque that may act.
+/// let body = RigidBody::from_principal(1.0, &[1.0, 2.0, 2.5], &Matrix3::identity(), &Vector3::zeros(), 0.0)?;
+/// let state = State { attitude: UnitQuaternion::identity(), omega: Vector3::new(0.0, 0.0, 1.0) };
+/// let tolerance = Tolerance::new(1e-12, 0.0)?;
+/// let task = Task::free(&body, Phase::in_place(&state), &[0.0, 3.0], Method::Taylor, tolerance);
+/// let torque = [Term::constant_torque(&Vector3::zeros(), polhode::motion::loads::Frame::Body)?];
+/// let found = variations(&task, &torque, &[], &mut |_| ControlFlow::Continue(()))?;
+/// let Variation { state, moments, load, .. } = &found[1];
+/// // About axis 3 the rate goes on as it is, and grows by t/I₃ with the torque about it; its phase by t.
+/// assert!((state[(5, 5)] - 1.0).abs() < 1e-14 && (state[(2, 5)] - 3.0).abs() < 1e-13);
+/// assert!((load[2][5] - 3.0 / 2.5).abs() < 1e-13);
+/// assert!(moments[(5, 2)].abs() < 1e-14); // without a torque whatever the moment
+/// assert_eq!(found[1].slope(5, Variation::COLUMNS[0].start + 5), state[(5, 5)]);
+/// # Ok::<(), polhode::Error>(())
+/// ```
+///
 /// # Errors
 /// When the times do not run one way, a term cannot act, the motion cannot go on, [`MotionFault::NoSeries`], [`MotionFault::NotFiniteDerivative`], or
 /// [`Error::Stopped`].
