@@ -161,7 +161,7 @@ element("frame").value = `<iframe src="${file}#embed" title="${given.title.repla
 element("copy").addEventListener("click", () => { element("frame").select(); navigator.clipboard?.writeText(element("frame").value).catch(() => document.execCommand("copy")); });
 if (given.free) {
   element("live").hidden = false;
-  buildSliders(element("sliders"), given.free, element("given"), element("mode"), (begin) => { follow(begin); draw(); });
+  buildSliders(element("sliders"), given.free, given.time_unit, element("given"), element("mode"), (begin) => { follow(begin); draw(); });
 }
 play(playing);
 choose(wanted.view === "poinsot" && !given.free ? "body" : view);
