@@ -36,11 +36,9 @@ def draw() -> Figure:
         crossings = t[falling] + np.diff(t)[falling] * pitch[falling] / (pitch[falling] - pitch[falling + 1])
         print(f"from {start:.0f}°: {np.diff(crossings).mean():.1f} s")
         ax.plot(t / orbit, pitch, color=color, linestyle=dash, label=f"let go at {start:.0f}°")
-    ax.set(
-        xlabel="orbits", ylabel="from the vertical (degrees)", title="Pitch of a gravity-gradient satellite"
-    )
+    ax.set(xlabel="orbits", ylabel="from the vertical (degrees)")
     ax.grid(color="0.9")
-    ax.legend(frameon=False, loc="upper right")
+    ax.legend(loc="lower center", ncols=2, bbox_to_anchor=(0.5, 1.0), frameon=False)
     return figure
 
 
