@@ -26,9 +26,10 @@ SOURCES = [
     path
     for folder in ("docs", "examples")
     for path in (ROOT / folder).rglob("*")
-    if path.suffix in {".md", ".py", ".toml", ".css", ".js"}
+    if path.suffix in {".md", ".py", ".toml", ".css", ".js", ".ipynb"}
     and "_build" not in path.parts
     and path.parent not in {ROOT / "docs" / name for name in ("interface", "gallery", "measured")}
+    and not path.match("docs/notebooks/*.md")
 ]
 BUILT = SITE / "built"
 pytestmark = pytest.mark.skipif(
@@ -121,6 +122,23 @@ def test_old_links_to_the_theory_of_motion_lead_on() -> None:
         file, same = urldefrag(target)
         assert same == anchor
         assert anchor in pages()[f"theory/{file}"].anchors
+
+
+@pytest.mark.parametrize(
+    ("name", "printed", "frames"),
+    [
+        ("racket", "turns over every", 1),
+        ("satellite", "ω strays from the axis", 2),
+        ("asteroid", "long-axis", 1),
+    ],
+)
+def test_notebooks_are_read_on_the_site(name: str, printed: str, frames: int) -> None:
+    """Text, code, what the cells print, and the pages that they show."""
+    text = (SITE / "notebooks" / f"{name}.html").read_text("utf-8")
+    assert printed in text
+    live = [each for each in pages()[f"notebooks/{name}.html"].loaded if each.endswith(".live.html")]
+    assert len(live) == frames
+    assert f"{name}.ipynb" in text
 
 
 @pytest.fixture(scope="module")
