@@ -1,4 +1,4 @@
-"""Apophis past the Earth on 13 April 2029: what may become of its tumble, from clones with all phases."""
+"""Apophis passes the Earth on 13 April 2029: the possible changes of its spin, from many clones."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Detumbling a small satellite: coils act against the field as it changes, and the tumbling dies out."""
+"""Detumbling a small satellite: coils oppose each change of the magnetic field, and the tumbling dies out."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""How long until it flips: the time grows as the logarithm of how well the body was spun."""
+"""How long until it flips? The smaller the error of the spin's direction, the longer: as its logarithm."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Four particles in place of a solid: they have its mass, its centre of mass and its tensor."""
+"""Four particles that can replace a solid: they have its mass, its centre of mass and its tensor."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""A sleeping top: upright while it is fast, it wakes when it is slower than the limit."""
+"""A sleeping top: it stands upright while it is fast, and begins to nod below a limit of its spin."""
 
 import sys
 

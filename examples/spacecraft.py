@@ -1,4 +1,4 @@
-"""A spacecraft put together from parts: the propellant's use moves its centre of mass and turns its axes."""
+"""A spacecraft of several parts: as propellant is used, its centre of mass moves and its axes turn."""
 
 import sys
 
