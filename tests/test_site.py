@@ -310,12 +310,27 @@ def test_axe_finds_nothing_serious(browser: Browser, size: tuple[int, int], dark
         "index", "tutorial", "gallery/index", "gallery/tennis_racket", "interface/index",
         "interface/RigidBody", "interface/RigidBody.motion", "theory/principal", "exercises/mex143",
         "why_others_disagree", "cheat_sheet", "command_line", "how_to/roboticist", "measured/elsewhere",
-        "search",
+        "search", "notebooks/racket",
     ]  # fmt: skip
     browser.screen(*size, dark=dark)
+    chosen = names[dark::2] if size == PHONE else names[:: 1 + dark]
+    assert faults_of(browser, [f"{name}.html" for name in chosen]) == {}
+
+
+@needs_browser
+@pytest.mark.long
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_axe_finds_nothing_serious_on_any_page(desk: Browser, dark: bool) -> None:
+    """Of all pages, which takes minutes."""
+    desk.screen(*DESK, dark=dark)
+    assert faults_of(desk, list(pages())) == {}
+
+
+def faults_of(browser: Browser, names: list[str]) -> dict[str, list[Any]]:
+    """What axe-core finds on pages, by their names."""
     faults: dict[str, list[Any]] = {}
-    for name in names[dark::2] if size == PHONE else names[:: 1 + dark]:
-        browser.open(SITE / f"{name}.html")
+    for name in names:
+        browser.open(SITE / name)
         if found := browser.serious_faults():
             faults[name] = found
-    assert faults == {}
+    return faults

@@ -53,13 +53,13 @@ def body_html(body: RigidBody) -> str:
             "(" + ", ".join(_number(*one) for one in zip(body.center_of_mass, centers, strict=True)) + ")",
         ),
         *(
-            (f'<span style="color:{color}">principal moment {k + 1}</span>', _number(moment, deviation))
+            (f"{_mark(color)}principal moment {k + 1}", _number(moment, deviation))
             for k, (color, moment, deviation) in enumerate(
                 zip(AXIS_COLORS, principal.moments, deviations, strict=True)
             )
         ),
         *(
-            (f'<span style="color:{color}">axis {k + 1}</span>', _vector(axis))
+            (f"{_mark(color)}axis {k + 1}", _vector(axis))
             for k, (color, axis) in enumerate(zip(AXIS_COLORS, principal.axes.T, strict=True))
         ),
         ("top", html.escape(str(principal.top))),
@@ -74,6 +74,11 @@ def body_html(body: RigidBody) -> str:
         '<div style="display:flex;flex-wrap:wrap;align-items:center;gap:16px">'
         f"{drawing}<table><caption>RigidBody</caption>{cells}</table></div>"
     )
+
+
+def _mark(color: str) -> str:
+    """Draw a patch of a colour of the drawing; words in it would be too pale to read."""
+    return f'<span style="background:{color};display:inline-block;width:0.7em;height:0.7em"></span> '
 
 
 def ellipsoid_svg(body: RigidBody) -> str:
