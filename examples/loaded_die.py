@@ -37,5 +37,11 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of a throw of the die with one gram of lead."""
+    die(1.0).simulate([0.0, 4.0], (4.0, 9.0, 2.0)).animate(file, title="A loaded die")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "loaded_die.png", dpi=130)
+    animate("loaded_die.html")

@@ -68,6 +68,8 @@ def test_every_script_has_its_row_and_stands_in_the_gallery() -> None:
     assert scripts == set(PRINTED) == set(shown) == set(table["thumbnails"])
     assert len({words for _, words in table["thumbnails"].values()}) == len(shown)
     assert len(shown) == len(set(shown)) >= 24
+    moving = [name for name in shown if "def animate(" in (EXAMPLES / f"{name}.py").read_text("utf-8")]
+    assert len(moving) >= 24  # a page that moves wherever something does
 
 
 @pytest.mark.parametrize("name", PRINTED)
