@@ -124,6 +124,19 @@ def test_old_links_to_the_theory_of_motion_lead_on() -> None:
         assert anchor in pages()[f"theory/{file}"].anchors
 
 
+def test_no_page_shows_what_python_says_of_its_own_types() -> None:
+    texts = {path: path.read_text("utf-8") for path in (SITE / "interface").glob("*.html")}
+    assert len(texts) > 60
+    told = (
+        "Built-in immutable sequence",
+        "str(object=",
+        "int([x])",
+        "dict() -&gt;",
+        "Convert a string or number",
+    )
+    assert [(path.name, words) for path, text in texts.items() for words in told if words in text] == []
+
+
 @pytest.mark.parametrize(
     ("name", "printed", "frames"),
     [
