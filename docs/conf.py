@@ -21,6 +21,7 @@ extensions = [
     "gallery",
     "measured",
     "moved",
+    "notebooks",
     "written",
 ]
 exclude_patterns = ["_build"]
@@ -45,6 +46,7 @@ html_theme_options = {
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
+html_sidebars = {"tutorial": []}  # which has no pages below it
 html_static_path = ["static"]
 html_css_files = ["polhode.css"]
 html_js_files = ["page.js"]

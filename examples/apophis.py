@@ -1,4 +1,4 @@
-"""Apophis past the Earth on 13 April 2029: what may become of its tumble, from clones with all phases."""
+"""Apophis passes the Earth on 13 April 2029: the possible changes of its spin, from many clones."""
 
 import sys
 
@@ -43,5 +43,14 @@ def draw(clones: int = 2000) -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of the tumbling before the flyby, over a month."""
+    motion = RigidBody.from_principal(1.0, MOMENTS).free_motion_from_periods(
+        ROTATION / DAY, PRECESSION / DAY, mode="short-axis"
+    )
+    motion.at([0.0, 30.0]).animate(file, title="Apophis before the flyby", time_unit="d")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "apophis.png", dpi=130)
+    animate("apophis.html")

@@ -1,4 +1,4 @@
-"""A wheel inside holds what no body alone can: a steady turn about the middle axis."""
+"""A wheel inside makes the spin about the middle axis stable, which no body is by itself."""
 
 import sys
 

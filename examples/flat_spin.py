@@ -1,4 +1,4 @@
-"""Flat spin, as of Explorer 1: what is loose inside takes energy, and the long axis ends across."""
+"""Flat spin, as of Explorer 1: friction inside turns the spin from the long axis to a transverse one."""
 
 import sys
 

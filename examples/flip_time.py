@@ -1,4 +1,4 @@
-"""How long until it flips: the time grows as the logarithm of how well the body was spun."""
+"""How long until it flips? The smaller the error of the spin's direction, the longer: as its logarithm."""
 
 import sys
 
@@ -29,5 +29,13 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of a spin that is a millionth of a degree off."""
+    off = np.radians(1e-6)
+    spin = RATE * np.array([0.0, np.cos(off), np.sin(off)])
+    RACKET.simulate([0.0, 15.0], spin).animate(file, title="A millionth of a degree off the axis")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "flip_time.png", dpi=130)
+    animate("flip_time.html")

@@ -1,4 +1,4 @@
-"""Four particles in place of a solid: they have its mass, its centre of mass and its tensor."""
+"""Four particles that can replace a solid: they have its mass, its centre of mass and its tensor."""
 
 import sys
 
@@ -27,5 +27,13 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of the four particles, which flip as the brick does."""
+    brick = solids.box((3.0, 2.0, 1.0), mass=8.0)
+    four = RigidBody.from_particles(*brick.equimomental_particles())
+    four.simulate([0.0, 20.0], brick.principal.axes @ (0.01, 5.0, 0.0)).animate(file, title="Four particles")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "four_particles.png", dpi=130)
+    animate("four_particles.html")

@@ -36,13 +36,22 @@ def draw() -> Figure:
         crossings = t[falling] + np.diff(t)[falling] * pitch[falling] / (pitch[falling] - pitch[falling + 1])
         print(f"from {start:.0f}°: {np.diff(crossings).mean():.1f} s")
         ax.plot(t / orbit, pitch, color=color, linestyle=dash, label=f"let go at {start:.0f}°")
-    ax.set(
-        xlabel="orbits", ylabel="from the vertical (degrees)", title="Pitch of a gravity-gradient satellite"
-    )
+    ax.set(xlabel="orbits", ylabel="from the vertical (degrees)")
     ax.grid(color="0.9")
-    ax.legend(frameon=False, loc="upper right")
+    ax.legend(loc="lower center", ncols=2, bbox_to_anchor=(0.5, 1.0), frameon=False)
     return figure
+
+
+def animate(file: str) -> None:
+    """Write the moving page of the large swing, over two orbits."""
+    rate = np.sqrt(MU / RADIUS**3)
+    t = np.linspace(0.0, 4 * np.pi / rate, 1001)
+    satellite = RigidBody(400.0, np.diag([RADIAL, ALONG, NORMAL]))
+    load = loads.gravity_gradient(MU, (RADIUS, 0.0, 0.0), (0.0, np.sqrt(MU / RADIUS), 0.0))
+    start = euler_angles.to_quaternion((np.deg2rad(60.0), 0.0, 0.0))
+    satellite.simulate(t, (0.0, 0.0, rate), start, load=load).animate(file, title="A large swing")
 
 
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "gravity_gradient.png", dpi=130)
+    animate("gravity_gradient.html")

@@ -1,4 +1,4 @@
-"""A gyroscope held at one end: the faster it spins, the slower it goes round."""
+"""A gyroscope held at one end: the faster it spins, the slower it precesses."""
 
 import sys
 

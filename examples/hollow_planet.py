@@ -1,4 +1,4 @@
-"""What a moment of inertia says of the inside: I/(M R²) of planets of two layers."""
+"""What a moment of inertia tells about the interior: I/(M R²) of planets with two layers."""
 
 import sys
 

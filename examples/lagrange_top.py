@@ -1,4 +1,4 @@
-"""Lagrange's top let go at rest but for its spin: it falls, precesses, and comes to rest at cusps."""
+"""Lagrange's top, spun and then released: its axis falls, precesses, and stops for a moment at each cusp."""
 
 import sys
 

@@ -35,5 +35,12 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of three weeks."""
+    motion = TOUTATIS.free_motion_from_periods(5.41, 7.35, mode="long-axis")
+    motion.at([0.0, 21.0]).animate(file, title="Toutatis over three weeks", time_unit="d")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "light_curve.png", dpi=130)
+    animate("light_curve.html")

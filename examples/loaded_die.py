@@ -24,9 +24,11 @@ def draw() -> Figure:
     figure = Figure(figsize=(10.0, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
     colors = ("#0072B2", "#D55E00", "#009E73")
-    for k, color in enumerate(colors):
-        left.plot(grams, loaded.center_of_mass[:, k], color=color, label="xyz"[k])
-        right.plot(grams, loaded.principal_moments[:, k], color=color, label=f"$I_{k + 1}$")
+    for k, (color, dash) in enumerate(
+        zip(colors, ("-", "-", "--"), strict=True)
+    ):  # I₂ and I₃ are nearly equal
+        left.plot(grams, loaded.center_of_mass[:, k], color=color, linestyle=dash, label="xyz"[k])
+        right.plot(grams, loaded.principal_moments[:, k], color=color, linestyle=dash, label=f"$I_{k + 1}$")
     left.set(xlabel="lead (g)", ylabel="centre of mass (mm)")
     right.set(xlabel="lead (g)", ylabel="principal moments (g mm²)")
     for ax in (left, right):
@@ -35,5 +37,11 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of a throw of the die with one gram of lead."""
+    die(1.0).simulate([0.0, 4.0], (4.0, 9.0, 2.0)).animate(file, title="A loaded die")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "loaded_die.png", dpi=130)
+    animate("loaded_die.html")

@@ -59,5 +59,13 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of HDO, spun about its intermediate axis."""
+    molecule = RigidBody.from_particles(MASSES["HDO"], positions())
+    spin = molecule.principal.axes @ (1e11, 1e13, 0.0)  # rad/s
+    molecule.simulate([0.0, 5e-12], spin).animate(file, title="HDO")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "molecule.png", dpi=130)
+    animate("molecule.html")

@@ -1,4 +1,4 @@
-"""A sleeping top: upright while it is fast, it wakes when it is slower than the limit."""
+"""A sleeping top: it stands upright while it is fast, and begins to nod below a limit of its spin."""
 
 import sys
 
@@ -16,16 +16,20 @@ def top(rate: float) -> HeavyTop:
     return CONE.heavy_top((0.0, 0.0, rate), attitude, GRAVITY)
 
 
+def limit() -> float:
+    """Give the least spin of a top that sleeps."""
+    I_1, I_s = CONE.inertia_about("origin")[0, 0], CONE.inertia[2, 2]
+    return float(2.0 * np.sqrt(CONE.mass * 9.81 * CONE.center_of_mass[2] * I_1) / I_s)
+
+
 def draw() -> Figure:
     """Draw the inclination of a top that sleeps and of one that does not."""
-    I_1, I_s = CONE.inertia_about("origin")[0, 0], CONE.inertia[2, 2]
-    limit = 2.0 * np.sqrt(CONE.mass * 9.81 * CONE.center_of_mass[2] * I_1) / I_s
-    print(f"limit {limit:.2f} rad/s")
+    print(f"limit {limit():.2f} rad/s")
     t = np.linspace(0.0, 1.0, 2001)
     figure = Figure(figsize=(8.0, 4.0), layout="constrained")
     ax = figure.add_subplot()
     for factor, color in ((1.2, "#0072B2"), (0.9, "#D55E00")):
-        inclination = np.degrees(top(factor * limit).at(t).euler_angles()[:, 1])
+        inclination = np.degrees(top(factor * limit()).at(t).euler_angles()[:, 1])
         print(f"{factor} of it: up to {inclination.max():.1f}°")
         ax.plot(t, inclination, color=color, label=f"{factor} of the limit")
     ax.set(xlabel="time (s)", ylabel="inclination (degrees)")
@@ -34,5 +38,12 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of the top that does not sleep."""
+    motion = top(0.9 * limit())
+    motion.at([0.0, 1.0]).animate(file, title="A top that does not sleep")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "sleeping_top.png", dpi=130)
+    animate("sleeping_top.html")

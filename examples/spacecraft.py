@@ -1,4 +1,4 @@
-"""A spacecraft put together from parts: the propellant's use moves its centre of mass and turns its axes."""
+"""A spacecraft of several parts: as propellant is used, its centre of mass moves and its axes turn."""
 
 import sys
 
@@ -51,5 +51,13 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of the empty spacecraft, spun about the axis of its intermediate moment."""
+    craft = spacecraft(0.0)
+    spin = craft.principal.axes @ (0.001, 0.1, 0.0)  # rad/s
+    craft.simulate([0.0, 600.0], spin).animate(file, title="The spacecraft, its tank empty")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "spacecraft.png", dpi=130)
+    animate("spacecraft.html")

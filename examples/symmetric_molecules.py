@@ -46,5 +46,12 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of benzene, a flat top."""
+    benzene = RigidBody.from_particles(*MOLECULES["benzene"])
+    benzene.simulate([0.0, 5e-12], (3e12, 0.0, 4e12)).animate(file, title="Benzene")  # rad/s
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "symmetric_molecules.png", dpi=130)
+    animate("symmetric_molecules.html")

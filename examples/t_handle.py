@@ -9,8 +9,8 @@ from polhode import RigidBody, plot, solids
 
 def t_handle() -> RigidBody:
     """Steel, in metres: a bar with a stem below its middle."""
-    bar = solids.box((0.080, 0.012, 0.012), density=7850)
-    return bar + solids.box((0.012, 0.012, 0.048), density=7850).translated((0, 0, -0.030))
+    bar = solids.box((0.100, 0.016, 0.016), density=7850).translated((0, 0, 0.008))
+    return bar + solids.box((0.016, 0.016, 0.050), density=7850).translated((0, 0, -0.025))
 
 
 SPIN = (0.01, 0.0, 6.28)  # rad/s, about the stem

@@ -1,4 +1,4 @@
-"""The tennis racket: spun about its intermediate axis it flips again and again, as often as theory says."""
+"""The tennis racket: spun about its intermediate axis it flips again and again, as theory predicts."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""How sure are the axes: the closer two moments are, the less is known of the axes between them."""
+"""How certain are the axes? The closer two moments are, the less is known about their axes."""
 
 import sys
 

@@ -26,5 +26,11 @@ def draw() -> Figure:
     return figure
 
 
+def animate(file: str) -> None:
+    """Write the moving page of a throw by a hand that is less sure."""
+    RACKET.simulate([0.0, 6.0], (0.3, 12.0, 0.3)).animate(file, title="A throw by an unsure hand")
+
+
 if __name__ == "__main__":
     draw().savefig(sys.argv[1] if len(sys.argv) > 1 else "uncertain_flip.png", dpi=130)
+    animate("uncertain_flip.html")

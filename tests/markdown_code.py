@@ -12,7 +12,7 @@ from typing import Any
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
-MADE = ("_build", "interface", "gallery", "measured")
+MADE = ("_build", "interface", "gallery", "measured", "notebooks")
 """Folders of pages that the site makes itself."""
 
 

@@ -80,6 +80,41 @@ def test_a_motion_shows_itself() -> None:
     np.testing.assert_allclose(drawn, shown.omega[chosen], atol=0.006)
 
 
+def test_two_states_of_a_free_motion_are_drawn_as_the_curve_between_them() -> None:
+    top = (
+        solids.cone(radius=0.03, height=0.06, mass=0.1)
+        .rotated((1.0, 0.0, 0.0, 0.0))
+        .translated((0, 0, 0.045))
+    )
+    nodding = top.heavy_top((0.0, 0.0, 260.0), (0.0, 0.28, 0.0, 0.96), (0.0, 0.0, -9.81))
+    for motion, end in ((MOTION, 20.0), (nodding, 0.5)):
+        text = motion.at([0.0, end])._repr_html_()
+        drawing = ElementTree.fromstring(text[text.index("<svg") : text.index("</svg>") + 6])
+        curves = [line.get("points", "") for line in drawing.iter(f"{NAMESPACE}polyline")]
+        heights = np.array([[float(pair.split(",")[1]) for pair in curve.split()] for curve in curves])
+        omega = motion.at(np.linspace(0.0, end, 400)).omega
+        np.testing.assert_allclose(
+            (75.0 - heights.T) / 63.0 * np.abs(omega).max(), omega, atol=0.001 * np.abs(omega).max()
+        )
+
+
+def test_names_in_the_drawing_of_a_body_are_whole_and_apart() -> None:
+    for body in (
+        solids.box((3.0, 2.0, 1.0), mass=1.0),
+        solids.box((1.0, 2.0, 3.0), mass=1.0),
+        solids.cylinder(radius=0.1, height=3.0, mass=1.0),
+        solids.box((0.1, 0.016, 0.016), mass=1.0)
+        + solids.box((0.016, 0.016, 0.05), mass=0.5).translated((0, 0, -0.03)),
+    ):
+        places = np.array(
+            [(float(t.get("x", "")), float(t.get("y", ""))) for t in _drawing(body).iter(f"{NAMESPACE}text")]
+        )
+        assert len(places) == 6
+        assert np.abs(places).max() < 96.0
+        gaps = np.abs(places[:, np.newaxis] - places).max(axis=-1) + 100.0 * np.eye(6)
+        assert gaps.min() > 9.0
+
+
 def test_motions_without_a_page() -> None:
     many = solids.cube(np.ones(3), mass=1.0).simulate([0.0, 1.0], (1.0, 0.0, 0.0))
     assert many._repr_html_().startswith("<pre>Trajectory(3 bodies")

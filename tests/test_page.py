@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, permutations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,6 +43,18 @@ IN_VIEW = """(() => {{
   const box = document.getElementById("{}").getBoundingClientRect(), right = box.right <= innerWidth;
   return box.width > 0 && box.left >= 0 && box.top >= 0 && right && box.bottom <= innerHeight;
 }})()"""
+NAMES = "polhode.views.{}.written.map((n) => [n.name, n.at, n.width, [n.x, n.y], [n.ux, n.uy], n.size])"
+SELECT = """(() => {
+  const box = document.getElementById("speed"), style = getComputedStyle(box);
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.font = style.font;
+  const mark = 28; // at the end of the box
+  return [box.clientWidth, pen.measureText(box.selectedOptions[0].textContent).width + mark];
+})()"""
+CUT = """[...document.querySelectorAll("main *")].filter((e) => {
+  const box = e.getBoundingClientRect();
+  return box.width && (box.right > document.documentElement.clientWidth || box.left < 0);
+}).map((e) => e.outerHTML)"""
 CAMERA = "(({ azimuth, elevation, zoom }) => [azimuth, elevation, zoom])(polhode.views.space)"
 
 
@@ -165,7 +177,17 @@ class TestWhatIsDrawn:
                     )
                     assert len(names) >= 4
                     for (_, x, y, width), (_, p, q, other) in combinations(names, 2):
-                        assert abs(x - p) >= (width + other) / 2 or abs(y - q) >= 16
+                        assert abs(x - p) >= (width + other) / 2 + 4 or abs(y - q) >= 16
+
+    def test_no_name_stands_on_the_arrow_of_another(self, browser: Browser, page: Path) -> None:
+        """Where ω, **L**, z and an axis of the body lie on one line, their names stand beside it."""
+        browser.open(page, "#t=0")
+        for view in ("space", "second"):
+            names = browser.run(NAMES.format(view))
+            for (name, at, width, *_), (other, _, _, tip, way, size) in permutations(names, 2):
+                ends = np.array(tip) - np.outer(np.linspace(0.0, min(size, 50.0), 26), way)
+                inside = np.abs(ends - at) < (width / 2.0, 8.0)
+                assert not inside.all(axis=-1).any(), (view, name, other)
 
     def test_a_load_s_samples(self, browser: Browser, tmp_path: Path) -> None:
         run = BRICK.simulate(np.linspace(0.0, 5.0, 201), START, load=loads.constant_torque((0.0, 0.0, 0.1)))
@@ -338,6 +360,21 @@ class TestScreens:
         assert browser.run("document.documentElement.scrollWidth <= innerWidth")
         x, y = (int(part) for part in middle(browser, "space"))
         assert (np.ptp(browser.picture()[y - 20 : y + 20, x - 30 : x + 30], axis=-1) > 25).mean() > 0.8
+
+    @pytest.mark.parametrize("size", [DESK, PHONE, ON_ITS_SIDE])
+    def test_no_word_is_cut(self, browser: Browser, folder: Path, top: Path, size: tuple[int, int]) -> None:
+        """The longest words of time, speed and ω: those of a molecule, and of a top in slow motion."""
+        water = RigidBody.from_particles([16.0, 1.0, 1.0], [(0, 0, 0), (0.757, 0, 0.587), (-0.757, 0, 0.587)])
+        molecule = water.free_motion((1e11, 5e12, 0.0)).at([0.0, 2e-11]).animate(folder / "water.html")
+        browser.screen(*size, touch=size == PHONE)
+        for one in (top, molecule):
+            browser.open(one, "#t=3")
+            browser.run("document.getElementById('share').open = true")
+            wide, needed = browser.run(SELECT)
+            assert wide >= needed
+            assert browser.run(CUT) == []
+            for name in ("play", "slider", "clock", "speed", "reset", "full", "space"):
+                assert inside(browser, name), name
 
     def test_one_view_at_a_time_on_a_phone(self, browser: Browser, page: Path) -> None:
         browser.screen(*PHONE, touch=True)

@@ -198,6 +198,22 @@ def test_words_of_times_and_speeds(browser: Browser, tmp_path: Path) -> None:
     assert "next flip" not in browser.run(TOLD)  # there is no intermediate axis
 
 
+@needs_browser
+@pytest.mark.parametrize("gap", [0.5e-12, 2e-12])
+@pytest.mark.parametrize("low", [True, False], ids=["prolate", "oblate"])
+def test_moments_that_differ_by_rounding_have_no_intermediate_axis(
+    browser: Browser, tmp_path: Path, low: bool, gap: float
+) -> None:
+    """On both sides of 1e-12 of the largest: neither a next flip nor a separatrix is told of."""
+    moments = (1.0, 2.0 - 2.0 * gap, 2.0) if low else (1.5, 1.5 + 2.0 * gap, 2.0)
+    motion = of(*moments).free_motion((0.3, 1.0, 0.2)).at([0.0, 5.0])
+    browser.open(motion.animate(tmp_path / "near.html"), "#t=1")
+    caption = browser.run("document.getElementById('second-caption').textContent")
+    are_three = gap > 1e-12
+    assert ("next flip" in browser.run(TOLD)) is are_three
+    assert ("separatrix" in caption) is are_three
+
+
 @pytest.mark.parametrize(
     ("motion", "shape", "told"),
     [

@@ -26,9 +26,10 @@ SOURCES = [
     path
     for folder in ("docs", "examples")
     for path in (ROOT / folder).rglob("*")
-    if path.suffix in {".md", ".py", ".toml", ".css", ".js"}
+    if path.suffix in {".md", ".py", ".toml", ".css", ".js", ".ipynb"}
     and "_build" not in path.parts
     and path.parent not in {ROOT / "docs" / name for name in ("interface", "gallery", "measured")}
+    and not path.match("docs/notebooks/*.md")
 ]
 BUILT = SITE / "built"
 pytestmark = pytest.mark.skipif(
@@ -121,6 +122,36 @@ def test_old_links_to_the_theory_of_motion_lead_on() -> None:
         file, same = urldefrag(target)
         assert same == anchor
         assert anchor in pages()[f"theory/{file}"].anchors
+
+
+def test_no_page_shows_what_python_says_of_its_own_types() -> None:
+    texts = {path: path.read_text("utf-8") for path in (SITE / "interface").glob("*.html")}
+    assert len(texts) > 60
+    told = (
+        "Built-in immutable sequence",
+        "str(object=",
+        "int([x])",
+        "dict() -&gt;",
+        "Convert a string or number",
+    )
+    assert [(path.name, words) for path, text in texts.items() for words in told if words in text] == []
+
+
+@pytest.mark.parametrize(
+    ("name", "printed", "frames"),
+    [
+        ("racket", "turns over every", 1),
+        ("satellite", "ω strays from the axis", 2),
+        ("asteroid", "long-axis", 1),
+    ],
+)
+def test_notebooks_are_read_on_the_site(name: str, printed: str, frames: int) -> None:
+    """Text, code, what the cells print, and the pages that they show."""
+    text = (SITE / "notebooks" / f"{name}.html").read_text("utf-8")
+    assert printed in text
+    live = [each for each in pages()[f"notebooks/{name}.html"].loaded if each.endswith(".live.html")]
+    assert len(live) == frames
+    assert f"{name}.ipynb" in text
 
 
 @pytest.fixture(scope="module")
@@ -292,12 +323,27 @@ def test_axe_finds_nothing_serious(browser: Browser, size: tuple[int, int], dark
         "index", "tutorial", "gallery/index", "gallery/tennis_racket", "interface/index",
         "interface/RigidBody", "interface/RigidBody.motion", "theory/principal", "exercises/mex143",
         "why_others_disagree", "cheat_sheet", "command_line", "how_to/roboticist", "measured/elsewhere",
-        "search",
+        "search", "notebooks/racket",
     ]  # fmt: skip
     browser.screen(*size, dark=dark)
+    chosen = names[dark::2] if size == PHONE else names[:: 1 + dark]
+    assert faults_of(browser, [f"{name}.html" for name in chosen]) == {}
+
+
+@needs_browser
+@pytest.mark.long
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_axe_finds_nothing_serious_on_any_page(desk: Browser, dark: bool) -> None:
+    """Of all pages, which takes minutes."""
+    desk.screen(*DESK, dark=dark)
+    assert faults_of(desk, list(pages())) == {}
+
+
+def faults_of(browser: Browser, names: list[str]) -> dict[str, list[Any]]:
+    """What axe-core finds on pages, by their names."""
     faults: dict[str, list[Any]] = {}
-    for name in names[dark::2] if size == PHONE else names[:: 1 + dark]:
-        browser.open(SITE / f"{name}.html")
+    for name in names:
+        browser.open(SITE / name)
         if found := browser.serious_faults():
             faults[name] = found
-    assert faults == {}
+    return faults

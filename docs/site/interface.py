@@ -117,18 +117,20 @@ def of_name(name: str, value: object) -> list[str]:
         return of_class(name, value, set())
     if callable(value):
         return [f".. autofunction:: {name}", ""]
-    return DATA.get(name, [f".. autodata:: {name}", "   :no-value:", ""])
+    # Not by autodata, which would show what the type of the value says of itself.
+    return [f".. py:data:: {name}", "", f"   {DATA[name]}", ""]
 
 
 DATA = {
-    f"polhode.files.{kind}_SCHEMA": [
-        f".. py:data:: polhode.files.{kind}_SCHEMA",
-        "",
-        f"   What a {what}'s JSON file holds, as JSON Schema.",
-        "",
-    ]
-    for kind, what in (("BODY", "body"), ("TRAJECTORY", "motion"))
+    "polhode.files.BODY_SCHEMA": "What a body's JSON file holds, as JSON Schema.",
+    "polhode.files.TRAJECTORY_SCHEMA": "What a motion's JSON file holds, as JSON Schema.",
+    "polhode.plot.AXIS_COLORS": "Colours of the three principal axes and of components along them.",
+    "polhode.plot.MOMENTUM_COLOR": "Colour of the angular momentum.",
+    "polhode.plot.OMEGA_COLOR": "Colour of the angular velocity.",
+    "polhode.plot.OUTLINE_COLOR": "Colour of the edges of bodies.",
+    "polhode.animation.ANIMATION_SUFFIXES": "Endings of the files that `animate` can write.",
 }
+"""What the values of modules are; each needs a line here."""
 
 
 def found(name: str) -> object:

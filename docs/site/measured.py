@@ -50,7 +50,7 @@ def elsewhere(found: dict[str, Any]) -> str:
         "one. *First* is a call in a fresh interpreter with what it imports beside NumPy, *again* "
         "one after it. The "
         "other programs can do much that "
-        "polhode does not; this is about what it is made for.\n",
+        "polhode does not; these four problems are those that polhode is made for.\n",
         where(found) + "\n",
     ]
     for problem, title, text in PROBLEMS:
@@ -92,7 +92,7 @@ PROBLEMS = (
         "The tensor of a mesh",
         "A torus of 20 000 triangles, held against rational numbers. polhode checks that the mesh is "
         "closed and wound one way "
-        "and refuses it otherwise; trimesh tells on request; the sum by NumPy does not look.",
+        "and refuses it otherwise; trimesh reports this on request; the sum in NumPy does not check it.",
     ),
     (
         "axes",
@@ -113,7 +113,7 @@ def validation(found: dict[str, Any]) -> str:
     """Give the page of what numbers are held against."""
     lines = [
         "# How it is checked\n",
-        "Each formula is held against something that is not polhode: a closed form, rational numbers, "
+        "Each formula is compared with something that is not polhode: a closed form, rational numbers, "
         "many digits, published figures or "
         "another engine. The tests do that at each change; here are some of the errors, relative to the "
         "largest number of the answer. "

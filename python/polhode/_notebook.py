@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 __all__ = ["body_html", "ellipsoid_svg"]
 
 _SIZE: Final = 200
+_LETTER: Final = 14.0
+"""Width of a name."""
+_EDGE: Final = 0.5 * _SIZE - 0.6 * _LETTER
 _REACH: Final = 0.36 * _SIZE
 """Length of the longest semi-axis in the drawing."""
 _DASHES: Final = ("6 4", "none", "6 3 1.5 3")
@@ -50,13 +53,13 @@ def body_html(body: RigidBody) -> str:
             "(" + ", ".join(_number(*one) for one in zip(body.center_of_mass, centers, strict=True)) + ")",
         ),
         *(
-            (f'<span style="color:{color}">principal moment {k + 1}</span>', _number(moment, deviation))
+            (f"{_mark(color)}principal moment {k + 1}", _number(moment, deviation))
             for k, (color, moment, deviation) in enumerate(
                 zip(AXIS_COLORS, principal.moments, deviations, strict=True)
             )
         ),
         *(
-            (f'<span style="color:{color}">axis {k + 1}</span>', _vector(axis))
+            (f"{_mark(color)}axis {k + 1}", _vector(axis))
             for k, (color, axis) in enumerate(zip(AXIS_COLORS, principal.axes.T, strict=True))
         ),
         ("top", html.escape(str(principal.top))),
@@ -71,6 +74,11 @@ def body_html(body: RigidBody) -> str:
         '<div style="display:flex;flex-wrap:wrap;align-items:center;gap:16px">'
         f"{drawing}<table><caption>RigidBody</caption>{cells}</table></div>"
     )
+
+
+def _mark(color: str) -> str:
+    """Draw a patch of a colour of the drawing; words in it would be too pale to read."""
+    return f'<span style="background:{color};display:inline-block;width:0.7em;height:0.7em"></span> '
 
 
 def ellipsoid_svg(body: RigidBody) -> str:
@@ -91,15 +99,17 @@ def ellipsoid_svg(body: RigidBody) -> str:
     semi_axes *= _REACH / semi_axes.max()
     seen = _VIEW @ axes  # columns: the principal axes as the viewer has them
     far, near, names = [], [], []
+    places = [_beyond(seen[:, k] * (semi_axes[k] + 0.2 * _REACH)) for k in range(3)]
     for name, direction in zip("xyz", _VIEW.T, strict=True):
         far.append(_line(0.44 * _SIZE * direction, color="#bbb", width=1.0))
-        names.append(_name(0.44 * _SIZE * direction, name, "#999"))
+        places.append(_free_place(_beyond(0.44 * _SIZE * direction), places))
+        names.append(_name(places[-1], name, "#767676"))
     for k, (color, dash) in enumerate(zip(AXIS_COLORS, _DASHES, strict=True)):
         tip = seen[:, k] * (semi_axes[k] + 0.2 * _REACH)
         far += [_line(end, color=color, dash=dash) for end in (-tip, tip)]
         if tip[2] > 0.0:  # it comes out of the surface toward the viewer
             near.append(_line(tip, start=seen[:, k] * semi_axes[k], color=color))
-        names.append(_name(tip, f"e{'₁₂₃'[k]}", color))
+        names.append(_name(places[k], f"e{'₁₂₃'[k]}", color))
     rings = [part for k in range(3) for part in _ring(seen, semi_axes, (k + 1) % 3, (k + 2) % 3)]
     parts = [*far, _outline(seen[:2] * semi_axes), *rings, *near, *names]
     half = _SIZE / 2
@@ -145,9 +155,22 @@ def _line(
     )
 
 
-def _name(tip: Floats, name: str, color: str) -> str:
-    """Write a name beyond the tip of a line from the middle."""
-    x, y = tip[:2] * (1.0 + 9.0 / (float(np.hypot(*tip[:2])) or 1.0))
+def _beyond(tip: Floats) -> Floats:
+    """Give the middle of a name beyond the tip of a line from the middle, within the drawing."""
+    at: Floats = tip[:2] * (1.0 + 9.0 / (float(np.hypot(*tip[:2])) or 1.0))
+    return np.clip(at, -_EDGE, _EDGE)
+
+
+def _free_place(at: Floats, taken: list[Floats]) -> Floats:
+    """Give this place for a name, or one to its left or right where another name stands on it."""
+    inward = -1.0 if at[0] > 0.0 else 1.0
+    tried = [at + np.array([step * inward * _LETTER, 0.0]) for step in (0.0, 1.0, -1.0, 2.0)]
+    return next((one for one in tried if all(np.abs(one - other).max() >= _LETTER for other in taken)), at)
+
+
+def _name(at: Floats, name: str, color: str) -> str:
+    """Write a name."""
+    x, y = at
     return f'<text x="{x:.2f}" y="{-y + 4.0:.2f}" fill="{color}">{name}</text>'
 
 

@@ -95,6 +95,7 @@ def show(self: Trajectory, *, height: int = _HEIGHT, **options: Any) -> Shown:
 
 def repr_html(self: Trajectory) -> str:
     """Show a motion at the end of a notebook's cell: ω over time as a drawing, and the page below it."""
+    from polhode._scene.pivot import top_of
     from polhode.animation import page_of
 
     words = f"<pre>{html.escape(repr(self))}</pre>"
@@ -102,7 +103,13 @@ def repr_html(self: Trajectory) -> str:
         return words
     if not (np.isfinite(self.omega).all() and np.isfinite(self.quaternion).all()):
         return words
-    drawing = _omega_svg(self.t, self.omega)
+    t, omega = self.t, self.omega
+    if (
+        len(t) < _POINTS and (motion := self._exact() or top_of(self)) is not None
+    ):  # known between samples too
+        t = np.linspace(t[0], t[-1], _POINTS)
+        omega = motion.at(t - t[0]).omega
+    drawing = _omega_svg(t, omega)
     try:
         page, notes = page_of(self)
     except ValueError as error:  # turns too far from one sample to the next

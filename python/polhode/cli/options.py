@@ -367,7 +367,8 @@ class SpinOptions:
     save
         Where to write the motion: a picture (.png, .pdf, .svg), an animation (.html, .gif, .mp4) or its
         numbers (.csv, .npz, .json). May be repeated. A mesh is drawn as it is, one of more than
-        10 000 triangles coarser; a body without a mesh as the box of the same inertia.
+        10 000 triangles coarser; a molecule as balls, an assembly part by part, and a body of which
+        only the moments are known as the box of the same inertia.
     """
 
     moments: Annotated[

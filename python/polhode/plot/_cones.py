@@ -64,9 +64,16 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     side = motion.cones.axis
     symmetry = attitude @ motion.body.principal.axes[:, side]
     symmetry *= np.sign(symmetry @ omega) or 1.0
-    arrow(ax, 1.25 * np.array([0.0, 0.0, 1.0]), MOMENTUM_COLOR, "L")
-    arrow(ax, 1.2 * omega, OMEGA_COLOR, r"$\omega$")
-    arrow(ax, 1.25 * symmetry, AXIS_COLORS[0], f"$e_{side + 1}$")
+    arrows = [
+        (1.25 * np.array([0.0, 0.0, 1.0]), MOMENTUM_COLOR, "L"),
+        (1.2 * omega, OMEGA_COLOR, r"$\omega$"),
+        (1.25 * symmetry, AXIS_COLORS[0], f"$e_{side + 1}$"),
+    ]
+    across = np.array([-np.sin(np.deg2rad(ax.azim)), np.cos(np.deg2rad(ax.azim)), 0.0])
+    # From left to right, so that names of narrow cones stand beside each other.
+    arrows.sort(key=lambda one: float(one[0] @ across))
+    for (tip, color, name), ha in zip(arrows, ("right", "center", "left"), strict=True):
+        arrow(ax, tip, color, name, ha=ha)
     ax.text2D(
         0.5, 0.02,
         f"body cone {_angles(motion.cones.body)} (blue),\nspace cone {_angles(motion.cones.space)} (green)",

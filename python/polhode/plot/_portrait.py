@@ -285,17 +285,19 @@ def _mark(kind: str) -> Any:
 def _names(ax: Axes3D, inside: Floats) -> None:
     """Name the axes of the body, and the direction of h."""
     viewer = toward_viewer(ax)
+    size = np.linalg.norm(inside)
+    unit = inside / size if size > 0.0 else np.zeros(3)
+    meets = unit > 0.97  # h stands at the end of this axis: their names stand side by side
     for k, name in enumerate("xyz"):
         axis = np.zeros(3)
         axis[k] = 1.0
         order = 5 if axis @ viewer >= 0.0 else 1
         ax.plot(*np.stack([axis, 1.2 * axis], axis=-1), color="0.25", linewidth=1.2, zorder=order)
-        ax.text(*(1.36 * axis), f"$L_{name}$", color="0.15", ha="center", va="center", fontsize=11, zorder=8)
-    size = np.linalg.norm(inside)
+        side = "right" if meets[k] else "center"
+        ax.text(*(1.36 * axis), f"$L_{name}$", color="0.15", ha=side, va="center", fontsize=11, zorder=8)
     if size > 0.0:
-        unit = inside / size
         order = 6 if unit @ viewer >= 0.0 else 1
         ax.plot(*np.stack([unit, 1.3 * unit], axis=-1), color="0.0", linewidth=2.4, zorder=order)
         ax.plot(*unit[:, np.newaxis], linestyle="none", marker="o", markersize=3.5, color="0.0", zorder=order)
-        beyond = 1.58 if np.abs(unit).max() > 0.97 else 1.42  # the name of an axis may stand there
-        ax.text(*(beyond * unit), "h", color="0.0", ha="center", va="center", fontsize=12, zorder=8)
+        beyond, side, name = (1.36, "left", "  h") if meets.any() else (1.42, "center", "h")
+        ax.text(*(beyond * unit), name, color="0.0", ha=side, va="center", fontsize=12, zorder=8)

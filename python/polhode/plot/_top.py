@@ -65,7 +65,7 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
     ax.annotate(
         f"nutation from {np.rad2deg(low):.2f}° to {np.rad2deg(high):.2f}°",
         (np.rad2deg(0.5 * (low + high)), level), (0.0, 12.0), textcoords="offset points", ha="center",
-        color=AXIS_COLORS[1],
+        color=AXIS_COLORS[1], bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0},
     )  # fmt: skip
     ax.set_ylim(bottom - 0.2 * room, level + room)
     ax.set_xlabel("inclination (degrees)")
@@ -120,7 +120,7 @@ def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     arrow(ax, 1.12 * path[-1], OMEGA_COLOR, "axis")
     low, high = np.rad2deg(top.nutation_limits)
     ax.text2D(
-        0.5, 0.02, f"{top.path} path between {low:.2f}° and {high:.2f}° from the vertical",
+        0.5, 0.02, f"path of the axis ({top.path}):\n{low:.2f}° to {high:.2f}° from the vertical",
         transform=ax.transAxes, ha="center", in_layout=False,
     )  # fmt: skip
     plain_frame(ax, (-1.05, -1.05, -1.05), (1.05, 1.05, 1.25))

@@ -96,7 +96,7 @@ export class View {
   label(at, color, name, from = [0, 0, 0]) {
     if (!name) return;
     const [x, y] = this.place(at), [x0, y0] = this.place(from), size = Math.hypot(x - x0, y - y0) || 1;
-    this.names.push({ x, y, ux: (x - x0) / size, uy: (y - y0) / size, color, name });
+    this.names.push({ x, y, ux: (x - x0) / size, uy: (y - y0) / size, size, color, name });
   }
   /** Writes the names, none over another. */
   end(ground) {

@@ -35,12 +35,12 @@ export function modeOf(moments, omega) {
 }
 
 /** Builds the sliders; `changed` is told the start, or null for the one that was given. */
-export function buildSliders(place, given, button, mode, changed) {
+export function buildSliders(place, given, unit, button, mode, changed) {
   const first = valuesOf(given), near = AXES[first.near];
   const ranges = [
-    ["size", "|\u03c9|", first.size / 5, first.size * 5, (x) => x.toPrecision(3)],
+    ["size", `|\u03c9| in rad/${unit}`, first.size / 5, first.size * 5, (x) => x.toPrecision(3)],
     ["tilt", `tilt from ${near}`, 0, 90, (x) => `${x.toFixed(1)}\u00b0`],
-    ["toward", "toward", -180, 180, (x) => `${x.toFixed(0)}\u00b0`],
+    ["toward", `around ${near} from ${AXES[(first.near + 1) % 3]}`, -180, 180, (x) => `${x.toFixed(0)}\u00b0`],
     ["first", "I\u2081/I\u2083", 0.001, 1, (x) => x.toFixed(3)],
     ["second", "I\u2082/I\u2083", 0.5, 1, (x) => x.toFixed(3)],
   ];

@@ -9,7 +9,7 @@ import { buildSliders } from "./live.js";
 import { Solid, boxOf } from "./solid.js";
 import { colors, key, readColors } from "./theme.js";
 import { Trail } from "./trail.js";
-import { conjugate, dot, length, rotate, sum, times } from "./vectors.js";
+import { areThree, conjugate, dot, length, rotate, sum, times } from "./vectors.js";
 import { drawBody, drawPoinsot, drawSpace } from "./views.js";
 import { Wheel, slowed } from "./wheels.js";
 
@@ -72,8 +72,7 @@ function readouts(now) {
   const kinetic = 0.5 * state.along.reduce((total, w, i) => total + motion.moments[i] * w * w, 0);
   const rows = energyRows(energy, motion.body ? null : frames.nearest(now.t), kinetic);
   rows.push(["|L|", length(state.momentum).toPrecision(6)], ["|\u03c9|", `${length(state.omega).toPrecision(5)} rad/${given.time_unit}`]);
-  const [i1, i2, i3] = motion.moments;
-  if (motion.body && span >= 0 && i1 < i2 && i2 < i3) { // else there is no intermediate axis
+  if (motion.body && span >= 0 && areThree(motion.moments)) { // else there is no intermediate axis
     const flip = motion.body.nextFlip(state.since);
     rows.push(["next flip", Number.isFinite(flip) ? `in ${flip.toPrecision(4)} ${given.time_unit}` : "never"]);
   }
@@ -131,7 +130,7 @@ function choose(name) {
   element("space-caption").innerHTML = `In space: the body, ${key("omega", "\u03c9")}, ${key("momentum", "L")}${given.inside ? ` (with ${key("inside", "h")}, which the body carries along)` : ""}${path}${motion.wheels.length ? `; ${key("inside", "discs")}: its wheels, not to scale, turning relative to it` : ""}`;
   element("second-caption").innerHTML = second === "poinsot"
     ? `Poinsot: the ellipsoid of inertia rolls on the plane that ${key("momentum", "L")} is normal to; the tip of ${key("omega", "\u03c9")} is where they touch`
-    : `In the body: ${key("omega", "\u03c9")} on the ellipsoid of inertia; its path, the polhode${given.moments[0] < given.moments[1] && given.moments[1] < given.moments[2] ? `; ${key("ink", "dark")}, the separatrix` : ""}`;
+    : `In the body: ${key("omega", "\u03c9")} on the ellipsoid of inertia; its path, the polhode${areThree(given.moments) ? `; ${key("ink", "dark")}, the separatrix` : ""}`;
   for (const one of Object.values(views)) one.fit();
   draw();
 }
@@ -161,7 +160,7 @@ element("frame").value = `<iframe src="${file}#embed" title="${given.title.repla
 element("copy").addEventListener("click", () => { element("frame").select(); navigator.clipboard?.writeText(element("frame").value).catch(() => document.execCommand("copy")); });
 if (given.free) {
   element("live").hidden = false;
-  buildSliders(element("sliders"), given.free, element("given"), element("mode"), (begin) => { follow(begin); draw(); });
+  buildSliders(element("sliders"), given.free, given.time_unit, element("given"), element("mode"), (begin) => { follow(begin); draw(); });
 }
 play(playing);
 choose(wanted.view === "poinsot" && !given.free ? "body" : view);

@@ -1,5 +1,8 @@
 // Vectors, and quaternions (x, y, z, w) that take body components to space components.
 
+/** Whether three ascending moments differ beyond rounding: then there is an intermediate axis, and a separatrix. */
+export const areThree = ([i1, i2, i3]) => i2 - i1 > 1e-12 * i3 && i3 - i2 > 1e-12 * i3;
+
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 export const scaled = (a, s) => a.map((x) => x * s);

@@ -2,7 +2,7 @@
 
 import { circle } from "./camera.js";
 import { DASHES, E_NAMES, colors } from "./theme.js";
-import { cross, dot, length, rotate, scaled, sum, unit } from "./vectors.js";
+import { areThree, cross, dot, length, rotate, scaled, sum, unit } from "./vectors.js";
 
 const BODY = 0.85;
 const LONGEST = 2.5; // of a semi-axis without end, in lengths of the longest ω
@@ -79,7 +79,7 @@ const toBody = (motion, p) => motion.axes.reduce((v, axis, i) => sum(v, scaled(a
 /** The curves through the intermediate axis that part the two ways of circling; none of a symmetric body. */
 function separatrix([i1, i2, i3], radii) {
   const r = Math.sqrt(i1 * (i2 - i1) / (i3 * (i3 - i2)));
-  if (!(r > 0 && Number.isFinite(r))) return [];
+  if (!areThree([i1, i2, i3]) || !(r > 0 && Number.isFinite(r))) return [];
   const size = 1 / Math.hypot(1 / radii[0], r / radii[2]);
   return [1, -1].map((sign) => Array.from({ length: 73 }, (_, k) => {
     const a = k * Math.PI / 36;
