@@ -45,6 +45,8 @@ class Row:
         As `items`, where one call of the peer does fewer.
     at_least, at_most : float, optional
         Bars for the peer's time over ours, or for ours over the peer's.
+    most_seconds : float, optional
+        A bar for our own time per item, where there is none for a ratio.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Row:
     peer_items: int | None = None
     at_least: float | None = None
     at_most: float | None = None
+    most_seconds: float | None = None
 
 
 @dataclass(frozen=True)
@@ -90,8 +93,10 @@ def measure(row: Row, rounds: int = 9, least_seconds: float = 0.02) -> Result:
         bar, met = f">= {row.at_least:g}", speedup[0] >= row.at_least
     elif row.at_most is not None:
         bar, met = f">= {1 / row.at_most:.3g}", speedup[0] >= 1 / row.at_most
-    ours, theirs = zip(*times, strict=True)
-    return Result(row.name, row.peer, rounds, _spread(ours), _spread(theirs), speedup, bar, met)
+    ours, theirs = (_spread(side) for side in zip(*times, strict=True))
+    if row.most_seconds is not None:
+        bar, met = f"ours <= {_human(row.most_seconds)}", ours[0] <= row.most_seconds
+    return Result(row.name, row.peer, rounds, ours, theirs, speedup, bar, met)
 
 
 def report(results: Iterable[Result], path: Path | None = None, ratios: Path = RATIOS) -> None:

@@ -92,3 +92,26 @@ class TestEnergyBalance:
 
         wheel = loads.wheel((1, 2, 2), 0.1, 3.0, torque=torques, times=times, friction=1e-3)
         assert self.error(wheel, power) <= 1e-13
+
+    @pytest.mark.parametrize("rotations", [30, pytest.param(10_000, marks=pytest.mark.long)])
+    @pytest.mark.parametrize("name", ["slug", "wheel"])
+    def test_the_work_as_one_more_state_of_the_run(self, name: str, rotations: int) -> None:
+        along = np.array([1, 2, 2]) / 3
+
+        def power(_t: float, omega: Any, _q: Any, _r: Any, _v: Any, states: Any) -> float:
+            if name == "slug":
+                slip = states["slug"] - omega
+                return -1e-3 * float(slip @ slip)
+            speed = states["wheel"][0] / 0.1 - omega @ along
+            return (0.002 - 1e-3 * speed) * speed
+
+        inside = {
+            "slug": loads.slug(0.1, 1e-3),
+            "wheel": loads.wheel((1, 2, 2), 0.1, 3.0, torque=0.002, friction=1e-3),
+        }
+        load = inside[name] + loads.with_states(power, [0.0], name="work", scale=1.0)
+        end = rotations * 2 * np.pi / np.linalg.norm(self.OMEGA)
+        run = self.BODY.simulate([0, end], self.OMEGA, load=load, method="dop853", rtol=1e-14)
+        energy, work = run.kinetic_energy().total, run.states["work"][-1, 0]
+        assert abs(work) > 1e-3 * energy[0]
+        assert abs(energy[-1] - energy[0] - work) <= 1e-13 * energy[0]
