@@ -12,6 +12,9 @@ from polhode import RigidBody, euler_angles, loads, solids
 pytest.importorskip("matplotlib")
 
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from mpl_toolkits.mplot3d import proj3d
+from mpl_toolkits.mplot3d.art3d import Text3D
 from polhode import plot
 
 BODY = RigidBody.from_principal(1.0, (1.0, 1.8, 2.6))
@@ -72,6 +75,35 @@ def test_the_level_of_a_top_ends_on_its_potential() -> None:
     ax = plot.effective_potential(TOP, Figure().add_subplot())
     ends, level = np.deg2rad(ax.lines[1].get_xdata()), np.asarray(ax.lines[1].get_ydata())
     np.testing.assert_allclose(TOP.effective_potential(ends), level, rtol=1e-12)
+
+
+PLATE = solids.cylinder(radius=0.12, height=0.002, mass=0.3)
+SATELLITE = RigidBody.from_principal(150.0, (20.0, 25.0, 30.0))
+CROWDED: dict[str, Callable[[Any], Any]] = {
+    "narrow cones": lambda ax: plot.cones(PLATE.free_motion((1.2, 0.0, 12.0)), TIMES[:11], ax),
+    "wide cones": lambda ax: plot.cones(FREE, TIMES, ax),
+    "a wheel along an axis": lambda ax: plot.portrait(
+        SATELLITE.gyrostat((0.0, 1.0, 0.0)).free_motion((0.002, 0.1, 0.002)), ax=ax
+    ),
+    "a top": lambda ax: plot.nutation(TOP, TIMES[:5], ax),
+}
+
+
+@pytest.mark.parametrize("name", CROWDED)
+def test_names_are_not_written_over_each_other(name: str) -> None:
+    figure = Figure(figsize=(10.0, 3.8), layout="constrained")
+    ax: Any = figure.add_subplot(1, 3, 3, projection="3d", computed_zorder=False)
+    CROWDED[name](ax)
+    figure.canvas.draw()
+    boxes = []
+    for text in ax.texts:
+        if isinstance(text, Text3D):  # which stands there only while it is drawn
+            x, y, _ = proj3d.proj_transform(*text.get_position_3d(), ax.get_proj())
+            Text.set_position(text, (x, y))
+        boxes.append(text.get_window_extent().padded(-1.0))
+    assert len(boxes) >= 3
+    for k, one in enumerate(boxes):
+        assert not any(one.overlaps(other) for other in boxes[:k]), ax.texts[k].get_text()
 
 
 def test_what_cannot_be_drawn_is_told() -> None:

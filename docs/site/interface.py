@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import re
 import tomllib
 import types
 from pathlib import Path
@@ -144,6 +145,7 @@ def found(name: str) -> object:
 def summary(value: object) -> str:
     """Give the first sentence of what it says of itself, on one line."""
     text = " ".join((inspect.getdoc(value) or "").split("\n\n")[0].split())
+    text = re.sub(r":\w+:`~?([^`]+)`", r"`\1`", text)  # a reference, as a name
     return text.replace("|", "\\|").replace("``", "`")
 
 
