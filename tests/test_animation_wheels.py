@@ -119,3 +119,11 @@ def test_both_in_a_film(tmp_path: Path) -> None:
 def test_a_body_with_nothing_inside_has_no_h(tmp_path: Path) -> None:
     page = BODY.simulate([0.0, 1.0], (0.3, 0.2, 1.1)).animate(tmp_path / "page.html")
     assert data(page)["inside"] is None
+
+
+def test_methods(tmp_path: Path) -> None:
+    motion = BODY.gyrostat((0.1, 0.5, 0.3)).free_motion((0.3, 0.2, 1.1))
+    assert motion.animate(tmp_path / "a.html", 5.0, title="A") == tmp_path / "a.html"
+    assert data(tmp_path / "a.html")["t"][-1] == 5.0
+    pytest.importorskip("matplotlib")
+    assert motion.plot(5.0).lines[0].get_xdata()[-1] == 5.0

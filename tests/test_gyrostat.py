@@ -134,6 +134,41 @@ def test_little_momentum(power: int) -> None:
         assert np.abs(exact.omega - free.omega).max() <= 2e-15 + 20 * 10.0**power
 
 
+def test_a_slender_body_keeps_its_rate_about_its_long_axis() -> None:
+    """Its momentum about it is a millionth of the whole, of which the attitude knows sixteen digits."""
+    rng = np.random.default_rng(4)
+    for _ in range(12):
+        least = 10 ** rng.uniform(-6, -4)
+        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        body = RigidBody.from_principal(1.0, (least, 1.0, 1.0 + 0.5 * least), axes * np.linalg.det(axes))
+        h = axes @ (least * rng.normal(), *(0.3 * rng.normal(size=2)))
+        omega = axes @ (2.0, *rng.normal(size=2))
+        turn = 2 * np.pi / np.linalg.norm(omega)
+        times = np.array([0.0, 0.3, 1.0, 2.0, 5.0]) * turn
+        run = body.simulate(times, omega, load=loads.rotor(h), method="taylor", rtol=1e-26)
+        exact = body.gyrostat(h).free_motion(omega).at(times)
+        fastest = np.linalg.norm(run.omega, axis=1).max()
+        slow = 1e-16 * np.linalg.norm(run.angular_momentum().spin[0]) / least
+        fast = np.linalg.norm(run.omega, axis=1) > 20
+        error = np.linalg.norm(exact.omega - run.omega, axis=1)
+        assert (error[fast] <= 2e-15 * fastest + 0.05 * slow).all()
+        assert (error <= 2e-15 * fastest + 5 * slow).all()
+
+
+def test_from_one_equilibrium_to_another() -> None:
+    """With h along the first axis the separatrix passes from one saddle to its mirror image."""
+    body, h = RigidBody.from_principal(1.0, (3.0, 4.0, 6.0)), (3.0, 0.0, 0.0)
+    omega, times = (-1.0, -0.5, 2.0), np.linspace(0, 30, 301)
+    motion = body.gyrostat(h).free_motion(omega)
+    run = body.simulate(times, omega, load=loads.rotor(h), method="taylor", rtol=1e-26)
+    exact = motion.at(times)
+    assert motion.mode == "separatrix"
+    assert apart(exact.quaternion, run.quaternion) <= 1.5e-15
+    assert np.abs(exact.omega - run.omega).max() <= 5e-15
+    ends = motion.at([-1e3, 1e3]).omega
+    assert np.allclose(ends, [[3, 0.5, 0], [3, -0.5, 0]], atol=1e-13)
+
+
 def test_a_start_next_to_the_middle_axis_turns_over_when_it_should() -> None:
     # The time to turn over grows by ln(10)/rate with each decade.
     gyrostat = BODY.gyrostat((0.0, 0.3, 0.0))

@@ -37,6 +37,13 @@ SOLID: dict[str, Callable[[Any], Any]] = {
     "rod": lambda ax: plot.ellipsoid(RigidBody.from_principal(1.0, (0.0, 1.0, 1.0)), ax),
     "polhodes": lambda ax: plot.polhodes(BODY, ax),
     "symmetric": lambda ax: plot.polhodes(RigidBody.from_principal(1.0, (1.0, 1.0, 1.5)), ax),
+    "polhode": lambda ax: plot.polhode(FREE, ax),
+    "polhode of a gyrostat": lambda ax: plot.polhode(
+        BODY.gyrostat((0.1, 0.9, 0.3)).free_motion((1, 0.2, 0.3)), ax
+    ),
+    "polhode of a steady gyrostat": lambda ax: plot.polhode(
+        BODY.gyrostat((0, 0, 1)).free_motion((0, 0, 1)), ax
+    ),
     "poinsot": lambda ax: plot.poinsot(FREE, TIMES, ax),
     "cones": lambda ax: plot.cones(FREE, TIMES, ax),
     "nutation": lambda ax: plot.nutation(TOP, TIMES, ax),
@@ -117,6 +124,10 @@ def test_what_cannot_be_drawn_is_told() -> None:
         plot.polhodes(BODY, energy=-1)
     with pytest.raises(ValueError, match="no end"):
         plot.polhodes(RigidBody.from_principal(1.0, (0.0, 1.0, 1.0)))
+    with pytest.raises(ValueError, match="no end"):
+        plot.polhode(RigidBody.from_principal(1.0, (0.0, 1.0, 1.0)).free_motion((0.0, 1.0, 0.0)))
+    with pytest.raises(ValueError, match="at rest"):
+        plot.polhode(BODY.free_motion((0.0, 0.0, 0.0)))
     with pytest.raises(ValueError, match="at rest"):
         plot.cones(BODY.free_motion((0.0, 0.0, 0.0)), TIMES)
     load = loads.torque_callback(lambda *_: np.array([0.1, 0.0, 0.0]))
@@ -143,3 +154,12 @@ def test_ends_that_are_missing_or_too_many() -> None:
     many = BODY.free_motion([(1.0, 0.2, 0.5), (0.3, 0.2, 0.1)])
     with pytest.raises(ValueError, match=r"angular_velocity: expected one body, got a stack of shape \(2,\)"):
         plot.angular_velocity(many, ax, end=2.0)
+
+
+def test_the_polhode_of_a_gyrostat_is_on_its_ellipsoid() -> None:
+    motion = BODY.gyrostat((0.1, 0.9, 0.3)).free_motion((1.0, 0.2, 0.3))
+    axes = Figure().add_subplot(projection="3d", computed_zorder=False)
+    path = np.array(plot.polhode(motion, axes).lines[0].get_data_3d())
+    path = path[:, np.isfinite(path[0])]
+    assert path.shape[1] > 50
+    assert np.allclose((path * (BODY.inertia @ path)).sum(0), 2 * motion.kinetic_energy, rtol=1e-12)

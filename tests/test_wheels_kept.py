@@ -102,7 +102,7 @@ class TestEnergyBalance:
             if name == "slug":
                 slip = states["slug"] - omega
                 return -1e-3 * float(slip @ slip)
-            speed = states["wheel"][0] / 0.1 - omega @ along
+            speed = float(states["wheel"][0] / 0.1 - omega @ along)
             return (0.002 - 1e-3 * speed) * speed
 
         inside = {
@@ -110,8 +110,8 @@ class TestEnergyBalance:
             "wheel": loads.wheel((1, 2, 2), 0.1, 3.0, torque=0.002, friction=1e-3),
         }
         load = inside[name] + loads.with_states(power, [0.0], name="work", scale=1.0)
-        end = rotations * 2 * np.pi / np.linalg.norm(self.OMEGA)
-        run = self.BODY.simulate([0, end], self.OMEGA, load=load, method="dop853", rtol=1e-14)
+        end = rotations * 2 * np.pi / float(np.linalg.norm(self.OMEGA))
+        run = self.BODY.simulate([0.0, end], self.OMEGA, load=load, method="dop853", rtol=1e-14)
         energy, work = run.kinetic_energy().total, run.states["work"][-1, 0]
         assert abs(work) > 1e-3 * energy[0]
         assert abs(energy[-1] - energy[0] - work) <= 1e-13 * energy[0]

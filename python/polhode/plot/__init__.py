@@ -9,7 +9,7 @@ from __future__ import annotations
 from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR, OUTLINE_COLOR
 from polhode.plot._bodies import body, principal_axes
 from polhode.plot._cones import cones
-from polhode.plot._ellipsoid import ellipsoid, poinsot, polhodes
+from polhode.plot._ellipsoid import ellipsoid, poinsot, polhode, polhodes
 from polhode.plot._flyby import flyby
 from polhode.plot._motion import angular_momentum, angular_velocity, euler_angles, invariants
 from polhode.plot._portrait import portrait, portraits
@@ -31,6 +31,7 @@ __all__ = [
     "invariants",
     "nutation",
     "poinsot",
+    "polhode",
     "polhodes",
     "portrait",
     "portraits",

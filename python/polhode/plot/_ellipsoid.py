@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _core
 from polhode._scene.ellipsoid import inertia_semi_axes, principal_circles
-from polhode._scene.sampling import drawn_times
+from polhode._scene.sampling import drawn_times, once_round
 from polhode._scene.shape import check_one
 from polhode._scene.style import AXIS_COLORS, MOMENTUM_COLOR, OMEGA_COLOR
 from polhode.plot._bodies import principal_axes
@@ -21,17 +21,18 @@ from polhode.plot._surfaces import (
     plain_frame,
     solid_ellipsoid,
     to_upright,
+    toward_viewer,
 )
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
     from numpy.typing import ArrayLike, NDArray
 
-    from polhode import FreeMotion, RigidBody
+    from polhode import FreeMotion, GyrostatMotion, RigidBody
 
     Floats = NDArray[np.float64]
 
-__all__ = ["ellipsoid", "poinsot", "polhodes"]
+__all__ = ["ellipsoid", "poinsot", "polhode", "polhodes"]
 
 
 def ellipsoid(
@@ -160,6 +161,68 @@ def polhodes(
     ax.text2D(
         0.5, 0.03, f"semi-axes {lengths} {rate_unit}", transform=ax.transAxes, ha="center", in_layout=False
     )
+    plain_frame(ax, 3 * [-reach], 3 * [reach])
+    return ax
+
+
+def polhode(
+    motion: FreeMotion | GyrostatMotion,
+    ax: Axes3D | None = None,
+    *,
+    rate_unit: str = "rad/s",
+) -> Axes3D:
+    """Draw the polhode of a motion: the path of ω in the body, on the ellipsoid ω·I ω = 2T of its energy.
+
+    Of a gyrostat T leaves out the rotation of its wheels relative to the body, and I is the tensor in its
+    equations. The motion starts at the disc.
+
+    Parameters
+    ----------
+    motion : FreeMotion or GyrostatMotion
+        Of one body without zero moments.
+    ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
+        Where to draw; a new figure by default.
+    rate_unit : str
+        Of ω, for the label.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    check_one(motion.shape, "motion")
+    if isinstance(motion, _core.GyrostatMotion):
+        inertia = np.asarray(motion.gyrostat.inertia)
+        path = motion.at(once_round(motion)).omega
+    else:
+        inertia, path = motion.body.inertia, motion.polhode(361)
+    principal = _core.principal_axes(inertia)
+    energy = float(motion.kinetic_energy)
+    if principal.moments[0] == 0.0:
+        raise ValueError("motion: the body has a zero moment, and its ellipsoid no end")
+    if not energy > 0.0:
+        raise ValueError("motion: the body is at rest, and its ellipsoid of energy is a point")
+    new = ax is None
+    ax = axes_3d(ax)
+    if new:
+        start = path[0] / np.linalg.norm(path[0])
+        ax.view_init(elev=20.0, azim=float(np.rad2deg(np.arctan2(start[1], start[0]))) + 25.0)
+    semi_axes = np.sqrt(2.0 * energy) * inertia_semi_axes(principal.moments)
+    solid_ellipsoid(ax, semi_axes, principal.axes, np.zeros(3), 1.0)
+    if len(path) > 1:
+        curve_on(ax, path, path @ inertia, AXIS_COLORS[1], linewidth=2.2)
+    viewer = toward_viewer(ax)
+    near = (path[0] @ inertia) @ viewer >= 0.0
+    ax.plot(*path[0][:, np.newaxis], linestyle="none", marker="o", markersize=5.0, color=OMEGA_COLOR,
+            zorder=8 if near else 3)  # fmt: skip
+    for k, color in enumerate(AXIS_COLORS):
+        tip = principal.axes[:, k] * (semi_axes[k] + 0.2 * semi_axes.max())
+        ax.plot(*np.stack([0.0 * tip, tip], axis=-1), color=color, linewidth=1.6, zorder=1)
+        ax.text(*(1.12 * tip), rf"$\omega_{k + 1}$", color=color, ha="center", va="center",
+                fontsize=13, zorder=6, alpha=1.0 if tip @ viewer >= 0.0 else 0.4)  # fmt: skip
+    sizes = np.linalg.norm(path, axis=1)
+    words = f"|ω| from {sizes.min():.3g} to {sizes.max():.3g} {rate_unit}"
+    ax.text2D(0.5, 0.03, words, transform=ax.transAxes, ha="center", in_layout=False)
+    reach = 1.1 * semi_axes.max()
     plain_frame(ax, 3 * [-reach], 3 * [reach])
     return ax
 

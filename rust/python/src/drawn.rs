@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::free_motion::PyFreeMotion;
+use crate::gyrostat::motion::PyGyrostatMotion;
 use crate::heavy_top::PyHeavyTop;
 
 /// The same two methods for each class of exact motions.
@@ -73,4 +74,4 @@ macro_rules! drawn {
     )+};
 }
 
-drawn!(PyFreeMotion, PyHeavyTop);
+drawn!(PyFreeMotion, PyGyrostatMotion, PyHeavyTop);

@@ -99,6 +99,27 @@ const COSINE: [f64; 6] = [
 #[inline(always)]
 #[must_use]
 pub(crate) fn exp_minus<L: Lane>(x: L) -> L {
+    let (n, r) = halvings(x);
+    horner(-r, &EXPONENTIAL) * (-n).power_of_two()
+}
+
+/// `e^{−x}` for x ≥ 0, and what one has more, to about a unit in the last place of either; past 700 those at 700.
+#[inline(always)]
+#[must_use]
+pub(crate) fn exp_minus_and_rest<L: Lane>(x: L) -> (L, L) {
+    let (n, r) = halvings(x);
+    let power = (-n).power_of_two();
+    // e^{−r} − 1.
+    let small = -r * horner(-r, &ITS_SLOPES);
+    (
+        power * (L::new(1.0) + small),
+        power.mul_add(-small, L::new(1.0) - power),
+    )
+}
+
+/// `x = n ln 2 + r` for x ≥ 0 and up to 700, n whole and |r| ≤ ½ ln 2.
+#[inline(always)]
+fn halvings<L: Lane>(x: L) -> (L, L) {
     let x = L::new(700.0).min(x); // in this order NaN stays NaN
     let n = (x * L::new(std::f64::consts::LOG2_E)).round();
     // ln 2 in two parts, the first short enough that its multiples are exact.
@@ -106,7 +127,7 @@ pub(crate) fn exp_minus<L: Lane>(x: L) -> L {
         L::new(-1.908_214_929_270_587_7e-10),
         n.mul_add(L::new(-6.931_471_803_691_238e-1), x),
     );
-    horner(-r, &EXPONENTIAL) * (-n).power_of_two()
+    (n, r)
 }
 
 /// 1/n!: for |r| ≤ ½ ln 2 the next term is below 5e-18.
@@ -126,6 +147,17 @@ const EXPONENTIAL: [f64; 14] = [
     1.0 / 479_001_600.0,
     1.0 / 6_227_020_800.0,
 ];
+
+/// 1/(n + 1)!: of `(e^r − 1)/r`.
+const ITS_SLOPES: [f64; 13] = {
+    let mut slopes = [0.0; 13];
+    let mut n = 0;
+    while n < 13 {
+        slopes[n] = EXPONENTIAL[n + 1];
+        n += 1;
+    }
+    slopes
+};
 
 /// A polynomial, lowest coefficient first.
 #[inline(always)]
@@ -195,6 +227,13 @@ mod tests {
             assert!((value / (-x).exp() - 1.0).abs() < 5e-16, "{x}");
         }
         assert!(exp_minus(One::new(f64::NAN)).get().is_nan());
+        assert!(exp_minus_and_rest(One::new(f64::NAN)).1.get().is_nan());
+        for k in 0..7000 {
+            let x = 0.97_f64.powi(k) * 690.0;
+            let (value, rest) = exp_minus_and_rest(One::new(x));
+            assert!((value.get() / (-x).exp() - 1.0).abs() < 5e-16, "{x}");
+            assert!((rest.get() / -(-x).exp_m1() - 1.0).abs() < 5e-16, "{x}");
+        }
         assert!(exp_minus(One::new(f64::INFINITY)).get() < 1e-300);
     }
 }

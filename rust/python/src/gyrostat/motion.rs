@@ -106,9 +106,9 @@ impl PyGyrostat {
     ///
     /// Notes
     /// -----
-    /// ω has two errors. One is rounding times the ratio of the largest moment to the least: it counts for thin bodies.
-    /// The other is 1e-31 times the momentum inside over a moment: it counts for bodies that hardly turn.
-    /// :meth:`RigidBody.simulate` under :func:`polhode.loads.rotor` has neither.
+    /// ω has two errors. One is rounding times the ratio of the largest moment to the least: it counts for thin bodies that
+    /// do not turn fast about their long axis. The other is 1e-31 times the momentum inside over a moment: it counts for
+    /// bodies that hardly turn. :meth:`RigidBody.simulate` under :func:`polhode.loads.rotor` has neither.
     ///
     /// Examples
     /// --------

@@ -4,7 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::propagator::{Circular, Clocked, Endless, Hyperbolic, Propagator, Rational, Round};
+use super::propagator::{
+    Circular, Clocked, Endless, Hyperbolic, Passing, Propagator, Rational, Round,
+};
 use super::spinor::{Course, Spinor};
 use super::start::Start;
 use crate::mass::refined::{RefinedPrincipal, Vector};
@@ -105,6 +107,12 @@ pub(super) fn moving(
         Course::Hyperbolic => {
             // Z in the middle of its course has the size one.
             columns[1] = columns[1].map(|x| x.over(spinor.argument));
+            if spinor.in_time.is_none() {
+                // The first column goes with what the second function is there: see `Passing`.
+                let z = spinor.argument;
+                let there = z.re.scaled(2.0) / z.norm_squared().sqrt();
+                columns[0] = [0, 1].map(|k| columns[0][k] + columns[1][k].times(there));
+            }
             passing(spinor)
         }
         Course::Rational => Pace {
@@ -113,8 +121,8 @@ pub(super) fn moving(
                     curvature: [spinor.argument.re.high, spinor.argument.im.high],
                 },
                 Endless {
-                    rate: 1.0,
-                    start: 0.0,
+                    rate: 1.0.into(),
+                    start: DoubleDouble::default(),
                 },
             ),
             phase: spinor.phase,
@@ -167,10 +175,15 @@ fn passing(spinor: &Spinor) -> Pace {
     let Some((turn, in_time)) = spinor.in_time else {
         return Pace {
             clocked: Clocked::Endless(
-                hyperbolic(spinor, angle, 1.0, f64::INFINITY),
+                Passing {
+                    wave: [angle.cos(), angle.sin()],
+                },
                 Endless {
-                    rate: spinor.sense * spinor.rate.high,
-                    start: before,
+                    rate: spinor.rate.scaled(spinor.sense),
+                    start: DoubleDouble::sum(
+                        before,
+                        (-before).exp() * spinor.argument.size() - 1.0,
+                    ),
                 },
             ),
             phase: spinor.phase,

@@ -1,12 +1,13 @@
 //! A gyrostat's motion from its start, and the states at any time.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::constants::{Given, Secular, moving, steady};
 use super::curve::Curve;
 use super::mode::Mode;
 use super::propagator::Propagator;
 use super::quartic::Invariants;
+use super::slender::Slender;
 use super::spinor::Spinor;
 use super::start::Start;
 use crate::error::{Error, MotionFault, all_finite};
@@ -52,7 +53,7 @@ pub struct GyrostatMotion {
 enum Way {
     /// Without momentum inside.
     Free(FreeMotion),
-    Within(Propagator),
+    Within(Propagator, Option<Slender>),
 }
 
 /// A discriminant this small beside its terms is computed again with four times the precision.
@@ -135,6 +136,12 @@ impl GyrostatMotion {
             }
         };
         let Secular { period, precession } = secular;
+        let propagator = propagator.in_units_of(rate_unit);
+        let slender = if mode == Mode::Steady {
+            None
+        } else {
+            Slender::of(principal, rotor, angular_momentum, kinetic_energy)
+        };
         let motion = Self {
             mode,
             initial,
@@ -143,9 +150,9 @@ impl GyrostatMotion {
             kinetic_energy,
             period: period.times_power_of_two(-rate),
             mean_precession: precession.times_power_of_two(rate),
-            way: Way::Within(propagator.in_units_of(rate_unit)),
+            way: Way::Within(propagator, slender),
         };
-        let off = (motion.at(0.0).omega - omega).amax() / omega.amax();
+        let off = (evaluate::at(&propagator, 0.0).omega - omega).amax() / omega.amax();
         if *omega != Vector3::zeros() && (off > TOO_FAR_OFF || off.is_nan()) {
             return Err(MotionFault::LostInClosedForm { off }.into());
         }
@@ -176,7 +183,7 @@ impl GyrostatMotion {
     pub fn as_free(&self) -> Option<&FreeMotion> {
         match &self.way {
             Way::Free(motion) => Some(motion),
-            Way::Within(_) => None,
+            Way::Within(..) => None,
         }
     }
 
@@ -185,11 +192,15 @@ impl GyrostatMotion {
     /// The attitude is continuous in t as a quaternion, not only as a rotation.
     #[must_use]
     pub fn at(&self, t: f64) -> State {
-        let propagator = match &self.way {
+        let (propagator, slender) = match &self.way {
             Way::Free(motion) => return motion.at(t),
-            Way::Within(propagator) => propagator,
+            Way::Within(propagator, slender) => (propagator, slender),
         };
-        evaluate::at(propagator, t)
+        let mut state = evaluate::at(propagator, t);
+        if let Some(slender) = slender {
+            state.omega = slender.settled(&state);
+        }
+        state
     }
 
     /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
@@ -197,11 +208,21 @@ impl GyrostatMotion {
     /// # Panics
     /// If the lengths differ.
     pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        let propagator = match &self.way {
+        let (propagator, slender) = match &self.way {
             Way::Free(motion) => return motion.sample(times, attitudes, omegas),
-            Way::Within(propagator) => propagator,
+            Way::Within(propagator, slender) => (propagator, slender),
         };
         evaluate::sample(propagator, times, attitudes, omegas);
+        if let Some(slender) = slender {
+            for (&[x, y, z, w], omega) in attitudes.iter().zip(omegas) {
+                let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+                let state = State {
+                    attitude,
+                    omega: Vector3::from(*omega),
+                };
+                *omega = slender.settled(&state).into();
+            }
+        }
     }
 }
 
@@ -209,7 +230,7 @@ impl ClosedForm for GyrostatMotion {
     fn reach(&self) -> f64 {
         match &self.way {
             Way::Free(motion) => motion.reach(),
-            Way::Within(propagator) => propagator.reach,
+            Way::Within(propagator, _) => propagator.reach,
         }
     }
 

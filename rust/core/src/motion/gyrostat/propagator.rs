@@ -1,14 +1,17 @@
 //! The state at any time from a few constants: two theta functions for the attitude and ω alike.
 
 use crate::motion::free::evaluate::{Formula, Motion, Use, combine};
-use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::lane::Lane;
 use crate::numerics::theta::circular;
-use crate::numerics::turns::{exp_minus, reach, sin_cos_turns, turns, whole_off};
+use crate::numerics::turns::{
+    exp_minus, exp_minus_and_rest, reach, sin_cos_turns, turns, whole_off,
+};
 
-/// Θₑ and Θₒ but for a common factor, real and imaginary part of each, at the argument x.
+/// Θₑ and Θₒ but for a common factor, real and imaginary part of each, at the argument x; `rest` is what rounding has left out of x,
+/// where x is not taken off whole turns.
 pub(super) trait Series {
-    fn values<L: Lane>(&self, x: L) -> [(L, L); 2];
+    fn values<L: Lane>(&self, x: L, rest: L) -> [(L, L); 2];
 }
 
 /// By sines and cosines of multiples of x turns: coefficients of `cos 2jx`, `sin 2jx`, and of `cos (2j+1)x`, `sin (2j+1)x`.
@@ -21,7 +24,7 @@ pub(super) struct Circular {
 
 impl Series for Circular {
     #[inline(always)]
-    fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
+    fn values<L: Lane>(&self, x: L, _: L) -> [(L, L); 2] {
         let (sine, cosine) = sin_cos_turns(x);
         let z = circular::Argument::new(sine, cosine);
         let (mut even, mut odd) = ((L::new(0.0), L::new(0.0)), (L::new(0.0), L::new(0.0)));
@@ -62,7 +65,7 @@ pub(super) struct Hyperbolic {
 
 impl Series for Hyperbolic {
     #[inline(always)]
-    fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
+    fn values<L: Lane>(&self, x: L, _: L) -> [(L, L); 2] {
         let (zero, one) = (L::new(0.0), L::new(1.0));
         let theta = x * L::new(self.unit);
         let size = theta.abs();
@@ -92,6 +95,31 @@ impl Series for Hyperbolic {
     }
 }
 
+/// One and `2 cosh (x + iφ) − 2 cos φ`, what the second function has more than where x is zero; both over `e^{|x|}`.
+///
+/// With φ small the second function itself is nearly a constant there, and the spinor a difference of far larger ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Passing {
+    /// cos φ, sin φ.
+    pub(super) wave: [f64; 2],
+}
+
+impl Series for Passing {
+    #[inline(always)]
+    fn values<L: Lane>(&self, x: L, rest: L) -> [(L, L); 2] {
+        let [cosine, sine] = self.wave.map(L::new);
+        let one = L::new(1.0);
+        let sign = one.copysign(x);
+        let (g, lack) = exp_minus_and_rest(x.abs());
+        let change = g * (sign * rest);
+        let (g, lack) = (g - change, lack + change);
+        [
+            (g, L::new(0.0)),
+            (cosine * lack * lack, sign * sine * lack * (one + g)),
+        ]
+    }
+}
+
 /// One and `x + k x²`, both over 1 + x².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rational {
@@ -101,7 +129,7 @@ pub(super) struct Rational {
 
 impl Series for Rational {
     #[inline(always)]
-    fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
+    fn values<L: Lane>(&self, x: L, _: L) -> [(L, L); 2] {
         let [re, im] = self.curvature.map(L::new);
         let square = x * x;
         let over = L::new(1.0) / (L::new(1.0) + square);
@@ -117,8 +145,8 @@ pub(super) trait Clock: Copy {
     /// Whether x never comes back.
     const ENDLESS: bool;
 
-    /// x, and the sign of Θₒ.
-    fn at<L: Lane>(self, t: L) -> (L, L);
+    /// x with what rounding has left out of it, and the sign of Θₒ.
+    fn at<L: Lane>(self, t: L) -> ([L; 2], L);
 
     /// The same where a unit of the rates is `unit`.
     fn in_units_of(self, unit: f64) -> Self;
@@ -136,14 +164,14 @@ impl<const ALTERNATES: bool> Clock for Round<ALTERNATES> {
     const ENDLESS: bool = false;
 
     #[inline(always)]
-    fn at<L: Lane>(self, t: L) -> (L, L) {
-        let (one, two) = (L::new(1.0), L::new(2.0));
+    fn at<L: Lane>(self, t: L) -> ([L; 2], L) {
+        let (zero, one, two) = (L::new(0.0), L::new(1.0), L::new(2.0));
         if !ALTERNATES {
-            return (turns(t, self.rate, self.start), one);
+            return ([turns(t, self.rate, self.start), zero], one);
         }
         let halves = two * turns(t, self.rate.scaled(0.5), self.start.scaled(0.5));
         let whole = halves.round();
-        (halves - whole, one - two * whole.abs())
+        ([halves - whole, zero], one - two * whole.abs())
     }
 
     fn in_units_of(self, unit: f64) -> Self {
@@ -152,24 +180,27 @@ impl<const ALTERNATES: bool> Clock for Round<ALTERNATES> {
     }
 }
 
-/// x never comes back.
+/// x never comes back. Where a motion leads from one equilibrium to another `start` is as large as the logarithm of rounding, and the
+/// last digits of x are those that count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Endless {
-    pub(super) rate: f64,
-    pub(super) start: f64,
+    pub(super) rate: DoubleDouble,
+    pub(super) start: DoubleDouble,
 }
 
 impl Clock for Endless {
     const ENDLESS: bool = true;
 
     #[inline(always)]
-    fn at<L: Lane>(self, t: L) -> (L, L) {
-        let x = t.mul_add(L::new(self.rate), L::new(self.start));
-        (x, L::new(1.0))
+    fn at<L: Lane>(self, t: L) -> ([L; 2], L) {
+        let (p, e) = t.two_product(L::new(self.rate.high));
+        let (x, rest) = two_sum(p, L::new(self.start.high));
+        let e = t.mul_add(L::new(self.rate.low), e + L::new(self.start.low));
+        ([x, rest + e], L::new(1.0))
     }
 
     fn in_units_of(self, unit: f64) -> Self {
-        let rate = self.rate * unit;
+        let rate = self.rate.scaled(unit);
         Self { rate, ..self }
     }
 }
@@ -180,7 +211,7 @@ pub(super) enum Clocked {
     Circular(Circular, Round<false>),
     Hyperbolic(Hyperbolic, Round<false>),
     Alternating(Hyperbolic, Round<true>),
-    Endless(Hyperbolic, Endless),
+    Endless(Passing, Endless),
     Rational(Rational, Endless),
 }
 
@@ -241,8 +272,8 @@ impl Propagator {
         let one = L::new(1.0);
         let is_known = t.abs() <= L::new(self.reach);
         let t = if is_known { t } else { L::new(f64::NAN) };
-        let (x, sign) = clock.at(t);
-        let [even, (odd_re, odd_im)] = series.values(x);
+        let ([x, rest], sign) = clock.at(t);
+        let [even, (odd_re, odd_im)] = series.values(x, rest);
         let odd = (sign * odd_re, sign * odd_im);
         let phase = turns(t, self.rate, DoubleDouble::default());
         let phase = if C::ENDLESS {
