@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 from collections.abc import Iterator
@@ -11,6 +12,9 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 from molecule_files import write_molecules
+
+# Collecting makes objects that stay to the end: the garbage collector does not look through them.
+gc.disable()
 
 # What runs in the background of a shell ignores Ctrl-C, and so do its children: tests of it would not end.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -28,6 +32,12 @@ settings.register_profile(
     "thorough", parent=settings.get_profile("polhode"), derandomize=False, max_examples=5000
 )
 settings.load_profile(os.environ.get("POLHODE_HYPOTHESIS_PROFILE", "polhode"))
+
+
+def pytest_collection_finish() -> None:
+    """Turn the garbage collector on, for what the tests make."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session")
