@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use super::propagator::{
     Circular, Clocked, Endless, Hyperbolic, Passing, Propagator, Rational, Round,
 };
-use super::spinor::{Course, Spinor};
+use super::spinor::{Regime, Spinor};
 use super::start::Start;
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::motion::attitude::from_axes;
@@ -102,10 +102,10 @@ pub(super) fn moving(
 ) -> (Propagator, Secular) {
     let unit = start.unit;
     let mut columns = spinor.columns;
-    let pace = match spinor.course {
-        Course::Circular => circling(spinor),
-        Course::Hyperbolic => {
-            // Z in the middle of its course has the size one.
+    let pace = match spinor.regime {
+        Regime::Circular => circling(spinor),
+        Regime::Hyperbolic => {
+            // Z in the middle of its regime has the size one.
             columns[1] = columns[1].map(|x| x.over(spinor.argument));
             if spinor.in_time.is_none() {
                 // The first column goes with what the second function is there: see `Passing`.
@@ -115,7 +115,7 @@ pub(super) fn moving(
             }
             passing(spinor)
         }
-        Course::Rational => Pace {
+        Regime::Rational => Pace {
             clocked: Clocked::Rational(
                 Rational {
                     curvature: [spinor.argument.re.high, spinor.argument.im.high],
