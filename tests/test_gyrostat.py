@@ -157,7 +157,7 @@ def test_a_slender_body_keeps_its_rate_about_its_long_axis() -> None:
 
 
 def test_from_one_equilibrium_to_another() -> None:
-    """With h along the first axis the separatrix leads from one saddle to its mirror image, where it stays."""
+    """With h along the first axis the separatrix leads from one saddle to its mirror image: to stay there."""
     body, h = RigidBody.from_principal(1.0, (3.0, 4.0, 6.0)), (3.0, 0.0, 0.0)
     omega, times = (-1.0, -0.5, 2.0), np.linspace(0, 30, 301)
     motion = body.gyrostat(h).free_motion(omega)
