@@ -135,38 +135,40 @@ def test_little_momentum(power: int) -> None:
 
 
 def test_a_slender_body_keeps_its_rate_about_its_long_axis() -> None:
-    """Its momentum about it is a millionth of the whole, of which the attitude knows sixteen digits."""
+    """Beside the rounding of its momentum about that axis, over the moment: the energy knows it better."""
     rng = np.random.default_rng(4)
-    for _ in range(12):
-        least = 10 ** rng.uniform(-6, -4)
+    errors, least = [], 1e-6
+    for _ in range(24):
         axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-        body = RigidBody.from_principal(1.0, (least, 1.0, 1.0 + 0.5 * least), axes * np.linalg.det(axes))
+        axes *= np.linalg.det(axes)
+        body = RigidBody.from_principal(1.0, (least, 1.0, 1.0 + 0.5 * least), axes)
         h = axes @ (least * rng.normal(), *(0.3 * rng.normal(size=2)))
         omega = axes @ (2.0, *rng.normal(size=2))
-        turn = 2 * np.pi / np.linalg.norm(omega)
-        times = np.array([0.0, 0.3, 1.0, 2.0, 5.0]) * turn
+        times = np.array([0.0, 0.3, 1.0, 2.0, 5.0]) * 2 * np.pi / np.linalg.norm(omega)
         run = body.simulate(times, omega, load=loads.rotor(h), method="taylor", rtol=1e-26)
         exact = body.gyrostat(h).free_motion(omega).at(times)
-        fastest = np.linalg.norm(run.omega, axis=1).max()
-        slow = 1e-16 * np.linalg.norm(run.angular_momentum().spin[0]) / least
-        fast = np.linalg.norm(run.omega, axis=1) > 20
-        error = np.linalg.norm(exact.omega - run.omega, axis=1)
-        assert (error[fast] <= 2e-15 * fastest + 0.05 * slow).all()
-        assert (error <= 2e-15 * fastest + 5 * slow).all()
+        rounding = 1e-16 * np.linalg.norm(run.angular_momentum().spin[0]) / least
+        error = np.linalg.norm(exact.omega - run.omega, axis=1) / rounding
+        assert (error <= 5).all()
+        errors += list(error[np.linalg.norm(run.omega, axis=1) > 20])
+    assert len(errors) > 50
+    assert max(errors) <= 0.3
+    assert np.median(errors) <= 0.015
 
 
 def test_from_one_equilibrium_to_another() -> None:
-    """With h along the first axis the separatrix passes from one saddle to its mirror image."""
+    """With h along the first axis the separatrix leads from one saddle to its mirror image: to stay there."""
     body, h = RigidBody.from_principal(1.0, (3.0, 4.0, 6.0)), (3.0, 0.0, 0.0)
     omega, times = (-1.0, -0.5, 2.0), np.linspace(0, 30, 301)
     motion = body.gyrostat(h).free_motion(omega)
     run = body.simulate(times, omega, load=loads.rotor(h), method="taylor", rtol=1e-26)
     exact = motion.at(times)
     assert motion.mode == "separatrix"
-    assert apart(exact.quaternion, run.quaternion) <= 1.5e-15
-    assert np.abs(exact.omega - run.omega).max() <= 5e-15
-    ends = motion.at([-1e3, 1e3]).omega
-    assert np.allclose(ends, [[3, 0.5, 0], [3, -0.5, 0]], atol=1e-13)
+    assert apart(exact.quaternion, run.quaternion) <= 4e-15
+    assert np.abs(exact.omega - run.omega).max() <= 4e-14
+    for t in (150.0, 1e3, 1e6):
+        ends = motion.at([-t, t]).omega
+        assert np.abs(ends - [[3, 0.5, 0], [3, -0.5, 0]]).max() <= 1e-9 * (t < 1e3) + 1e-13
 
 
 def test_a_start_next_to_the_middle_axis_turns_over_when_it_should() -> None:

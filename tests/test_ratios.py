@@ -63,3 +63,14 @@ def test_the_page_tells_spread_machine_and_date(
     assert "| moments and axes, 1e6 tensors | numpy.linalg.eigh | 43.2 | not kept |" in page
     assert f"Measured on {found['0.2.0']['date']}: {found['0.2.0']['machine']['cpu']}, " in page
     assert "Measured on 2026-11-22: AMD EPYC, 2 cores, Python 3.11.7." in page
+
+
+@pytest.mark.parametrize(
+    ("most", "bar", "met"), [(1.0, "ours <= 1 s", True), (1e-12, "ours <= 0.001 ns", False)]
+)
+def test_a_bar_on_our_own_time(harness: Any, most: float, bar: str, met: bool) -> None:
+    row = harness.Row(
+        "a row", "a peer", lambda: sum(range(100)), lambda: None, lambda *_: None, most_seconds=most
+    )
+    result = harness.measure(row, rounds=3, least_seconds=1e-4)
+    assert (result.bar, result.met) == (bar, met)

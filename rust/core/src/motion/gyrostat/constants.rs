@@ -81,6 +81,9 @@ fn components(q: &Quaternion<f64>) -> [f64; 4] {
     [q.i, q.j, q.k, q.w]
 }
 
+/// Beyond this `Z₀` is infinite but for rounding: its reciprocal is the root of a difference, of twice the precision.
+const INFINITE: f64 = 1e13;
+
 /// How x goes with time, what the series of it are, and what turns the spinor beside them.
 struct Pace {
     clocked: Clocked,
@@ -177,6 +180,11 @@ fn passing(spinor: &Spinor) -> Pace {
             clocked: Clocked::Endless(
                 Passing {
                     wave: [angle.cos(), angle.sin()],
+                    least: if spinor.argument.size() > INFINITE {
+                        0.0
+                    } else {
+                        f64::NEG_INFINITY
+                    },
                 },
                 Endless {
                     rate: spinor.rate.scaled(spinor.sense),

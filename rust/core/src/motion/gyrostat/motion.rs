@@ -45,10 +45,6 @@ pub struct GyrostatMotion {
 }
 
 /// By which formulas.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a motion is a value that is copied, and rarely in great number"
-)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
     /// Without momentum inside.

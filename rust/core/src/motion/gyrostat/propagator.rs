@@ -102,6 +102,9 @@ impl ThetaSeries for Hyperbolic {
 pub(super) struct Passing {
     /// cos φ, sin φ.
     pub(super) wave: [f64; 2],
+    /// The least x: zero where a motion leads from one equilibrium to another, of which no `e^{−x}` is a part, else minus
+    /// infinity.
+    pub(super) least: f64,
 }
 
 impl ThetaSeries for Passing {
@@ -109,6 +112,7 @@ impl ThetaSeries for Passing {
     fn values<L: Lane>(&self, x: L, rest: L) -> [(L, L); 2] {
         let [cosine, sine] = self.wave.map(L::new);
         let one = L::new(1.0);
+        let x = L::new(self.least).max(x); // in this order NaN stays NaN
         let sign = one.copysign(x);
         let (g, lack) = exp_minus_and_rest(x.abs());
         let change = g * (sign * rest);
