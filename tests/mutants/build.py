@@ -91,9 +91,10 @@ def compiling(mutants: list[Mutant]) -> dict[int, Mutant]:
     numbers = dict(enumerate(mutants, 1))
     refused = json.loads(REFUSED.read_text(encoding="utf-8")) if REFUSED.exists() else {}
     left = {number: mutant for number, mutant in numbers.items() if mutant.key not in refused}
+    command = ["cargo", "check", "--locked", "--workspace", "--features", "polhode/serde"]
+    command += ["--message-format=json", "--profile", "test"]
     while True:
         where = write(left)
-        command = ["cargo", "check", "--locked", "--workspace", "--message-format=json", "--profile", "test"]
         told = subprocess.run(command, cwd=TREE, env=CARGO, text=True, stdout=subprocess.PIPE, check=False)
         if told.returncode == 0:
             return left
@@ -118,7 +119,8 @@ def compiling(mutants: list[Mutant]) -> dict[int, Mutant]:
 
 def build() -> list[Path]:
     """Compile the copy: the tests of the core; the extension goes where Python finds it."""
-    command = ["cargo", "test", "--locked", "--package", "polhode", "--lib", "--tests", "--no-run"]
+    command = ["cargo", "test", "--locked", "--package", "polhode", "--features", "serde"]
+    command += ["--lib", "--tests", "--no-run"]
     told = subprocess.run(command, cwd=TREE, env=CARGO, text=True, stderr=subprocess.PIPE, check=True).stderr
     programs = [Path(path) for path in re.findall(r"Executable .*\((\S+)\)$", told, re.MULTILINE)]
     command = ["cargo", "build", "--locked", "--package", "polhode-python", "--profile", "test"]
