@@ -5,7 +5,7 @@ Random matter of every kind, each source against exact rational arithmetic on th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -19,7 +19,7 @@ from oracles.exact_particles import Particles
 from oracles.exact_polyhedron import polyhedron
 from oracles.exact_shapes import tensor, tetrahedra
 from oracles.meshes import box, icosphere, tetrahedron
-from polhode import RigidBody
+from polhode import RigidBody, laminae, solids
 from polhode.errors import MeshError, PolhodeError
 
 LEAST = Fraction(2) ** -1022
@@ -240,3 +240,34 @@ def test_no_bound_is_short(source: str) -> None:
 def test_no_bound_is_short_of_many(source: str) -> None:
     faults, few, count = SOURCES[source]
     assert [fault for number in range(few, count) for fault in faults(number)] == []
+
+
+def plain_bodies(mass: float, length: float) -> Iterator[RigidBody]:
+    """Bodies of every kind of sum, in any units."""
+    ball = solids.sphere(length, mass=mass)
+    box = solids.box((length, 2.0 * length, 3.0 * length), mass=mass).translated((length, 0.0, 0.0))
+    corners = np.array([(0, 0), (3, 0), (2, 2), (0, 1)]) * length
+    places = np.array([(0, 0, 1), (1, 0, 0), (0, 2, 0)]) * length
+    ends = np.array([(-1, 0, 0), (1, 2, 2)]) * length
+    yield ball + box
+    yield RigidBody.stack([ball, box]).combined()
+    yield laminae.polygon(corners, density=mass / length**2)
+    yield RigidBody.from_particles(np.array([1.0, 2.0, 3.0]) * mass, places)
+    yield RigidBody.from_density(lambda r: np.full(len(r), mass / length**3), ends, rtol=1e-12)
+
+
+def test_bounds_are_rounding_in_every_unit() -> None:
+    """A bound is a small part of what it bounds, the same in any unit that is a power of two."""
+
+    def parts(mass: float, length: float) -> np.ndarray:
+        rows = []
+        for body in plain_bodies(mass, length):
+            bound, spread = body.error_bound, np.trace(body.inertia)
+            size = np.sqrt(spread / body.mass)
+            rows.append((bound.mass / body.mass, bound.center_of_mass / size, bound.inertia / spread))
+        return np.array(rows)
+
+    plain = parts(1.0, 1.0)
+    assert plain.max() < 1e-12
+    for units in ((2.0**60, 1.0), (2.0**-60, 1.0), (1.0, 2.0**40), (2.0**60, 2.0**-40)):
+        assert parts(*units) == pytest.approx(plain, rel=1e-6)

@@ -283,6 +283,14 @@ class TestWhatItTells:
         assert upright.mean_spin == 5.0
         assert np.array_equal(upright.at(1e9).omega, [0.0, 0.0, 5.0])
 
+    @pytest.mark.parametrize(("rate", "path"), [(0.0, "cusp"), (1.0, "wave"), (2.0, "loop")])
+    def test_small_paths_do_not_depend_on_their_size(self, rate: float, path: str) -> None:
+        """Beside the upper vertical the equations are linear."""
+        for theta in (1e-2, 1e-6, 1e-12):
+            omega = euler_angles.angular_velocity((0, theta, 0), (rate, 0.0, 25.0 - rate))
+            top = CASES["cusp"].body.heavy_top(omega, euler_angles.to_quaternion((0, theta, 0)), G)
+            assert top.path == path
+
     def test_steady_precession_is_regular(self) -> None:
         body = CASES["cusp"].body
         for theta in (0.3, 1.2, 2.8):

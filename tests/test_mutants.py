@@ -60,3 +60,29 @@ def test_a_rule_makes_mutants(tmp_path: Path, source: str, found: list[str]) -> 
 
     (tmp_path / "a.rs").write_text(source)
     assert [f"{place.rule}: {place.old} → {place.new}" for place in places(tmp_path / "a.rs")] == found
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ("return a < 1.5", ["comparison: a < 1.5 → a <= 1.5", "constant: 1.5 → 10.0 * 1.5"]),
+        ("return 0 < a <= 9", ["comparison: 0 < a <= 9 → 0 <= a <= 9", "comparison: 0 < a <= 9 → 0 < a < 9"]),
+        ("return A", ["constant: A → 10.0 * A"]),
+        ("return (a) - (b)", ["sum: (a) - (b) → (a) + (b)"]),
+        ("return max(a, 0)", ["min, max: max(a, 0) → min(a, 0)"]),
+        ("return np.minimum(a, 0)", ["min, max: np.minimum(a, 0) → np.maximum(a, 0)"]),
+        ("return not a and b", ["and, or: not a and b → not a or b", "not: not a → bool( a)"]),
+        ("if a:\n        raise ValueError", ["return: a → (a)"]),
+        ("if a:\n        return 1\n    else:\n        return 2", []),
+        ("return 'a' + b", []),
+        ("return f'{1 + 1}'", []),
+    ],
+)
+def test_a_rule_makes_mutants_of_the_package(tmp_path: Path, lines: str, found: list[str]) -> None:
+    from mutants.rules_python import places
+
+    source = f"A = 2.5\nB = 1.0 + 2.0\n\ndef f(a, b=1.0 + 1.0):\n    {lines}\n"
+    (tmp_path / "a.py").write_text(source, encoding="utf-8")
+    made = places(tmp_path / "a.py")
+    assert [f"{place.rule}: {place.old} → {place.new}" for place in made] == found
+    assert all(source[place.start : place.end] == place.old for place in made)

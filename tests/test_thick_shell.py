@@ -231,6 +231,8 @@ class TestRefusals:
             ((vertices, turned), r"faces\[3\] and faces\[4\] both run from vertex 4 to vertex 5"),
             (fin, "3 faces meet in the edge from vertex 0 to vertex 2"),
             (([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]), r"faces\[0\] has no normal"),
+            # The squares of its edge are below all numbers.
+            (([(0, 0, 0), (1e-200, 0, 0), (0, 1, 0)], [(0, 1, 2)]), r"faces\[0\] has no normal"),
             (([(0, 0, 0), (1, 0, 0), (1, 0, 0)], [(0, 1, 2)]), "no area"),
             ((vertices, [(0, 1, 9)]), r"faces\[0\] names vertex 9"),
             ((vertices, np.empty((0, 3), dtype=int)), "no faces"),

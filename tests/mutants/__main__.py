@@ -7,7 +7,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 import tomllib
 from collections import defaultdict
 from datetime import UTC, datetime
@@ -41,23 +40,36 @@ def note(key: str, killed: str | None) -> None:
         file.write(json.dumps({"key": key, "killed": killed}) + "\n")
 
 
-def by_cargo(living: dict[int, Mutant], programs: list[Path], most: float) -> None:
-    """The tests of the core on each mutant, quick programs first; one that takes too long has found it."""
+def rooms_of(mutant: Mutant) -> list[str]:
+    """The modules that a mutant of the core lies in, the narrowest first: their tests are the nearest."""
+    parts = list(Path(mutant.file).relative_to("rust/core/src").with_suffix("").parts)
+    parts = parts[:-1] if parts[-1] == "mod" else parts
+    return ["::".join(parts[:depth]) for depth in range(len(parts), 0, -1)][:2]
+
+
+def by_cargo(living: dict[int, Mutant], programs: list[Path], most: float, *, near: bool) -> None:
+    """The tests of its rooms, or all of the core, on each mutant; one that takes too long has found it."""
     for number, mutant in living.items():
         killed = None
-        for program in programs:
+        words = (
+            [[str(programs[0]), "-q", room] for room in rooms_of(mutant)]
+            if near
+            else [[str(program), "-q"] for program in programs]
+        )
+        for command in words:
             environment = {**os.environ, "POLHODE_MUTANT": str(number)}
             core = build.TREE / "rust" / "core"
+            name = Path(command[0]).stem.rsplit("-", 1)[0]
             try:
                 told = subprocess.run(
-                    [program, "-q"], cwd=core, env=environment, capture_output=True, timeout=most, check=False
+                    command, cwd=core, env=environment, capture_output=True, timeout=most, check=False
                 )
             except subprocess.TimeoutExpired:
-                killed = f"{program.stem} (did not end)"
+                killed = f"{name} (did not end)"
                 break
             if told.returncode:
                 failed = [line for line in told.stdout.decode().splitlines() if line.startswith("    ")]
-                killed = f"{program.stem.rsplit('-', 1)[0]}: {failed[-1].strip() if failed else 'crash'}"
+                killed = f"{name}: {failed[-1].strip() if failed else 'crash'}"
                 break
         note(mutant.key, killed)
         print(f"{mutant.what}: {killed or 'lives'}", flush=True)
@@ -118,27 +130,37 @@ def by_text(mutants: list[Mutant]) -> None:
 
 
 def score(mutants: list[Mutant], seed: int) -> None:
-    """Print which are not dead; write how many are into the table, by kind."""
+    """Print which are not dead; write how many are into the table, by part and kind, and those that live."""
     reasons = {
         row["key"]: row["why"]
         for row in tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf-8"))["mutant"]
     }
     dead = recorded()
-    kinds: dict[str, list[Mutant]] = defaultdict(list)
+    groups: dict[tuple[str, str], list[Mutant]] = defaultdict(list)
     for mutant in mutants:
-        kinds[mutant.kind].append(mutant)
-        if mutant.key not in dead:
-            print(f"  {mutant.key}  {mutant.what}\n            {reasons.get(mutant.key, 'NO TEST KILLS IT')}")
+        groups[mutant.part, mutant.kind].append(mutant)
+        groups[mutant.part, "all"].append(mutant)
+        groups["all", "all"].append(mutant)
+    order = ["named", *draw.PARTS, "all"]
     rows = []
-    for kind, ones in [*kinds.items(), ("drawn", [one for one in mutants if one.kind != "named"])]:
+    for (part, kind), ones in sorted(
+        groups.items(), key=lambda row: (order.index(row[0][0]), row[0][1] == "all")
+    ):
+        if (part, kind) == ("named", "named"):
+            continue
         killed = sum(one.key in dead for one in ones)
         same = sum(one.key in reasons and one.key not in dead for one in ones)
-        rows.append(f"| {kind} | {killed} | {same} | {len(ones) - killed - same} | {len(ones)} |")
+        rows.append(f"| {part} | {kind} | {killed} | {same} | {len(ones) - killed - same} | {len(ones)} |")
+    living = [
+        f"- `{mutant.key}` `{mutant.what}`: {reasons.get(mutant.key, 'no test kills it.')}"
+        for mutant in mutants
+        if mutant.key not in dead
+    ]
     head = (
         f"Mutants on {datetime.now(UTC):%Y-%m-%d}, drawn with seed {seed}; `make mutants` writes this table."
     )
-    columns = ["| kind | killed | equivalent | neither so far | all |", "|---|---|---|---|---|"]
-    text = "\n".join([head, "", *columns, *rows, ""])
+    columns = ["| part | kind | killed | equivalent | neither so far | all |", "|---|---|---|---|---|---|"]
+    text = "\n".join([head, "", *columns, *rows, "", "Those that live:", "", *living, ""])
     print(text)
     (HERE / "score.md").write_text(text, encoding="utf-8")
 
@@ -146,24 +168,30 @@ def score(mutants: list[Mutant], seed: int) -> None:
 def main() -> None:
     """Run what is not recorded yet."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=220, help="mutants of a seed")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--score", action="store_true", help="print the score of the record alone")
     parser.add_argument("--seconds", type=float, default=60.0, help="of tests in Python on one mutant")
     parser.add_argument("--longest", type=float, default=1.5, help="no test that takes more seconds")
-    parser.add_argument("--only", choices=("cargo", "pytest", "text"), help="this part alone")
+    parser.add_argument("--only", choices=("text", "rooms", "pytest", "cargo"), help="this part alone")
+    parser.add_argument(
+        "tests", nargs="*", help="these tests in Python, instead of those of the mutants' names"
+    )
     given = parser.parse_args()
     os.chdir(draw.ROOT)
-    named, drawn = draw.named(), draw.drawn(given.count, given.seed)
-    numbers = build.compiling(build.apart([mutant for mutant in [*named, *drawn] if mutant.is_rust]))
+    named = draw.named()
+    drawn = [row for part, (_, count) in draw.PARTS.items() for row in draw.drawn(part, count, given.seed)]
+    numbers = build.compiling(build.apart([mutant for mutant in [*named, *drawn] if not mutant.is_text]))
     if not given.score:
         programs = build.build()
         dead = recorded()
         living = {number: mutant for number, mutant in numbers.items() if mutant.key not in dead}
         if given.only in (None, "text"):
-            by_text([mutant for mutant in named if not mutant.is_rust and mutant.key not in dead])
+            by_text([mutant for mutant in named if mutant.is_text and mutant.key not in dead])
+        near = {number: mutant for number, mutant in living.items() if mutant.file.startswith("rust/core/")}
+        if given.only in (None, "rooms"):
+            by_cargo(near, programs, 120.0, near=True)
         if given.only in (None, "pytest"):
-            tests = [
+            tests = given.tests or [
                 test
                 for mutant in living.values()
                 for test in [f"tests/{name}" for name in mutant.tests]
@@ -171,10 +199,9 @@ def main() -> None:
             ]
             by_pytest(living, list(dict.fromkeys(tests)), given.seconds, given.longest)
         if given.only in (None, "cargo"):
-            start, dead = time.monotonic(), recorded()
-            left = {number: mutant for number, mutant in living.items() if mutant.key not in dead}
-            by_cargo(left, programs, 120.0)
-            print(f"cargo: {time.monotonic() - start:.0f} s")
+            dead = recorded()
+            left = {number: mutant for number, mutant in near.items() if mutant.key not in dead}
+            by_cargo(left, programs, 300.0, near=False)
     score([*named, *(mutant for mutant in numbers.values() if mutant in drawn)], given.seed)
 
 

@@ -16,6 +16,7 @@ from mutants.draw import HERE, ROOT, Mutant
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
 TREE = TARGET / "mutants"
 EXTENSION = "python/polhode/_core.abi3.so"
+SWITCHES = {"rust/core/src/mutant.rs": "switch.rs", "python/polhode/_mutant.py": "switch.py"}
 REFUSED = TARGET / "mutants-refused.json"
 # One level of instructions: the laws are the same, and the build takes a third of the time.
 FLAGS = {"RUSTFLAGS": "--cfg baseline_alone --cap-lints allow", "CARGO_TARGET_DIR": str(TARGET)}
@@ -32,11 +33,11 @@ def write(mutants: dict[int, Mutant]) -> dict[str, list[tuple[int, int, int]]]:
     )
     by_file: dict[str, list[tuple[int, Mutant]]] = defaultdict(list)
     for number, mutant in mutants.items():
-        if mutant.is_rust:
+        if not mutant.is_text:
             by_file[mutant.file].append((number, mutant))
     where: dict[str, list[tuple[int, int, int]]] = defaultdict(list)
     names = {name for name in listed.decode().split("\0") if name and (ROOT / name).is_file()}
-    stale(TREE, {*names, "rust/core/src/mutant.rs", EXTENSION})
+    stale(TREE, {*names, *SWITCHES, EXTENSION})
     for name in sorted(names):
         data = (ROOT / name).read_bytes()
         parts, last, length = [], 0, 0
@@ -50,7 +51,8 @@ def write(mutants: dict[int, Mutant]) -> dict[str, list[tuple[int, int, int]]]:
         if name == "rust/core/src/lib.rs":
             data += b"\npub mod mutant;\n"
         put(TREE / name, data)
-    put(TREE / "rust/core/src/mutant.rs", (HERE / "switch.rs").read_bytes())
+    for name, source in SWITCHES.items():
+        put(TREE / name, (HERE / source).read_bytes())
     return where
 
 
@@ -78,7 +80,7 @@ def apart(mutants: list[Mutant]) -> list[Mutant]:
         if not any(
             other.file == mutant.file and other.start < mutant.end and mutant.start < other.end
             for other in kept
-            if mutant.is_rust
+            if not mutant.is_text
         ):
             kept.append(mutant)
     return kept
@@ -89,9 +91,10 @@ def compiling(mutants: list[Mutant]) -> dict[int, Mutant]:
     numbers = dict(enumerate(mutants, 1))
     refused = json.loads(REFUSED.read_text(encoding="utf-8")) if REFUSED.exists() else {}
     left = {number: mutant for number, mutant in numbers.items() if mutant.key not in refused}
+    command = ["cargo", "check", "--locked", "--workspace", "--features", "polhode/serde"]
+    command += ["--message-format=json", "--profile", "test"]
     while True:
         where = write(left)
-        command = ["cargo", "check", "--locked", "--workspace", "--message-format=json", "--profile", "test"]
         told = subprocess.run(command, cwd=TREE, env=CARGO, text=True, stdout=subprocess.PIPE, check=False)
         if told.returncode == 0:
             return left
@@ -116,7 +119,8 @@ def compiling(mutants: list[Mutant]) -> dict[int, Mutant]:
 
 def build() -> list[Path]:
     """Compile the copy: the tests of the core; the extension goes where Python finds it."""
-    command = ["cargo", "test", "--locked", "--package", "polhode", "--lib", "--tests", "--no-run"]
+    command = ["cargo", "test", "--locked", "--package", "polhode", "--features", "serde"]
+    command += ["--lib", "--tests", "--no-run"]
     told = subprocess.run(command, cwd=TREE, env=CARGO, text=True, stderr=subprocess.PIPE, check=True).stderr
     programs = [Path(path) for path in re.findall(r"Executable .*\((\S+)\)$", told, re.MULTILINE)]
     command = ["cargo", "build", "--locked", "--package", "polhode-python", "--profile", "test"]

@@ -32,3 +32,9 @@ pub extern "C" fn polhode_mutant_lives(number: u32) {
 pub extern "C" fn polhode_mutant_reached(number: u32) -> bool {
     REACHED[number as usize].swap(false, Relaxed)
 }
+
+/// The same question from Python.
+#[unsafe(no_mangle)]
+pub extern "C" fn polhode_mutant_asked(number: u32) -> bool {
+    is(number)
+}

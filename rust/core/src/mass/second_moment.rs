@@ -154,4 +154,27 @@ mod tests {
             }
         }
     }
+
+    /// A square of −s makes a deficit of 2 s, which may be 2·10⁻¹² of the largest moment and seven times the bound.
+    #[test]
+    fn beyond_rounding_no_matter_has_a_negative_square() {
+        for bound in [0.0, 1e-6] {
+            let limit = 2e-12 + 3.5 * bound;
+            for (negative, is_rounding) in [(0.99 * limit, true), (1.01 * limit, false)] {
+                let matter = SecondMoment {
+                    mass: 1.0,
+                    center_of_mass: Vector3::zeros(),
+                    central: Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -negative)),
+                    axes: Matrix3::identity(),
+                    error_bound: ErrorBound {
+                        inertia: bound,
+                        ..ErrorBound::default()
+                    },
+                };
+                let body = RigidBody::from_second_moment(&matter).expect("numbers");
+                let found = body.check_possible();
+                assert_eq!(found.is_ok(), is_rounding, "{negative:e} {found:?}");
+            }
+        }
+    }
 }

@@ -177,3 +177,23 @@ pub(super) fn mean_of_halves(a: &Matrix3<f64>) -> Matrix3<f64> {
 pub(super) fn trace(a: &Matrix3<f64>) -> f64 {
     a[(0, 0)].abs() + a[(1, 1)].abs() + a[(2, 2)].abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_column_of_a_rotation_counts() {
+        let told = |matrix: Matrix3<f64>| check_rotation("axes", &matrix).is_ok();
+        for k in 0..3 {
+            // RᵀR is off by twice as much, in one place.
+            let with = |more: f64| {
+                let mut matrix = Matrix3::identity();
+                matrix[(k, k)] += more;
+                matrix
+            };
+            assert!(told(with(0.4e-12)) && !told(with(0.6e-12)), "{k}");
+            assert!(!told(with(-2.0)), "a reflection");
+        }
+    }
+}

@@ -75,9 +75,6 @@ impl Moments {
         if self.mass.high == 0.0 {
             return *other;
         }
-        if other.mass.high == 0.0 {
-            return *self;
-        }
         let mass = self.mass + other.mass;
         let share = other.mass / mass;
         let reduced = self.mass * share;

@@ -311,4 +311,16 @@ mod tests {
         let same = vec![fan(5)[4]; 500];
         assert!(found(same, 50).is_some());
     }
+
+    #[test]
+    fn the_last_mark_of_a_range_belongs_to_it() {
+        let (middle, mut marks) = (u64::MAX / 2, Marks::beyond(0, 2));
+        for mark in [middle, u64::MAX, 1] {
+            marks.push(mark);
+        }
+        assert_eq!((&*marks.list, marks.to), (&[middle, 1][..], middle));
+        // What lies beyond is left for later.
+        marks.push(middle - 1);
+        assert_eq!((&*marks.list, marks.to), (&[1][..], middle / 2));
+    }
 }

@@ -338,4 +338,24 @@ mod tests {
             }
         }
     }
+
+    /// Between moments that nearly agree the axes of float64 are off by far more than their last digits.
+    #[test]
+    fn axes_of_a_nearly_symmetric_body_are_a_rotation_to_twice_the_precision() {
+        let turn = *nalgebra::Rotation3::from_euler_angles(0.3, -1.0, 2.0).matrix();
+        for gap in [1e-3, 1e-5, 1e-7, 1e-9] {
+            let moments = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0 + gap, 1.5));
+            let tensor = turn * moments * turn.transpose();
+            let tensor = (tensor + tensor.transpose()) * 0.5;
+            let body = RigidBody::new(1.0, &tensor, &Vector3::zeros(), 0.0).expect("a body");
+            let refined = RefinedPrincipal::of(&body);
+            for (i, a) in refined.axes.iter().enumerate() {
+                for (j, b) in refined.axes.iter().enumerate() {
+                    let exact = if i == j { 1.0 } else { 0.0 };
+                    let off = (dot(a, b) - exact.into()).rounded();
+                    assert!(off.abs() < 1e-29, "{gap:e} {off:e}");
+                }
+            }
+        }
+    }
 }

@@ -4,6 +4,7 @@ use super::{FreeMotion, Mode};
 use crate::mass::RigidBody;
 use crate::motion::attitude::components;
 use crate::motion::euler_equations::EulerEquations;
+use crate::motion::state::ClosedForm;
 
 fn body(moments: [f64; 3], axes: &Matrix3<f64>) -> RigidBody {
     RigidBody::from_principal(1.0, &moments, axes, &Vector3::zeros(), 0.0).expect("a body")
@@ -131,6 +132,49 @@ fn many_times_have_the_bits_of_one() {
             }
             assert!(is_known || !t.is_finite() || *t > 1e25, "{t}");
             assert!(!is_known || t.is_finite(), "{t}");
+        }
+    }
+}
+
+/// A phase is known up to the reach, this time included, and beyond it to nobody.
+#[test]
+fn the_reach_is_the_last_time_with_a_state() {
+    for (mode, moments, omega) in cases() {
+        let body = body(moments, &Matrix3::identity());
+        let attitude = UnitQuaternion::identity();
+        let motion = FreeMotion::of(&body, &omega.into(), &attitude).expect("finite");
+        let reach = motion.reach();
+        for (t, is_known) in [(reach, true), (reach.next_up(), false)] {
+            for t in [t, -t] {
+                let state = motion.at(t);
+                let numbers = state.omega.iter().chain(state.attitude.coords.iter());
+                assert!(
+                    numbers.clone().all(|x| x.is_nan() != is_known),
+                    "{mode} {t:e}"
+                );
+                assert_eq!(
+                    motion.error_bar(t, 1e-16).omega.is_finite(),
+                    is_known,
+                    "{mode} {t:e}"
+                );
+            }
+        }
+    }
+}
+
+/// However small it is beside the others, a component keeps its digits.
+#[test]
+fn a_tiny_component_of_the_start_keeps_its_digits() {
+    let body = body([1.0, 2.0, 2.5], &Matrix3::identity());
+    for omega in [[0.3, 1e-30, 1.0], [0.3, -1e-200, 1.0], [1.0, 1e-30, 0.1]] {
+        let motion = FreeMotion::of(&body, &omega.into(), &UnitQuaternion::identity());
+        let start = motion.expect("finite").at(0.0);
+        for (found, given) in start.omega.iter().zip(omega) {
+            assert!(
+                (found / given - 1.0).abs() < 4e-15,
+                "{omega:?} {}",
+                start.omega
+            );
         }
     }
 }

@@ -152,3 +152,31 @@ fn nome([a, b]: [DoubleDouble; 2], difference: DoubleDouble) -> DoubleDouble {
     }
     sum * l
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `4(x − e₁)(x − e₂)(x − e₃)` with roots that sum to zero; with G₃ = 0 they are ±½√G₂ and zero.
+    #[test]
+    fn the_largest_root_is_found() {
+        for [e1, e2] in [
+            [1.0, 0.0],
+            [1.0, -0.5],
+            [0.5, -0.25],
+            [3.0, -1e-9],
+            [2.0, -0.75],
+        ] {
+            let e3 = -(e1 + e2);
+            let (second, third) = (-4.0 * (e1 * e2 + e2 * e3 + e3 * e1), 4.0 * e1 * e2 * e3);
+            let root = largest_root(second.into(), third.into());
+            assert!((root.high / e1 - 1.0).abs() < 1e-15, "{e1} {e2} {root:?}");
+        }
+        // One real root: 4x³ − G₃.
+        assert!((largest_root(0.0.into(), 32.0.into()).high - 2.0).abs() < 1e-15);
+        assert_eq!(
+            largest_root(0.0.into(), 0.0.into()),
+            DoubleDouble::default()
+        );
+    }
+}

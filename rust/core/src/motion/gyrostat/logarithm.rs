@@ -100,3 +100,20 @@ fn both([d, f]: [Number; 2], product: Number, c: Number) -> (Number, Number) {
         (d, f)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_roots_that_are_zero_are_numbers() {
+        let (zero, one) = (Number::zero(), Number::one());
+        let found = both([zero, zero], zero, one);
+        assert_eq!([found.0.size(), found.1.size()], [0.0, 0.0]);
+        // Else they have their squares and their product.
+        for (d2, f2) in [(4.0, 9.0), (9.0, 4.0)] {
+            let (d, f) = both([real(d2.into()), real(f2.into())], real(6.0.into()), -one);
+            assert_eq!([d.re.high, f.re.high], [-d2.sqrt(), -f2.sqrt()]);
+        }
+    }
+}

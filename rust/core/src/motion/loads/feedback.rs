@@ -196,6 +196,7 @@ impl Law for Feedback {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::state::State;
 
     #[test]
     fn it_takes_the_shorter_way() {
@@ -214,5 +215,23 @@ mod tests {
             let potential = feedback.energy(&attitude).expect("isotropic");
             assert!((potential - 2.0 * (1.0 - 0.25_f64.cos())).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn half_a_turn_away_it_takes_the_positive_way_in_every_form() {
+        let attitude = UnitQuaternion::from_quaternion(nalgebra::Quaternion::i());
+        let (spring, still) = (Matrix3::identity(), Matrix3::zeros());
+        let feedback = Feedback::new(&spring, &still, &UnitQuaternion::identity()).expect("finite");
+        let body = crate::mass::RigidBody::new(1.0, &spring, &Vector3::zeros(), 0.0);
+        let subject = Subject::free(&body.expect("a ball"), 0.0);
+        let omega = Vector3::zeros();
+        let phase = Phase::in_place(&State { attitude, omega });
+        let side = Switch::toward(&feedback.aim, 0.0, 0.0, &phase).side;
+        assert_eq!((attitude.w, side), (0.0, 1.0));
+        let torques = [
+            feedback.wrench(&subject, 0.0, &phase).torque,
+            feedback.settled_wrench(side, &subject, 0.0, &phase).torque,
+        ];
+        assert_eq!(torques, [Vector3::new(-1.0, 0.0, 0.0); 2]);
     }
 }

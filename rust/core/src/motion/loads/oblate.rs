@@ -335,4 +335,29 @@ mod tests {
         let again = Oblate::new(&orbit(), j2, radius, &pole).expect("a pole");
         assert_eq!(again.at(1e5), oblate.at(1e5));
     }
+
+    /// A revolution takes `2π μ/(−2E)^{3/2}`, E the energy with the term of J₂ in it.
+    #[test]
+    fn the_limit_is_in_revolutions_by_the_energy() {
+        let (mu, distance, speed, j2, radius) = (4.0, 2.0, 1.2, 0.3, 1.5);
+        for sine in [0.0, 0.5, 1.0_f64] {
+            let place = Vector3::new((1.0 - sine * sine).sqrt(), 0.0, sine) * distance;
+            let orbit = Orbit::new(mu, &place, &Vector3::new(0.0, speed, 0.0)).expect("an ellipse");
+            let oblate = Oblate::new(&orbit, j2, radius, &Vector3::z()).expect("a pole");
+            let legendre = 0.5 * (3.0 * sine * sine - 1.0);
+            let shape = 1.0 - j2 * f64::powi(radius / distance, 2) * legendre;
+            let energy = 0.5 * speed * speed - mu / distance * shape;
+            let revolution = std::f64::consts::TAU * mu / (-2.0 * energy).powf(1.5);
+            for sense in [1.0, -1.0] {
+                assert!(
+                    oblate.check(sense * 29_999.0 * revolution).is_ok(),
+                    "{sine}"
+                );
+                assert!(
+                    oblate.check(sense * 30_001.0 * revolution).is_err(),
+                    "{sine}"
+                );
+            }
+        }
+    }
 }

@@ -66,3 +66,17 @@ impl Tolerance {
         self.relative < TIGHTEST
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn doubles_serve_down_to_the_tightest() {
+        let is_beyond =
+            |relative| Tolerance::new(relative, 0.0).map(|found| found.is_beyond_doubles());
+        assert_eq!(is_beyond(TIGHTEST), Ok(false));
+        assert_eq!(is_beyond(0.999 * TIGHTEST), Ok(true));
+        assert!(is_beyond(0.999 * TIGHTEST_TWOFOLD).is_err());
+    }
+}

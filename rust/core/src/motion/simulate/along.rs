@@ -124,7 +124,7 @@ impl<E> View<'_, E> {
         let side = found.value.signum();
         let mut best = found;
         // A tenth of the way to the neighbours, then ever closer.
-        let mut reach = 0.1 * (at - low).abs().min((high - at).abs()) * (high - low).signum();
+        let mut reach = 0.1 * (at - low).abs().min((high - at).abs());
         for _ in 0..POLISHINGS {
             let (one, two) = (self.look(best.at - reach)?, self.look(best.at + reach)?);
             for look in [one, two] {

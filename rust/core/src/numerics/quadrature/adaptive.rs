@@ -76,7 +76,7 @@ fn worst(errors: &[f64], rest: f64, most: usize) -> Vec<usize> {
     order.sort_by(|&i, &j| errors[j].total_cmp(&errors[i]));
     let mut left: f64 = errors.iter().sum();
     let mut count = 0;
-    while count < most.min(order.len()) && !(left <= rest && count > 0) {
+    while count < most.min(order.len()) && (left > rest || left.is_nan()) {
         left -= errors[order[count]];
         count += 1;
     }

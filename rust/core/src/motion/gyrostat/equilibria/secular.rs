@@ -135,7 +135,8 @@ impl<'a> Secular<'a> {
         let is_above = |s: f64| view.value_and_slope(s).0 > 0.0;
         let near = side * view.terms[k].part.abs();
         let mut far = near;
-        while is_above(far) && far.abs() < 1e300 {
+        // It ends: infinitely far f is zero.
+        while is_above(far) {
             far *= 16.0;
         }
         let start = between(near, far, is_above);

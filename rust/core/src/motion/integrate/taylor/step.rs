@@ -173,3 +173,18 @@ fn exp2(x: f64) -> f64 {
     let power = f64::from_bits(last_bits.wrapping_add(1023) << 52);
     power * (1.0 + part * (0.6565 + 0.3435 * part))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_and_logarithms_to_a_hundredth() {
+        for k in -4000..=4000 {
+            let x = 0.01 * f64::from(k);
+            assert!((exp2(x) / x.exp2() - 1.0).abs() < 0.01, "{x}");
+            assert!((log2(x.exp2()) - x).abs() < 0.01, "{x}");
+        }
+        assert_eq!(log2(0.0), -1023.0);
+    }
+}
