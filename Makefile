@@ -122,8 +122,10 @@ $(VENV)/.maturin: pyproject.toml $(VENV)/.python
 	$(BIN)/python -m pip install --quiet --group build
 	@touch $@
 
+# What it needs is installed while it is compiled.
 $(VENV)/.built: $(VENV)/.maturin $(RUST)
-	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]"
+	$(BIN)/python packaging/needs.py all | $(BIN)/python -m pip install --quiet --requirement /dev/stdin & needs=$$!; \
+		$(BIN)/python -m pip install --quiet --no-build-isolation --no-deps --editable . && wait $$needs
 	@touch $@
 
 clean: ## remove everything that was built

@@ -11,10 +11,12 @@ import subprocess
 import sys
 import tomllib
 import zipfile
+from importlib.metadata import requires
 from pathlib import Path
 from typing import Any
 
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGING = ROOT / "packaging"
@@ -25,6 +27,18 @@ def script(monkeypatch: pytest.MonkeyPatch) -> Any:
     """The names of a file in ``packaging``."""
     monkeypatch.syspath_prepend(PACKAGING)
     return lambda name: runpy.run_path(str(PACKAGING / f"{name}.py"))
+
+
+def test_make_build_installs_what_the_extra_asks_for() -> None:
+    told = subprocess.check_output([sys.executable, PACKAGING / "needs.py", "all"], text=True).split()
+    asked, extras = {"numpy>=2.0"}, ["all"]
+    for extra in extras:  # which grows
+        for line in map(Requirement, requires("polhode") or []):
+            if line.marker and line.marker.evaluate({"extra": extra}):
+                extras += sorted(line.extras)
+                asked |= {f"{line.name}{line.specifier}"} if line.name != "polhode" else set()
+    assert set(told) == asked
+    assert len(told) > 10
 
 
 class TestLinks:
