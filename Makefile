@@ -4,6 +4,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 export CARGO_TERM_COLOR ?= auto
 
+# Extension and tests of the core share what is compiled: same features, and the profile `editable`.
+SHARED := --features polhode/serde
+
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
 
 # All commands fill one environment.
@@ -27,8 +30,8 @@ test: build setup ## every test, Rust and Python, with lints and type checks
 quick: setup ## lints and tests of what differs from the last commit
 	$(BIN)/python tests/quick.py
 
-test-rust: ## the tests of the core
-	cargo test --locked --features polhode/serde
+test-rust: ## the tests of the core, which `make build` has compiled
+	cargo test --locked --profile editable $(SHARED)
 
 test-python: build setup ## the tests of the package, on all cores; then those that measure time, by themselves
 	$(BIN)/python -m pytest -m "not long and not alone" --numprocesses auto --dist loadfile
@@ -125,7 +128,8 @@ $(VENV)/.maturin: pyproject.toml $(VENV)/.python
 # What it needs is installed while it is compiled.
 $(VENV)/.built: $(VENV)/.maturin $(RUST)
 	$(BIN)/python packaging/needs.py all | $(BIN)/python -m pip install --quiet --requirement /dev/stdin & needs=$$!; \
-		$(BIN)/python -m pip install --quiet --no-build-isolation --no-deps --editable . && wait $$needs
+		$(BIN)/python -m pip install --quiet --no-build-isolation --no-deps --editable . \
+			--config-settings=build-args="$(SHARED)" && wait $$needs
 	@touch $@
 
 clean: ## remove everything that was built
