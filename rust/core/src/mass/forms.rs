@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3};
 
 use super::body::RigidBody;
 use super::parallel_axis::from_center_of_mass;
-use super::validity::{ASYMMETRY, check_mass};
+use super::validity::{ASYMMETRY, check_mass, check_symmetry};
 use crate::error::{BodyFault, Error, all_finite_of_body};
 
 /// In which order a spatial inertia stacks its two halves.
@@ -114,7 +114,7 @@ impl RigidBody {
     pub fn from_pseudo_inertia(pseudo_inertia: &Matrix4<f64>, rtol: f64) -> Result<Self, Error> {
         let what = "pseudo_inertia";
         all_finite_of_body(what, pseudo_inertia)?;
-        symmetric(what, pseudo_inertia, rtol)?;
+        check_symmetry(what, pseudo_inertia, ASYMMETRY.max(rtol))?;
         let j = (pseudo_inertia + pseudo_inertia.transpose()) * 0.5;
         let mass = j[(3, 3)];
         check_mass(mass)?;
@@ -299,31 +299,6 @@ fn inertia(s: &Matrix3<f64>) -> Matrix3<f64> {
         yz,
         s.m11 + s.m22,
     )
-}
-
-/// Symmetric to rounding or to `rtol`.
-fn symmetric(what: &'static str, a: &Matrix4<f64>, rtol: f64) -> Result<(), Error> {
-    let allowed = ASYMMETRY.max(rtol);
-    let largest = a.amax();
-    for row in 0..4 {
-        for column in row + 1..4 {
-            let (a, b) = (a[(row, column)], a[(column, row)]);
-            let relative = (a / largest - b / largest).abs();
-            if relative > allowed {
-                return Err(BodyFault::NotSymmetric {
-                    what,
-                    row,
-                    column,
-                    a,
-                    b,
-                    relative,
-                    allowed,
-                }
-                .into());
-            }
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

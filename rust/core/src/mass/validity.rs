@@ -1,6 +1,6 @@
 //! What makes mass properties possible, each law relative to the tensor's own size.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SMatrix};
 
 use crate::error::{BodyFault, Error, all_finite, all_finite_of_body, check_rtol, finite_of_body};
 
@@ -101,22 +101,28 @@ pub(super) fn symmetrized(
 ///
 /// # Errors
 /// [`BodyFault::NotSymmetric`] with the first pair that differs.
-pub fn check_symmetry(what: &'static str, a: &Matrix3<f64>, allowed: f64) -> Result<(), Error> {
-    let largest = a.abs().max();
-    for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-        let (a, b) = (a[(row, column)], a[(column, row)]);
-        let relative = (a / largest - b / largest).abs();
-        if relative > allowed {
-            return Err(BodyFault::NotSymmetric {
-                what,
-                row,
-                column,
-                a,
-                b,
-                relative,
-                allowed,
+pub fn check_symmetry<const N: usize>(
+    what: &'static str,
+    a: &SMatrix<f64, N, N>,
+    allowed: f64,
+) -> Result<(), Error> {
+    let largest = a.amax();
+    for row in 0..N {
+        for column in row + 1..N {
+            let (a, b) = (a[(row, column)], a[(column, row)]);
+            let relative = (a / largest - b / largest).abs();
+            if relative > allowed {
+                return Err(BodyFault::NotSymmetric {
+                    what,
+                    row,
+                    column,
+                    a,
+                    b,
+                    relative,
+                    allowed,
+                }
+                .into());
             }
-            .into());
         }
     }
     Ok(())
