@@ -6,7 +6,7 @@ use super::body::RigidBody;
 use super::error_bound::UNIT;
 use super::polyhedron::widen;
 use super::provenance::{Checks, Provenance, Source};
-use super::simplex::{Corners, Frame, Wire};
+use super::simplex::{Corners, LocalFrame, Wire};
 use super::solids::Amount;
 use super::surface::{finish, thin};
 use crate::error::{Error, all_finite};
@@ -68,7 +68,7 @@ pub fn curve(
             value: 0.0,
         });
     }
-    let frame = Frame::of_box(&Vector3::from(low), &Vector3::from(high));
+    let frame = LocalFrame::of_box(&Vector3::from(low), &Vector3::from(high));
     let found = thin::<_, Wire, 2>(&line, &frame, || frame, watch);
     let (sums, moments) = found.ok_or(Error::Stopped)?;
     // Each end of a segment is off by a unit of rounding of the extent, its length by four.

@@ -4,7 +4,7 @@ use super::body::RigidBody;
 use super::error_bound::{ErrorBound, UNIT};
 use super::polyhedron::{Index, View, in_units, is_settled, matter};
 use super::provenance::{Checks, MomentsFrom, Provenance, Source};
-use super::simplex::{Corners, FaintShell, Frame, Kind, Shell, Sums, sums};
+use super::simplex::{Corners, FaintShell, Kind, LocalFrame, Shell, Sums, sums};
 use super::solids::Amount;
 use super::units::QUANTUM;
 use crate::error::{Error, MeshFault};
@@ -117,8 +117,8 @@ pub fn area<I: Index>(
 /// Sums of positive terms, taken again in the body's own axes where it is thin: shells and wires.
 pub(super) fn thin<C: Corners<N>, K: Kind<N>, const N: usize>(
     corners: &C,
-    first: &Frame,
-    used: impl FnOnce() -> Frame,
+    first: &LocalFrame,
+    used: impl FnOnce() -> LocalFrame,
     watch: &mut Watch<'_>,
 ) -> Option<(Sums, MomentsFrom)> {
     let mut found = sums::<C, K, N>(corners, first, watch)?;

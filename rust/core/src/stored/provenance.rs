@@ -38,7 +38,7 @@ named! {
     }
 }
 
-stored!(Checks as Vec<String>, Provenance as Parts);
+stored!(Checks as Vec<String>, Provenance as StoredProvenance);
 
 impl From<&Checks> for Vec<String> {
     fn from(checks: &Checks) -> Self {
@@ -60,7 +60,7 @@ impl TryFrom<Vec<String>> for Checks {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Parts {
+struct StoredProvenance {
     source: Source,
     elements: usize,
     checks: Checks,
@@ -72,7 +72,7 @@ struct Parts {
     rounding: f64,
 }
 
-impl From<&Provenance> for Parts {
+impl From<&Provenance> for StoredProvenance {
     fn from(from: &Provenance) -> Self {
         Self {
             source: from.source,
@@ -88,10 +88,10 @@ impl From<&Provenance> for Parts {
     }
 }
 
-impl TryFrom<Parts> for Provenance {
+impl TryFrom<StoredProvenance> for Provenance {
     type Error = Error;
 
-    fn try_from(parts: Parts) -> Result<Self, Error> {
+    fn try_from(parts: StoredProvenance) -> Result<Self, Error> {
         let what = "provenance.rounding";
         if finite(what, parts.rounding)? < 0.0 {
             let (law, value) = ("zero or more", parts.rounding);

@@ -175,13 +175,13 @@ fn turned(v: &SplitVector<2>, axes: &Matrix2<f64>) -> Vector2<f64> {
 }
 
 /// `∫ dA`, `∫ d dA` and `∫ d dᵀ dA` with `d = axesᵀ (r − reference)`.
-struct Sums {
+struct AreaSums {
     area: f64,
     moment: Vector2<f64>,
     second: Matrix2<f64>,
 }
 
-impl Sums {
+impl AreaSums {
     fn about_centroid(&self) -> Matrix2<f64> {
         self.second - self.moment * self.moment.transpose() / self.area
     }
@@ -193,7 +193,7 @@ fn sums(
     unit: Unit,
     reference: &Vector2<f64>,
     axes: &Matrix2<f64>,
-) -> (Sums, f64) {
+) -> (AreaSums, f64) {
     let at = |k: usize| {
         let v = SplitVector::difference(&vertices[k % vertices.len()], &(*reference).into());
         turned(&unit.counts(&v), axes)
@@ -211,7 +211,7 @@ fn sums(
             d * (a.y * a.y + b.y * b.y + s.y * s.y),
         ]
     });
-    let sums = Sums {
+    let sums = AreaSums {
         area: area / 2.0,
         moment: Vector2::new(x, y) / 6.0,
         second: Matrix2::new(xx, xy, xy, yy) / 24.0,

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::Provenance;
 use crate::mass::second_moment::SecondMoment;
-use crate::mass::simplex::Frame;
+use crate::mass::simplex::LocalFrame;
 use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::threads::Watch;
@@ -26,7 +26,7 @@ pub(super) fn in_units(
     let at = || heavy().map(|(_, &r)| Vector3::from(r));
     let low = at().fold(Vector3::repeat(f64::INFINITY), |low, r| low.inf(&r));
     let high = at().fold(Vector3::repeat(f64::NEG_INFINITY), |high, r| high.sup(&r));
-    let length = exponent(Frame::of_box(&low, &high).unit);
+    let length = exponent(LocalFrame::of_box(&low, &high).unit);
     let units = Units {
         mass: exponent(heaviest),
         length,

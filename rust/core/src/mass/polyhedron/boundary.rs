@@ -134,7 +134,7 @@ pub(super) struct Unbalanced {
 }
 
 /// One run along an edge: its lower and higher end, whether upward, and the face.
-type Run = (Bits, Bits, bool, usize);
+type EdgeRun = (Bits, Bits, bool, usize);
 
 /// Sums of runs that the edges are spread over.
 const BUCKETS: usize = 1 << 16;
@@ -169,7 +169,7 @@ pub(super) fn find_unbalanced<R: Replay>(
             wanted.insert(bucket);
         }
     }
-    let mut found: Vec<Run> = Vec::with_capacity(RUNS - room);
+    let mut found: Vec<EdgeRun> = Vec::with_capacity(RUNS - room);
     triangles.each(&mut |face, triangle| {
         found.extend(
             runs(face, triangle)
@@ -178,8 +178,8 @@ pub(super) fn find_unbalanced<R: Replay>(
         );
     })?;
     found.sort_unstable();
-    let upward = |group: &[Run]| group.iter().filter(|run| run.2).count();
-    let faulty: Vec<&[Run]> = found
+    let upward = |group: &[EdgeRun]| group.iter().filter(|run| run.2).count();
+    let faulty: Vec<&[EdgeRun]> = found
         .chunk_by(|p, q| (p.0, p.1) == (q.0, q.1))
         .filter(|group| 2 * upward(group) != group.len())
         .collect();
@@ -210,7 +210,7 @@ fn bucket(hash: u64) -> usize {
 
 /// The runs of a triangle along its edges, each with a mixture of its ends that does not depend on the direction and is
 /// the same in every process, so that the same mesh has the same message.
-fn runs(face: usize, triangle: &Triangle) -> impl Iterator<Item = (u64, Run)> {
+fn runs(face: usize, triangle: &Triangle) -> impl Iterator<Item = (u64, EdgeRun)> {
     const KEY: [u64; 12] = [
         0x9e37_79b9_7f4a_7c15,
         0xbf58_476d_1ce4_e5b9,

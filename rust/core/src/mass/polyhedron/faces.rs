@@ -9,7 +9,9 @@ use super::solid::{Checked, Triangles};
 use super::view::{Index, View};
 use crate::error::{Corner, Error, MeshFault};
 use crate::mass::provenance::Checks;
-use crate::mass::simplex::{Corners, Frame, Partial, Shell, Solid, Sums, block_sum, merge, sums};
+use crate::mass::simplex::{
+    Corners, LocalFrame, Partial, Shell, Solid, Sums, block_sum, merge, sums,
+};
 use crate::numerics::reduce::BLOCK;
 use crate::numerics::threads::{Halt, Watch, fill_blocks};
 
@@ -62,17 +64,17 @@ struct Part<'a> {
 }
 
 impl<I: Index> Triangles for Faces<'_, I> {
-    fn first_frame(&mut self) -> Result<Frame, Halt<Error>> {
+    fn first_frame(&mut self) -> Result<LocalFrame, Halt<Error>> {
         Ok(self.mesh.frame())
     }
 
-    fn box_frame(&mut self) -> Result<Frame, Halt<Error>> {
+    fn box_frame(&mut self) -> Result<LocalFrame, Halt<Error>> {
         Ok(self.mesh.used_frame())
     }
 
     fn solid_sums(
         &mut self,
-        frame: &Frame,
+        frame: &LocalFrame,
         check: bool,
     ) -> Result<(Sums, Option<Checked>), Halt<Error>> {
         let mesh = self.mesh;
@@ -117,7 +119,7 @@ impl<I: Index> Triangles for Faces<'_, I> {
         Ok((sums, Some(checked)))
     }
 
-    fn shell_sums(&mut self, frame: &Frame) -> Result<Sums, Halt<Error>> {
+    fn shell_sums(&mut self, frame: &LocalFrame) -> Result<Sums, Halt<Error>> {
         sums::<_, Shell, 3>(&self.mesh, frame, self.watch).ok_or(Halt::Stopped)
     }
 

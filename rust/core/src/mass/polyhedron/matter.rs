@@ -5,7 +5,7 @@ use crate::mass::amount::Amount;
 use crate::mass::body::RigidBody;
 use crate::mass::error_bound::{ErrorBound, UNIT};
 use crate::mass::second_moment::SecondMoment;
-use crate::mass::simplex::{Frame, Sums};
+use crate::mass::simplex::{LocalFrame, Sums};
 use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::exponent;
 
@@ -46,7 +46,7 @@ pub(in crate::mass) fn matter(
     bound: ErrorBound,
     units: Units,
 ) -> Result<RigidBody, Error> {
-    let Frame {
+    let LocalFrame {
         reference,
         unit,
         axes,

@@ -73,7 +73,7 @@ pub(super) fn find_inside_out<I: Index>(
     sign: f64,
     watch: &mut Watch<'_>,
 ) -> Result<Option<InsideOut>, Halt<Infallible>> {
-    let Some(parts) = Parts::of(mesh, watch)? else {
+    let Some(parts) = VertexSets::of(mesh, watch)? else {
         return Ok(None);
     };
     let (mut components, of_faces) = components(mesh, &parts);
@@ -102,14 +102,14 @@ pub(in crate::mass) fn find_components<I: Index>(
     mesh: &View<'_, I>,
     watch: &mut Watch<'_>,
 ) -> Result<Option<(Vec<usize>, usize)>, Halt<Infallible>> {
-    let found = Parts::of(mesh, watch)?.map(|parts| components(mesh, &parts));
+    let found = VertexSets::of(mesh, watch)?.map(|parts| components(mesh, &parts));
     Ok(found.map(|(components, of_faces)| (of_faces, components.len())))
 }
 
 /// Sets of vertices that faces join, each named by its lowest vertex: for any order, on any number of threads.
-struct Parts(Vec<AtomicUsize>);
+struct VertexSets(Vec<AtomicUsize>);
 
-impl Parts {
+impl VertexSets {
     /// The parts of a mesh, where there are several.
     fn of<I: Index>(
         mesh: &View<'_, I>,
@@ -191,7 +191,7 @@ impl Parts {
 }
 
 /// The components in the order of their first faces, and that of each face.
-fn components<I: Index>(mesh: &View<'_, I>, parts: &Parts) -> (Vec<Component>, Vec<usize>) {
+fn components<I: Index>(mesh: &View<'_, I>, parts: &VertexSets) -> (Vec<Component>, Vec<usize>) {
     let mut numbers: HashMap<usize, usize> = HashMap::new();
     let mut components: Vec<Component> = Vec::new();
     let of_faces = mesh.faces.iter().enumerate().map(|(face, corners)| {

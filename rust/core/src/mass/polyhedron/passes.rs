@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::boundary::Triangle;
 use super::stream::{StreamError, TriangleStream};
-use crate::mass::simplex::{Corners, Frame, Kind, Sums, block_sum, merge};
+use crate::mass::simplex::{Corners, Kind, LocalFrame, Sums, block_sum, merge};
 use crate::numerics::threads::Watch;
 
 /// The triangles of a block.
@@ -79,7 +79,7 @@ impl<'a> Passes<'a> {
     }
 
     /// The sums over all triangles in a frame.
-    pub(super) fn sums<K: Kind<3>>(&mut self, frame: &Frame) -> Result<Sums, StreamError> {
+    pub(super) fn sums<K: Kind<3>>(&mut self, frame: &LocalFrame) -> Result<Sums, StreamError> {
         let (mut partials, mut count) = (Vec::new(), 0);
         self.blocks(&mut |block| {
             partials.push(block_sum::<_, K, 3>(&Block(block), 0, block.len(), frame));

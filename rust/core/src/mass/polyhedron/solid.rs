@@ -8,7 +8,7 @@ use crate::mass::amount::Amount;
 use crate::mass::body::RigidBody;
 use crate::mass::error_bound::{ErrorBound, UNIT};
 use crate::mass::provenance::{Checks, MomentsFrom, Provenance, Source};
-use crate::mass::simplex::{Frame, Sums};
+use crate::mass::simplex::{LocalFrame, Sums};
 use crate::mass::units::QUANTUM;
 use crate::numerics::power_of_two::exponent;
 use crate::principal::principal_axes;
@@ -35,17 +35,17 @@ impl Default for Options {
 /// What a solid is summed from, as often as its accuracy needs.
 pub(super) trait Triangles: Replay<Error: From<Error>> {
     /// A frame that is mostly good enough, found without going through the triangles.
-    fn first_frame(&mut self) -> Result<Frame, Self::Error>;
+    fn first_frame(&mut self) -> Result<LocalFrame, Self::Error>;
     /// The frame of the corners that triangles use.
-    fn box_frame(&mut self) -> Result<Frame, Self::Error>;
+    fn box_frame(&mut self) -> Result<LocalFrame, Self::Error>;
     /// The tetrahedra from the reference to the triangles; with checks also what is known of the boundary.
     fn solid_sums(
         &mut self,
-        frame: &Frame,
+        frame: &LocalFrame,
         check: bool,
     ) -> Result<(Sums, Option<Checked>), Self::Error>;
     /// The triangles as a shell.
-    fn shell_sums(&mut self, frame: &Frame) -> Result<Sums, Self::Error>;
+    fn shell_sums(&mut self, frame: &LocalFrame) -> Result<Sums, Self::Error>;
     /// The first index that names no vertex, or the first coordinate that is not finite.
     fn find_unusable(&mut self) -> Result<Option<MeshFault>, Self::Error>;
     /// The component that is wound the wrong way, as far as can be told, and what has then been checked; with `sign` −1

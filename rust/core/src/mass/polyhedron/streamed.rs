@@ -15,7 +15,7 @@ use super::view::{View, widen};
 use crate::error::{Corner, MeshFault};
 use crate::mass::body::RigidBody;
 use crate::mass::provenance::Checks;
-use crate::mass::simplex::{Frame, Partial, Shell, Solid, Sums, block_sum, merge};
+use crate::mass::simplex::{LocalFrame, Partial, Shell, Solid, Sums, block_sum, merge};
 use crate::mass::solids::Amount;
 use crate::numerics::threads::{Halt, Watch};
 
@@ -85,7 +85,7 @@ struct Stream<'a> {
 struct Seen {
     count: usize,
     area: f64,
-    frame: Frame,
+    frame: LocalFrame,
 }
 
 /// What one time through came to.
@@ -143,7 +143,7 @@ impl Replay for Stream<'_> {
 
 impl Triangles for Stream<'_> {
     /// The box of the first block.
-    fn first_frame(&mut self) -> Result<Frame, StreamError> {
+    fn first_frame(&mut self) -> Result<LocalFrame, StreamError> {
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
         self.passes.blocks(&mut |block| {
             (low, high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -152,10 +152,13 @@ impl Triangles for Stream<'_> {
             }
             ControlFlow::Break(())
         })?;
-        Ok(Frame::of_box(&Vector3::from(low), &Vector3::from(high)))
+        Ok(LocalFrame::of_box(
+            &Vector3::from(low),
+            &Vector3::from(high),
+        ))
     }
 
-    fn box_frame(&mut self) -> Result<Frame, StreamError> {
+    fn box_frame(&mut self) -> Result<LocalFrame, StreamError> {
         if let Some(seen) = self.seen {
             return Ok(seen.frame);
         }
@@ -164,7 +167,7 @@ impl Triangles for Stream<'_> {
 
     fn solid_sums(
         &mut self,
-        frame: &Frame,
+        frame: &LocalFrame,
         check: bool,
     ) -> Result<(Sums, Option<Checked>), StreamError> {
         if self.seen.is_some() {
@@ -203,7 +206,7 @@ impl Triangles for Stream<'_> {
         self.seen = Some(Seen {
             count: pass.count,
             area: shell.content * frame.unit * frame.unit,
-            frame: Frame::of_box(&Vector3::from(low), &Vector3::from(high)),
+            frame: LocalFrame::of_box(&Vector3::from(low), &Vector3::from(high)),
         });
         let checked = check.then_some(Checked {
             boundary: pass.boundary,
@@ -213,7 +216,7 @@ impl Triangles for Stream<'_> {
         Ok((sums, checked))
     }
 
-    fn shell_sums(&mut self, frame: &Frame) -> Result<Sums, StreamError> {
+    fn shell_sums(&mut self, frame: &LocalFrame) -> Result<Sums, StreamError> {
         self.passes.sums::<Shell>(frame)
     }
 

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::boundary::Triangle;
 use crate::error::MeshFault;
-use crate::mass::simplex::{Corners, Frame};
+use crate::mass::simplex::{Corners, LocalFrame};
 
 /// An integer that numbers vertices.
 pub trait Index: Copy + Send + Sync {
@@ -55,21 +55,21 @@ impl<I: Index> Corners<3> for View<'_, I> {
 
 impl<I: Index> View<'_, I> {
     /// The box of the vertices, in units of its size.
-    pub(in crate::mass) fn frame(&self) -> Frame {
+    pub(in crate::mass) fn frame(&self) -> LocalFrame {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for vertex in self.vertices {
             widen(&mut low, &mut high, vertex);
         }
-        Frame::of_box(&Vector3::from(low), &Vector3::from(high))
+        LocalFrame::of_box(&Vector3::from(low), &Vector3::from(high))
     }
 
     /// The box of the corners that faces use.
-    pub(in crate::mass) fn used_frame(&self) -> Frame {
+    pub(in crate::mass) fn used_frame(&self) -> LocalFrame {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for corner in (0..self.faces.len()).flat_map(|face| self.corners(face)) {
             widen(&mut low, &mut high, &corner);
         }
-        Frame::of_box(&Vector3::from(low), &Vector3::from(high))
+        LocalFrame::of_box(&Vector3::from(low), &Vector3::from(high))
     }
 
     /// The first index that names no vertex, or the first coordinate that is not finite.

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::frame::{Frame, Place, Shifted, Turned};
+use super::frame::{LocalFrame, Place, Shifted, Turned};
 use super::kinds::Kind;
 use crate::numerics::dispatch::{Kernel, dispatch};
 use crate::numerics::lane::Lane;
@@ -140,7 +140,7 @@ pub(in crate::mass) fn block_sum<C: Corners<N>, K: Kind<N>, const N: usize>(
     corners: &C,
     from: usize,
     to: usize,
-    frame: &Frame,
+    frame: &LocalFrame,
 ) -> Partial {
     match &frame.axes {
         None => dispatch(Block::<C, _, K, N> {

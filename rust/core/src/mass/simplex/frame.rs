@@ -7,7 +7,7 @@ use crate::numerics::lane::{Double, Lane};
 
 /// Where coordinates are taken from: `Vᵀ (r − reference)/unit`.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::mass) struct Frame {
+pub(in crate::mass) struct LocalFrame {
     pub(in crate::mass) reference: Vector3<f64>,
     /// A power of two, so that nothing is rounded: lengths of 1e±150 have fifth powers too.
     pub(in crate::mass) unit: f64,
@@ -15,7 +15,7 @@ pub(in crate::mass) struct Frame {
     pub(in crate::mass) axes: Option<Matrix3<f64>>,
 }
 
-impl Frame {
+impl LocalFrame {
     /// In the middle of a box, in units of its size.
     pub(in crate::mass) fn of_box(low: &Vector3<f64>, high: &Vector3<f64>) -> Self {
         let size = (high * 0.5 - low * 0.5).max();
@@ -56,7 +56,7 @@ pub(super) struct Shifted {
 }
 
 impl Shifted {
-    pub(super) fn of(frame: &Frame) -> Self {
+    pub(super) fn of(frame: &LocalFrame) -> Self {
         Self {
             reference: frame.reference.into(),
             inverse: 1.0 / frame.unit,
@@ -87,7 +87,7 @@ pub(super) struct Turned {
 }
 
 impl Turned {
-    pub(super) fn of(frame: &Frame, axes: &Matrix3<f64>) -> Self {
+    pub(super) fn of(frame: &LocalFrame, axes: &Matrix3<f64>) -> Self {
         Self {
             reference: frame.reference.into(),
             inverse: 1.0 / frame.unit,
@@ -158,7 +158,7 @@ mod tests {
             0.0,
             1.0,
         );
-        let frame = Frame {
+        let frame = LocalFrame {
             reference: Vector3::repeat(0.1),
             unit: 1.0,
             axes: Some(axes),
@@ -173,12 +173,12 @@ mod tests {
     #[test]
     fn the_unit_is_a_power_of_two_of_any_size() {
         for size in [1e-306, 3e-5, 1.0, 7e200, 1.7e308] {
-            let frame = Frame::of_box(&Vector3::zeros(), &Vector3::repeat(size));
+            let frame = LocalFrame::of_box(&Vector3::zeros(), &Vector3::repeat(size));
             assert!((0.5..=1.0).contains(&(size / 2.0 / frame.unit / 2.0)));
         }
-        let denormal = Frame::of_box(&Vector3::zeros(), &Vector3::repeat(1e-310));
+        let denormal = LocalFrame::of_box(&Vector3::zeros(), &Vector3::repeat(1e-310));
         assert_eq!(denormal.unit, f64::MIN_POSITIVE);
-        let nothing = Frame::of_box(&Vector3::zeros(), &Vector3::zeros());
+        let nothing = LocalFrame::of_box(&Vector3::zeros(), &Vector3::zeros());
         assert_eq!(nothing.unit, 1.0);
     }
 }

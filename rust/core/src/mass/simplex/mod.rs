@@ -23,6 +23,6 @@ mod sums;
 mod vectors;
 
 pub(super) use block::{Corners, Partial, block_sum, merge};
-pub(super) use frame::Frame;
+pub(super) use frame::LocalFrame;
 pub(super) use kinds::{FaintShell, Kind, Shell, Solid, Wire};
 pub(super) use sums::{Sums, sums};

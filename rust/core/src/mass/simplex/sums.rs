@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use nalgebra::{Matrix3, Vector3};
 
 use super::block::{Corners, Partial, TERMS, block_sum, merge};
-use super::frame::Frame;
+use super::frame::LocalFrame;
 use super::kinds::Kind;
 use crate::mass::error_bound::UNIT;
 use crate::numerics::reduce::{BLOCK, depth};
@@ -14,7 +14,7 @@ use crate::numerics::threads::{Watch, fill_blocks};
 /// What was summed, in the coordinates and the unit of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::mass) struct Sums {
-    pub(in crate::mass) frame: Frame,
+    pub(in crate::mass) frame: LocalFrame,
     pub(in crate::mass) count: usize,
     /// `∫ dm`.
     pub(in crate::mass) content: f64,
@@ -32,7 +32,7 @@ impl Sums {
     pub(in crate::mass) fn new<K: Kind<N>, const N: usize>(
         partial: &Partial,
         count: usize,
-        frame: &Frame,
+        frame: &LocalFrame,
     ) -> Self {
         let [
             w,
@@ -81,9 +81,9 @@ impl Sums {
     }
 
     /// The frame of the body's own axes and centre, as far as these sums know them.
-    pub(in crate::mass) fn own_frame(&self, axes: &Matrix3<f64>) -> Frame {
+    pub(in crate::mass) fn own_frame(&self, axes: &Matrix3<f64>) -> LocalFrame {
         let old = self.frame.axes.unwrap_or_else(Matrix3::identity);
-        Frame {
+        LocalFrame {
             reference: self.frame.reference + old * self.center() * self.frame.unit,
             unit: self.frame.unit,
             axes: Some(old * axes),
@@ -94,7 +94,7 @@ impl Sums {
 /// Sums over all simplices, on several threads when there are many; `None` where `watch` said stop.
 pub(in crate::mass) fn sums<C: Corners<N>, K: Kind<N>, const N: usize>(
     corners: &C,
-    frame: &Frame,
+    frame: &LocalFrame,
     watch: &mut Watch<'_>,
 ) -> Option<Sums> {
     let count = corners.count();

@@ -7,7 +7,7 @@ use super::volume::{Volume, sixfold};
 use crate::error::{CellFault, Error};
 use crate::mass::error_bound::{ErrorBound, UNIT};
 use crate::mass::second_moment::SecondMoment;
-use crate::mass::simplex::Frame;
+use crate::mass::simplex::LocalFrame;
 use crate::mass::units::{QUANTUM, Units};
 use crate::numerics::power_of_two::{exponent, halves, times_power_of_two};
 use crate::numerics::reduce::{block_sum, depth, sum_blocks};
@@ -42,7 +42,7 @@ pub(super) struct Cells<'a> {
     weights: Vec<Weight>,
     /// What underflow may have taken from the mass.
     lost: f64,
-    pub(super) frame: Frame,
+    pub(super) frame: LocalFrame,
     pub(super) units: Units,
 }
 
@@ -76,7 +76,7 @@ impl<'a> Cells<'a> {
             volumes.push(sixfold(&corners));
             Ok::<(), Error>(())
         })?;
-        let frame = Frame::of_box(&low, &high);
+        let frame = LocalFrame::of_box(&low, &high);
         let densest = |cell: usize| {
             let densities = densities(cells, density, cell);
             densities.into_iter().fold(0.0, f64::max)
@@ -129,7 +129,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The centre of mass of sums about a reference.
-    pub(super) fn place(&self, reference: &Vector3<f64>, sums: &Sums) -> Vector3<f64> {
+    pub(super) fn place(&self, reference: &Vector3<f64>, sums: &CellSums) -> Vector3<f64> {
         reference + sums.moment / sums.mass * self.frame.unit
     }
 
@@ -139,7 +139,7 @@ impl<'a> Cells<'a> {
         reference: &Vector3<f64>,
         axes: &Matrix3<f64>,
         watch: &mut Watch<'_>,
-    ) -> Result<Sums, Error> {
+    ) -> Result<CellSums, Error> {
         let [x, y, z] = &axes.data.0;
         let origin: [f64; 3] = (*reference).into();
         let inverse = 1.0 / self.frame.unit;
@@ -184,7 +184,7 @@ impl<'a> Cells<'a> {
         let [m, x, y, z, xx, xy, xz, yy, yz, zz] = sum_blocks(self.count(), watch, |range| {
             block_sum(range.start, range.end, &of_cell)
         })?;
-        Ok(Sums {
+        Ok(CellSums {
             mass: m,
             moment: Vector3::new(x, y, z),
             second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
@@ -196,7 +196,7 @@ impl<'a> Cells<'a> {
     /// With corners d about the centre a cell of mass m has `Σ d² ≤ 30 ∫ d² dm/m` along each axis, whatever its densities
     /// are, and so its own terms are no more than 5 of its first and 11 of its second moments: the roundings in a cell
     /// count so often, those of the sum once.
-    pub(super) fn matter(&self, sums: &Sums, center: &Vector3<f64>) -> SecondMoment {
+    pub(super) fn matter(&self, sums: &CellSums, center: &Vector3<f64>) -> SecondMoment {
         let (mass, spread) = (sums.mass, sums.second.trace());
         let (additions, unit) = (depth(self.count()), self.frame.unit);
         // What underflow took stands nowhere farther than the far end of the box.
@@ -241,13 +241,13 @@ fn densities(cells: &[[usize; 4]], density: CellDensity<'_>, cell: usize) -> [f6
 }
 
 /// `∫ dm`, `∫ d dm` and `∫ d dᵀ dm` with `d = axesᵀ (r − reference)`.
-pub(super) struct Sums {
+pub(super) struct CellSums {
     mass: f64,
     moment: Vector3<f64>,
     second: Matrix3<f64>,
 }
 
-impl Sums {
+impl CellSums {
     /// Whether the reference was within the body: what its distance adds to the moments is no more than they are.
     pub(super) fn is_central(&self) -> bool {
         let offset = self.moment.norm_squared() / self.mass;

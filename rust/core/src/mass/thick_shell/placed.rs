@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::offset::Offset;
 use crate::error::Error;
 use crate::mass::error_bound::UNIT;
-use crate::mass::simplex::{Frame, Sums};
+use crate::mass::simplex::{LocalFrame, Sums};
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 use crate::numerics::reduce::{block_sum, sum_blocks};
 use crate::numerics::threads::{Halt, Watch};
@@ -29,7 +29,7 @@ impl<'a> Placed<'a> {
         offset: &'a Offset,
         vertices: &[[f64; 3]],
         thickness: f64,
-        frame: &Frame,
+        frame: &LocalFrame,
     ) -> Self {
         let corners: Vec<Vector3<f64>> = vertices.iter().map(|r| frame.place(r)).collect();
         let directions: Vec<Vector3<f64>> = match &frame.axes {
@@ -54,7 +54,7 @@ impl<'a> Placed<'a> {
     /// The integrals over the shell, and what rounding can have done to the volume.
     pub(super) fn sums(
         &self,
-        frame: Frame,
+        frame: LocalFrame,
         watch: &mut Watch<'_>,
     ) -> Result<(Sums, f64), Halt<Error>> {
         let count = self.offset.faces.len();

@@ -7,7 +7,7 @@ use crate::mass::amount::Amount;
 use crate::mass::body::RigidBody;
 use crate::mass::polyhedron::{Index, View, is_settled};
 use crate::mass::provenance::{Checks, MomentsFrom, Provenance, Source};
-use crate::mass::simplex::{Frame, Sums};
+use crate::mass::simplex::{LocalFrame, Sums};
 use crate::mass::surface::finish;
 use crate::numerics::power_of_two::exponent;
 use crate::numerics::threads::{Halt, Watch};
@@ -97,7 +97,7 @@ fn in_good_axes(
     offset: &Offset,
     vertices: &[[f64; 3]],
     thickness: f64,
-    mut frame: Frame,
+    mut frame: LocalFrame,
     watch: &mut Watch<'_>,
 ) -> Result<(Sums, f64, MomentsFrom), Halt<Error>> {
     let mut moments = MomentsFrom::SecondMoment;

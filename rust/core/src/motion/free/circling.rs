@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::propagator::{AnySeries, Circular, Clock, Propagator};
+use super::propagator::{AnySeries, Circular, EllipticArgument, Propagator};
 use super::secular::Secular;
 use super::tumbling::hypotenuse;
 use crate::mass::refined::Vector;
@@ -35,7 +35,7 @@ pub(super) fn spin(omega: &Vector3<f64>, attitude: &UnitQuaternion<f64>) -> (Pro
     let zero = [0.0; 4];
     let propagator = Propagator {
         rate: turns_of(rate).scaled(0.5),
-        clock: Clock::Periodic {
+        clock: EllipticArgument::Periodic {
             rate: DoubleDouble::default(),
             start: DoubleDouble::default(),
         },
@@ -111,7 +111,7 @@ pub(super) fn symmetric(
     let propagator = Propagator {
         // Half of μ − χ.
         rate: (turns_of(precession) - sensed).scaled(0.5),
-        clock: Clock::Periodic {
+        clock: EllipticArgument::Periodic {
             rate: circling,
             start: (angle / std::f64::consts::TAU).into(),
         },

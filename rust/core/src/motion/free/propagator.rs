@@ -9,12 +9,12 @@ use crate::numerics::theta::{circular, hyperbolic};
 use crate::numerics::turns::{reach, sin_cos_turns, turns, whole_off};
 
 /// The Cayley–Klein parameters but for phase and norm, and Jacobi's functions, of x = u/2K, |x| ≤ ½.
-pub(super) trait Series {
+pub(super) trait FreeSeries {
     /// Phase in turns that both parameters still lack, `α′`, `β′` and (sn, cn, dn).
     fn values<L: Lane>(&self, x: L) -> Values<L>;
 }
 
-/// What [`Series`] gives.
+/// What [`FreeSeries`] gives.
 pub(super) struct Values<L> {
     phase: L,
     alpha: (L, L),
@@ -30,7 +30,7 @@ pub(super) struct Circular {
     pub(super) beta: circular::Shifted<3>,
 }
 
-impl Series for Circular {
+impl FreeSeries for Circular {
     #[inline(always)]
     fn values<L: Lane>(&self, x: L) -> Values<L> {
         let (sine, cosine) = sin_cos_turns(x * L::new(0.5));
@@ -62,7 +62,7 @@ pub(super) struct Hyperbolic {
     pub(super) slope: f64,
 }
 
-impl Series for Hyperbolic {
+impl FreeSeries for Hyperbolic {
     #[inline(always)]
     fn values<L: Lane>(&self, x: L) -> Values<L> {
         let u = hyperbolic::Argument::new(x * L::new(self.unit), L::new(self.end));
@@ -85,7 +85,7 @@ pub(super) enum AnySeries {
 
 /// How u grows with time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Clock {
+pub(super) enum EllipticArgument {
     /// Full periods 4K of u for a unit of time, and the part of one at t = 0.
     Periodic {
         rate: DoubleDouble,
@@ -100,7 +100,7 @@ pub(super) enum Clock {
 pub(super) struct Propagator {
     /// Turns of α for a unit of time.
     pub(super) rate: DoubleDouble,
-    pub(super) clock: Clock,
+    pub(super) clock: EllipticArgument,
     pub(super) series: AnySeries,
     /// +1 where ω and the precession turn the same way about the axis circled, else −1.
     pub(super) sense: f64,
@@ -152,37 +152,39 @@ impl Propagator {
     pub(super) fn in_units_of(mut self, rate_unit: f64) -> Self {
         self.rate = self.rate.scaled(rate_unit);
         self.clock = match self.clock {
-            Clock::Periodic { rate, start } => Clock::Periodic {
+            EllipticArgument::Periodic { rate, start } => EllipticArgument::Periodic {
                 rate: rate.scaled(rate_unit),
                 start,
             },
-            Clock::Endless { rate, start } => Clock::Endless {
+            EllipticArgument::Endless { rate, start } => EllipticArgument::Endless {
                 rate: rate * rate_unit,
                 start,
             },
         };
         self.omega = self.omega.map(|column| column.map(|x| x * rate_unit));
         self.reach = match self.clock {
-            Clock::Periodic { rate, .. } => reach(&[self.rate, rate]),
-            Clock::Endless { .. } => reach(&[self.rate]),
+            EllipticArgument::Periodic { rate, .. } => reach(&[self.rate, rate]),
+            EllipticArgument::Endless { .. } => reach(&[self.rate]),
         };
         self
     }
 
     /// (x, y, z, w) of the attitude and ω in B.
     #[inline(always)]
-    fn state<L: Lane, const ENDLESS: bool>(&self, series: &impl Series, t: L) -> [L; 7] {
+    fn state<L: Lane, const ENDLESS: bool>(&self, series: &impl FreeSeries, t: L) -> [L; 7] {
         let (one, two) = (L::new(1.0), L::new(2.0));
         let is_known = t.abs() <= L::new(self.reach);
         let t = if is_known { t } else { L::new(f64::NAN) };
         let (x, sign) = match self.clock {
-            Clock::Periodic { rate, start } if !ENDLESS => {
+            EllipticArgument::Periodic { rate, start } if !ENDLESS => {
                 let halves = two * turns(t, rate, start);
                 let whole = halves.round();
                 (halves - whole, one - two * whole.abs())
             }
-            Clock::Endless { rate, start } => (t.mul_add(L::new(rate), L::new(start)), one),
-            Clock::Periodic { .. } => (t, one),
+            EllipticArgument::Endless { rate, start } => {
+                (t.mul_add(L::new(rate), L::new(start)), one)
+            }
+            EllipticArgument::Periodic { .. } => (t, one),
         };
         let Values {
             phase,
@@ -215,7 +217,7 @@ impl Propagator {
 impl Motion for Propagator {
     #[inline(always)]
     fn choose<U: Use>(&self, then: U) -> U::Output {
-        let is_endless = matches!(self.clock, Clock::Endless { .. });
+        let is_endless = matches!(self.clock, EllipticArgument::Endless { .. });
         match self.series {
             AnySeries::Circular(series) => then.with(&Chosen::<_, false>(self, series)),
             AnySeries::Hyperbolic(series) if is_endless => {
@@ -229,7 +231,7 @@ impl Motion for Propagator {
 /// A propagator with its series, and whether its clock is endless.
 struct Chosen<'a, S, const ENDLESS: bool>(&'a Propagator, S);
 
-impl<S: Series, const ENDLESS: bool> Formula for Chosen<'_, S, ENDLESS> {
+impl<S: FreeSeries, const ENDLESS: bool> Formula for Chosen<'_, S, ENDLESS> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
         self.0.state::<L, ENDLESS>(&self.1, t)

@@ -14,7 +14,7 @@
 use nalgebra::{Matrix3, UnitQuaternion};
 
 use super::mode::Mode;
-use super::propagator::{AnySeries, Circular, Clock, Hyperbolic, Propagator};
+use super::propagator::{AnySeries, Circular, EllipticArgument, Hyperbolic, Propagator};
 use super::secular::Secular;
 use super::separation::{Separation, Unit};
 use crate::mass::refined::Vector;
@@ -129,20 +129,20 @@ impl Tumbling {
         let full_period = self.quarter.scaled(4.0) / self.rate;
         let clock = if self.mode == Mode::Separatrix {
             let [sine, cosine] = self.start;
-            Clock::Endless {
+            EllipticArgument::Endless {
                 rate: self.rate.high,
                 start: (sine / cosine).asinh(),
             }
         } else {
-            Clock::Periodic {
+            EllipticArgument::Periodic {
                 rate: self.rate / self.quarter.scaled(4.0),
                 start: (0.5 * self.start_of_clock()).into(),
             }
         };
         // Half of μ − χ; χ gains s π in half a period.
         let circling = match clock {
-            Clock::Periodic { rate, .. } => rate,
-            Clock::Endless { .. } => DoubleDouble::default(),
+            EllipticArgument::Periodic { rate, .. } => rate,
+            EllipticArgument::Endless { .. } => DoubleDouble::default(),
         };
         let circling = if self.sense < 0.0 {
             -circling

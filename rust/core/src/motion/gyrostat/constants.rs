@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::propagator::{Circular, Clocked, Endless, Hyperbolic, Propagator, Rational, Round};
-use super::spinor::{Course, Spinor};
+use super::spinor::{Regime, Spinor};
 use super::start::Start;
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::motion::attitude::from_axes;
@@ -100,14 +100,14 @@ pub(super) fn moving(
 ) -> (Propagator, Secular) {
     let unit = start.unit;
     let mut columns = spinor.columns;
-    let pace = match spinor.course {
-        Course::Circular => circling(spinor),
-        Course::Hyperbolic => {
-            // Z in the middle of its course has the size one.
+    let pace = match spinor.regime {
+        Regime::Circular => circling(spinor),
+        Regime::Hyperbolic => {
+            // Z in the middle of its regime has the size one.
             columns[1] = columns[1].map(|x| x.over(spinor.argument));
             passing(spinor)
         }
-        Course::Rational => Pace {
+        Regime::Rational => Pace {
             clocked: Clocked::Rational(
                 Rational {
                     curvature: [spinor.argument.re.high, spinor.argument.im.high],

@@ -7,7 +7,7 @@ use crate::numerics::theta::circular;
 use crate::numerics::turns::{exp_minus, reach, sin_cos_turns, turns, whole_off};
 
 /// Θₑ and Θₒ but for a common factor, real and imaginary part of each, at the argument x.
-pub(super) trait Series {
+pub(super) trait ThetaSeries {
     fn values<L: Lane>(&self, x: L) -> [(L, L); 2];
 }
 
@@ -19,7 +19,7 @@ pub(super) struct Circular {
     pub(super) odd: [[f64; 4]; 4],
 }
 
-impl Series for Circular {
+impl ThetaSeries for Circular {
     #[inline(always)]
     fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
         let (sine, cosine) = sin_cos_turns(x);
@@ -60,7 +60,7 @@ pub(super) struct Hyperbolic {
     pub(super) end: f64,
 }
 
-impl Series for Hyperbolic {
+impl ThetaSeries for Hyperbolic {
     #[inline(always)]
     fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
         let (zero, one) = (L::new(0.0), L::new(1.0));
@@ -99,7 +99,7 @@ pub(super) struct Rational {
     pub(super) curvature: [f64; 2],
 }
 
-impl Series for Rational {
+impl ThetaSeries for Rational {
     #[inline(always)]
     fn values<L: Lane>(&self, x: L) -> [(L, L); 2] {
         let [re, im] = self.curvature.map(L::new);
@@ -113,7 +113,7 @@ impl Series for Rational {
 }
 
 /// How x grows with time.
-pub(super) trait Clock: Copy {
+pub(super) trait ThetaArgument: Copy {
     /// Whether x never comes back.
     const ENDLESS: bool;
 
@@ -132,7 +132,7 @@ pub(super) struct Round<const ALTERNATES: bool> {
     pub(super) start: DoubleDouble,
 }
 
-impl<const ALTERNATES: bool> Clock for Round<ALTERNATES> {
+impl<const ALTERNATES: bool> ThetaArgument for Round<ALTERNATES> {
     const ENDLESS: bool = false;
 
     #[inline(always)]
@@ -159,7 +159,7 @@ pub(super) struct Endless {
     pub(super) start: f64,
 }
 
-impl Clock for Endless {
+impl ThetaArgument for Endless {
     const ENDLESS: bool = true;
 
     #[inline(always)]
@@ -237,7 +237,12 @@ impl Propagator {
 
     /// (x, y, z, w) of the attitude and ω in B.
     #[inline(always)]
-    fn state<L: Lane, C: Clock>(&self, clock: C, series: &impl Series, t: L) -> [L; 7] {
+    fn state<L: Lane, C: ThetaArgument>(
+        &self,
+        clock: C,
+        series: &impl ThetaSeries,
+        t: L,
+    ) -> [L; 7] {
         let one = L::new(1.0);
         let is_known = t.abs() <= L::new(self.reach);
         let t = if is_known { t } else { L::new(f64::NAN) };
@@ -291,7 +296,7 @@ impl Motion for Propagator {
 /// A propagator with its series and its clock.
 struct Chosen<'a, S, C>(&'a Propagator, S, C);
 
-impl<S: Series, C: Clock> Formula for Chosen<'_, S, C> {
+impl<S: ThetaSeries, C: ThetaArgument> Formula for Chosen<'_, S, C> {
     #[inline(always)]
     fn state<L: Lane>(&self, t: L) -> [L; 7] {
         self.0.state(self.2, &self.1, t)

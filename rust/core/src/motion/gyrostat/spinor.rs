@@ -15,7 +15,7 @@ type Number = Complex<DoubleDouble>;
 /// The theta functions of a motion and what stands before them; the second one over Z₀.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spinor {
-    pub(super) course: Course,
+    pub(super) regime: Regime,
     /// Q; zero where it does not matter.
     pub(super) nome: DoubleDouble,
     /// Whether Q is negative, however small.
@@ -38,7 +38,7 @@ pub(super) struct Spinor {
 
 /// How Z moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Course {
+pub(super) enum Regime {
     /// In a circle.
     Circular,
     /// As the exponential of the time.
@@ -106,10 +106,10 @@ impl Spinor {
                 (turn, -found.slope.im.scaled(0.5))
             });
         Self {
-            course: if curve.is_turned {
-                Course::Hyperbolic
+            regime: if curve.is_turned {
+                Regime::Hyperbolic
             } else {
-                Course::Circular
+                Regime::Circular
             },
             nome,
             is_alternating: curve.gap.high < 0.0,
@@ -134,7 +134,7 @@ impl Spinor {
         let odd = [Complex::zero(), Complex::one()];
         let zero = DoubleDouble::default();
         Self {
-            course: Course::Rational,
+            regime: Regime::Rational,
             nome: zero,
             is_alternating: false,
             rate: zero,

@@ -8,7 +8,7 @@ use super::nutation::Nutation;
 use super::phases::{Phases, TURN};
 use super::pivoted_top::PivotedTop;
 use super::reduced::Reduced;
-use super::sampling::{Course, Endless, Functions, Periodic, Series, Steady};
+use super::sampling::{Endless, Functions, Periodic, Steady, TopConstants, TopSeries};
 use super::scaled::times;
 use super::turning_points::TurningPoints;
 use crate::numerics::double_double::DoubleDouble;
@@ -21,7 +21,7 @@ use crate::numerics::turns::{reach, sin_cos_turns, whole_off};
 /// A complex number.
 type Complex = [f64; 2];
 
-impl Course {
+impl TopConstants {
     /// The motion from this state on, and what there is to tell about it. All arguments are finite.
     pub(super) fn of(
         top: &PivotedTop,
@@ -50,7 +50,7 @@ impl Course {
         let [alpha, beta, _] = motion.start;
         let sizes = [alpha, beta].map(|[re, im]| re.hypot(im));
         let directions = [alpha, beta].map(|z| direction(z).unwrap_or([1.0, 0.0]));
-        let mut course = Self::with(&motion, &Series::Steady(Steady(sizes)));
+        let mut course = Self::with(&motion, &TopSeries::Steady(Steady(sizes)));
         course.steady = [half_spin, -half_spin, DoubleDouble::default()];
         course.unit(motion.exponent);
         course.frame(&motion, [directions[0], directions[1], [1.0, 0.0]]);
@@ -76,7 +76,7 @@ impl Course {
                 let z = circular::Argument::new(Single::new(s), Single::new(c));
                 quotients.values(&z)
             };
-            Series::Circular(quotients.scaled(factors(&sizes, &at(1.0, 0.0), &at(0.0, 1.0))))
+            TopSeries::Circular(quotients.scaled(factors(&sizes, &at(1.0, 0.0), &at(0.0, 1.0))))
         } else {
             let quotients = Hyperbolic::new(half, phases.shifts);
             let end = FRAC_PI_2 * half.real / half.imaginary;
@@ -91,9 +91,9 @@ impl Course {
             let upper = at(least, if is_endless { 0.0 } else { 1.0 });
             let quotients = quotients.scaled(factors(&sizes, &upper, &at(1.0, least)));
             if is_endless {
-                Series::Endless(Endless { quotients })
+                TopSeries::Endless(Endless { quotients })
             } else {
-                Series::Hyperbolic(Periodic { quotients, end })
+                TopSeries::Hyperbolic(Periodic { quotients, end })
             }
         };
         let mut course = Self::with(motion, &series);
@@ -114,7 +114,7 @@ impl Course {
         (course, Nutation::of(motion, points, phases, drift))
     }
 
-    fn with(motion: &Reduced, series: &Series) -> Self {
+    fn with(motion: &Reduced, series: &TopSeries) -> Self {
         let [x, y, z] = turned_basis(&motion.aligning, 2);
         let spin = times_power_of_two(motion.axial.rounded(), motion.exponent);
         Self {
@@ -135,7 +135,7 @@ impl Course {
         self.steady = self.steady.map(|rate| times(rate, exponent));
         let [alpha, beta, w] = self.steady;
         self.reach = reach(&match self.series {
-            Series::Endless(_) => [alpha, beta, w, DoubleDouble::default()],
+            TopSeries::Endless(_) => [alpha, beta, w, DoubleDouble::default()],
             _ => [alpha, beta, w, self.clock],
         });
     }
@@ -144,10 +144,10 @@ impl Course {
     /// relative to the largest each becomes. At u₁ the three have `W α β* = ½ i (a − b u₁)`.
     fn constants(&self, motion: &Reduced, points: &TurningPoints, phases: &Phases) -> [Complex; 3] {
         let (values, extra) = match &self.series {
-            Series::Steady(functions) => functions.at(self, Single::new(0.0)),
-            Series::Circular(functions) => functions.at(self, Single::new(0.0)),
-            Series::Hyperbolic(functions) => functions.at(self, Single::new(0.0)),
-            Series::Endless(functions) => functions.at(self, Single::new(0.0)),
+            TopSeries::Steady(functions) => functions.at(self, Single::new(0.0)),
+            TopSeries::Circular(functions) => functions.at(self, Single::new(0.0)),
+            TopSeries::Hyperbolic(functions) => functions.at(self, Single::new(0.0)),
+            TopSeries::Endless(functions) => functions.at(self, Single::new(0.0)),
         };
         let found = [0, 1, 2].map(|k| {
             let (s, c) = sin_cos_turns(whole_off(extra[k]));

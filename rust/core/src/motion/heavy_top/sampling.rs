@@ -13,8 +13,8 @@ use crate::numerics::turns::{exp_minus, sin_cos_turns, turns, whole_off};
 
 /// A motion, ready to be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Course {
-    pub(super) series: Series,
+pub(super) struct TopConstants {
+    pub(super) series: TopSeries,
     /// Turns of z, and of the steady phases of α, β and W, for each unit of time.
     pub(super) clock: DoubleDouble,
     pub(super) start: DoubleDouble,
@@ -31,7 +31,7 @@ pub(super) struct Course {
 
 /// How the three functions are computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Series {
+pub(super) enum TopSeries {
     /// The axis rests: the sizes of α and β.
     Steady(Steady),
     Circular(Circular),
@@ -58,12 +58,12 @@ pub(super) struct Endless {
 /// Three functions of time, but for their steady phases.
 pub(super) trait Functions: Copy {
     /// Their values, and turns that are to be added to the steady ones.
-    fn at<L: Lane>(&self, course: &Course, t: L) -> (Values<L>, [L; 3]);
+    fn at<L: Lane>(&self, course: &TopConstants, t: L) -> (Values<L>, [L; 3]);
 }
 
 impl Functions for Steady {
     #[inline(always)]
-    fn at<L: Lane>(&self, _: &Course, _: L) -> (Values<L>, [L; 3]) {
+    fn at<L: Lane>(&self, _: &TopConstants, _: L) -> (Values<L>, [L; 3]) {
         let zero = L::new(0.0);
         let [alpha, beta] = self.0;
         let values = [[L::new(alpha), zero], [L::new(beta), zero], [zero; 2]];
@@ -73,7 +73,7 @@ impl Functions for Steady {
 
 impl Functions for Circular {
     #[inline(always)]
-    fn at<L: Lane>(&self, course: &Course, t: L) -> (Values<L>, [L; 3]) {
+    fn at<L: Lane>(&self, course: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
         let (s, c) = sin_cos_turns(turns(t, course.clock, course.start));
         let values = self.values(&circular::Argument::new(s, c));
         (values, [L::new(0.0); 3])
@@ -82,7 +82,7 @@ impl Functions for Circular {
 
 impl Functions for Periodic {
     #[inline(always)]
-    fn at<L: Lane>(&self, course: &Course, t: L) -> (Values<L>, [L; 3]) {
+    fn at<L: Lane>(&self, course: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
         // Half a turn of z is a period of u, after which all three change sign.
         let twice = L::new(2.0) * turns(t, course.clock, course.start);
         let periods = twice.round();
@@ -102,7 +102,7 @@ impl Functions for Periodic {
 
 impl Functions for Endless {
     #[inline(always)]
-    fn at<L: Lane>(&self, course: &Course, t: L) -> (Values<L>, [L; 3]) {
+    fn at<L: Lane>(&self, course: &TopConstants, t: L) -> (Values<L>, [L; 3]) {
         let (p, e) = t.two_product(L::new(course.clock.high));
         let w = (p + L::new(course.start.high)) + (e + t * L::new(course.clock.low));
         let argument = hyperbolic::Argument {
@@ -113,7 +113,7 @@ impl Functions for Endless {
         (self.quotients.values(&argument), [L::new(0.0); 3])
     }
 }
-impl Course {
+impl TopConstants {
     /// Attitudes (x, y, z, w) and ω at `times`.
     pub(super) fn sample(
         &self,
@@ -122,10 +122,10 @@ impl Course {
         omegas: &mut [[f64; 3]],
     ) {
         match &self.series {
-            Series::Steady(functions) => self.sample_by(functions, times, attitudes, omegas),
-            Series::Circular(functions) => self.sample_by(functions, times, attitudes, omegas),
-            Series::Hyperbolic(functions) => self.sample_by(functions, times, attitudes, omegas),
-            Series::Endless(functions) => self.sample_by(functions, times, attitudes, omegas),
+            TopSeries::Steady(functions) => self.sample_by(functions, times, attitudes, omegas),
+            TopSeries::Circular(functions) => self.sample_by(functions, times, attitudes, omegas),
+            TopSeries::Hyperbolic(functions) => self.sample_by(functions, times, attitudes, omegas),
+            TopSeries::Endless(functions) => self.sample_by(functions, times, attitudes, omegas),
         }
     }
 
@@ -209,7 +209,7 @@ impl Course {
 const FEW: usize = 8;
 
 struct One<'a, F> {
-    course: (&'a Course, &'a F),
+    course: (&'a TopConstants, &'a F),
     t: f64,
 }
 
@@ -233,7 +233,7 @@ impl<F: Functions> Kernel for One<'_, F> {
 }
 
 struct Many<'a, F> {
-    course: (&'a Course, &'a F),
+    course: (&'a TopConstants, &'a F),
     times: &'a [f64],
     attitudes: &'a mut [[f64; 4]],
     omegas: &'a mut [[f64; 3]],

@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::nutation::Nutation;
 use super::pivoted_top::PivotedTop;
-use super::sampling::Course;
+use super::sampling::TopConstants;
 use crate::error::{Error, all_finite};
 use crate::motion::state::{ClosedForm, State};
 
@@ -18,7 +18,7 @@ use crate::motion::state::{ClosedForm, State};
 #[doc(alias = "Lagrange top")]
 #[doc(alias = "spherical pendulum")]
 pub struct HeavyTop {
-    course: Course,
+    course: TopConstants,
     nutation: Nutation,
 }
 
@@ -38,7 +38,7 @@ impl HeavyTop {
         all_finite("omega", omega)?;
         all_finite("gravity", gravity)?;
         all_finite("attitude", attitude.coords.iter())?;
-        let (course, nutation) = Course::of(top, omega, attitude, gravity);
+        let (course, nutation) = TopConstants::of(top, omega, attitude, gravity);
         Ok(Self { course, nutation })
     }
 

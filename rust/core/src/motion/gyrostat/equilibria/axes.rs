@@ -7,7 +7,7 @@ use crate::numerics::power_of_two::exponent;
 pub(super) type Vector = [DoubleDouble; 3];
 
 /// Axes of which no two with equal moments both have a part of h.
-pub(super) struct Frame {
+pub(super) struct ReducedAxes {
     /// Ascending.
     pub(super) moments: Vector,
     /// h/|L| along the axes.
@@ -32,7 +32,7 @@ impl Group {
     }
 }
 
-impl Frame {
+impl ReducedAxes {
     /// Of ascending moments, and h/|L| in principal axes.
     pub(super) fn of(moments: &Vector, rotor: &Vector) -> Self {
         let (zero, one) = (DoubleDouble::default(), DoubleDouble::from(1.0));

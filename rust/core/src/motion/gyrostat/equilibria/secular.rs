@@ -1,6 +1,6 @@
 //! `f(μ) = Σ h_i²/(1 − μ I_i)²` between its poles: where it has a given value, where it is least.
 
-use super::axes::{Frame, Vector, norm};
+use super::axes::{ReducedAxes, Vector, norm};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::number::Real;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
@@ -91,13 +91,13 @@ fn power<T: Real>(e: i32) -> T {
 
 /// f, from all of its poles.
 pub(super) struct Secular<'a> {
-    frame: &'a Frame,
+    frame: &'a ReducedAxes,
     /// Axes whose poles f has, these ascending.
     poles: Vec<usize>,
 }
 
 impl<'a> Secular<'a> {
-    pub(super) fn of(frame: &'a Frame) -> Self {
+    pub(super) fn of(frame: &'a ReducedAxes) -> Self {
         let poles = frame.with_rotor();
         Self { frame, poles }
     }
@@ -243,7 +243,7 @@ impl<'a> Secular<'a> {
     }
 
     fn view<T: Real>(&self, k: usize) -> View<T> {
-        let Frame { moments, rotor, .. } = self.frame;
+        let ReducedAxes { moments, rotor, .. } = self.frame;
         let number = |x: DoubleDouble| T::pair(x.high, x.low);
         let unit = self.unit(k);
         let terms = [0, 1, 2].map(|j| Term {
@@ -272,7 +272,7 @@ impl Place {
     }
 
     /// `1 − μ I_j`, and the sum of the sizes of its terms.
-    fn distance(&self, frame: &Frame, j: usize) -> (DoubleDouble, f64) {
+    fn distance(&self, frame: &ReducedAxes, j: usize) -> (DoubleDouble, f64) {
         let I = &frame.moments;
         let own = self.s.times_power_of_two(self.unit);
         if I[j] == I[self.axis] {
@@ -284,7 +284,7 @@ impl Place {
     }
 
     /// L/|L| along the axes; zero along those without a part of h.
-    pub(super) fn shares(&self, frame: &Frame) -> Vector {
+    pub(super) fn shares(&self, frame: &ReducedAxes) -> Vector {
         [0, 1, 2].map(|j| {
             let h = frame.rotor[j];
             if h.high == 0.0 {
@@ -299,7 +299,7 @@ impl Place {
     }
 
     /// `1/I_j − μ` along each axis, and the size of what it is a difference of.
-    pub(super) fn across(&self, frame: &Frame) -> (Vector, [f64; 3]) {
+    pub(super) fn across(&self, frame: &ReducedAxes) -> (Vector, [f64; 3]) {
         let both = [0, 1, 2].map(|j| {
             let (distance, size) = self.distance(frame, j);
             (distance / frame.moments[j], size / frame.moments[j].high)
@@ -308,7 +308,7 @@ impl Place {
     }
 
     /// μ.
-    pub(super) fn multiplier(&self, frame: &Frame) -> DoubleDouble {
+    pub(super) fn multiplier(&self, frame: &ReducedAxes) -> DoubleDouble {
         let own = self.distance(frame, self.axis).0;
         (DoubleDouble::from(1.0) - own) / frame.moments[self.axis]
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::axes::{Frame, Group, Vector, norm};
+use super::axes::{Group, ReducedAxes, Vector, norm};
 use super::secular::{NOTHING, Place, Secular};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
@@ -138,7 +138,7 @@ pub fn equilibria(moments: &Vector, rotor: &Vector, momentum: DoubleDouble) -> E
             share
         }
     });
-    let frame = Frame::of(&scaled, &share);
+    let frame = ReducedAxes::of(&scaled, &share);
     let secular = Secular::of(&frame);
     let mut made = Maker {
         frame: &frame,
@@ -168,7 +168,7 @@ struct Scales {
 
 /// Makes results of multipliers.
 struct Maker<'a> {
-    frame: &'a Frame,
+    frame: &'a ReducedAxes,
     length: DoubleDouble,
     scales: Scales,
     found: Vec<(DoubleDouble, Equilibrium)>,

@@ -19,12 +19,12 @@ pub(super) struct Abreast<L, const B: usize, const R: usize> {
 const NONE: usize = 3;
 
 /// The sums of products of [`Abreast`]: ω₂ω₃, ω₃ω₁, ω₁ω₂ and q∘ω.
-pub(super) struct Sums<T> {
+pub(super) struct AbreastSums<T> {
     spins: [T; 3],
     turned: [T; 4],
 }
 
-/// The real products that [`Sums`] are made of: those of ω's components, of α and β with ω₁ + iω₂, of q with ω₃. See
+/// The real products that [`AbreastSums`] are made of: those of ω's components, of α and β with ω₁ + iω₂, of q with ω₃. See
 /// [`series`](super::series).
 struct Products<T> {
     spins: [T; 3],
@@ -101,10 +101,10 @@ impl<L: Lane, const R: usize> Products<Pack<L, R>> {
     }
 
     #[inline(always)]
-    fn sums(self) -> Sums<Pack<L, R>> {
+    fn sums(self) -> AbreastSums<Pack<L, R>> {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.alpha, self.beta);
         let [x, y, z, w] = self.third;
-        Sums {
+        AbreastSums {
             spins: self.spins,
             turned: [a0 - a2 + y, a0 + a1 - x, b1 - b0 + w, -b0 - b2 - z],
         }
@@ -142,7 +142,7 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
         }
     }
 
-    type Sums = Sums<Pack<L, R>>;
+    type Sums = AbreastSums<Pack<L, R>>;
 
     #[inline(always)]
     fn sums(&mut self, k: usize) -> Self::Sums {
@@ -174,7 +174,7 @@ impl<L: Lane, const B: usize, const R: usize> Series<Pack<L, R>, B> for Abreast<
 impl<L: Lane, const B: usize, const R: usize> Abreast<L, B, R> {
     /// The sums of order `k`; without the products of orders above zero with component `STILL` of ω, which is constant.
     #[inline(always)]
-    fn products<const STILL: usize>(&mut self, k: usize) -> Sums<Pack<L, R>> {
+    fn products<const STILL: usize>(&mut self, k: usize) -> AbreastSums<Pack<L, R>> {
         let mut products = Products::new();
         let orders = &self.orders[..=k];
         if k == 0 {

@@ -82,7 +82,7 @@ impl<const B: usize> Series<One, B> for Derived<B> {
     type Sums = Products<B>;
 
     fn sums(&mut self, k: usize) -> Products<B> {
-        dispatch(Sums { series: self, k })
+        dispatch(SumsOfProducts { series: self, k })
     }
 
     #[inline(always)]
@@ -108,12 +108,12 @@ impl<const B: usize> Series<One, B> for Derived<B> {
 }
 
 /// The sums of products of order `k`.
-struct Sums<'a, const B: usize> {
+struct SumsOfProducts<'a, const B: usize> {
     series: &'a Derived<B>,
     k: usize,
 }
 
-impl<const B: usize> Kernel for Sums<'_, B> {
+impl<const B: usize> Kernel for SumsOfProducts<'_, B> {
     type Output = Products<B>;
 
     #[inline(always)]
