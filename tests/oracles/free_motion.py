@@ -70,7 +70,8 @@ def _decimal(x: Any) -> Decimal:
     """A float or a number of mpmath, rounded to the precision at hand."""
     exact = mpf(x)
     mantissa, exponent = exact.man_exp  # without the sign
-    return (Decimal(int(mantissa)) * Decimal(2) ** exponent).copy_sign(-1 if exact < 0 else 1)
+    unit: Decimal = Decimal(2) ** int(exponent)
+    return (int(mantissa) * unit).copy_sign(-1 if exact < 0 else 1)
 
 
 def _dot(a: Row, b: Row) -> Decimal:
