@@ -1,4 +1,4 @@
-"""How long until it flips? The smaller the error of the spin's direction, the longer: as its logarithm."""
+"""How long until it flips? The time grows like the logarithm of the inverse angle between spin and axis."""
 
 import sys
 

@@ -24,11 +24,11 @@ def draw() -> Figure:
     figure = Figure(figsize=(10.0, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
     colors = ("#0072B2", "#D55E00", "#009E73")
-    for k, (color, dash) in enumerate(
-        zip(colors, ("-", "-", "--"), strict=True)
-    ):  # I₂ and I₃ are nearly equal
-        left.plot(grams, loaded.center_of_mass[:, k], color=color, linestyle=dash, label="xyz"[k])
-        right.plot(grams, loaded.principal_moments[:, k], color=color, linestyle=dash, label=f"$I_{k + 1}$")
+    widths = (1.5, 4.0, 1.5)  # I₂ and I₃ are nearly equal
+    for k, (color, width) in enumerate(zip(colors, widths, strict=True)):
+        left.plot(grams, loaded.center_of_mass[:, k], color=color, label="xyz"[k])
+        moment = loaded.principal_moments[:, k]
+        right.plot(grams, moment, color=color, linewidth=width, label=f"$I_{k + 1}$")
     left.set(xlabel="lead (g)", ylabel="centre of mass (mm)")
     right.set(xlabel="lead (g)", ylabel="principal moments (g mm²)")
     for ax in (left, right):

@@ -133,7 +133,7 @@ def pages(groups: dict[str, list[str]], shown: dict[str, str]) -> Iterator[tuple
     """Give the name and the text of each page."""
     listing = [
         "# Gallery\n",
-        "Each picture leads to its code; where ▶ stands, also to the motion, which runs in the browser.\n",
+        "Each picture leads to its code. Entries with ▶ also show the motion in the browser.\n",
     ]
     for group, names in groups.items():
         listing += [f"## {group}\n", '<div class="gallery">']

@@ -144,14 +144,19 @@ def performance(ratios: dict[str, Any]) -> str:
             f"## Release {release}\n",
             f"Measured on {found['date']}: {machine['cpu']}, {machine['cores']} cores, "
             f"Python {machine['python']}.\n",
-            "| what | beside | ratio | spread |",
-            "|---|---|---|---|",
+        ]
+        has_spread = any(isinstance(kept, list) for kept in found["ratios"].values())
+        lines += [
+            "| what | beside | ratio |" + " spread |" * has_spread,
+            "|---|---|---|" + "---|" * has_spread,
         ]
         for name, kept in found["ratios"].items():
             what, _, peer = name.partition(", beside ")
             ratio, *spread = kept if isinstance(kept, list) else [kept]
-            shown = f"{spread[0]:g} to {spread[1]:g}" if spread else "not kept"
-            lines.append(f"| {what} | {peer} | {ratio:g} | {shown} |".replace("Π(n; φ|m)", "Π(n; φ, m)"))
+            row = f"| {what} | {peer} | {ratio:g} |".replace("Π(n; φ|m)", "Π(n; φ, m)")
+            if has_spread:
+                row += f" {spread[0]:g} to {spread[1]:g} |" if spread else " not kept |"
+            lines.append(row)
     return "\n".join([*lines, ""])
 
 
