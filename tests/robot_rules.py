@@ -9,24 +9,32 @@ long tests ask Pinocchio and MuJoCo.
 from __future__ import annotations
 
 import math
-from typing import Final, NamedTuple
+from typing import Final
 
-from robot_texts import BALL, CUBE, ROUND, UNREAD, bare, joint, link, mjcf, sdf, sjoint, slink, urdf, weighed
+from robot_rules_compiled import COMPILED, MARKS
+from robot_texts import (
+    BALL,
+    CUBE,
+    HEAVY,
+    HINGE,
+    ROUND,
+    SHARP,
+    UNREAD,
+    Row,
+    bare,
+    joint,
+    link,
+    mjcf,
+    sdf,
+    sjoint,
+    slink,
+    urdf,
+    weighed,
+)
 
 __all__ = ["ROWS", "Row"]
 
 
-class Row(NamedTuple):
-    text: str
-    words: dict[str, str]
-    says: str = ""
-    singular: bool | None = None
-    refused: bool | None = None
-
-
-HINGE: Final = '<joint type="hinge"/>'
-HEAVY: Final = '<inertial pos="0 0 0" mass="5" diaginertia="0.02 0.02 0.021"/>'
-SHARP: Final = '<inertial pos="0 0 0" mass="5" diaginertia="0.02 0.02 0.041"/>'
 FITTED: Final = '<asset><mesh name="m" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>'
 ARM: Final = link("arm", 5.0, (0.02, 0.02, 0.021), BALL)
 # 2/5 m r² of the ball is 0.02. A ball of osmium of 1 kg: r³ = 3/(4π 22590), 2/5 r².
@@ -439,6 +447,13 @@ FORMATS: Final = {
 
 ROWS: Final = {
     f"{title}: {name}": row
-    for title, table in (("massless", MASSLESS), ("tensor", TENSORS), ("room", ROOM), ("format", FORMATS))
+    for title, table in (
+        ("massless", MASSLESS),
+        ("tensor", TENSORS),
+        ("room", ROOM),
+        ("format", FORMATS),
+        ("compiled", COMPILED),
+        ("marks", MARKS),
+    )
     for name, row in table.items()
 }

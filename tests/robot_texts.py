@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 __all__ = [
     "BALL",
     "CUBE",
+    "HEAVY",
+    "HINGE",
     "ROUND",
+    "SHARP",
     "UNREAD",
+    "Row",
     "bare",
     "joint",
     "link",
@@ -25,6 +29,19 @@ BALL: Final = '<sphere radius="0.1"/>'
 CUBE: Final = '<box size="1 1 1"/>'
 ROUND: Final = "<sphere><radius>0.1</radius></sphere>"
 UNREAD: Final = '<mesh filename="nowhere.stl"/>'
+HINGE: Final = '<joint type="hinge"/>'
+HEAVY: Final = '<inertial pos="0 0 0" mass="5" diaginertia="0.02 0.02 0.021"/>'
+SHARP: Final = '<inertial pos="0 0 0" mass="5" diaginertia="0.02 0.02 0.041"/>'
+
+
+class Row(NamedTuple):
+    """A robot, the words due to its links, and what simulators say: see robot_rules."""
+
+    text: str
+    words: dict[str, str]
+    says: str = ""
+    singular: bool | None = None
+    refused: bool | None = None
 
 
 def three(tensor: Tensor) -> tuple[float, float, float]:

@@ -40,6 +40,22 @@ class TestReport:
             assert alone["mass"] == pytest.approx(2 * 1.21, rel=1e-12)
             assert any("how far that moves corners is in no bound" in note for note in alone["notes"])
 
+    @pytest.mark.parametrize("marks", [" # of {}", " \\\n", "/1/1 \\\r\n "])
+    def test_names_of_groups_whatever_stands_in_the_lines_of_faces(self, tmp_path: Path, marks: str) -> None:
+        """A comment behind the corners, or a backslash that joins the line with the next."""
+        path = written(tmp_path / "two.obj", at((1, 1, 1), (0, 0, 0)), at((1, 1, 2), (3, 0, 0)))
+        lines = path.read_text().splitlines()
+        mark = marks if marks.startswith(" #") else ""
+        for i, line in enumerate(lines):
+            if line.startswith(("f", "v")):
+                words = line.split()
+                ends = marks if line.startswith("f") or not marks.startswith("/") else " \\\n"
+                lines[i] = f"{line}{mark}" if mark else f"{' '.join(words[:2])}{ends}{' '.join(words[2:])}"
+        path.write_text("\n".join(lines) + "\n")
+        found = self.report(path, "--length-unit", "m", "--density", "body=2, insert=5")
+        assert [part["density"] for part in found["components"]] == [2.0, 5.0]
+        assert found["mass"] == pytest.approx(2.0 * 1.0 + 5.0 * 2.0, rel=1e-12)
+
     def test_numbers_for_other_programs_come_with_notes(self, tmp_path: Path, has_union: bool) -> None:
         path = written(tmp_path / "two.obj", at((1, 1, 1), (0, 0, 0)), at((1, 0.5, 0.7), (0.6, 0.1, 0.05)))
         code, out, err = run("report", path, "--length-unit", "m", "--density", "2", "--as", "urdf")

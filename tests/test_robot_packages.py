@@ -12,8 +12,7 @@ import pytest
 from command_line import write_obj
 from oracles.meshes import cube
 from polhode import robots
-from robot_rules import HEAVY
-from robot_texts import ROUND, link, mjcf, sdf, slink, urdf, weighed
+from robot_texts import HEAVY, ROUND, link, mjcf, sdf, slink, urdf, weighed
 from test_robots import there
 
 if TYPE_CHECKING:

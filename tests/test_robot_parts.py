@@ -188,7 +188,7 @@ class TestMuJoCoParts:
             ('<attach model="gone" prefix="l"/>', "there is no file gone.xml; put it at"),
             ('<attach model="self" prefix="l"/>', "self.xml: self.xml is read within itself"),
             ('<replicate count="0.5"><geom/></replicate>', "line 1: count is '0.5' where a whole number"),
-            ("<replicate><geom/></replicate>", "count is None where a finite number"),
+            ("<replicate><geom/></replicate>", "count is missing, where a finite number"),
             ('<replicate count="1000000000"><geom size="1"/></replicate>', "more than 10000 copies"),
             (
                 '<replicate count="9999"><replicate count="9999"><geom size="1"/></replicate></replicate>',

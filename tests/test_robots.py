@@ -166,6 +166,52 @@ def test_a_declaration_may_stand_after_blanks_and_comments(before: str) -> None:
         robots.parse_robot(("two " + text).encode(), name="one", folder=".")
 
 
+@pytest.mark.parametrize(
+    ("marks", "note"),
+    [
+        ("<!-- a -- b -->", "the comment of line 2 holds --"),
+        ("<!-- old <!-- <link/> -->", "the comment of line 2 holds --"),
+        ("<!--- rule --->", "the comment of line 2 holds --"),
+        ("<!-- a\n -- b --> <![CDATA[ <!-- a -- b --> ]]> <?pi -- ?>", "the comment of line 2 holds --"),
+        ('<?xml vertsion="1.0"?>', "its XML declaration is not well-formed"),
+        ('<?xml vertsion="1.0"?><!-- a -- b -->', "its XML declaration is not well-formed"),
+    ],
+)
+def test_what_xml_forbids_and_simulators_pass_over(marks: str, note: str) -> None:
+    text = """<link name="ball"><inertial><mass value="5"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link></robot>"""
+    begin = f'{marks}<robot name="one">' if marks.startswith("<?") else f'<robot name="one">\n{marks}'
+    source = (begin + text).encode()
+    robot = robots.parse_robot(source, name="one", folder=".")
+    assert any(told.startswith(note) and "simulators pass over it" in told for told in robot.notes)
+    better = robots.fixed(robot, robots.check(robot))
+    assert better == source.replace(b'"1" iyy="1" izz="1"', b'"0.02" iyy="0.02" izz="0.02"')
+
+
+def test_what_xml_forbids_in_a_file_that_is_included(tmp_path: Path) -> None:
+    (tmp_path / "part.xml").write_text("<mujocoinclude><!-- a -- b --><body name='b'/></mujocoinclude>")
+    text = b'<mujoco><worldbody><include file="part.xml"/></worldbody></mujoco>'
+    robot = robots.parse_robot(text, name="m", folder=tmp_path)
+    assert any(note.startswith("part.xml: the comment of line 1 holds --") for note in robot.notes)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<robot><!-- a -- b -->&</robot>",
+        "<robot><!-- a -- b ",
+        "<robot name='<!-- a -- b -->'/>",
+        "<robot><![CDATA[ <!-- a -- b -->",
+        "<?xml vertsion='1.0'?><robot>&</robot>",
+        "<robot><!-- a -- b --></mobor>",
+    ],
+)
+def test_what_is_no_xml_stays_refused(text: str) -> None:
+    with pytest.raises(FileFormatError, match="line 1: not well-formed"):
+        robots.parse_robot(text.encode(), name="one", folder=".")
+
+
 @pytest.mark.parametrize("format_name", FORMATS)
 class TestThreeFormats:
     def test_right_values_are_good(self, format_name: str) -> None:

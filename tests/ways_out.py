@@ -14,7 +14,7 @@ _VERBS = (
 _WAY_OUT = re.compile(
     rf"(?:[;:,] |\(|\bor )(?:first |either )?(?:{_VERBS})\b"  # what to do
     r"|^(?:[\w-]+: )?(?:give|state|write) "
-    r"|\bexpected |\bmust | has to stand|\bnot expected\b|\bmay be "  # what is right
+    r"|\bexpected |\bmust | (?:has|have) to stand|\bnot expected\b|\bmay be "  # what is right
     r"|is (?:it|the file) cut short\?|[Dd]id you mean|Choose from|\bmeant\?|for example "
     r"|say so: |polhode \w+ (?:reads|judges|tells)|; .*RigidBody\.from_|; words for the reader may stand in"
     r"|pip install |with_way_out\(|; a rotation keeps"

@@ -341,16 +341,20 @@ def overlapping(vertices: Floats, faces: Integers, unit: str = " m^3") -> list[s
 
 
 def groups_of(path: Path) -> list[str]:
-    """Give the name of the group (``o``, else ``g``) of each triangle of an OBJ file."""
+    """Give the name of the group (``o``, else ``g``) of each triangle of an OBJ file that is not packed."""
     found: list[str] = []
     names = {"o": "", "g": ""}
     with path.open(encoding="utf-8", errors="replace") as lines:
         for line in lines:
+            # A backslash at the end joins a line with the next, but for comments.
+            while not line.lstrip().startswith("#") and line.rstrip().endswith("\\"):
+                line = line.rstrip()[:-1] + " " + next(lines, "")
             words = line.split()
             if words and words[0] in names:
                 names[words[0]] = " ".join(words[1:])
             elif words and words[0] == "f":
-                found += [names["o"] or names["g"]] * (len(words) - 3)
+                corners = next((i for i, word in enumerate(words) if word.startswith("#")), len(words)) - 1
+                found += [names["o"] or names["g"]] * (corners - 2)
     return found
 
 

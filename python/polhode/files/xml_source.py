@@ -31,7 +31,12 @@ __all__ = [
 _START_TAG: Final = re.compile(rb"<[^\"'<>]*(?:\"[^\"]*\"[^\"'<>]*|'[^']*'[^\"'<>]*)*>")
 # A declaration after blanks or comments.
 _LATE: Final = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!--(?:(?!--).)*-->\s*)*(<\?xml\s[^<>]*\?>)", re.DOTALL)
+# Comments as other readers take them, up to the first -->, and what to step over. Each also ends with the
+# file, so that what is not closed is looked through once.
+_COMMENT: Final = re.compile(rb"<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<!--(.*?)(?:-->|\Z)", re.DOTALL)
+_DECLARATION: Final = re.compile(rb"(?:\xef\xbb\xbf)?(<\?xml\s[^<>]*\?>)")
 _BAD_TOKEN: Final = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
+_BAD_DECLARATION: Final = expat.errors.codes[expat.errors.XML_ERROR_XML_DECL]
 _DEEPEST: Final = 200
 _MOST_ELEMENTS: Final = 1_000_000
 
@@ -116,8 +121,36 @@ def _declared_late(source: bytes) -> bytes:
     return source[:start] + b" " * (end - start) + source[end:]
 
 
+def _loosened(source: bytes, code: int) -> tuple[bytes, str]:
+    """Blank out what other readers of robots pass over and XML forbids, and say what; "" where there is none.
+
+    Every byte keeps its place, so that those of elements are the places of the source itself.
+    """
+    if code == _BAD_DECLARATION and (found := _DECLARATION.match(source)) is not None:
+        start, end = found.span(1)
+        return source[:start] + b" " * (end - start) + source[end:], "its XML declaration is not well-formed"
+    if code != _BAD_TOKEN:
+        return source, ""
+    pieces: list[bytes] = []
+    done, line = 0, 0
+    for comment in _COMMENT.finditer(source):
+        inside = comment[1]
+        if inside is not None and (b"--" in inside or inside.endswith(b"-")):
+            start, end = comment.span(1)
+            line = line or source.count(b"\n", 0, start) + 1
+            pieces += (source[done:start], inside.replace(b"-", b" "))
+            done = end
+    return b"".join([*pieces, source[done:]]), f"the comment of line {line} holds --" if line else ""
+
+
 def parse_xml(
-    source: bytes, name: str, *, file: str = "", above: int = 0, budget: Budget | None = None
+    source: bytes,
+    name: str,
+    *,
+    file: str = "",
+    above: int = 0,
+    budget: Budget | None = None,
+    remarks: dict[str, None] | None = None,
 ) -> Element:
     """Parse a document, in a time proportional to its length.
 
@@ -133,6 +166,9 @@ def parse_xml(
         How deep what includes the file stands.
     budget : Budget, optional
         Is spent by its elements; each document has its own by default.
+    remarks : dict, optional
+        Gets what is passed over though XML forbids it: a comment that holds two hyphens, a declaration that
+        is not well-formed. Without it such a document is refused.
 
     Returns
     -------
@@ -149,6 +185,7 @@ def parse_xml(
         raise FileFormatError(f"{name}: is in UTF-16; save it as UTF-8")
     source = _declared_late(source)
     spent = budget if budget is not None else Budget()
+    allowed = spent.elements
     parser = expat.ParserCreate()
     parser.buffer_text = True
     root: list[Element] = []
@@ -202,6 +239,11 @@ def parse_xml(
         parser.Parse(source, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
+        if remarks is not None and (loose := _loosened(source, error.code))[1]:
+            spent.elements = allowed
+            told = f"{file}: {loose[1]}" if file else loose[1]
+            remarks[f"{told}: XML forbids it, so that xacro refuses it; simulators pass over it"] = None
+            return parse_xml(loose[0], name, file=file, above=above, budget=spent, remarks=remarks)
         if error.code == _BAD_TOKEN and not _is_utf8(source):
             raise FileFormatError(
                 f"{name}: line {error.lineno}: holds bytes that are not UTF-8; save it as UTF-8, or name its "

@@ -139,7 +139,7 @@ def parse_robot(
     home = Path(folder)
     addresses = Addresses(home, [Path(package) for package in packages], allow_outside=allow_outside)
     sources = Sources(home, addresses)
-    root = parse_xml(source, name, budget=sources.budget)
+    root = parse_xml(source, name, budget=sources.budget, remarks=sources.notes)
     if root.tag not in _FORMATS:
         raise FileFormatError(
             f"{name}: its root is <{shortened(root.tag)}>, not <robot> (URDF), <sdf> or <mujoco> (MJCF); "
@@ -167,7 +167,8 @@ def parse_robot(
     notes = (*([read] if sources.names else []), *sources.notes)
     model = root if format_name != "SDF" else next(root.descendants("model"), root)
     title = sources.prefix(model.attributes.get("name", model.attributes.get("model", "")))
-    return Robot(format_name, title, links, home, source, notes, joints=tuple(sources.joints))
+    joints = tuple(sources.joints)
+    return Robot(format_name, title, links, home, source, notes, joints=joints, total_mass=sources.total_mass)
 
 
 def check(

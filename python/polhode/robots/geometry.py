@@ -13,6 +13,7 @@ from polhode.files.components import overlapping
 from polhode.files.loaded import load
 from polhode.files.mesh import Mesh, used_vertices
 from polhode.robots.facets import sagitta
+from polhode.robots.mjcf_meshes import legacy_solid
 from polhode.robots.words import quoted, shortened
 from polhode.units import metres_per
 
@@ -39,6 +40,8 @@ _SOLIDS: Final[dict[str, Callable[[tuple[float, ...]], RigidBody]]] = {
 }
 # How well a box or a cylinder is taken to stand for the true part, of its diagonal.
 _OF_PRIMITIVES: Final = 0.02
+# What MuJoCo counts of a mesh beyond its volume is told from here on.
+_COUNTED_TWICE: Final = 0.01
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,7 @@ class GeometryReader:
     def __init__(self, folder: Path, addresses: Addresses) -> None:
         self._folder, self._addresses = folder, addresses
         self._meshes: dict[tuple[Path, str], _Read | str] = {}
-        self._solids: dict[tuple[Path, str, str, tuple[float, ...]], tuple[RigidBody | None, str]] = {}
+        self._solids: dict[tuple[Path, str, str, tuple[float, ...], str], tuple[RigidBody | None, str]] = {}
 
     def read(self, link: Link) -> Geometry:
         """Take the shapes of a link together."""
@@ -162,7 +165,7 @@ class GeometryReader:
         """Give the body of a shape where it stands, and its volume."""
         if shape.problem:
             return None
-        key = (folder, shape.kind, shape.mesh, shape.size)
+        key = (folder, shape.kind, shape.mesh, shape.size, shape.counting)
         if key not in self._solids:
             is_mesh = shape.kind == "mesh"
             self._solids[key] = self._mesh_solid(shape, folder) if is_mesh else _solid(shape)
@@ -190,16 +193,22 @@ class GeometryReader:
             return read.solids.scaled(mass=factor**3, length=factor), note
         mesh = read.mesh
         vertices = mesh.vertices * np.array(shape.size)
-        try:
-            solid = RigidBody.from_mesh(vertices, mesh.faces, density=1.0, orient=True)
+        solid, first = None, ""
+        if shape.counting != "convex":
+            try:
+                solid = RigidBody.from_mesh(vertices, mesh.faces, density=1.0, orient=True)
+            except ValueError as error:
+                first = str(error)
+        if shape.counting == "legacy" and len(mesh.faces):
+            return _counted(name, legacy_solid(vertices, mesh.faces), solid)
+        if solid is not None:
             return solid, _overlapping(f"mesh {name}", vertices, mesh.faces)
-        except ValueError as error:
-            first = str(error)
         try:
             hull = RigidBody.from_mesh(vertices, mesh.faces, density=1.0, closure="hull")
         except (ValueError, ModuleNotFoundError):
             return None, f"mesh {name}: {first}"
-        return hull, f"mesh {name} does not bound a solid: its convex hull was taken"
+        told = f"mesh {name} does not bound a solid: its convex hull was taken"
+        return hull, told if shape.counting != "convex" else ""
 
     def _mesh(self, address: str, folder: Path) -> _Read | str:
         key = (folder, address)
@@ -281,6 +290,20 @@ def _of_cad(cad: CadFile) -> _Read:
     corners *= metres_per("mm")
     empty = np.empty((0, 3), dtype=np.int64)
     return _Read(Mesh(corners, empty, cad.format), corners, solids_of(cad, density=1.0)[0], cad.overlaps)
+
+
+def _counted(name: str, legacy: RigidBody, solid: RigidBody | None) -> tuple[RigidBody, str]:
+    """Give what MuJoCo takes a mesh for, and say where that is not what it fills."""
+    by = 'MuJoCo\'s inertia="legacy", its default'
+    if solid is None:
+        return legacy, f"mesh {name} does not bound a solid: {by}, adds the tetrahedra of its triangles"
+    times = float(legacy.mass) / float(solid.mass)
+    if times <= 1.0 + _COUNTED_TWICE:
+        return legacy, ""
+    return (
+        legacy,
+        f'mesh {name}: {by}, counts {times:.3g} times its volume; inertia="exact" there counts it once',
+    )
 
 
 def _is_nothing(shape: Shape) -> bool:

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from polhode import euler_angles
-from polhode._core import rotate
 from polhode.errors import FileFormatError
 from polhode.files.xml_source import Edit, Element, remove_attribute, set_attribute
 from polhode.robots.edits import attribute, first_child, number_text
+from polhode.robots.mjcf_compiler import compiler_of, total_mass_of
+from polhode.robots.mjcf_meshes import matrix, mesh_shape
 from polhode.robots.mjcf_parts import copies, expand_includes
-from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, scale, unit
+from polhode.robots.model import WORLD, Inertial, Joint, Link, Place, Shape, numbers, unit
 from polhode.robots.sources import LimitError
 from polhode.robots.words import quoted
 
@@ -35,18 +36,27 @@ _ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 _HALF_LENGTHS = {"sphere": 1, "ellipsoid": 3, "box": 3, "cylinder": 2, "capsule": 2}
 _WATER = "1000"
 _OF_GEOMS = frozenset({"type", "size", "pos", "fromto", "mesh", "mass", "density", "group", *_ORIENTATIONS})
-# What the compiler does to masses after it has read them; none of it is done here.
-_AFTERWARDS = ("boundmass", "boundinertia", "settotalmass", "balanceinertia")
+_AFTERWARDS = (
+    "boundmass, boundinertia or balanceinertia of the compiler change masses and tensors later: what is "
+    "declared is judged as it stands"
+)
+_COPIED = "bodies within <replicate> are judged once, their copies not"
 
 
 def links(root: Element, sources: Sources) -> Iterator[Link]:
     """Read every body below the world, those of included files and attached models too."""
     reader = _Reader(root, sources.folder, sources)
+    sources.total_mass = total_mass_of(list(root.all("compiler")))
     made = sum(1 for tag in ("composite", "flexcomp") for _ in root.descendants(tag))
     if made:
         sources.notes[f"{made} composite or flexcomp parts make bodies that are not judged"] = None
     for world in root.all("worldbody"):
         yield from reader.below(world, None, WORLD)
+    if sources.total_mass and (made or _COPIED in sources.notes):
+        sources.total_mass = 0.0
+        sources.notes[
+            "settotalmass of the compiler scales bodies that are not all judged: it is left out"
+        ] = None
 
 
 class Member(NamedTuple):
@@ -70,13 +80,12 @@ class _Reader:
         self.sequence = settings.get("eulerseq", "xyz").swapcase()
         self.infers_always = settings.get("inertiafromgeom", "auto") == "true"
         self.groups = [int(x) for x in settings.get("inertiagrouprange", "").split() if x.isdecimal()]
-        done = [name for name in _AFTERWARDS if settings.get(name, "0") not in ("0", "-1", "false")]
-        if done:
-            sources.notes[
-                f"{' and '.join(done)} of the compiler changes masses later, which is not judged"
-            ] = None
+        compiler = compiler_of(list(root.all("compiler")))
+        self.compiler = compiler if any(compiler) else None
+        if self.compiler is not None:
+            sources.notes[_AFTERWARDS] = None
         self.geoms: dict[str, dict[str, str]] = {"main": {}}
-        self.scales: dict[str, str] = {}  # of the meshes of each class
+        self.of_meshes: dict[str, dict[str, str]] = {}  # of each class
         for default in root.all("default"):
             self._add_class(default, {}, default.attributes.get("class", "main"))
         self.meshes: dict[str, tuple[Element, str]] = {}
@@ -137,6 +146,7 @@ class _Reader:
             folder=self.folder,
             key=key,
             reach=reach,
+            compiler=self.compiler,
         )
         yield from self.below(body, inherited, key)
 
@@ -186,7 +196,7 @@ class _Reader:
             if is_geom and number == 0:
                 self.sources.count_copied(count * len(inside), replicate, keep=self._open_copies == 0)
             if inside and not is_geom:
-                self.sources.notes["bodies within <replicate> are judged once, their copies not"] = None
+                self.sources.notes[_COPIED] = None
             yield from inside
             place = place.then(step)
 
@@ -248,16 +258,16 @@ class _Reader:
             yield from self.everything(child, tag, child.attributes.get("childclass", inherited))
 
     def _add_class(
-        self, default: Element, inherited: dict[str, str], name: str, mesh_scale: str = "1"
+        self, default: Element, geoms: dict[str, str], name: str, meshes: dict[str, str] | None = None
     ) -> None:
-        own = dict(inherited)
+        own, of_meshes = dict(geoms), dict(meshes or {})
         for geom in default.all("geom"):
             own |= {name: text for name, text in geom.attributes.items() if name in _OF_GEOMS}
         for mesh in default.all("mesh"):
-            mesh_scale = mesh.attributes.get("scale", mesh_scale)
-        self.geoms[name], self.scales[name] = own, mesh_scale
+            of_meshes |= mesh.attributes
+        self.geoms[name], self.of_meshes[name] = own, of_meshes
         for child in default.all("default"):
-            self._add_class(child, own, child.attributes.get("class", ""), mesh_scale)
+            self._add_class(child, own, child.attributes.get("class", ""), of_meshes)
 
     def _place(self, element: Element, attributes: dict[str, str]) -> Place:
         position = numbers(element, attributes.get("pos", "0 0 0"), 3, "pos")
@@ -267,7 +277,7 @@ class _Reader:
         to_radians = 1.0 if self.in_radians else np.pi / 180.0
         if "quat" in attributes:
             w, x, y, z = numbers(element, attributes["quat"], 4, "quat")
-            return _matrix(unit(element, np.array([x, y, z, w])))
+            return matrix(unit(element, np.array([x, y, z, w])))
         if "euler" in attributes:
             angles = numbers(element, attributes["euler"], 3, "euler") * to_radians
             if len(self.sequence) != 3 or not (
@@ -278,11 +288,11 @@ class _Reader:
                     f"{element.where}: euler by eulerseq {sequence}, which is not read: three letters of "
                     "xyz or of XYZ have to stand there; give quat"
                 )
-            return _matrix(euler_angles.to_quaternion(angles, self.sequence))
+            return matrix(euler_angles.to_quaternion(angles, self.sequence))
         if "axisangle" in attributes:
             *axis, angle = numbers(element, attributes["axisangle"], 4, "axisangle")
             half = angle * to_radians / 2.0
-            return _matrix(np.append(np.sin(half) * unit(element, np.array(axis)), np.cos(half)))
+            return matrix(np.append(np.sin(half) * unit(element, np.array(axis)), np.cos(half)))
         if "xyaxes" in attributes:
             values = numbers(element, attributes["xyaxes"], 6, "xyaxes")
             x_axis = unit(element, values[:3])
@@ -327,11 +337,8 @@ class _Reader:
             if name not in self.meshes:
                 return Shape("mesh", (1.0, 1.0, 1.0), place, "collision", "", density, mass, geom.where)
             mesh, address = self.meshes[name]
-            kind = "mesh, hollow" if weighs and mesh.attributes.get("inertia") == "shell" else kind
-            kind = kind if address else "mesh without a file"
-            of_class = self.scales.get(mesh.attributes.get("class", "main"), "1")
-            factors = scale(mesh, mesh.attributes.get("scale", of_class))
-            return Shape(kind, factors, place, "collision", address, density, mass, geom.where)
+            own = {**self.of_meshes.get(mesh.attributes.get("class", "main"), {}), **mesh.attributes}
+            return mesh_shape(geom, place, mesh, own, address, density, mass, weighs=weighs)
         if "mesh" in attributes:  # MuJoCo takes the size from the mesh, whatever stands here
             kind = f"{kind} fitted to a mesh"
             return Shape(kind, (), frame, "collision", "", density, mass, geom.where)
@@ -363,15 +370,11 @@ class _Reader:
         return place, tuple(size[:needed])
 
 
-def _matrix(quaternion: Any) -> Any:
-    return np.stack([rotate(quaternion, axis) for axis in np.eye(3)], axis=-1)
-
-
 def _turning_z_to(axis: Any) -> Any:
     """Turn z to an axis by the shortest rotation."""
     if axis[2] < -1.0 + 1e-12:
         return np.diag([1.0, -1.0, -1.0])
-    return _matrix(np.array([-axis[1], axis[0], 0.0, 1.0 + axis[2]]) / np.sqrt(2.0 * (1.0 + axis[2])))
+    return matrix(np.array([-axis[1], axis[0], 0.0, 1.0 + axis[2]]) / np.sqrt(2.0 * (1.0 + axis[2])))
 
 
 def _rewrite(body: Element, declared: Element | None, source: bytes, new: Inertial) -> list[Edit]:

@@ -20,7 +20,19 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["WORLD", "Inertial", "Joint", "Link", "Place", "Robot", "Shape", "numbers", "scale", "unit"]
+__all__ = [
+    "WORLD",
+    "Compiler",
+    "Inertial",
+    "Joint",
+    "Link",
+    "Place",
+    "Robot",
+    "Shape",
+    "numbers",
+    "scale",
+    "unit",
+]
 
 WORLD: Final = "world"
 """Stands for what never moves, where a joint names it."""
@@ -83,6 +95,9 @@ class Shape:
     problem : str
         Why the numbers of a visual shape cannot be read; "" if they can. Those of a collision shape end the
         verdict of the link.
+    counting : str
+        How a simulator that takes the inertia from a mesh counts its matter: ``"legacy"``, ``"convex"``
+        (MuJoCo); any other: as it is filled.
     """
 
     kind: str
@@ -94,6 +109,23 @@ class Shape:
     mass: float | None = None
     where: str = ""
     problem: str = ""
+    counting: str = ""
+
+
+class Compiler(NamedTuple):
+    """What MuJoCo's compiler does to the bodies of a model after it has read them.
+
+    Attributes
+    ----------
+    mass, moment : float
+        Least mass and principal moment of a body.
+    is_balanced : bool
+        Whether moments that no body has become their mean.
+    """
+
+    mass: float = 0.0
+    moment: float = 0.0
+    is_balanced: bool = False
 
 
 class Joint(NamedTuple):
@@ -145,6 +177,8 @@ class Link:
         Whether it belongs to a model that never moves.
     reach : float
         How far it stands from what the file places it in, in metres.
+    compiler : Compiler, optional
+        Of MJCF, where it changes anything.
     """
 
     name: str
@@ -160,6 +194,7 @@ class Link:
     defaults: str = ""
     is_static: bool = False
     reach: float = 0.0
+    compiler: Compiler | None = None
 
 
 @dataclass(frozen=True)
@@ -181,6 +216,8 @@ class Robot:
     roots : tuple of pathlib.Path
         Where else its files may lie: where the file is in truth, if it was read through a link.
     joints : tuple of Joint
+    total_mass : float
+        What the compiler of MJCF scales all bodies to, together; 0 where it does not.
     """
 
     format: str
@@ -191,6 +228,7 @@ class Robot:
     notes: tuple[str, ...] = ()
     roots: tuple[Path, ...] = ()
     joints: tuple[Joint, ...] = ()
+    total_mass: float = 0.0
 
 
 # Longer texts hold no few numbers; the file may say them of many elements.
@@ -220,9 +258,9 @@ def numbers(element: Element, text: str | None, count: int | None, what: str) ->
             "a finite number" if count == 1 else f"{count or ''} finite numbers".replace("  ", " ").strip()
         )
         way_out = "; expand the file with xacro first" if text and "${" in text else ""
-        raise FileFormatError(
-            f"{element.where}: {what} is {quoted(text)} where {wanted} has to stand{way_out}"
-        )
+        must = f"{wanted} has to stand" if count == 1 else f"{wanted} have to stand"
+        given = "is missing," if text is None else f"is {quoted(text)}"
+        raise FileFormatError(f"{element.where}: {what} {given} where {must}{way_out}")
     if values.size and np.abs(values).max() > _LARGEST:
         raise FileFormatError(
             f"{element.where}: {what} is {quoted(text)}, beyond {_LARGEST:g}, where squares have no "

@@ -105,6 +105,11 @@ def below(parent: Element, sources: Sources, scope: Scope) -> Iterator[Link]:
 
 
 def _link(element: Element, sources: Sources, scope: Scope) -> Link:
+    own = element.attributes.get("name", "")
+    for inside in element.children:
+        for pose in inside.descendants("pose"):
+            if own and pose.attributes.get("relative_to") == own:  # as it is without
+                del pose.attributes["relative_to"]
     declared = element.find("inertial")
     inferred = declared is not None and is_true(declared, "auto", declared.attributes)
     link = LinkReader(_inertial, _shapes, _rewrite).read(
@@ -120,7 +125,7 @@ def _link(element: Element, sources: Sources, scope: Scope) -> Link:
     reach = 0.0
     with suppress(FileFormatError):
         reach = float(np.linalg.norm(_pose(element.find("pose")).position))
-    key = scope.path + element.attributes.get("name", "")
+    key = scope.path + own
     return replace(
         link, inertial=inertial, key=key, defaults=defaults, is_static=scope.is_static, reach=reach
     )

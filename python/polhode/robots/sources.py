@@ -55,6 +55,8 @@ class Sources:
         """Of the files that were read, as they were asked for."""
         self.notes: dict[str, None] = {}
         """What of them is not judged."""
+        self.total_mass = 0.0
+        """Of MJCF: what all bodies together are scaled to, if that is not 0."""
         self.joints: list[Joint] = []
         """What ties the links that were read."""
         self.frames: dict[str, str] = {}
@@ -109,7 +111,9 @@ class Sources:
         self._bytes += len(source)
         self.names[address] = None
         try:
-            return parse_xml(source, str(path), file=address, above=at.depth, budget=self.budget)
+            return parse_xml(
+                source, str(path), file=address, above=at.depth, budget=self.budget, remarks=self.notes
+            )
         except FileFormatError as error:
             raise FileFormatError(f"{at.where}: {error}") from None
 

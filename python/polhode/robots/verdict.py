@@ -9,6 +9,7 @@ import numpy as np
 
 from polhode import RigidBody, principal_moments
 from polhode.errors import PolhodeError
+from polhode.robots.mjcf_compiler import as_compiled
 from polhode.robots.model import Inertial
 from polhode.robots.room import LEAST, MOST, beyond_room, beyond_size, density_needed, times, too_dense
 from polhode.robots.structure import standings, without_mass
@@ -128,7 +129,7 @@ def judge(
             judging.link(link, each, standing)._replace(file=link.file)
             for link, each, standing in zip(robot.links, read, stand, strict=True)
         ]
-        return _filled(robot, found, geometry, density, mass)
+        return _filled(robot, as_compiled(robot, found), geometry, density, mass)
 
 
 def has_own_tensor(link: Link) -> bool:

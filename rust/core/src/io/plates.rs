@@ -1,9 +1,11 @@
 //! Vertices and faces as text: the geometry of an OBJ file, and the plate models in which asteroids are archived.
 //!
 //! Two layouts are read. Lettered: `v x y z` and `f i j k …`, any other keyword of OBJ passed over; faces of more than three
-//! corners become a fan of triangles, `i/t/n` is vertex i, negative numbers count back from the last vertex so far.
+//! corners become a fan of triangles, `i/t/n` is vertex i, negative numbers count back from the last vertex so far, a
+//! backslash at the end of a line joins it with the next.
 //! Counted: a first line with the numbers of vertices and faces, then that many lines of three numbers each.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::str::SplitWhitespace;
 
@@ -74,8 +76,13 @@ fn lettered(
         vertices: Vec::new(),
         faces: Vec::new(),
     };
-    for (number, line) in (1..).zip(text.lines()).filter(|(_, line)| !is_blank(line)) {
-        ask(text, number, line, watch)?;
+    let mut lines = (1..).zip(text.lines());
+    while let Some((number, first)) = lines.next() {
+        if is_blank(first) {
+            continue;
+        }
+        ask(text, number, first, watch)?;
+        let line = continued(first, lines.by_ref().map(|(_, line)| line));
         let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => mesh
@@ -86,13 +93,32 @@ fn lettered(
             _ => {
                 let why = format!(
                     "neither a vertex, a face nor another OBJ keyword: {:?}",
-                    shortened(line)
+                    shortened(&line)
                 );
                 return Err(Halt::Failed(FileFault::BadLine { line: number, why }));
             }
         }
     }
     Ok(mesh)
+}
+
+/// The line with those that follow it after a backslash at the end, which it takes from `rest`.
+fn continued<'a>(first: &'a str, mut rest: impl Iterator<Item = &'a str>) -> Cow<'a, str> {
+    let Some(head) = first.trim_end().strip_suffix('\\') else {
+        return Cow::Borrowed(first);
+    };
+    let mut whole = head.to_owned();
+    for line in rest.by_ref() {
+        whole.push(' ');
+        match line.trim_end().strip_suffix('\\') {
+            Some(part) => whole.push_str(part),
+            None => {
+                whole.push_str(line);
+                break;
+            }
+        }
+    }
+    Cow::Owned(whole)
 }
 
 /// Whether OBJ has a keyword like this: letters, perhaps with an underscore.
@@ -232,6 +258,19 @@ mod tests {
         let mesh = read(text, 1).expect("valid");
         assert_eq!(mesh.vertices[2], [1.0, 1.0, 0.0]);
         assert_eq!(mesh.faces, [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn a_backslash_joins_lines() {
+        let text =
+            "# C:\\\nv 0 \\\n 0 0\nv 1 0 0\nv 1 1 \\\n \\ \n 0\r\nvn 0 0 \\\n-1\nf 1 2 \\\r\n3\n";
+        let mesh = read(text, 1).expect("valid");
+        assert_eq!(mesh.vertices[2], [1.0, 1.0, 0.0]);
+        assert_eq!(mesh.faces, [[0, 1, 2]]);
+        assert!(matches!(
+            read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n2 x\n", 1),
+            Err(FileFault::BadLine { line: 4, .. })
+        ));
     }
 
     #[test]

@@ -1,0 +1,131 @@
+"""Robots of what MuJoCo's compiler does after it has read masses, and of XML that simulators take."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from robot_texts import BALL, HEAVY, HINGE, ROUND, SHARP, Row, link, mjcf, sdf, slink, urdf, weighed
+
+__all__ = ["COMPILED", "MARKS"]
+
+BOTH: Final = '<compiler boundmass="0.3" boundinertia="0.01"/>'
+GEOM: Final = '<geom size="0.1" mass="5"/>'
+
+COMPILED: Final = {
+    "nothing, moved, but bounds": Row(
+        mjcf(f'<body name="a">{HINGE}</body>', before=BOTH),
+        {"a": "inferred"},
+        "by boundmass and boundinertia of the compiler",
+        refused=False,
+    ),
+    "nothing, moved, a bound of mass alone": Row(
+        mjcf(f'<body name="a">{HINGE}</body>', before='<compiler boundmass="0.3"/>'),
+        {"a": "missing"},
+        refused=True,
+    ),
+    "nothing, moved, a bound of moments alone": Row(
+        mjcf(f'<body name="a">{HINGE}</body>', before='<compiler boundinertia="0.01"/>'),
+        {"a": "missing"},
+        refused=True,
+    ),
+    # Of the ball 2/5 m r² = 0.02: above one bound, below the other.
+    "a geom above the bounds": Row(
+        mjcf(f'<body name="a">{HINGE}{GEOM}</body>', before=BOTH),
+        {"a": "inferred"},
+        "from its shapes",
+        refused=False,
+    ),
+    "a geom below a bound": Row(
+        mjcf(f'<body name="a">{HINGE}{GEOM}</body>', before='<compiler boundinertia="0.021"/>'),
+        {"a": "inferred"},
+        "from its shapes, by boundmass and boundinertia",
+        refused=False,
+    ),
+    "bounds beside what is declared": Row(
+        mjcf(f'<body name="a">{HINGE}{HEAVY}</body><body name="b">{HINGE}</body>', before=BOTH),
+        {"a": "good", "b": "inferred"},
+        refused=False,
+    ),
+    # MuJoCo puts the mean in its place; the file still declares what no body has.
+    "balanced by the compiler": Row(
+        mjcf(f'<body name="a">{HINGE}{SHARP}</body>', before='<compiler balanceinertia="true"/>'),
+        {"a": "impossible"},
+        refused=False,
+    ),
+    # A rod along x: bounded from below its moments are (1, 0.02, 0.02)·k, which no body has.
+    "bounded, then balanced": Row(
+        mjcf(
+            f'<body name="a">{HINGE}<geom type="box" size="0.1 0.1 0.1" mass="1"/>'
+            f'<geom type="box" size="0.1 0.1 0.1" mass="1" pos="1 0 0"/></body>',
+            before='<compiler boundinertia="0.6" balanceinertia="true"/>',
+        ),
+        {"a": "inferred"},
+        refused=False,
+    ),
+    "scaled to a total": Row(
+        mjcf(
+            f'<body name="a">{HINGE}{GEOM}</body><body name="b">{HINGE}{HEAVY}</body>',
+            before='<compiler settotalmass="2"/>',
+        ),
+        {"a": "inferred", "b": "good"},
+        "times 0.2 by settotalmass",
+        refused=False,
+    ),
+    "scaled to a total, with bounds": Row(
+        mjcf(
+            f'<body name="a">{HINGE}{GEOM}</body><body name="b">{HINGE}</body><body name="c"/>',
+            before='<compiler settotalmass="2" boundmass="0.3" boundinertia="0.01"/>',
+        ),
+        {"a": "inferred", "b": "inferred", "c": "none"},
+        "times 0.3571 by settotalmass",  # 2/5.6
+        refused=False,
+    ),
+    "scaled to a total that is not known": Row(
+        mjcf(
+            f'<body name="a">{HINGE}{GEOM}</body>'
+            f'<body name="b">{HINGE}<geom size="0.1" shellinertia="true"/></body>',
+            before='<compiler settotalmass="2"/>',
+        ),
+        {"a": "inferred", "b": "inferred"},
+        "settotalmass would scale it: the mass of b is not known",
+    ),
+    "scaled to no total": Row(
+        mjcf(f'<body name="a">{HINGE}{GEOM}</body>', before='<compiler settotalmass="-1"/>'),
+        {"a": "inferred"},
+        "from its shapes",
+        refused=False,
+    ),
+}
+
+ONE: Final = urdf(link("a", 5.0, (0.02, 0.02, 0.021), BALL))
+
+ABOVE: Final = (
+    f'<collision name="c"><pose relative_to="a">0 0 1 0 0 0</pose><geometry>{ROUND}</geometry></collision>'
+)
+
+MARKS: Final = {
+    "two hyphens in a comment": Row(ONE.replace("<link", "<!-- a -- b <!-- c --><link", 1), {"a": "good"}),
+    "a comment that ends in three": Row(ONE.replace("<link", "<!--- a ---><link", 1), {"a": "good"}),
+    "SDF, poses relative to the link itself": Row(
+        sdf(
+            '<link name="a"><inertial><pose relative_to="a">0 0 1 0 0 0</pose><mass>5</mass>'
+            "<inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.021</izz></inertia></inertial>"
+            f"{ABOVE}</link>"
+        ),
+        {"a": "good"},
+    ),
+    "SDF, a shape elsewhere, relative to the link itself": Row(
+        sdf(f'<link name="a">{weighed(5, 0.02)}{ABOVE}</link>'),
+        {"a": "impossible"},
+        "lies outside the shape",
+    ),
+    "SDF, a tensor relative to what is not followed": Row(
+        sdf(
+            slink("b", weighed(5, 0.02), ROUND),
+            '<link name="a"><inertial><pose relative_to="b">0 0 1 0 0 0</pose></inertial></link>',
+        ),
+        {"b": "good", "a": "unreadable"},
+        "a pose relative to 'b' is not followed; give it in the link",
+    ),
+    "a declaration that is misspelt": Row(f'<?xml vertsion="1.0"?>\n{ONE}', {"a": "good"}),
+}
