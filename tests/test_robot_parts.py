@@ -94,6 +94,20 @@ class TestMuJoCoInclude:
             judged(main)
         assert str(told.value).startswith(f"{main}: ")
 
+    def test_links_to_one_file_are_files_of_their_own(self, tmp_path: Path) -> None:
+        """So MuJoCo takes them, which knows a file by its name; one that leads to itself has an end."""
+        main = write(
+            tmp_path,
+            main_xml=WORLD.format("", "".join(f'<include file="{name}.xml"/>' for name in "bcd")),
+            b_xml="<x><body><geom size='1'/></body></x>",
+        )
+        for name in "cd":
+            (tmp_path / f"{name}.xml").symlink_to("b.xml")
+        assert [verdict.verdict for verdict in judged(main).values()] == ["inferred"] * 3
+        (tmp_path / "b.xml").write_text('<x><include file="c.xml"/></x>')
+        with pytest.raises(FileFormatError, match=r"line 1 of c\.xml: c\.xml is included twice"):
+            judged(main)
+
     def test_a_bad_number_ends_the_verdict_of_its_own_body_alone(self, tmp_path: Path) -> None:
         main = write(
             tmp_path,

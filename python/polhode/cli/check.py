@@ -238,7 +238,8 @@ def _fix(
         Column("from", "from"),
     )
     report.section("changed", Table("changed", columns, rows))
-    report.notes.append(f"wrote {path}: {len(rows)} links changed, everything else as it stands")
+    changed = "1 link" if len(rows) == 1 else f"{len(rows)} links"
+    report.notes.append(f"wrote {path}: {changed} changed, everything else as it stands")
     unweighed = [v.name for v in left if v.verdict == "missing"]
     unread = [v.name for v in left if v.verdict == "unreadable"]
     unshaped = [v.name for v in left if v.verdict not in ("missing", "unreadable")]

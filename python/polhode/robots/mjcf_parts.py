@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 from polhode.errors import FileFormatError
@@ -28,7 +29,7 @@ def expand_includes(root: Element, folder: Path, sources: Sources) -> None:
         Of the model's file, where the names of all its included files start.
     sources : Sources
     """
-    included: set[Path] = set()
+    included: set[str] = set()
     waiting = [root]
     while waiting:
         element = waiting.pop()
@@ -43,11 +44,12 @@ def expand_includes(root: Element, folder: Path, sources: Sources) -> None:
             if not name:
                 raise FileFormatError(f"{child.where}: <include> without file; name one")
             path = sources.locate(name, folder, child)
-            if path.resolve() in included:
+            # MuJoCo knows a file by its name: links to one file are files of their own.
+            if (called := os.path.normpath(path)) in included:
                 raise FileFormatError(
                     f"{child.where}: {name} is included twice; MuJoCo allows it once: leave one of them out"
                 )
-            included.add(path.resolve())
+            included.add(called)
             unread += reversed(sources.read(path, name, child).children)
         element.children = children
         waiting += children

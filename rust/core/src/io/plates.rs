@@ -104,19 +104,18 @@ fn lettered(
 
 /// The line with those that follow it after a backslash at the end, which it takes from `rest`.
 fn continued<'a>(first: &'a str, mut rest: impl Iterator<Item = &'a str>) -> Cow<'a, str> {
-    let Some(head) = first.trim_end().strip_suffix('\\') else {
+    let more = |line: &'a str| line.trim_end().strip_suffix('\\');
+    let Some(head) = more(first) else {
         return Cow::Borrowed(first);
     };
     let mut whole = head.to_owned();
     for line in rest.by_ref() {
         whole.push(' ');
-        match line.trim_end().strip_suffix('\\') {
-            Some(part) => whole.push_str(part),
-            None => {
-                whole.push_str(line);
-                break;
-            }
-        }
+        let Some(part) = more(line) else {
+            whole.push_str(line);
+            break;
+        };
+        whole.push_str(part);
     }
     Cow::Owned(whole)
 }
