@@ -127,5 +127,21 @@ MARKS: Final = {
         {"b": "good", "a": "unreadable"},
         "a pose relative to 'b' is not followed; give it in the link",
     ),
+    # Links that stand elsewhere, or that no physics moves.
+    "SDF, what the state of a world, plugins and actors say of links": Row(
+        '<sdf version="1.7"><world name="w"><model name="m">'
+        + slink("a", weighed(5, 0.02), ROUND)
+        + '<plugin name="p"><link name="b"/><sdf><model name="c"><link name="d"/></model></sdf></plugin>'
+        + '</model><actor name="e"><link name="f"/><plugin><link name="g"/></plugin></actor>'
+        + '<state world_name="w"><model name="m"><link name="a"><pose/></link></model></state>'
+        + '<x:own xmlns:x="http://nowhere"><link name="h"/></x:own></world></sdf>',
+        {"a": "good"},
+    ),
+    "SDF, a population of models": Row(
+        '<sdf version="1.7"><world name="w"><population name="p"><model name="m">'
+        + slink("a", weighed(5, 0.02), ROUND)
+        + "</model></population></world></sdf>",
+        {"a": "good"},
+    ),
     "a declaration that is misspelt": Row(f'<?xml vertsion="1.0"?>\n{ONE}', {"a": "good"}),
 }

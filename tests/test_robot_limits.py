@@ -143,7 +143,9 @@ class TestDepth:
         """Each of 60 models stands four elements deeper than the one that includes it."""
         for i in range(60):
             uri = f"<include><uri>m{i + 1}.sdf</uri></include>"
-            (tmp_path / f"m{i}.sdf").write_text(f'<sdf><model name="m"><link/><a>{uri}</a></model></sdf>')
+            (tmp_path / f"m{i}.sdf").write_text(
+                f'<sdf><model name="m"><link/><model>{uri}</model></model></sdf>'
+            )
         links = robots.check(robots.read_robot(tmp_path / "m0.sdf"))
         assert 45 < len(links) < 60
         assert {verdict.verdict for verdict in links[:-1]} == {"placeholder"}

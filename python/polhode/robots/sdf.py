@@ -83,7 +83,11 @@ def links(root: Element, sources: Sources) -> Iterator[Link]:
 
 
 def below(parent: Element, sources: Sources, scope: Scope) -> Iterator[Link]:
-    """Read the links below an element."""
+    """Read the links below an element.
+
+    What else holds elements named so, <state>, <plugin>, <actor>, tells of links that stand elsewhere or that
+    no physics moves.
+    """
     for element in parent.children:
         tag = element.tag
         if tag == "include" and element.find("uri") is not None:
@@ -100,8 +104,12 @@ def below(parent: Element, sources: Sources, scope: Scope) -> Iterator[Link]:
             is_static = scope.is_static or is_true(element, "static")
             inner = scope._replace(path=scope.path + own, is_static=is_static, is_named=False)
             yield from below(element, sources, inner)
-        else:
+        elif tag in ("world", "population"):
             yield from below(element, sources, scope)
+        elif tag == "actor" and element.find("link") is not None:
+            sources.notes["links of an <actor> follow its script and are not judged"] = None
+        elif tag == "state" and element.find("insertions") is not None:
+            sources.notes["what <state> inserts into the world is not judged"] = None
 
 
 def _link(element: Element, sources: Sources, scope: Scope) -> Link:
