@@ -138,7 +138,21 @@ MASSLESS: Final = {
     ),
     "a frame moved with a shape tied to it": Row(
         urdf(bare("base"), bare("a"), bare("b", BALL), joint("base", "a"), joint("a", "b", "fixed")),
-        {"base": "none", "a": "none", "b": "missing"},
+        {"base": "none", "a": "missing", "b": "missing"},  # where the joint ends, as Pinocchio names it, too
+        singular=True,
+    ),
+    "a frame moved with a frame and a shape tied to it": Row(
+        urdf(
+            bare("base"),
+            bare("a"),
+            bare("tip"),
+            bare("b", BALL),
+            joint("base", "a"),
+            joint("a", "tip", "fixed"),
+            joint("tip", "b", "fixed"),
+        ),
+        {"base": "none", "a": "missing", "tip": "none", "b": "missing"},
+        "which is told there",
         singular=True,
     ),
     "alone, with shape": Row(urdf(bare("a", BALL)), {"a": "none"}, "no joint moves it"),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from command_line import run
 from polhode import robots
-from robot_texts import BALL, ROUND, UNREAD, bare, joint, link, mjcf, sdf, sjoint, slink, urdf, weighed
+from robot_texts import BALL, CUBE, ROUND, UNREAD, bare, joint, link, mjcf, sdf, sjoint, slink, urdf, weighed
 from test_robots import there
 
 if TYPE_CHECKING:
@@ -150,6 +150,20 @@ class TestCommand:
         )
         assert code == 1
         assert "left as they are: b" in out
+
+    def test_a_frame_that_fails_is_served_by_the_mass_of_what_is_tied_to_it(self, tmp_path: Path) -> None:
+        text = urdf(bare("base"), bare("a"), bare("b", CUBE), joint("base", "a"), joint("a", "b", "fixed"))
+        (tmp_path / "r.urdf").write_text(text)
+        assert run("check", tmp_path / "r.urdf")[0] == 1
+        for amount in (("--density", "1000 kg/m^3"), ("--mass", "3 kg")):
+            code, out, _ = run("check", tmp_path / "r.urdf", "--fix", tmp_path / "f.urdf", *amount)
+            assert code == 0
+            assert "1 link changed" in out
+            assert "left as they are" not in out
+            assert run("check", tmp_path / "f.urdf")[0] == 0
+        code, out, _ = run("check", tmp_path / "r.urdf", "--fix", tmp_path / "f.urdf")
+        assert code == 1
+        assert "left as they are: a, b; --fix FILE with --density or --mass" in out
 
     def test_a_density_that_serves_nothing_is_told(self, tmp_path: Path) -> None:
         (tmp_path / "r.urdf").write_text(urdf(link("a", 5.0, 0.02, BALL)))

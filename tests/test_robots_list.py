@@ -32,7 +32,7 @@ def test_each_row_names_one_file_of_one_commit(bench: Any) -> None:
         assert re.fullmatch(r"[\w.-]+/[\w.-]+", file.repository)
         assert re.fullmatch(r"[0-9a-f]{40}", file.commit)
         assert re.fullmatch(r"[A-Z][\w.+-]*", file.licence), file.repository
-        assert Path(file.path).suffix in {".urdf", ".sdf", ".xml"}
+        assert Path(file.path).suffix in {".urdf", ".sdf", ".world", ".xml"}
         assert not Path(file.path).is_absolute()
         assert file.links > 0
         assert file.by

@@ -208,11 +208,11 @@ def _fix(
     source = robots.fixed(robot, verdicts, failing)
     write_bytes(path, source)
     rows, left, elsewhere = [], [], []
-    for link, verdict in zip(robot.links, verdicts, strict=True):
+    for number, (link, verdict) in enumerate(zip(robot.links, verdicts, strict=True)):
         if verdict.verdict not in failing:
             continue
         if verdict.better is None:
-            left.append(verdict)
+            left.append((number, verdict))
             continue
         if link.rewrite is None:
             elsewhere.append(f"{verdict.name} ({verdict.file})")
@@ -240,9 +240,13 @@ def _fix(
     report.section("changed", Table("changed", columns, rows))
     changed = "1 link" if len(rows) == 1 else f"{len(rows)} links"
     report.notes.append(f"wrote {path}: {changed} changed, everything else as it stands")
-    unweighed = [v.name for v in left if v.verdict == "missing"]
-    unread = [v.name for v in left if v.verdict == "unreadable"]
-    unshaped = [v.name for v in left if v.verdict not in ("missing", "unreadable")]
+    fixed = _parsed(source, str(path), robot.folder, options, robot.roots)
+    packages = (*options.packages, *robot.roots)
+    again = robots.check(fixed, packages, allow_outside=options.allow_outside)
+    # Where what is tied to it has mass now, a frame needs none.
+    unweighed = [v.name for i, v in left if v.verdict == "missing" == again[i].verdict]
+    unread = [v.name for _, v in left if v.verdict == "unreadable"]
+    unshaped = [v.name for _, v in left if v.verdict not in ("missing", "unreadable")]
     if unweighed:
         report.notes.append(f"left as they are: {', '.join(unweighed)}; {_WAY_OUT}")
     if unread:
@@ -251,7 +255,4 @@ def _fix(
         report.notes.append(f"left as they are, since their geometry tells nothing: {', '.join(unshaped)}")
     if elsewhere:
         report.notes.append(f"left as they are, to be fixed in their own files: {', '.join(elsewhere)}")
-    fixed = _parsed(source, str(path), robot.folder, options, robot.roots)
-    packages = (*options.packages, *robot.roots)
-    again = robots.check(fixed, packages, allow_outside=options.allow_outside)
     return not any(verdict.verdict in failing for verdict in again)

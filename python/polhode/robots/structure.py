@@ -34,7 +34,7 @@ class Standing(NamedTuple):
     carries_mass : bool
         Whether what hangs on it by joints that move has mass enough for its motions.
     stands_for : bool
-        Whether a verdict on missing mass is told here: at links with shapes, else where the joint ends.
+        Whether a verdict on missing mass is told here: at links with shapes and where the joint ends.
     is_root : bool
         Whether it belongs to what no joint holds, which some simulators hold still and others let fall.
     """
@@ -117,7 +117,8 @@ def standings(robot: Robot, has_mass: Sequence[bool]) -> list[Standing]:
         group = groups[find(i)]
         is_root = group.joint is None and group is not ground
         moves = group is not ground and not (is_root and robot.format == "URDF")
-        stands_for = bool(link.shapes) if group.has_shape else i == group.first
+        is_end = i == group.first and (group.joint is not None or not group.has_shape)
+        stands_for = bool(link.shapes) or is_end
         # Six motions of a free link and those of one joint are too many for a single body with mass.
         carries_mass = sum(below in heavy for below in group.below) > group.is_free
         told.append(Standing(moves, group.joint or "", group.carrier, carries_mass, stands_for, is_root))

@@ -312,7 +312,7 @@ def _filled(
     unread = [
         link.name
         for link, verdict in zip(robot.links, verdicts, strict=True)
-        if is_without_mass(link, verdict) and geometry.filled(link) is None
+        if is_without_mass(link, verdict) and link.shapes and geometry.filled(link) is None
     ]
     if mass is not None and unread:
         raise PolhodeError(
