@@ -62,6 +62,11 @@ COMPILED: Final = {
         {"a": "inferred"},
         refused=False,
     ),
+    "declared without pos": Row(
+        mjcf('<body name="a"><inertial mass="5" diaginertia="0.02 0.02 0.021"/></body>'),
+        {"a": "unreadable"},
+        "pos is missing, where 3 finite numbers have to stand",
+    ),
     "scaled to a total": Row(
         mjcf(
             f'<body name="a">{HINGE}{GEOM}</body><body name="b">{HINGE}{HEAVY}</body>',

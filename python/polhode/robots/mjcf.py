@@ -304,6 +304,7 @@ class _Reader:
 
     def _inertial(self, element: Element) -> Inertial:
         attributes = element.attributes
+        numbers(element, attributes.get("pos"), 3, "pos")  # which MuJoCo asks for here
         place = self._place(element, attributes)
         (mass,) = numbers(element, attributes.get("mass"), 1, "mass")
         if "fullinertia" in attributes:
