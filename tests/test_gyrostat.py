@@ -152,7 +152,7 @@ def test_a_slender_body_keeps_its_rate_about_its_long_axis() -> None:
         assert (error <= 5).all()
         errors += list(error[np.linalg.norm(run.omega, axis=1) > 20])
     assert len(errors) > 50
-    assert max(errors) <= 0.3
+    assert max(errors) <= 0.6
     assert np.median(errors) <= 0.015
 
 
