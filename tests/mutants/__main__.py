@@ -105,9 +105,9 @@ def by_text(mutants: list[Mutant]) -> None:
     """Mutants of the package, one after the other in the copy, each with the tests of its row."""
     for mutant in mutants:
         file = build.TREE / mutant.file
-        data = file.read_bytes()
+        data, source = file.read_bytes(), (draw.ROOT / mutant.file).read_bytes()
         try:
-            file.write_bytes(data[: mutant.start] + mutant.text.encode() + data[mutant.end :])
+            file.write_bytes(source[: mutant.start] + mutant.text.encode() + source[mutant.end :])
             command = [
                 sys.executable,
                 "-m",
