@@ -148,6 +148,14 @@ class TestClosedForms:
         assert not trajectory.velocity.any()
         assert np.array_equal(trajectory.about, np.zeros(3))
 
+    @pytest.mark.parametrize("method", ["dop853", "radau", "taylor"])
+    def test_a_pivot_holds_against_every_force(self, method: Any) -> None:
+        body = RigidBody(2.0, np.diag([1.0, 1.5, 2.0]), center_of_mass=(0.3, -0.2, 0.5))
+        gravity = loads.uniform_gravity((0.0, 0.0, -9.81))
+        trajectory = body.simulate(TIMES, RATES, ATTITUDE, load=gravity, about="origin", method=method)
+        assert not trajectory.position.any()
+        assert not trajectory.velocity.any()
+
 
 class TestLaws:
     @settings(max_examples=25)

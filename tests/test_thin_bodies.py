@@ -74,6 +74,16 @@ class TestThinSolids:
 
 
 class TestShells:
+    @pytest.mark.parametrize("far", [1e3, 1e4])
+    def test_small_and_far_from_the_vertices_no_face_uses(self, far: float) -> None:
+        """They change no bit, though seen from their middle the surface is a speck."""
+        vertices, faces = icosphere(2)
+        vertices = 5.0 * np.asarray(vertices) + 500.0
+        more = np.vstack([vertices, [(far, 0.0, 0.0), (0.0, -far, far)]])
+        one, two = (RigidBody.from_surface(these, faces, mass=1.0) for these in (vertices, more))
+        assert np.array_equal(one.inertia, two.inertia)
+        assert np.array_equal(one.center_of_mass, two.center_of_mass)
+
     @pytest.mark.parametrize("mesh", [cube(2.0), tetrahedron(), icosphere(2), box((1.0, 2.0, 0.0))])
     @pytest.mark.parametrize("shift", [0.0, 1e3, 1e8])
     def test_against_fifty_digits(self, mesh: Any, shift: float) -> None:

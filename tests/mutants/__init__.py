@@ -11,5 +11,5 @@ where it ended, prints the survivors and writes the score. `make mutants` does i
 | `in_pytest` | pytest with one test after the other on each mutant that it reaches |
 | `__main__` | the run, its record, and the score |
 | `score.md` | what the last run found, by part and kind, and the mutants that live |
-| `equivalent.toml` | survivors that no test can kill, and why |
+| `equivalent.toml` | survivors, first those that no test can kill, and why |
 """

@@ -105,9 +105,9 @@ def by_text(mutants: list[Mutant]) -> None:
     """Mutants of the package, one after the other in the copy, each with the tests of its row."""
     for mutant in mutants:
         file = build.TREE / mutant.file
-        data = file.read_bytes()
+        data, source = file.read_bytes(), (draw.ROOT / mutant.file).read_bytes()
         try:
-            file.write_bytes(data[: mutant.start] + mutant.text.encode() + data[mutant.end :])
+            file.write_bytes(source[: mutant.start] + mutant.text.encode() + source[mutant.end :])
             command = [
                 sys.executable,
                 "-m",
@@ -131,10 +131,9 @@ def by_text(mutants: list[Mutant]) -> None:
 
 def score(mutants: list[Mutant], seed: int) -> None:
     """Print which are not dead; write how many are into the table, by part and kind, and those that live."""
-    reasons = {
-        row["key"]: row["why"]
-        for row in tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf-8"))["mutant"]
-    }
+    told = tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf-8"))
+    same = {row["key"] for row in told["mutant"]}
+    reasons = {row["key"]: row["why"] for row in [*told["mutant"], *told["living"]]}
     dead = recorded()
     groups: dict[tuple[str, str], list[Mutant]] = defaultdict(list)
     for mutant in mutants:
@@ -149,8 +148,8 @@ def score(mutants: list[Mutant], seed: int) -> None:
         if (part, kind) == ("named", "named"):
             continue
         killed = sum(one.key in dead for one in ones)
-        same = sum(one.key in reasons and one.key not in dead for one in ones)
-        rows.append(f"| {part} | {kind} | {killed} | {same} | {len(ones) - killed - same} | {len(ones)} |")
+        alike = sum(one.key in same and one.key not in dead for one in ones)
+        rows.append(f"| {part} | {kind} | {killed} | {alike} | {len(ones) - killed - alike} | {len(ones)} |")
     living = [
         f"- `{mutant.key}` `{mutant.what}`: {reasons.get(mutant.key, 'no test kills it.')}"
         for mutant in mutants

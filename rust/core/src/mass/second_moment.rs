@@ -129,6 +129,7 @@ impl SecondMoment {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mass::RigidBody;
     use crate::numerics::eigen3::eigen3;
 
     #[test]

@@ -191,4 +191,21 @@ mod tests {
         }
         assert_eq!(Complex::<f64>::zero().sqrt(), Complex::new(0.0, 0.0));
     }
+
+    #[test]
+    fn what_is_more_than_a_right_angle_apart_is_opposite() {
+        let number = |re: f64, im: f64| Complex::new(DoubleDouble::from(re), im.into());
+        for (a, is_opposite) in [(-1e-9, true), (0.0, false), (1e-9, false)] {
+            assert_eq!(
+                number(a, 1.0).is_opposite_to(number(1.0, 0.0)),
+                is_opposite,
+                "{a}"
+            );
+            assert_eq!(
+                number(1.0, 1.0).is_opposite_to(number(-1.0, a + 1.0)),
+                a < 0.0,
+                "{a}"
+            );
+        }
+    }
 }

@@ -178,3 +178,17 @@ fn a_tiny_component_of_the_start_keeps_its_digits() {
         }
     }
 }
+
+#[test]
+fn the_points_of_a_polhode_go_around_it_once() {
+    let body = body([1.0, 2.0, 2.5], &Matrix3::identity());
+    for omega in [[0.3, 0.2, 1.1], [-0.3, 0.2, -1.1], [1.1, 0.2, 0.3]] {
+        let motion = FreeMotion::of(&body, &omega.into(), &UnitQuaternion::identity());
+        let points: Vec<_> = motion.expect("finite").polhode_points(11).collect();
+        let apart = |k: usize| (points[k] - points[0]).norm();
+        assert!(
+            apart(10) < 1e-15 && (1..10).all(|k| apart(k) > 0.1),
+            "{omega:?}"
+        );
+    }
+}

@@ -121,3 +121,30 @@ impl<T: Real> Quartic<T> {
         -first.scaled(2.0).over(middle + spread)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::double_double::DoubleDouble;
+
+    /// A zero of `first + middle y − last y²`, as the comment at `far` has it with y = 1/x, and the one that is nearer to zero.
+    #[test]
+    fn the_far_spinor_is_a_zero_of_its_quadratic() {
+        let number = |re: f64, im: f64| Complex::<DoubleDouble>::new(re.into(), im.into());
+        let (a1, a2) = (number(0.3, -0.7), number(0.9, 0.4));
+        let (a3, a4) = (number(-0.2, 0.5), number(0.6, 0.1));
+        for root in [0.25, -1.5] {
+            let far = Quartic {
+                a: [a1, a2, a3, a4],
+            }
+            .far(root.into());
+            let twice = a2 + number(2.0 * root, 0.0);
+            let (first, middle) = (a4 * a1 - twice * a3, twice.squared() - a4);
+            let last = (a1 * middle + first).over(twice);
+            let rest = first + middle * far - last * far.squared();
+            assert!(rest.size() < 1e-28, "{root} {rest:?}");
+            // The product of both is −first/last.
+            assert!(far.squared().size() <= first.over(last).size(), "{root}");
+        }
+    }
+}

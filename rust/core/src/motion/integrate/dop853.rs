@@ -75,11 +75,8 @@ impl<const N: usize> RungeKutta<N> for Dop853<N> {
                 return Ok(());
             }
             self.slopes[STAGES] = slope_at_start;
-            progress.step = h * if factor.is_nan() {
-                SHRINK
-            } else {
-                factor.clamp(SHRINK, 1.0)
-            };
+            // The factor is below one, or not a number.
+            progress.step = h * factor.max(SHRINK);
             largest = 1.0;
             progress.check_advances(error)?;
         }

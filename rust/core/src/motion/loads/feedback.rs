@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn half_a_turn_away_it_takes_the_positive_way_in_every_form() {
-        let attitude = UnitQuaternion::from_quaternion(nalgebra::Quaternion::i());
+        let attitude = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(0.0, 1.0, 0.0, 0.0));
         let (spring, still) = (Matrix3::identity(), Matrix3::zeros());
         let feedback = Feedback::new(&spring, &still, &UnitQuaternion::identity()).expect("finite");
         let body = crate::mass::RigidBody::new(1.0, &spring, &Vector3::zeros(), 0.0);

@@ -148,6 +148,20 @@ fn a_tiny_rotor_moves_six_equilibria_by_little() {
     }
 }
 
+/// A component below the limit is none: equilibria stay mirror images, which meet in a pitchfork.
+#[test]
+fn the_least_component_that_counts() {
+    let mirrored = |share: f64| {
+        let all = of([2.0, 3.0, 4.0], [share, 0.0, 0.3], 1.0);
+        let meetings = all.bifurcations.iter().map(|one| one.meeting);
+        meetings
+            .filter(|&meeting| meeting == Meeting::Pitchfork)
+            .count()
+    };
+    assert_eq!([0.0, 0.999e-290].map(mirrored), [2, 2]);
+    assert_eq!([1e-290, 1e-3].map(mirrored), [1, 1]);
+}
+
 #[test]
 fn along_an_axis_two_pitchforks() {
     // h = h₂: the middle axis becomes stable above L = h₂/(1 − I₂/I₃) … and pairs leave it there.
