@@ -152,9 +152,11 @@ fn the_reach_is_the_last_time_with_a_state() {
                     numbers.clone().all(|x| x.is_nan() != is_known),
                     "{mode} {t:e}"
                 );
+                // Near the separatrix errors grow without bound long before.
+                let is_bounded = motion.error_bar(0.9 * t, 1e-16).omega.is_finite();
                 assert_eq!(
                     motion.error_bar(t, 1e-16).omega.is_finite(),
-                    is_known,
+                    is_known && is_bounded,
                     "{mode} {t:e}"
                 );
             }

@@ -158,7 +158,7 @@ fn log2(x: f64) -> f64 {
     let bits = x.to_bits();
     let mantissa = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000);
     let exponent = ((bits >> 52) & 0x7ff) as i32 - 1023;
-    f64::from(exponent) + (mantissa - 1.0) * (1.3465 - 0.3465 * mantissa)
+    f64::from(exponent) + (mantissa - 1.0) * (1.693 - 0.3465 * mantissa)
 }
 
 /// Two to the power x to a hundredth, for |x| up to a thousand.
