@@ -215,3 +215,16 @@ def test_rounding_does_not_move_the_energy(case: MotionCase) -> None:
 def test_splitting_keeps_the_energy_for_a_million_rotations(case: MotionCase) -> None:
     first, second = drifts(case, 1e6)
     assert second <= 1.5 * first + 1e-11
+
+
+def test_radau_serves_the_tightest_tolerance() -> None:
+    """Its iterations end there as well, and it agrees with the other method."""
+    body = RigidBody(1.0, np.diag([1.0, 2.0, 2.5]))
+    load = loads.constant_torque((0.2, -0.1, 0.4), "space")
+    found, exact = (
+        body.simulate([0.0, 3.0], (0.1, 0.2, 3.0), load=load, method=method, rtol=TIGHTEST)
+        for method in ("radau", "taylor")
+    )
+    assert np.abs(found.omega - exact.omega).max() < 1e-12
+    assert np.abs(found.quaternion - exact.quaternion).max() < 1e-12
+    assert found.steps < 10_000
