@@ -32,6 +32,8 @@ _ITEM = re.compile(
     r"\b(?:macro_rules!\s*|(?:fn|struct|enum|trait|type|static|union|mod)\s+|const\s+(?!fn\b|unsafe\b))"
     r"(?:mut\s+)?([A-Za-z_]\w*)"
 )
+#: The functions that a macro declares: attributes have no words here any more.
+_SHAPE = re.compile(r"\bshape_function!\s*\{(?:\s|#\[[^\]]*\])*([a-z_]\w*)\s*\(")
 _USE = re.compile(r"(\bpub\s+)?\buse\s+([^;]+);")
 _DECLARATION = re.compile(r"(?:\bpub\b\s*(?:\([^()]*\)\s*)?)?\b(?:mod\s+(?:r#)?\w+|use\s[^;]+)\s*;")
 _ATTRIBUTE = re.compile(r"#\s*!?\s*\[")
@@ -187,7 +189,7 @@ class Crate:
                 outside.append(module.body[place : brace.start()])
                 place = _closing(module.body, brace.start())
         outside.append(module.body[place:])
-        module.items = set(_ITEM.findall(" ".join(outside)))
+        module.items = {*_ITEM.findall(" ".join(outside)), *_SHAPE.findall(module.body)}
         for name in re.findall(r"\bmod\s+(\w+)\s*;", module.body):
             for path in (folder / f"{name}.rs", folder / name / "mod.rs"):
                 if path.exists():

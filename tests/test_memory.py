@@ -46,6 +46,8 @@ SIZELESS = {
     "RigidBody.with_error_bound",
     "FreeMotion.animate",
     "FreeMotion.plot",
+    "GyrostatMotion.animate",
+    "GyrostatMotion.plot",
     "HeavyTop.animate",
     "HeavyTop.plot",
     "Load.anchored",

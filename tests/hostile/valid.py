@@ -33,7 +33,11 @@ NO_TEST = {
         f"Trajectory.{name}"
         for name in ("from_file", "save", "plot", "view", "animate", "show", "to_pandas", "to_xarray")
     ),
-    *(f"{name}.{what}" for name in ("FreeMotion", "HeavyTop") for what in ("animate", "plot")),
+    *(
+        f"{name}.{what}"
+        for name in ("FreeMotion", "GyrostatMotion", "HeavyTop")
+        for what in ("animate", "plot")
+    ),
     *("read_stl", "read_plates", "stream_solid", "compiled"),
     "machine",  # takes nothing
     # Objects of other libraries, which have to be there.

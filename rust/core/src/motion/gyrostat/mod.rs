@@ -17,7 +17,6 @@
 //! | `spinor.rs` | M and ν from the start |
 //! | `constants.rs` | from these to what a state takes |
 //! | `propagator.rs` | the states, in lanes |
-//! | `slender.rs` | the rate about a long axis, from the energy |
 //! | [`equilibria`] | steady rotations with one angular momentum |
 //!
 //! # Examples
@@ -64,7 +63,6 @@ pub mod mode;
 mod motion;
 mod propagator;
 mod quartic;
-mod slender;
 mod spinor;
 mod start;
 #[cfg(test)]

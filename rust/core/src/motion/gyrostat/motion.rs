@@ -1,13 +1,12 @@
 //! A gyrostat's motion from its start, and the states at any time.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::constants::{Given, Secular, moving, steady};
 use super::curve::Curve;
 use super::mode::Mode;
 use super::propagator::Propagator;
 use super::quartic::Invariants;
-use super::slender::Slender;
 use super::spinor::Spinor;
 use super::start::Start;
 use crate::error::{Error, MotionFault, all_finite};
@@ -45,11 +44,15 @@ pub struct GyrostatMotion {
 }
 
 /// By which formulas.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a motion is a value that is copied, and rarely in great number"
+)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
     /// Without momentum inside.
     Free(FreeMotion),
-    Within(Propagator, Option<Slender>),
+    Within(Propagator),
 }
 
 /// A discriminant this small beside its terms is computed again with four times the precision.
@@ -132,12 +135,6 @@ impl GyrostatMotion {
             }
         };
         let Secular { period, precession } = secular;
-        let propagator = propagator.in_units_of(rate_unit);
-        let slender = if mode == Mode::Steady {
-            None
-        } else {
-            Slender::of(principal, rotor, angular_momentum, kinetic_energy)
-        };
         let motion = Self {
             mode,
             initial,
@@ -146,9 +143,9 @@ impl GyrostatMotion {
             kinetic_energy,
             period: period.times_power_of_two(-rate),
             mean_precession: precession.times_power_of_two(rate),
-            way: Way::Within(propagator, slender),
+            way: Way::Within(propagator.in_units_of(rate_unit)),
         };
-        let off = (evaluate::at(&propagator, 0.0).omega - omega).amax() / omega.amax();
+        let off = (motion.at(0.0).omega - omega).amax() / omega.amax();
         if *omega != Vector3::zeros() && (off > TOO_FAR_OFF || off.is_nan()) {
             return Err(MotionFault::LostInClosedForm { off }.into());
         }
@@ -179,7 +176,7 @@ impl GyrostatMotion {
     pub fn as_free(&self) -> Option<&FreeMotion> {
         match &self.way {
             Way::Free(motion) => Some(motion),
-            Way::Within(..) => None,
+            Way::Within(_) => None,
         }
     }
 
@@ -188,15 +185,11 @@ impl GyrostatMotion {
     /// The attitude is continuous in t as a quaternion, not only as a rotation.
     #[must_use]
     pub fn at(&self, t: f64) -> State {
-        let (propagator, slender) = match &self.way {
+        let propagator = match &self.way {
             Way::Free(motion) => return motion.at(t),
-            Way::Within(propagator, slender) => (propagator, slender),
+            Way::Within(propagator) => propagator,
         };
-        let mut state = evaluate::at(propagator, t);
-        if let Some(slender) = slender {
-            state.omega = slender.settled(&state);
-        }
-        state
+        evaluate::at(propagator, t)
     }
 
     /// The states at many times on the calling thread, quaternions as (x, y, z, w): the bits of [`Self::at`].
@@ -204,21 +197,11 @@ impl GyrostatMotion {
     /// # Panics
     /// If the lengths differ.
     pub fn sample(&self, times: &[f64], attitudes: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
-        let (propagator, slender) = match &self.way {
+        let propagator = match &self.way {
             Way::Free(motion) => return motion.sample(times, attitudes, omegas),
-            Way::Within(propagator, slender) => (propagator, slender),
+            Way::Within(propagator) => propagator,
         };
         evaluate::sample(propagator, times, attitudes, omegas);
-        if let Some(slender) = slender {
-            for (&[x, y, z, w], omega) in attitudes.iter().zip(omegas) {
-                let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
-                let state = State {
-                    attitude,
-                    omega: Vector3::from(*omega),
-                };
-                *omega = slender.settled(&state).into();
-            }
-        }
     }
 }
 
@@ -226,7 +209,7 @@ impl ClosedForm for GyrostatMotion {
     fn reach(&self) -> f64 {
         match &self.way {
             Way::Free(motion) => motion.reach(),
-            Way::Within(propagator, _) => propagator.reach,
+            Way::Within(propagator) => propagator.reach,
         }
     }
 
