@@ -11,7 +11,7 @@ import pytest
 from oracles import load_cases
 from oracles.by_scipy import by_dop853
 from oracles.motion_cases import MotionCase, angle, load_table, relative_error
-from polhode import RigidBody, Trajectory, loads
+from polhode import RigidBody, Trajectory, loads, orbits
 
 CASES = load_table(load_cases.NAME)
 MATRICES = ("matrix", "quadratic", "K", "D")
@@ -228,3 +228,15 @@ def test_radau_serves_the_tightest_tolerance() -> None:
     assert np.abs(found.omega - exact.omega).max() < 1e-12
     assert np.abs(found.quaternion - exact.quaternion).max() < 1e-12
     assert found.steps < 10_000
+
+
+def test_between_the_steps_of_splitting_the_load_knows_the_time() -> None:
+    body = RigidBody(1.0, np.diag([1.0, 2.0, 2.5]))
+    load = loads.gravity_gradient(orbits.kepler(1.0, (1.0, 0.0, 0.0), (0.0, 1.2, 0.0)))
+    t = np.linspace(0.0, 9.7, 137)
+    found, exact = (
+        body.simulate(t, (0.1, 0.2, 1.0), load=load, method=method, rtol=rtol)
+        for method, rtol in (("splitting", 1e-9), ("taylor", 1e-13))
+    )
+    assert found.steps < len(t) / 2
+    assert np.abs(found.omega - exact.omega).max() < 1e-9

@@ -83,3 +83,19 @@ pub(super) fn check_loose(particles: Particles<'_>) -> Result<(), Error> {
         checked => checked,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tree has the blocks 0 and 1 below one node, and 2 and 3; 1 and 2 never meet but within all four.
+    #[test]
+    fn only_the_halves_of_a_node_become_one() {
+        let sum = Matter::Summed(Moments::default());
+        let join = |blocks: [u64; 3]| joins(&sum, &sum, blocks.map(|block| block * WHOLE));
+        assert!(join([0, 1, 2]) && join([2, 3, 4]) && join([0, 2, 4]));
+        assert!(!join([1, 2, 3]) && !join([0, 2, 3]) && !join([3, 4, 6]));
+        // What is no node comes from an accumulator that was appended.
+        assert!(join([0, 3, 4]) && join([3, 4, 7]));
+    }
+}

@@ -192,4 +192,13 @@ mod tests {
             matches!(at(1.4e154), Err(Error::NonFinite { value, .. }) if value == f64::INFINITY)
         );
     }
+
+    /// A point that is no point is for its reader to refuse, by its name.
+    #[test]
+    fn the_moment_is_not_blamed_for_the_point() {
+        let ball = RigidBody::new(1.0, &Matrix3::identity(), &Vector3::zeros(), 0.0).expect("body");
+        for x in [f64::NAN, f64::INFINITY] {
+            assert_eq!(ball.check_about(&Vector3::new(0.0, x, 0.0)), Ok(()));
+        }
+    }
 }

@@ -1,5 +1,6 @@
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
+use super::invariants::Invariants;
 use super::{FreeMotion, Mode};
 use crate::mass::RigidBody;
 use crate::motion::attitude::components;
@@ -181,16 +182,33 @@ fn a_tiny_component_of_the_start_keeps_its_digits() {
     }
 }
 
+/// One by one, with the energy of the start.
 #[test]
 fn the_points_of_a_polhode_go_around_it_once() {
-    let body = body([1.0, 2.0, 2.5], &Matrix3::identity());
+    let moments = [1.0, 2.0, 2.5];
+    let body = body(moments, &Matrix3::identity());
     for omega in [[0.3, 0.2, 1.1], [-0.3, 0.2, -1.1], [1.1, 0.2, 0.3]] {
         let motion = FreeMotion::of(&body, &omega.into(), &UnitQuaternion::identity());
-        let points: Vec<_> = motion.expect("finite").polhode_points(11).collect();
+        let points = motion.expect("finite").polhode(11);
         let apart = |k: usize| (points[k] - points[0]).norm();
         assert!(
             apart(10) < 1e-15 && (1..10).all(|k| apart(k) > 0.1),
             "{omega:?}"
         );
+        let energy = |w: &Vector3<f64>| w.dot(&w.component_mul(&moments.into()));
+        let drift = |w: &Vector3<f64>| (energy(w) / energy(&points[0]) - 1.0).abs();
+        assert!(points.iter().all(|point| drift(point) < 4e-15), "{omega:?}");
+    }
+}
+
+#[test]
+fn the_angular_momentum_in_any_unit_of_time() {
+    let body = body([1.0, 2.0, 2.5], &Matrix3::identity());
+    for unit in [1e-30, 1e-3, 1.0, 7e5, 1e40] {
+        let omega = Vector3::new(0.3, 0.2, 1.1) * unit;
+        let motion = FreeMotion::of(&body, &omega, &UnitQuaternion::identity()).expect("finite");
+        let found = Invariants::of_motion(&motion).angular_momentum();
+        let exact = Vector3::new(0.3, 0.4, 2.75).norm() * unit;
+        assert!((found / exact - 1.0).abs() < 1e-15, "{unit:e}");
     }
 }

@@ -193,6 +193,19 @@ mod tests {
             (constant.value(-5.0), constant.line(3.0)),
             (7.0, [7.0, 0.0])
         );
+        // What its values have a share in is what it is.
+        for (held, values) in [(&table, &[2.0, 4.0, 0.0][..]), (&constant, &[7.0])] {
+            for t in [0.0, 0.5, 1.0, 2.0] {
+                let sum = |part: usize| {
+                    let shares = held.shares(t);
+                    shares
+                        .iter()
+                        .map(|(index, share)| values[*index] * share[part])
+                        .sum::<f64>()
+                };
+                assert_eq!([sum(0), sum(1)], held.line(t), "{t}");
+            }
+        }
         assert!(Held::table("torque", &[0.0, 0.0], &[1.0, 1.0]).is_err());
         assert!(Held::table("torque", &[], &[]).is_err());
     }
