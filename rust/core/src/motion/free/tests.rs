@@ -195,7 +195,7 @@ fn the_points_of_a_polhode_go_around_it_once() {
             apart(10) < 1e-15 && (1..10).all(|k| apart(k) > 0.1),
             "{omega:?}"
         );
-        let energy = |w: &Vector3<f64>| w.dot(&w.component_mul(&moments.into()));
+        let energy = |w: &Vector3<f64>| w.dot(&w.component_mul(&Vector3::from(moments)));
         let drift = |w: &Vector3<f64>| (energy(w) / energy(&points[0]) - 1.0).abs();
         assert!(points.iter().all(|point| drift(point) < 4e-15), "{omega:?}");
     }
@@ -208,7 +208,7 @@ fn the_angular_momentum_in_any_unit_of_time() {
         let omega = Vector3::new(0.3, 0.2, 1.1) * unit;
         let motion = FreeMotion::of(&body, &omega, &UnitQuaternion::identity()).expect("finite");
         let found = Invariants::of_motion(&motion).angular_momentum();
-        let exact = Vector3::new(0.3, 0.4, 2.75).norm() * unit;
+        let exact = Vector3::new(0.3_f64, 0.4, 2.75).norm() * unit;
         assert!((found / exact - 1.0).abs() < 1e-15, "{unit:e}");
     }
 }
