@@ -221,10 +221,9 @@ def test_radau_serves_the_tightest_tolerance() -> None:
     """Its iterations end there as well, and it agrees with the other method."""
     body = RigidBody(1.0, np.diag([1.0, 2.0, 2.5]))
     load = loads.constant_torque((0.2, -0.1, 0.4), "space")
-    found, exact = (
-        body.simulate([0.0, 3.0], (0.1, 0.2, 3.0), load=load, method=method, rtol=TIGHTEST)
-        for method in ("radau", "taylor")
-    )
+    times, start = [0.0, 3.0], (0.1, 0.2, 3.0)
+    found = body.simulate(times, start, load=load, method="radau", rtol=TIGHTEST)
+    exact = body.simulate(times, start, load=load, method="taylor", rtol=TIGHTEST)
     assert np.abs(found.omega - exact.omega).max() < 1e-12
     assert np.abs(found.quaternion - exact.quaternion).max() < 1e-12
     assert found.steps < 10_000
@@ -234,9 +233,7 @@ def test_between_the_steps_of_splitting_the_load_knows_the_time() -> None:
     body = RigidBody(1.0, np.diag([1.0, 2.0, 2.5]))
     load = loads.gravity_gradient(orbits.kepler(1.0, (1.0, 0.0, 0.0), (0.0, 1.2, 0.0)))
     t = np.linspace(0.0, 9.7, 137)
-    found, exact = (
-        body.simulate(t, (0.1, 0.2, 1.0), load=load, method=method, rtol=rtol)
-        for method, rtol in (("splitting", 1e-9), ("taylor", 1e-13))
-    )
+    found = body.simulate(t, (0.1, 0.2, 1.0), load=load, method="splitting", rtol=1e-9)
+    exact = body.simulate(t, (0.1, 0.2, 1.0), load=load, method="taylor", rtol=1e-13)
     assert found.steps < len(t) / 2
     assert np.abs(found.omega - exact.omega).max() < 1e-9
