@@ -1,4 +1,4 @@
-"""Formulas as MathML, which browsers draw themselves: by math-core, without a script or a font to load."""
+"""Formulas as MathML, which browsers draw themselves: by math-core, without a script; the font is beside the style sheet."""
 
 from __future__ import annotations
 
