@@ -85,7 +85,6 @@ impl Law for Damping {
         Ok(())
     }
 
-    #[inline]
     fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
         Wrench::couple(self.torque(&phase.omega))
     }

@@ -75,7 +75,6 @@ impl MagneticField {
     }
 
     /// The field at time `t` of a motion that began at `start`, and its rate, both in N.
-    #[inline]
     #[must_use]
     pub fn at(&self, start: f64, t: f64) -> [Vector3<f64>; 2] {
         match &self.0 {
@@ -259,7 +258,6 @@ impl Law for Magnetic {
         }
     }
 
-    #[inline]
     fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
         let [field, rate] = self.field.at(subject.start, t);
         let in_body = |vector| phase.attitude.inverse_transform_vector(vector);
