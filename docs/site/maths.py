@@ -1,4 +1,7 @@
-"""Formulas as MathML, which browsers draw themselves: by math-core, without a script; the font is beside the style sheet."""
+"""Formulas as MathML, which browsers draw themselves: by math-core, without a script.
+
+The font is beside the style sheet.
+"""
 
 from __future__ import annotations
 

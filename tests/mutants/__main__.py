@@ -18,6 +18,10 @@ from mutants import build, draw
 from mutants.draw import HERE, Mutant
 
 RECORD = build.TARGET / "mutants.jsonl"
+RUN = """\
+A mutant of the core meets the unit tests of its modules; then those that live, and those of bindings and
+package, meet the tests in Python that are named like their files, of 1.5 s at most and for a minute each.
+What was killed once is not run again."""
 
 
 def recorded() -> dict[str, str]:
@@ -32,6 +36,16 @@ def recorded() -> dict[str, str]:
         if row.get("killed"):
             dead[row["key"]] = row["killed"]
     return dead | {key: f"{test} (did not end)" for key, test in begun.items()}
+
+
+def met() -> dict[str, int]:
+    """How many tests in Python each mutant has met that did not kill it."""
+    tests: dict[str, set[str]] = defaultdict(set)
+    for line in RECORD.read_text(encoding="utf-8").splitlines() if RECORD.exists() else []:
+        row = json.loads(line)
+        if "ended" in row and not row.get("killed"):
+            tests[row["key"]].add(row["ended"])
+    return {key: len(names) for key, names in tests.items()}
 
 
 def note(key: str, killed: str | None) -> None:
@@ -129,6 +143,13 @@ def by_text(mutants: list[Mutant]) -> None:
         print(f"{mutant.key}: {killed or 'lives'}", flush=True)
 
 
+def unkilled(count: int) -> str:
+    """What is told of a mutant that lives without a reason that is known."""
+    if count == 0:
+        return "no test has met it: those that were run do not reach it."
+    return f"it has met {count} test{'s' if count > 1 else ''}; none kills it."
+
+
 def score(mutants: list[Mutant], seed: int) -> None:
     """Print which are not dead; write how many are into the table, by part and kind, and those that live."""
     told = tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf-8"))
@@ -150,8 +171,9 @@ def score(mutants: list[Mutant], seed: int) -> None:
         killed = sum(one.key in dead for one in ones)
         alike = sum(one.key in same and one.key not in dead for one in ones)
         rows.append(f"| {part} | {kind} | {killed} | {alike} | {len(ones) - killed - alike} | {len(ones)} |")
+    tests = met()
     living = [
-        f"- `{mutant.key}` `{mutant.what}`: {reasons.get(mutant.key, 'no test kills it.')}"
+        f"- `{mutant.key}` `{mutant.what}`: {reasons.get(mutant.key) or unkilled(tests.get(mutant.key, 0))}"
         for mutant in mutants
         if mutant.key not in dead
     ]
@@ -159,7 +181,14 @@ def score(mutants: list[Mutant], seed: int) -> None:
         f"Mutants on {datetime.now(UTC):%Y-%m-%d}, drawn with seed {seed}; `make mutants` writes this table."
     )
     columns = ["| part | kind | killed | equivalent | neither so far | all |", "|---|---|---|---|---|---|"]
-    text = "\n".join([head, "", *columns, *rows, "", "Those that live:", "", *living, ""])
+    core = [mutant for mutant in mutants if mutant.part == "core"]
+    killed = sum(mutant.key in dead for mutant in core)
+    alike = sum(mutant.key in same and mutant.key not in dead for mutant in core)
+    share = (
+        f"Killed of those of the core that are not equivalent: {killed} of {len(core) - alike}, "
+        f"{killed / max(len(core) - alike, 1):.1%}."
+    )
+    text = "\n".join([head, RUN, "", *columns, *rows, "", share, "", "Those that live:", "", *living, ""])
     print(text)
     (HERE / "score.md").write_text(text, encoding="utf-8")
 

@@ -201,6 +201,16 @@ mod tests {
     }
 
     #[test]
+    fn what_is_left_of_an_eighth_is_more_than_rounding() {
+        // The least second moment is 1/2 (x − 6 u), of a needle whose moments are x u, 1 and 1 + 6 u.
+        let unit = f64::EPSILON;
+        for (x, corners) in [(7.99, 3), (8.0, 4), (8.01, 4)] {
+            let (_, simplex) = spreads(&[x * unit, 1.0, 1.0 + 6.0 * unit]).expect("possible");
+            assert_eq!(simplex.len(), corners, "{x}");
+        }
+    }
+
+    #[test]
     fn impossible_moments_have_no_particles() {
         let axes = nalgebra::Matrix3::identity();
         let body =

@@ -162,4 +162,21 @@ mod tests {
         assert!((i1 / (radius * radius * angle.powi(4) / 720.0) - 1.0).abs() < 1e-12);
         assert!((i2 - 1.0 / 12.0).abs() < 1e-12);
     }
+
+    #[test]
+    fn no_arc_spans_more_than_a_circle_or_less_than_nothing() {
+        let one = |angle: f64| arc(1.0, angle, Amount::Mass(1.0));
+        let above = f64::from_bits(TAU.to_bits() + 1);
+        for angle in [above, 7.0, -1e-300, -1.0] {
+            match one(angle) {
+                Err(Error::OutOfDomain { what, value, .. }) => {
+                    assert_eq!((what, value), ("angle", angle));
+                }
+                other => panic!("{angle:e}: {other:?}"),
+            }
+        }
+        for angle in [TAU, 1e-300, 0.0] {
+            assert!(one(angle).is_ok(), "{angle:e}");
+        }
+    }
 }

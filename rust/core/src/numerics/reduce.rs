@@ -23,6 +23,7 @@ const SHARE: usize = 8;
 ///
 /// # Errors
 /// [`Halt::Stopped`] when `watch` said so.
+#[inline]
 pub(crate) fn sum_blocks<const K: usize>(
     n: usize,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
@@ -33,10 +34,20 @@ pub(crate) fn sum_blocks<const K: usize>(
     if count == 1 {
         return Ok(block(range(0)));
     }
+    sum_many(count, watch, |index| block(range(index)))
+}
+
+/// The sums of this number of blocks, merged. By itself, so that a sum of one block is inlined where it is asked for.
+#[inline(never)]
+fn sum_many<const K: usize>(
+    count: usize,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    block: impl Fn(usize) -> [f64; K] + Sync,
+) -> Result<[f64; K], Halt<Infallible>> {
     let mut sums = vec![[0.0; K]; count];
     fill_blocks(&mut sums, SHARE, watch, |first, share| {
         for (index, sum) in (first..).zip(share) {
-            *sum = block(range(index));
+            *sum = block(index);
         }
         Ok(())
     })?;

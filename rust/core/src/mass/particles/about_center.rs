@@ -48,6 +48,7 @@ pub(super) fn is_ordinary(matter: &SecondMoment, particles: Particles<'_>) -> bo
 }
 
 /// Second moment about the centre of mass in body axes.
+#[inline]
 pub(super) fn about_center(
     particles: Particles<'_>,
     watch: &mut Watch<'_>,
@@ -73,6 +74,7 @@ pub(super) fn in_own_axes(
 }
 
 /// Second moment about the centre of mass from sums about the reference point, in the given axes or in those of the body.
+#[inline]
 fn second_moment(
     particles: Particles<'_>,
     reference: Vector3<f64>,
@@ -100,6 +102,7 @@ fn second_moment(
     })
 }
 
+#[inline]
 fn sum(
     particles: Particles<'_>,
     addend: impl Addend<MOMENTS>,

@@ -51,6 +51,8 @@ pub(in crate::mass) fn check(Particles { masses, positions }: Particles<'_>) -> 
 
 /// The centre of mass of a few particles spread over the list, of all when they are few: a point within or near the body,
 /// so that nothing cancels wherever the body stands.
+// Inlined, with what it calls: a body of a few particles is done in the time of some calls.
+#[inline]
 pub(in crate::mass) fn sample_center(particles: Particles<'_>) -> Vector3<f64> {
     let masses = particles.masses;
     let stride = masses.len().div_ceil(SAMPLE).max(1);
@@ -88,6 +90,7 @@ const LIGHT: f64 = 256.0;
 
 /// Mass and centre of mass of every `stride`-th particle, by distances from the one with the index `base`; its own place
 /// where they are beyond all numbers.
+#[inline]
 fn center_from(
     Particles { masses, positions }: Particles<'_>,
     base: usize,

@@ -22,6 +22,7 @@ pub(crate) trait Addend<const K: usize>: Copy + Sync {
 }
 
 /// The sums over one block of particles.
+#[inline]
 pub(crate) fn block_sums<const K: usize, A: Addend<K>>(
     masses: &[f64],
     positions: &[[f64; 3]],

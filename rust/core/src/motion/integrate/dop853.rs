@@ -197,7 +197,7 @@ mod tests {
     use super::*;
     use crate::error::Error;
     use crate::motion::integrate::Compensated;
-    use nalgebra::Vector2;
+    use nalgebra::{Vector1, Vector2};
 
     /// ẍ = −x, whose solution from (1, 0) is (cos t, −sin t).
     struct Oscillator {
@@ -260,5 +260,37 @@ mod tests {
             "{}",
             fine / coarse
         );
+    }
+
+    /// At rest for half a second, then shaken.
+    struct Shaken;
+
+    impl System<1> for Shaken {
+        type Error = Error;
+
+        fn derivative(&mut self, t: f64, _: &Vector1<f64>) -> Result<Vector1<f64>, Error> {
+            let slope = if t < 0.5 { 0.0 } else { 1e3 * (1e3 * t).sin() };
+            Ok(Vector1::new(slope))
+        }
+
+        fn error_norm(&self, _: &Vector1<f64>, _: &Vector1<f64>, error: &Vector1<f64>) -> f64 {
+            error.norm() / 1e-6
+        }
+
+        fn accept(&mut self, _: &mut Compensated<1>) {}
+    }
+
+    #[test]
+    fn a_step_after_one_that_was_refused_is_no_longer() {
+        let first = |step: f64| {
+            let mut stepper =
+                Dop853::new(&mut Shaken, 0.0, 100.0, Vector1::zeros(), Some(step)).expect("finite");
+            stepper.advance(&mut Shaken).expect("at rest");
+            (stepper.elapsed(), stepper.progress.step)
+        };
+        // One second reaches into the shaking: a third of it is taken, without any error, and so is the next.
+        assert_eq!(first(1.0), (SHRINK, SHRINK));
+        // Where none was refused, a step without error is followed by the longest that may follow.
+        assert_eq!(first(0.0625), (0.0625, 0.0625 * GROW));
     }
 }

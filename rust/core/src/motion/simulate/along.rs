@@ -287,3 +287,82 @@ impl Shape {
 pub(super) fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    /// A body at rest, in a step of one second.
+    struct Still;
+
+    impl Dense for Still {
+        type Error = Error;
+
+        fn elapsed(&self) -> f64 {
+            1.0
+        }
+
+        fn phase(&self) -> Phase {
+            Phase {
+                attitude: UnitQuaternion::identity(),
+                omega: Vector3::zeros(),
+                position: Vector3::zeros(),
+                velocity: Vector3::zeros(),
+                own: Box::default(),
+            }
+        }
+
+        fn within(&mut self, _: f64) -> Result<Phase, Error> {
+            Ok(self.phase())
+        }
+    }
+
+    /// Where a function passes through zero in a step that starts at a time, and how often it was asked.
+    fn located(start: f64, value: impl Fn(f64) -> f64) -> (f64, usize) {
+        let mut count = 0;
+        let mut function = |_: &mut dyn Dense<Error = Error>, at: f64, _: &Phase| {
+            count += 1;
+            // A bracket that is never closed ends here.
+            if count > 500 {
+                return Err(Error::Stopped);
+            }
+            Ok(value(at))
+        };
+        let bracket = [0.0, 1.0].map(|at| Look {
+            at,
+            value: value(at),
+        });
+        let mut view = View {
+            function: &mut function,
+            stepper: &mut Still,
+            start,
+            end: 1.0,
+        };
+        let found = view.locate(bracket, sign(bracket[0].value));
+        (found.expect("a zero"), count)
+    }
+
+    #[test]
+    fn a_bracket_is_halved_at_least() {
+        // A jump has no slope that would help: 53 halvings, two looks each, and the two ends.
+        for jump in [0.7, 0.3, 0.999, 1e-3] {
+            let (found, count) = located(0.0, |at| if at < jump { -1.0 } else { 1.0 });
+            assert!((found - jump).abs() <= f64::EPSILON * jump, "{found}");
+            assert!(count <= 2 * 53 + 12 + 2, "{jump}: {count} looks");
+        }
+        // A slope helps: Ridders' method doubles the digits with every two looks.
+        let (found, count) = located(0.0, |at| at * at * at - 0.343);
+        assert!((found - 0.7).abs() <= 2.0 * f64::EPSILON, "{found}");
+        assert!(count <= 20, "{count} looks");
+    }
+
+    #[test]
+    fn no_more_digits_are_looked_for_than_the_time_has() {
+        // A million seconds after zero a second has 33 binary digits left; 53 of them take 60 looks.
+        let (found, count) = located(1e6, |at| if at < 0.7 { -1.0 } else { 1.0 });
+        assert!((found - 0.7).abs() <= 2.0_f64.powi(-33), "{found}");
+        assert!(count <= 48, "{count} looks");
+    }
+}
