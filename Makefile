@@ -139,6 +139,7 @@ $(VENV)/.maturin: pyproject.toml $(VENV)/.python
 
 # What it needs is installed while it is compiled.
 $(VENV)/.built: $(VENV)/.maturin $(RUST)
+	@echo "The Rust core is compiled and the Python packages are installed. This takes some minutes; nothing is printed meanwhile."
 	$(BIN)/python packaging/needs.py all | $(BIN)/python -m pip install --quiet --requirement /dev/stdin & needs=$$!; \
 		$(BIN)/python -m pip install --quiet --no-build-isolation --no-deps --editable . \
 			--config-settings=build-args="$(SHARED)" && wait $$needs
