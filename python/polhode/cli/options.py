@@ -281,8 +281,15 @@ class FlybyOptions:
     mu
         Gravitational parameter of the planet, as in "398600.4418 km^3/s^2"; a bare number is in m^3/s^2. By
         default that of the Earth.
-    inclination, node, argument
-        Of the orbit, as in "30 deg"; they matter where --pole is stated.
+    inclination
+        Angle between the orbit's plane and the plane of reference, as in "30 deg"; a bare number is in rad.
+        It matters where --pole is stated, as --node and --argument do.
+    node
+        Longitude of the ascending node, from the first axis of reference in its plane, as in "30 deg"; a bare
+        number is in rad.
+    argument
+        Argument of the periapsis, from the ascending node in the orbit's plane, as in "30 deg"; a bare number
+        is in rad.
     span
         How long, with the least distance in the middle, as in "6 d"; a bare number is in s.
     pole
