@@ -1,6 +1,7 @@
 //! The series of orbits at the starts of steps, for all motions that come by.
 
 use std::array::from_fn;
+use std::mem::take;
 
 use super::gradient::{AT_START, Gradient};
 use super::pack::Pack;
@@ -33,8 +34,9 @@ pub(super) struct Place {
 /// not another one has been there before.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Almanac {
-    /// None before the first is put down.
-    pages: Vec<Option<Page>>,
+    /// The marks of the pages' places, a shelf in a line of the cache; no shelves before the first page is put down.
+    marks: Vec<[u64; PAGES]>,
+    pages: Vec<Page>,
     /// How many there have been.
     put: usize,
 }
@@ -48,13 +50,13 @@ pub(super) struct Page {
 }
 
 impl Place {
-    /// The first page of its shelf.
+    /// A number that other places hardly have, and the shelf.
     #[inline(always)]
-    fn shelf(&self) -> usize {
+    fn mark(&self) -> (u64, usize) {
         let mixed = self.when.iter().fold(self.terms.0 as u64, |sum, bits| {
             (sum.rotate_left(5) ^ bits).wrapping_mul(GOLDEN)
         });
-        PAGES * (mixed >> (64 - SHELVES)) as usize
+        (mixed, (mixed >> (64 - SHELVES)) as usize)
     }
 }
 
@@ -62,11 +64,12 @@ impl Almanac {
     /// What stands of a place, if it does.
     #[inline(always)]
     pub(super) fn find(&self, place: &Place, unit: f64) -> Option<&Page> {
-        let first = place.shelf();
-        let shelf = self.pages.get(first..first + PAGES)?.iter().flatten();
-        let page = shelf.into_iter().find(|page| page.place == *place)?;
+        let (mark, shelf) = place.mark();
+        let found = self.marks.get(shelf)?.iter().position(|it| *it == mark)?;
+        let page = &self.pages[PAGES * shelf + found];
         let ratio = page.unit / unit;
-        (ratio <= APART && 1.0 <= ratio * APART).then_some(page)
+        let serves = page.place == *place && ratio <= APART && 1.0 <= ratio * APART;
+        serves.then_some(page)
     }
 
     /// Puts down the orbits of one row.
@@ -79,31 +82,46 @@ impl Almanac {
         row: usize,
         order: usize,
     ) {
-        if self.pages.is_empty() {
-            self.pages.resize(PAGES << SHELVES, None);
+        if self.marks.is_empty() {
+            self.marks.resize(1 << SHELVES, [0; PAGES]);
+            self.pages.resize(PAGES << SHELVES, Page::none());
         }
-        let first = place.shelf();
-        let shelf = &mut self.pages[first..first + PAGES];
-        let is_free = |page: &Option<Page>| page.as_ref().is_none_or(|page| page.place == place);
-        let free = shelf.iter().position(is_free);
-        let slot = &mut shelf[free.unwrap_or(self.put % PAGES)];
+        let (mark, shelf) = place.mark();
+        let is_free = |it: &u64| *it == mark || *it == 0;
+        let free = self.marks[shelf].iter().position(is_free);
+        let slot = free.unwrap_or(self.put % PAGES);
         self.put += 1;
-        let mut numbers = slot.take().map_or_else(Vec::new, |page| page.numbers);
+        self.marks[shelf][slot] = mark;
+        let page = &mut self.pages[PAGES * shelf + slot];
+        let mut numbers = take(&mut page.numbers);
         numbers.clear();
         for gradient in gradients {
             numbers.extend(gradient.at_start(row).map(|x| L::of(x).get()));
             let half_turn = &gradient.orbit().half_turn()[1..order];
             numbers.extend(half_turn.iter().flatten().map(|x| x.get(row)));
         }
-        *slot = Some(Page {
+        *page = Page {
             place,
             unit,
             numbers,
-        });
+        };
     }
 }
 
 impl Page {
+    /// Of no place.
+    fn none() -> Self {
+        let place = Place {
+            when: [u64::MAX; 3],
+            terms: (0, 0),
+        };
+        Self {
+            place,
+            unit: 1.0,
+            numbers: Vec::new(),
+        }
+    }
+
     /// Gives its numbers to one row.
     #[inline(always)]
     pub(super) fn give<L: Number, const R: usize>(
@@ -113,19 +131,25 @@ impl Page {
         row: usize,
         order: usize,
     ) {
-        let ratio = self.unit / unit;
         let mut numbers = self.numbers.as_slice();
         for gradient in gradients {
             let (at_start, rest) = numbers.split_at(AT_START);
             let (half_turn, rest) = rest.split_at(2 * order - 2);
+            let half_turn = half_turn.as_chunks().0.iter();
             gradient.start_at(row, from_fn(|i| at_start[i].into()));
-            gradient.rescale(row, ratio);
-            let mut power = 1.0;
-            let pairs = half_turn.as_chunks().0.iter().map(|&[a, b]: &[f64; 2]| {
-                power *= ratio;
-                [(a * power).into(), (b * power).into()]
-            });
-            gradient.orbit().put_half_turn(row, pairs);
+            let orbit = gradient.orbit();
+            if self.unit == unit {
+                orbit.put_half_turn(row, half_turn.map(|pair: &[f64; 2]| pair.map(Into::into)));
+            } else {
+                let ratio = self.unit / unit;
+                let mut power = 1.0;
+                let pairs = half_turn.map(|&[a, b]: &[f64; 2]| {
+                    power *= ratio;
+                    [(a * power).into(), (b * power).into()]
+                });
+                orbit.put_half_turn(row, pairs);
+                gradient.rescale(row, ratio);
+            }
             numbers = rest;
         }
     }

@@ -175,6 +175,20 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         }
     }
 
+    /// Finds what of order `k` depends on the attitude alone, whose coefficient of that order is known sooner than that of ω: the processor
+    /// does both side by side.
+    #[inline(always)]
+    pub(super) fn look_ahead<const B: usize>(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        field: &Field<Pack<L, R>, B>,
+    ) {
+        for gradient in &mut self.gradients {
+            gradient.look_ahead(k, series, field);
+        }
+    }
+
     /// `sum` and the coefficients of order `k` of the angular acceleration by all of them.
     #[inline(always)]
     pub(super) fn plus_coefficients<const B: usize>(
@@ -193,8 +207,8 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         if let Some(forced) = &mut self.forced {
             sum = plus(sum, forced.coefficient(k, series, field));
         }
-        for gradient in &mut self.gradients {
-            sum = plus(sum, gradient.coefficient(k, series, field));
+        for gradient in &self.gradients {
+            sum = plus(sum, gradient.ahead());
         }
         sum
     }

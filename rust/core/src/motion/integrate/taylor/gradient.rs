@@ -6,8 +6,8 @@ use super::circuit::Circuit;
 use super::field::Field;
 use super::frame::of_matrix;
 use super::pack::{Pack, plus};
+use super::pulled::{Crossed, Squared, Turned, pointed, square_terms};
 use super::series::Series;
-use super::terms::Analytic;
 use super::twin::COUNT;
 use crate::motion::loads::OnOrbit;
 use crate::numerics::dispatch::{Kernel, dispatch};
@@ -36,6 +36,8 @@ pub(super) struct Gradient<T> {
     /// m.
     pointing: [[T; 3]; COUNT],
     strength: T,
+    /// The coefficient of the angular acceleration that was found last.
+    ahead: [T; 3],
     /// Whether the tensor that is pulled has elements off the diagonal.
     is_aside: bool,
 }
@@ -57,6 +59,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
             turned: [[zero; 4]; COUNT],
             pointing: [[zero; 3]; COUNT],
             strength: zero,
+            ahead: [zero; 3],
             is_aside: false,
         }
     }
@@ -140,6 +143,30 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         }
     }
 
+    /// Finds the coefficient of order `k` of the angular acceleration, which needs that of the attitude.
+    #[inline(always)]
+    pub(super) fn look_ahead<const B: usize>(
+        &mut self,
+        k: usize,
+        series: &impl Series<Pack<L, R>, B>,
+        field: &Field<Pack<L, R>, B>,
+    ) {
+        // A function of its own: within a larger one the sums are not kept in registers, and the caller of numbers with
+        // derivatives is not compiled for the widest lanes.
+        self.ahead = dispatch(Next {
+            gradient: self,
+            k,
+            q: series.get(k).q,
+            field,
+        });
+    }
+
+    /// The coefficient that [`Self::look_ahead`] has found.
+    #[inline(always)]
+    pub(super) fn ahead(&self) -> [Pack<L, R>; 3] {
+        self.ahead
+    }
+
     /// Comes to another unit of rates in one row: `ratio` of the old one to the new one.
     pub(super) fn rescale(&mut self, row: usize, ratio: f64) {
         let (once, twice) = (L::Real::from(ratio), L::Real::from(ratio * ratio));
@@ -180,83 +207,6 @@ impl<N: Number, const R: usize> Kernel for Expand<'_, Pack<N, R>> {
     }
 }
 
-// The components are written out, since a loop would keep the sums in memory.
-
-/// `sums` and the coefficients of `c̄ q`: Re and Im of `(a − ib)(x + iy)`, then of `(a − ib)(w + iz)` as (z, w), each as what is
-/// added and what is taken away.
-#[inline(always)]
-fn turn_terms<L: Number, const R: usize>(
-    [a, b]: &[Pack<L, R>; 2],
-    [x, y, z, w]: &[Pack<L, R>; 4],
-    [plus, cross]: [[Pack<L, R>; 4]; 2],
-) -> [[Pack<L, R>; 4]; 2] {
-    [
-        [
-            a.mul_add(*x, plus[0]),
-            a.mul_add(*y, plus[1]),
-            a.mul_add(*z, plus[2]),
-            a.mul_add(*w, plus[3]),
-        ],
-        [
-            b.mul_add(*y, cross[0]),
-            b.mul_add(*x, cross[1]),
-            b.mul_add(*w, cross[2]),
-            b.mul_add(*z, cross[3]),
-        ],
-    ]
-}
-
-/// The sums of the products that make m: x², w², y², z²; xy twice and zw twice; xz twice and yw twice.
-type Squares<T> = [[T; 4]; 3];
-
-/// `sums` and the products of two orders, each once.
-#[inline(always)]
-fn square_terms<L: Number, const R: usize>(
-    [x, y, z, w]: &[Pack<L, R>; 4],
-    [p, q, r, s]: &[Pack<L, R>; 4],
-    [along, second, third]: Squares<Pack<L, R>>,
-) -> Squares<Pack<L, R>> {
-    [
-        [
-            x.mul_add(*p, along[0]),
-            w.mul_add(*s, along[1]),
-            y.mul_add(*q, along[2]),
-            z.mul_add(*r, along[3]),
-        ],
-        [
-            x.mul_add(*q, second[0]),
-            y.mul_add(*p, second[1]),
-            z.mul_add(*s, second[2]),
-            w.mul_add(*r, second[3]),
-        ],
-        [
-            x.mul_add(*r, third[0]),
-            z.mul_add(*p, third[1]),
-            y.mul_add(*s, third[2]),
-            w.mul_add(*q, third[3]),
-        ],
-    ]
-}
-
-impl<L: Number, const R: usize, const B: usize> Analytic<Pack<L, R>, B> for Gradient<Pack<L, R>> {
-    #[inline(always)]
-    fn coefficient(
-        &mut self,
-        k: usize,
-        series: &impl Series<Pack<L, R>, B>,
-        field: &Field<Pack<L, R>, B>,
-    ) -> [Pack<L, R>; 3] {
-        // A function of its own: within a larger one the sums are not kept in registers, and the caller of numbers with
-        // derivatives is not compiled for the widest lanes.
-        dispatch(Next {
-            gradient: self,
-            k,
-            q: series.get(k).q,
-            field,
-        })
-    }
-}
-
 /// The next coefficient of a gradient.
 struct Next<'a, L, const R: usize, const B: usize> {
     gradient: &'a mut Gradient<Pack<L, R>>,
@@ -268,98 +218,64 @@ struct Next<'a, L, const R: usize, const B: usize> {
 impl<N: Number, const R: usize, const B: usize> Kernel for Next<'_, N, R, B> {
     type Output = [Pack<N, R>; 3];
 
+    /// Sums of what is known before `q` come first, and what the newest order takes part in last: it is linear in it, and the
+    /// processor, which may still be busy with `q`, does not wait.
     #[inline(always)]
     fn run<L: Lane>(self) -> [Pack<N, R>; 3] {
-        self.coefficient()
-    }
-}
-
-impl<L: Number, const R: usize, const B: usize> Next<'_, L, R, B> {
-    #[inline(always)]
-    fn coefficient(self) -> [Pack<L, R>; 3] {
         let Self {
             gradient: it,
             k,
             q: [x, y, z, w],
             field,
         } = self;
-        let zero = Pack::new(0.0);
+        let known = it.pointing[..k].get(1..).unwrap_or(&[]);
+        let mut products = dispatch(Crossed(known));
+        let known = it.turned[..k].get(1..).unwrap_or(&[]);
+        let mut pointing = dispatch(Squared(known));
+        let turned = dispatch(Turned(&it.orbit.half_turn()[1..=k], &it.attitude[..k]));
         let [a, b, c, d] = it.frame;
-        it.attitude[k] = [
-            d.mul_add(x, c.mul_add(y, -b.mul_add(z, a * w))),
-            d.mul_add(y, a.mul_add(z, -c.mul_add(x, b * w))),
-            d.mul_add(z, b.mul_add(x, -a.mul_add(y, c * w))),
-            d.mul_add(w, a.mul_add(x, b.mul_add(y, c * z))),
+        let attitude = [
+            d.mul_add(x, c * y) - b.mul_add(z, a * w),
+            d.mul_add(y, a * z) - c.mul_add(x, b * w),
+            d.mul_add(z, b * x) - a.mul_add(y, c * w),
+            d.mul_add(w, a * x) + b.mul_add(y, c * z),
         ];
-        let mut sums = [[zero; 4]; 2];
-        let half_turn = it.orbit.half_turn()[..=k].iter().rev();
-        for (half, q) in half_turn.zip(&it.attitude[..=k]) {
-            sums = turn_terms(half, q, sums);
+        let turned = if k > 0 {
+            [0, 1, 2, 3].map(|i| turned[i] + attitude[i])
+        } else {
+            attitude
+        };
+        it.attitude[k] = attitude;
+        it.turned[k] = turned;
+        let [x, y, z, w] = turned;
+        if k == 0 {
+            pointing = pointed(square_terms(&turned, &turned, [[Pack::new(0.0); 4]; 3]));
+            let [a, b, c] = pointing;
+            products = [b * c, c * a, a * b];
+        } else {
+            // m is twice the products of two orders.
+            let [p, q, r, s] = it.turned[0].map(|x| x + x);
+            let [along, second, third] = pointing;
+            pointing = [
+                x.mul_add(p, w.mul_add(s, along)) - y.mul_add(q, z * r),
+                x.mul_add(q, y.mul_add(p, second)) - z.mul_add(s, w * r),
+                x.mul_add(r, z.mul_add(p, third)) + y.mul_add(s, w * q),
+            ];
+            let ([a, b, c], [p, q, r]) = (pointing, it.pointing[0]);
+            let [first, second, third] = products;
+            products = [
+                b.mul_add(r, c.mul_add(q, first)),
+                c.mul_add(p, a.mul_add(r, second)),
+                a.mul_add(q, b.mul_add(p, third)),
+            ];
         }
-        let [p, s] = sums;
-        it.turned[k] = [p[0] + s[0], p[1] - s[1], p[2] - s[2], p[3] + s[3]];
-
-        let mut squares = [[zero; 4]; 3];
-        let turned = &it.turned[..=k];
-        for (early, late) in turned[..k.div_ceil(2)].iter().zip(turned.iter().rev()) {
-            squares = square_terms(early, late, squares);
-        }
-        let [a, b, c] = squares;
-        let along = (a[0] + a[1]) - (a[2] + a[3]);
-        let mut along = along + along;
-        let mut across = [(b[0] + b[1]) - (b[2] + b[3]), (c[0] + c[1]) + (c[2] + c[3])];
-        if k.is_multiple_of(2) {
-            let [x, y, z, w] = turned[k / 2];
-            along = along + (x.mul_add(x, w * w) - y.mul_add(y, z * z));
-            across = [across[0] + (x * y - z * w), across[1] + x.mul_add(z, y * w)];
-        }
-        it.pointing[k] = [along, across[0] + across[0], across[1] + across[1]];
-
-        let products = dispatch(Products(&it.pointing[..=k]));
+        it.pointing[k] = pointing;
         let ([a, b, c], [p, q, r]) = (field.pull.0, products);
         let pull = -it.strength;
-        let torque = [pull * a * p, pull * b * q, pull * c * r];
+        let torque = [(pull * a) * p, (pull * b) * q, (pull * c) * r];
         if it.is_aside {
             return plus(torque, it.tilt(k, field, &products));
         }
         torque
     }
-}
-
-/// The coefficient of (m₂m₃, m₃m₁, m₁m₂) from those of m up to its order. Another function of its own.
-struct Products<'a, T>(&'a [[T; 3]]);
-
-impl<N: Number, const R: usize> Kernel for Products<'_, Pack<N, R>> {
-    type Output = [Pack<N, R>; 3];
-
-    #[inline(always)]
-    fn run<L: Lane>(self) -> [Pack<N, R>; 3] {
-        let half = self.0.len() / 2;
-        let mut sums = [[Pack::new(0.0); 2]; 3];
-        for (early, late) in self.0[..half].iter().zip(self.0.iter().rev()) {
-            sums = crossed_terms(early, late, sums);
-        }
-        let [first, second, third] = sums;
-        let (x, y) = (first[0] + first[1], second[0] + second[1]);
-        let z = third[0] + third[1];
-        if self.0.len().is_multiple_of(2) {
-            return [x, y, z];
-        }
-        let [a, b, c] = self.0[half];
-        [b.mul_add(c, x), c.mul_add(a, y), a.mul_add(b, z)]
-    }
-}
-
-/// `sums` and the products of two orders, each once.
-#[inline(always)]
-fn crossed_terms<L: Number, const R: usize>(
-    [a, b, c]: &[Pack<L, R>; 3],
-    [p, q, r]: &[Pack<L, R>; 3],
-    [first, second, third]: [[Pack<L, R>; 2]; 3],
-) -> [[Pack<L, R>; 2]; 3] {
-    [
-        [b.mul_add(*r, first[0]), c.mul_add(*q, first[1])],
-        [c.mul_add(*p, second[0]), a.mul_add(*r, second[1])],
-        [a.mul_add(*q, third[0]), b.mul_add(*p, third[1])],
-    ]
 }

@@ -146,6 +146,7 @@ where
     /// The coefficients of order `k` + 1.
     #[inline(always)]
     pub(super) fn extend(&mut self, k: usize) {
+        self.extras.look_ahead(k, &self.series, &self.field);
         let sums = self.series.sums(k);
         let (spins, at) = (S::spins(&sums), self.series.get(k));
         let acceleration = (self.field).acceleration(self.settings.parts, k, spins, &at);
