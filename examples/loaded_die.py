@@ -24,7 +24,7 @@ def draw() -> Figure:
     figure = Figure(figsize=(10.0, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
     colors = ("#0072B2", "#D55E00", "#009E73")
-    widths = (1.5, 4.0, 1.5)  # I₂ and I₃ are nearly equal
+    widths = (1.5, 4.0, 1.5)  # I₂ and I₃ are equal
     for k, (color, width) in enumerate(zip(colors, widths, strict=True)):
         left.plot(grams, loaded.center_of_mass[:, k], color=color, label="xyz"[k])
         moment = loaded.principal_moments[:, k]

@@ -132,9 +132,10 @@ def performance(ratios: dict[str, Any]) -> str:
     """Give the page of times beside the peers."""
     lines = [
         "# How fast it is\n",
-        "The time that a peer takes for the same answer, over that of polhode: above 1, polhode is "
-        "faster. Both ran in turn in one process, on one thread, in several rounds; a ratio is the median of "
-        "the rounds, and its spread the least and the largest, where a release has kept them. "
+        "The ratio is the time of the other program for the same answer, divided by the time of polhode. Above 1, "
+        "polhode is faster. In some rows polhode stands beside polhode: the same work in another way, or of another body. "
+        "Both ran in turn in one process, on one thread, in several rounds. The ratio is the median of the rounds. "
+        "A release that has kept the least and the largest ratio shows them as the spread. "
         "`make bench` measures anew; `python benchmarks/run.py --keep RELEASE` keeps what "
         "this table shows, and `make docs` writes the page.\n",
     ]

@@ -29,10 +29,11 @@ class Bifurcations(NamedTuple):
     direction : numpy.ndarray, shape (n, 3)
         ``L/|L|`` there, in the body frame.
     momentum : numpy.ndarray, shape (n,)
-        The ``|L|`` of it with the h there is: those that meet are there above it.
+        The ``|L|`` of the bifurcation for the given h. The equilibria that meet there exist only for
+        larger ``|L|``.
     rotor : numpy.ndarray, shape (n,)
-        The ``|h|`` of it with the ``|L|`` there is and this direction of h: those that meet are there
-        below it.
+        The ``|h|`` of the bifurcation for the given ``|L|`` and the given direction of h. The equilibria that
+        meet there exist only for smaller ``|h|``.
     """
 
     meeting: NDArray[np.str_]
@@ -93,7 +94,7 @@ class Wheel:
     momentum : float or numpy.ndarray, shape (...)
         J Ω at t = 0, with Ω its rate relative to the body.
     mode : {"free", "held"}
-        Whether it keeps its momentum in space or its rate relative to the body.
+        Whether it keeps its momentum along its axis, ``J(Ω + a·ω)``, or its rate relative to the body.
     """
 
     axis: NDArray[np.float64]

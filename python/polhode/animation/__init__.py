@@ -73,12 +73,12 @@ def animate(
         fast motion by a round number, which it names; a film takes 10 seconds, and more where at 30 pictures
         a second the body would turn by more than 20 degrees from one to the next.
     title, time_unit : str, optional
-        As the viewer reads them. Of the units ns, us, ms, s, min, h, d and yr a page knows the length.
+        Title and unit of time as they are shown. A page can convert ns, us, ms, s, min, h, d and yr to seconds.
     size : int or (int, int), optional
         Of a film: width and height in pixels; 480 by default.
     fps : float, optional
-        Of a film: pictures a second, at most 50 of a GIF; 30 by default. A GIF counts time in hundredths of
-        a second, so that at 30 its pictures stay three, three and four of them.
+        Of a film: pictures a second, at most 50 of a GIF; 30 by default. A GIF stores times in hundredths of
+        a second. At 30 pictures a second they are shown for 3, 3 and 4 hundredths in turn.
     labels : bool, optional
         Of a film: whether anything is written: the names of arrows, axes and wheels, title, time, speeds of
         wheels. In a small picture names without room are left out, and a long title has several lines.
