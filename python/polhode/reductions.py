@@ -321,8 +321,9 @@ def quantiles(q: ArrayLike, of: Of) -> Reduction:
     Notes
     -----
     Up to a million members every number is kept, and the quantiles are those of ``numpy.quantile``. Beyond
-    that at most 65536 numbers of each weight are kept. If there are more, every second one is dropped and the
-    weight of the others is doubled. The result contains a bound of the error of a rank, about 1e-4 of all for 1e8 members.
+    that at most 65536 numbers of each weight are kept. If there are more, every second one is dropped and
+    the weight of the others is doubled. The result contains a bound of the error of a rank, about 1e-4 of
+    all for 1e8 members.
     """
     parts = np.atleast_1d(_core.real_numbers(q, "q"))
     if parts.ndim != 1 or not len(parts) or not ((parts >= 0.0) & (parts <= 1.0)).all():

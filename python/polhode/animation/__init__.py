@@ -73,7 +73,8 @@ def animate(
         fast motion by a round number, which it names; a film takes 10 seconds, and more where at 30 pictures
         a second the body would turn by more than 20 degrees from one to the next.
     title, time_unit : str, optional
-        Title and unit of time as they are shown. A page can convert ns, us, ms, s, min, h, d and yr to seconds.
+        Title and unit of time as they are shown. A page can convert ns, us, ms, s, min, h, d and yr to
+        seconds.
     size : int or (int, int), optional
         Of a film: width and height in pixels; 480 by default.
     fps : float, optional

@@ -192,9 +192,10 @@ def check(
         Whether meshes may lie anywhere. By default they are read only in these folders and where the model
         is: in the package that encloses it (marked by ``package.xml``, ``manifest.xml`` or
         ``model.config``) or, without one, its checkout (``.git``, ``.hg``), its Python package, or its own
-        folder. If the name of this folder is ``urdf``, ``sdf``, ``mjcf``, ``xml``, ``robots`` or ``worlds``, its parent
-        folder is allowed too; another package above or beside it is read where it is marked as one. Links to files
-        elsewhere are not followed. What is not read is told in the notes of the link.
+        folder. If the name of this folder is ``urdf``, ``sdf``, ``mjcf``, ``xml``, ``robots`` or
+        ``worlds``, its parent folder is allowed too; another package above or beside it is read where it is
+        marked as one. Links to files elsewhere are not followed. What is not read is told in the notes of
+        the link.
     density : float, optional
         In kg/m^3, of links for which the file says no mass: what :func:`fixed` then writes for them.
     mass : float, optional
