@@ -35,6 +35,8 @@ autodoc_typehints = "none"  # the docstrings say shapes, which types cannot
 autosummary_generate = False
 numpydoc_show_class_members = False
 
+smartquotes_action = "qe"  # two hyphens begin an option; they are no dash
+
 html_theme = "pydata_sphinx_theme"
 html_title = "polhode"
 html_show_sourcelink = False

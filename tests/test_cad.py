@@ -160,10 +160,13 @@ class TestAssemblies:
         right = right.replace("MEASURE(7.85)", "MEASURE(7850.)").replace("MEASURE(2.7)", "MEASURE(2700.)")
         assert right.count(",-3.)") >= 1
         path.write_text(right)
-        assert {part.density for part in load(path).cad.parts} == {7850.0, 2700.0}  # type: ignore[union-attr]
+        cad = load(path).cad
+        assert cad is not None
+        assert {part.density for part in cad.parts} == {7850.0, 2700.0}
         path.write_text(right.replace(",-3.)", ",-2.)"))
         loaded = load(path)
-        assert {part.density for part in loaded.cad.parts} == {None}  # type: ignore[union-attr]
+        assert loaded.cad is not None
+        assert {part.density for part in loaded.cad.parts} == {None}
         assert any("units that are not understood" in note for note in loaded.notes)
 
     def test_a_part_without_density_is_named(self, tmp_path: Path) -> None:

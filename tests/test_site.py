@@ -180,10 +180,19 @@ const wide = [...document.querySelectorAll("main *")].filter((e) => {
 });
 const shown = [...document.querySelectorAll("math")].filter((e) => e.getClientRects().length);
 const empty = shown.filter((e) => e.getBoundingClientRect().width < 2);
+// How far a formula reaches beyond its box on one side, when it is scrolled to that side.
+const beyond = (e, side, sign) => {
+  e.scrollLeft = sign * 1e5;
+  const parts = [...e.querySelectorAll("math *")].map((part) => part.getBoundingClientRect()[side]);
+  return Math.max(...parts.map((at) => sign * (at - e.getBoundingClientRect()[side])));
+};
+const cut = [...document.querySelectorAll(".math")].filter((e) => e.getClientRects().length)
+  .filter((e) => beyond(e, "right", 1) > 2 || beyond(e, "left", -1) > 2);
 return {
   wide: wide.slice(0, 3).map((e) => e.outerHTML.slice(0, 200)),
   beyond: document.documentElement.scrollWidth - width,
   empty: empty.length,
+  cut: cut.slice(0, 3).map((e) => e.textContent),
   height: document.documentElement.scrollHeight,
 };
 })()"""
@@ -200,7 +209,7 @@ def test_nothing_overflows_and_formulas_are_drawn(browser: Browser, size: tuple[
         browser.open(SITE / name)
         found = browser.run(MEASURE)
         is_tall = size == DESK and found["height"] > TALLEST
-        if found["wide"] or found["beyond"] > 0 or found["empty"] or is_tall:
+        if found["wide"] or found["beyond"] > 0 or found["empty"] or found["cut"] or is_tall:
             bad.append((name, found))
     assert bad == []
 
@@ -212,6 +221,30 @@ def test_the_search_finds_the_gallery_first(desk: Browser, words: str) -> None:
     first = "document.querySelector('#search-results li a')"
     desk.wait(f"{first} && !document.querySelector('#search-progress')?.textContent")
     assert desk.run(f"{first}.getAttribute('href')").startswith("gallery/tennis_racket.html")
+
+
+@needs_browser
+def test_formulas_have_the_font_of_the_site(desk: Browser) -> None:
+    desk.open(SITE / "theory" / "free.html")
+    desk.wait("document.fonts.status === 'loaded'")
+    fonts = "[...document.fonts].filter((font) => font.family.includes('Latin Modern Math'))"
+    assert desk.run(f"{fonts}.map((font) => font.status).join()") == "loaded"
+    first = desk.run("getComputedStyle(document.querySelector('math')).fontFamily")
+    assert str(first).startswith('"Latin Modern Math"')
+
+
+@needs_browser
+@pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
+def test_no_code_is_under_the_button_that_copies_it(browser: Browser, size: tuple[int, int]) -> None:
+    browser.screen(*size)
+    browser.open(SITE / "how_to" / "engineer.html")
+    browser.wait("document.querySelectorAll('button.copy').length > 3")
+    covered = """[...document.querySelectorAll('button.copy')].filter((button) => {
+        const code = button.parentElement.querySelector('pre');
+        const [a, b] = [button, code].map((one) => one.getBoundingClientRect());
+        return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    }).length"""
+    assert browser.run(covered) == 0
 
 
 @needs_browser

@@ -133,10 +133,10 @@ def performance(ratios: dict[str, Any]) -> str:
     lines = [
         "# How fast it is\n",
         "The ratio is the time of the other program for the same answer, divided by the time of polhode. "
-        "Above 1, polhode is faster. In some rows polhode stands beside polhode: the same work in another "
-        "way, or of another body. Both ran in turn in one process, on one thread, in several rounds. The "
-        "ratio is the median of the rounds. A release that has kept the least and the largest ratio shows "
-        "them as the spread. "
+        "Above 1, polhode is faster. In some rows polhode is compared with itself: the same work in another "
+        "way, or for another body. Both ran in turn in one process, on one thread, in several rounds. The "
+        "ratio is the median of the rounds. If the least and the largest ratio of a release were "
+        "kept, the table shows them as the spread. "
         "`make bench` measures anew; `python benchmarks/run.py --keep RELEASE` keeps what "
         "this table shows, and `make docs` writes the page.\n",
     ]

@@ -24,16 +24,16 @@ class Bifurcations(NamedTuple):
     Attributes
     ----------
     meeting : numpy.ndarray of str, shape (n,)
-        ``"fold"``: a saddle and a stable one meet and are gone; ``"pitchfork"``: two of one kind meet
-        in a third.
+        ``"fold"``: a saddle and a stable equilibrium meet and disappear; ``"pitchfork"``: two equilibria of
+        one kind meet at a third one, which stays.
     direction : numpy.ndarray, shape (n, 3)
         ``L/|L|`` there, in the body frame.
     momentum : numpy.ndarray, shape (n,)
-        The ``|L|`` of the bifurcation for the given h. The equilibria that meet there exist only for
-        larger ``|L|``.
+        The ``|L|`` of the bifurcation for the given h. The two equilibria that meet, at a pitchfork
+        the pair, exist only for larger ``|L|``.
     rotor : numpy.ndarray, shape (n,)
-        The ``|h|`` of the bifurcation for the given ``|L|`` and the given direction of h. The equilibria that
-        meet there exist only for smaller ``|h|``.
+        The ``|h|`` of the bifurcation for the given ``|L|`` and the given direction of h. The same two
+        equilibria exist only for smaller ``|h|``.
     """
 
     meeting: NDArray[np.str_]
@@ -94,7 +94,8 @@ class Wheel:
     momentum : float or numpy.ndarray, shape (...)
         J Ω at t = 0, with Ω its rate relative to the body.
     mode : {"free", "held"}
-        Whether it keeps its momentum along its axis, ``J(Ω + a·ω)``, or its rate relative to the body.
+        ``"free"``: it keeps its momentum along its axis, ``J(Ω + a·ω)``; ``"held"``: it keeps its rate Ω
+        relative to the body.
     """
 
     axis: NDArray[np.float64]

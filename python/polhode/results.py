@@ -337,12 +337,12 @@ class MotionSensitivity(NamedTuple):
     load : tuple of dict
         For each term of the load: by each argument of the function of :mod:`polhode.loads` that makes it,
         under its name, shape (..., T, 6) and then that of the argument, a matrix in full. The target
-        of a feedback is varied by a small rotation. A term with a factor is varied after the multiplication.
-        Frames, times of samples, windows and epochs are not varied. A wheel whose motor follows a feedback
-        has the arguments of both.
+        of a feedback is varied by a small rotation. For a term that was multiplied by a factor, the
+        derivatives are by the arguments after the multiplication. Frames, times of samples, windows and
+        epochs are not varied. A wheel whose motor follows a feedback has the arguments of both.
     begins : numpy.ndarray, shape (..., k, 3)
-        Of the states that the load begins with, by ω at the first time; of a wheel ``J a``. With its rate
-        held in place of its momentum, the motion depends on ω by
+        Derivatives of the load's initial states by ω at the first time; for a wheel this is ``J a``. With its
+        rate held in place of its momentum, the motion depends on ω by
         ``state[..., 3:6] + state[..., 6:] @ begins[..., None, :, :]``. Zero for states that were given.
     """
 

@@ -56,18 +56,18 @@ def animate(
         picture is drawn turning 2, 5, 10, … times slower than it does, as is written there. ``.gif`` and
         ``.mp4`` need matplotlib, the latter also ffmpeg, which the extra ``film`` brings.
     end : float, optional
-        Of a motion in closed form, which has no times of its own: it is shown from 0 to this time.
+        For a motion in closed form, which has no times of its own: the motion is shown from 0 to this time.
     shape : (vertices, faces) or list, optional
         A mesh of the body in its frame, (n, 3) and (m, 3); or a list of parts, each a mesh or a body. By
         default the body is drawn as what it was made of: solids, sheets, wires, a mesh of up to 20,000
         triangles, up to 256 particles, or up to 256 such parts put together. Of a body of which the inertia
         alone is known, or that was read from a saved file, it is the uniform box that has this inertia.
-        Of a given mesh with more than 20,000 triangles corners near each other are joined, which is told.
+        In a given mesh with more than 20,000 triangles, nearby corners are joined, and a message says so.
     frames : int, optional
-        Number of samples shown, evenly chosen. By default as many as the motion needs: where nothing acts on
-        the body, or gravity alone on a heavy top, the states between its samples are those of its exact
-        motion; from one picture to the next the body turns by 20 degrees at most, and from one frame of a
-        page, which interpolates between them, by 40. Otherwise the samples.
+        Number of samples shown, evenly chosen. By default, for a free body or a heavy top under gravity
+        alone, as many as needed: states between the samples are taken from the exact motion, so that the
+        body turns by at most 20 degrees between two pictures of a film, and by 40 between two frames of a
+        page, which interpolates. For any other motion, the samples themselves.
     duration : float, optional
         Seconds that the motion takes on the screen. A page shows it in real time by default, or in slow or
         fast motion by a round number, which it names; a film takes 10 seconds, and more where at 30 pictures

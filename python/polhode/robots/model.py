@@ -96,8 +96,8 @@ class Shape:
         Why the numbers of a visual shape cannot be read; "" if they can. Those of a collision shape end the
         verdict of the link.
     counting : str
-        How a simulator that takes the inertia from a mesh counts its matter: ``"legacy"``, ``"convex"``
-        (MuJoCo); any other: as it is filled.
+        How a simulator that takes the inertia from a mesh counts its matter: ``"legacy"`` or ``"convex"``
+        (MuJoCo). Any other value: the mesh is filled as it is.
     """
 
     kind: str
@@ -217,7 +217,7 @@ class Robot:
         Where else its files may lie: where the file is in truth, if it was read through a link.
     joints : tuple of Joint
     total_mass : float
-        What the compiler of MJCF scales all bodies to, together; 0 where it does not.
+        The total mass to which the MJCF compiler scales all bodies together; 0 if it does not scale.
     """
 
     format: str

@@ -55,12 +55,12 @@ class Verdict(NamedTuple):
     line : int
         Of the link in the file.
     verdict : str
-        ``"good"``; ``"suspect"``: possible, but far from what its shape has; ``"coarse"``: beyond the room of
-        its shape, but by no more than that may be off; ``"placeholder"``: the unit tensor, the same multiple
-        of it in links of different masses, or zero; ``"impossible"``: no body has it, or no body of that
-        size; ``"missing"``: no mass where a joint moves; ``"unreadable"``: a number is missing or is not a
-        number; ``"none"``: nothing is declared, nor needed; ``"inferred"``: nothing is declared, and a
-        simulator computes it from the geometry.
+        ``"good"``; ``"suspect"``: possible, but far from what its shape has; ``"coarse"``: larger than
+        its shape has room for, but by no more than the error of the shape;
+        ``"placeholder"``: the unit tensor, the same multiple of it in links of different masses, or zero;
+        ``"impossible"``: no body has it, or no body of that size; ``"missing"``: no mass where a joint
+        moves; ``"unreadable"``: a number is missing or is not a number; ``"none"``: nothing is declared, nor
+        needed; ``"inferred"``: nothing is declared, and a simulator computes it from the geometry.
     reason : str
         Which law fails and by how much.
     mass : float or None

@@ -78,9 +78,9 @@ pub struct Bifurcation {
     pub meeting: Meeting,
     /// L/|L| there, in principal axes.
     pub direction: [f64; 3],
-    /// The |L| of the bifurcation for this h. The equilibria that meet there exist only for larger |L|.
+    /// The |L| of the bifurcation for this h. The two equilibria that meet, at a pitchfork the pair, exist only for larger |L|.
     pub momentum: f64,
-    /// The |h| of the bifurcation for this |L| and this direction of h. The equilibria that meet there exist only for smaller |h|.
+    /// The |h| of the bifurcation for this |L| and this direction of h. The same two equilibria exist only for smaller |h|.
     pub rotor: f64,
 }
 

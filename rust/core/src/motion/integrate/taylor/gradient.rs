@@ -118,7 +118,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
     /// The orbit's series.
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
-        // As in `coefficient`.
+        // As in `look_ahead`.
         dispatch(Expand {
             orbit: &mut self.orbit,
             order,

@@ -77,7 +77,7 @@ fn crossed_terms<L: Number, const R: usize>(
     ]
 }
 
-/// The coefficient of half of m from the products of two orders.
+/// Half of the coefficient of m from the products of two orders, each once; the coefficient from those of one order with itself.
 #[inline(always)]
 pub(super) fn pointed<L: Number, const R: usize>(
     [a, b, c]: Squares<Pack<L, R>>,
@@ -92,7 +92,7 @@ pub(super) fn pointed<L: Number, const R: usize>(
 
 // Each of these sums is a function of its own: within a larger one they are not kept in registers.
 
-/// The coefficient of (m₂m₃, m₃m₁, m₁m₂) from those of m.
+/// The sum over a slice of coefficients of m, the first with the last and so on: what they give to a coefficient of (m₂m₃, m₃m₁, m₁m₂).
 pub(super) struct Crossed<'a, T>(pub(super) &'a [[T; 3]]);
 
 impl<N: Number, const R: usize> Kernel for Crossed<'_, Pack<N, R>> {
@@ -117,7 +117,7 @@ impl<N: Number, const R: usize> Kernel for Crossed<'_, Pack<N, R>> {
     }
 }
 
-/// The coefficient of m from those of Q.
+/// The sum over a slice of coefficients of Q, the first with the last and so on: what they give to a coefficient of m.
 pub(super) struct Squared<'a, T>(pub(super) &'a [[T; 4]]);
 
 impl<N: Number, const R: usize> Kernel for Squared<'_, Pack<N, R>> {
@@ -144,7 +144,7 @@ impl<N: Number, const R: usize> Kernel for Squared<'_, Pack<N, R>> {
     }
 }
 
-/// The coefficient of `c̄ q`.
+/// The sum of the products of the first slice backward with the second: what they give to a coefficient of `c̄ q`.
 pub(super) struct Turned<'a, T>(pub(super) &'a [[T; 2]], pub(super) &'a [[T; 4]]);
 
 impl<N: Number, const R: usize> Kernel for Turned<'_, Pack<N, R>> {
