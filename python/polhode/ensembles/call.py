@@ -115,14 +115,14 @@ def ensemble(
     given |= {f"states.{name}": value for name, value in sorted((states or {}).items())}
     arguments = {place: _argument(place, value) for place, value in given.items()}
     times = _core.real_numbers(t, "t").copy()
-    # Times that make no run are refused now, by one that costs nothing.
-    _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0.0, 0.0, 0.0))
+    steps = {} if max_steps is None else {"max_steps": _count(max_steps, "max_steps")}
+    # Times and tolerances that make no run are refused now, by one that costs nothing.
+    _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0, 0, 0), rtol=rtol, atol=atol)
     times.setflags(write=False)
     plan = Plan(
         recipe=resolved(arguments, seed),
         t=times,
-        options={"about": about, "method": method, "rtol": rtol, "atol": atol}
-        | ({} if max_steps is None else {"max_steps": max_steps}),
+        options={"about": about, "method": method, "rtol": rtol, "atol": atol} | steps,
         n=size,
         seed=int(seed),
         chunk=min(cut, size),
