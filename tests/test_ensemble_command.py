@@ -31,7 +31,6 @@ BODY = distributions.made(
     RigidBody.from_principal,
     1.0,
     distributions.normal((1.0, 2.0, 2.5), sigma=(0.01, 0.02, 0.0)),
-    center_of_mass=np.zeros(3),
 )
 OMEGA = distributions.normal((0.0, 1.0, 0.01), sigma=(0.0, 0.05, 0.0))
 
@@ -91,7 +90,6 @@ class TestSpread:
                     RigidBody.from_principal,
                     distributions.normal(2.0, sigma=0.1),
                     distributions.uniform((1.0, 2, 2.5), (1.1, 2, 2.5)),
-                    center_of_mass=np.zeros(3),
                 ),
                 (0.0, 0.0, 1.0),
                 {

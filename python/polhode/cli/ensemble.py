@@ -165,11 +165,12 @@ def _of_moments(options: EnsembleOptions, body: BodyOptions) -> tuple[Any, Any]:
         raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
     mass: Any = 1.0 if body.mass is None else drawn_number(body.mass, "kg", "--mass")
     moments: Any = drawn(options.moments, 3, "kg m^2", "--moments")
-    center: Any = drawn(body.com, 3, "m", "--center") if body.com else np.zeros(3)
-    if any(isinstance(one, distributions.Distribution) for one in (mass, moments, center)):
-        given: Any = distributions.made(RigidBody.from_principal, mass, moments, center_of_mass=center)
+    center = {"center_of_mass": drawn(body.com, 3, "m", "--center")} if body.com else {}
+    numbers = (mass, moments, *center.values())
+    if any(isinstance(one, distributions.Distribution) for one in numbers):
+        given: Any = distributions.made(RigidBody.from_principal, mass, moments, **center)
     else:
-        given = RigidBody.from_principal(mass, moments, center_of_mass=center)
+        given = RigidBody.from_principal(mass, moments, **center)
     if not options.wheel:
         return given, None
     middle = RigidBody.from_principal(1.0, middle_of(moments))
