@@ -165,7 +165,7 @@ def _of_moments(options: EnsembleOptions, body: BodyOptions) -> tuple[Any, Any]:
         raise PolhodeError("--gravity: the weight acts at the centre of mass; state --mass and --center too")
     mass: Any = 1.0 if body.mass is None else drawn_number(body.mass, "kg", "--mass")
     moments: Any = drawn(options.moments, 3, "kg m^2", "--moments")
-    center = {"center_of_mass": drawn(body.com, 3, "m", "--center")} if body.com else {}
+    center: dict[str, Any] = {"center_of_mass": drawn(body.com, 3, "m", "--center")} if body.com else {}
     numbers = (mass, moments, *center.values())
     if any(isinstance(one, distributions.Distribution) for one in numbers):
         given: Any = distributions.made(RigidBody.from_principal, mass, moments, **center)
