@@ -236,7 +236,7 @@ class TestSaved:
         process.wait()
         code, _, err = run("ensemble", *words)
         assert code == 2
-        assert "is there already; --resume goes on with it, another name begins anew" in err
+        assert "is there already; add --resume to go on with it, or give another name" in err
         code, _, err = run("ensemble", *words, "--seed", "4", "--resume")
         assert code == 2
         assert "holds another ensemble: seed is 0 there and 4 here" in err
@@ -303,7 +303,7 @@ TOP = ("--moments", "2 2 1", "--omega", "0, 0, 20.0 ± 0.5", "--gravity", "9.81"
         ((*FREE, "--gravity", "9.81"), "--gravity: the weight acts at the centre of mass; state --mass and"),
         (
             (*TOP, "--mass", "1.0(1)", "--center", "0 0 1"),
-            "--method: with --gravity and a body that is drawn state one",
+            "--method: with --gravity a body that is drawn needs one; state",
         ),
         (
             (*TOP, "--mass", "1", "--center", "0 0 1", "--wheel", "z, 1"),

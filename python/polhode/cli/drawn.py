@@ -78,8 +78,8 @@ def middle_of(numbers: Any) -> Any:
 def _uniform(text: str, count: int, unit: str, option: str) -> Distribution:
     if re.search(r"±|\+/-|\+-|\d\(", text):
         raise PolhodeError(
-            f"{option}: {text!r} has a sigma and bounds; the numbers of one option are drawn from normal "
-            "distributions or from uniform ones, so write sigmas for all of them or bounds for all"
+            f"{option}: {text!r} has a sigma and bounds, but all numbers of an option are normal or all are "
+            "uniform; write sigmas for all that are drawn, or bounds for all"
         )
     bounds = [_bounds(part) for part in text.strip().strip(",").split(",")]
     if any(len(pair) != 2 for pair in bounds) or len(bounds) != count:

@@ -103,7 +103,7 @@ def _check(file: Path | None, options: EnsembleOptions, body: BodyOptions) -> No
     if options.save is None:
         _check_spread(options)
     elif options.checkpoint is not None:
-        raise PolhodeError("--checkpoint: keeps a spread, and --save writes states; go on by --resume")
+        raise PolhodeError("--checkpoint: keeps a spread, and --save writes states; use --resume to go on")
     elif options.samples is not None and options.samples < 2:
         raise PolhodeError(
             f"--samples: {options.samples} is less than 2, the start and the end; give 2 or more"
@@ -150,7 +150,7 @@ def _arguments(
         found |= {"load": loads.uniform_gravity((0.0, 0.0, -g)), "about": "origin"}
         if options.method == "auto" and isinstance(given, distributions.Made):
             raise PolhodeError(
-                "--method: with --gravity and a body that is drawn state one: exact where all bodies are "
+                "--method: with --gravity a body that is drawn needs one; state exact where all bodies are "
                 "symmetric tops, else taylor or dop853"
             )
     if options.wheel:
@@ -201,8 +201,8 @@ def _tell_spread(report: Report, many: Ensemble, options: EnsembleOptions) -> No
     spread, shares = found["spread"], found["shares"]
     if not spread.members:
         raise PolhodeError(
-            f"ensemble: none of {len(many)} members came to the end; with --save their status tells of each, "
-            "and Ensemble.member(k) in Python why"
+            f"ensemble: none of {len(many)} members came to the end; write their states by --save, which "
+            "tell the status of each, or ask Ensemble.member(k) in Python why"
         )
     report.section("at the end", numbers_table(found))
     if "modes" in found:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from polhode._extras import require
 from polhode.ensembles.layout import coordinates, layout
 from polhode.ensembles.stores import check_same, header
 from polhode.errors import FileFormatError, PolhodeError
@@ -42,7 +43,7 @@ def check_place(path: Path, *, resume: bool) -> None:
     begun = next((place for place in (path, _parts(path)) if _is_there(place)), None)
     if begun is not None and not resume:
         raise PolhodeError(
-            f"--save: {begun} is there already; --resume goes on with it, another name begins anew"
+            f"--save: {begun} is there already; add --resume to go on with it, or give another name"
         )
     if begun is None and resume:
         raise PolhodeError(
@@ -65,8 +66,7 @@ def saved(many: Ensemble, path: Path) -> dict[str, int]:
     """
     if path.suffix.lower() == _ZARR:
         many.resume(path) if _is_there(path) else many.to_zarr(path)
-        import zarr
-
+        zarr = require("zarr", extra="cluster", purpose="--save")
         group: Any = zarr.open_group(path, mode="r")
         status = group["status"][:]
     else:
