@@ -64,12 +64,12 @@ def ensemble(
     t : array_like, shape (T,)
         Output times, as of :meth:`RigidBody.simulate`.
     omega, attitude, position, velocity : array_like or distribution
-        At the start, for each member.
+        Values at the start, for each member.
     load : Load or distribution, optional
     n : int
         How many members.
     seed : int
-        From 0 to 2**64 - 1.
+        Seed of all draws, from 0 to 2**64 - 1.
     chunk : int, optional
         Members that are run, written or sent to a worker together. With `reduce` a multiple of 4096.
     about, method, rtol, atol, states, max_steps
@@ -85,7 +85,7 @@ def ensemble(
     reduce : Reduction or dict of str to Reduction, optional
         What is kept in place of the states, from :mod:`polhode.reductions`.
     client : distributed.Client, optional
-        Of a dask cluster that runs the chunks; by default the threads of this machine do.
+        Client of a dask cluster that runs the chunks; by default the threads of this machine do.
     progress : bool or callable, optional
         A function of the fraction done, or whether to show a bar; by default on a terminal after two seconds.
 
