@@ -61,15 +61,22 @@ impl Place {
 }
 
 impl Almanac {
-    /// What stands of a place, if it does.
+    /// The number of the page of a place, if there is one.
     #[inline(always)]
-    pub(super) fn find(&self, place: &Place, unit: f64) -> Option<&Page> {
+    pub(super) fn find(&self, place: &Place, unit: f64) -> Option<usize> {
         let (mark, shelf) = place.mark();
         let found = self.marks.get(shelf)?.iter().position(|it| *it == mark)?;
-        let page = &self.pages[PAGES * shelf + found];
+        let number = PAGES * shelf + found;
+        let page = &self.pages[number];
         let ratio = page.unit / unit;
         let serves = page.place == *place && ratio <= APART && 1.0 <= ratio * APART;
-        serves.then_some(page)
+        serves.then_some(number)
+    }
+
+    /// The page of a number that was found.
+    #[inline(always)]
+    pub(super) fn page(&self, number: usize) -> &Page {
+        &self.pages[number]
     }
 
     /// Puts down the orbits of one row.
@@ -122,21 +129,36 @@ impl Page {
         }
     }
 
-    /// Gives its numbers to one row.
+    /// Gives one row the orbits at the start of the step.
     #[inline(always)]
-    pub(super) fn give<L: Number, const R: usize>(
+    pub(super) fn begin<L: Number, const R: usize>(
         &self,
         unit: f64,
         gradients: &mut [Gradient<Pack<L, R>>],
         row: usize,
         order: usize,
     ) {
-        let mut numbers = self.numbers.as_slice();
-        for gradient in gradients {
-            let (at_start, rest) = numbers.split_at(AT_START);
-            let (half_turn, rest) = rest.split_at(2 * order - 2);
-            let half_turn = half_turn.as_chunks().0.iter();
-            gradient.start_at(row, from_fn(|i| at_start[i].into()));
+        let sheets = self.numbers.chunks_exact(numbers(order));
+        for (gradient, sheet) in gradients.iter_mut().zip(sheets) {
+            gradient.start_at(row, from_fn(|i| sheet[i].into()));
+            if self.unit != unit {
+                gradient.rescale(row, self.unit / unit);
+            }
+        }
+    }
+
+    /// Gives one row the orbits' half turns in the step.
+    #[inline(always)]
+    pub(super) fn go_on<L: Number, const R: usize>(
+        &self,
+        unit: f64,
+        gradients: &mut [Gradient<Pack<L, R>>],
+        row: usize,
+        order: usize,
+    ) {
+        let sheets = self.numbers.chunks_exact(numbers(order));
+        for (gradient, sheet) in gradients.iter_mut().zip(sheets) {
+            let half_turn = sheet[AT_START..].as_chunks().0.iter();
             let orbit = gradient.orbit();
             if self.unit == unit {
                 orbit.put_half_turn(row, half_turn.map(|pair: &[f64; 2]| pair.map(Into::into)));
@@ -148,11 +170,15 @@ impl Page {
                     [(a * power).into(), (b * power).into()]
                 });
                 orbit.put_half_turn(row, pairs);
-                gradient.rescale(row, ratio);
             }
-            numbers = rest;
         }
     }
+}
+
+/// How many numbers a page has of one orbit.
+#[inline(always)]
+fn numbers(order: usize) -> usize {
+    AT_START + 2 * order - 2
 }
 
 /// A step from `now` (as long ago as that is) made shorter by a sixteenth at most, so that it ends at a rounder time: motions on the
@@ -229,8 +255,10 @@ mod tests {
         almanac.put(place(1.0), 1.0, &mut begun(1.0), 1, 8);
         for unit in [1.0, 0.25, 64.0] {
             let mut taken = [Gradient::<Pair>::new()];
-            let page = almanac.find(&place(1.0), unit).expect("a page");
-            page.give(unit, &mut taken, 1, 8);
+            let number = almanac.find(&place(1.0), unit).expect("a page");
+            let page = almanac.page(number);
+            page.begin(unit, &mut taken, 1, 8);
+            page.go_on(unit, &mut taken, 1, 8);
             let mut own = begun(unit);
             assert_eq!(taken[0].at_start(1), own[0].at_start(1));
             for k in 0..8 {

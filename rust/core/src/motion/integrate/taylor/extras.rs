@@ -1,5 +1,7 @@
 //! The terms of a load that are not linear in the coefficients of one order, together.
 
+use std::mem::replace;
+
 use nalgebra::Vector3;
 
 use super::almanac::{Almanac, Place, rounded};
@@ -21,9 +23,20 @@ pub(super) struct Extras<T> {
     gradients: Vec<Gradient<T>>,
     /// The rows whose orbits have come from the step before.
     are_carried: Vec<bool>,
-    /// Where the rows are, and in which unit of rates, whose orbits' series are to be found; and those of motions that were there before.
-    places: Vec<Option<(Place, f64)>>,
+    /// What the almanac has of the rows, and what motions that were there before have put down.
+    orbits: Vec<Orbits>,
     pub(super) almanac: Almanac,
+}
+
+/// Where the orbits of a row come from in a step, in which unit of rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Orbits {
+    /// Not from the almanac.
+    Own,
+    /// From the page of this number.
+    Known(usize, f64),
+    /// Their series are to be found, and put down for this place.
+    Sought(Place, f64),
 }
 
 impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
@@ -47,7 +60,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             },
             gradients,
             are_carried: vec![false; R],
-            places: vec![None; R],
+            orbits: vec![Orbits::Own; R],
             almanac: Almanac::default(),
         }
     }
@@ -98,24 +111,35 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
         }
         let (place, unit) = place();
         let known = self.almanac.find(&place, unit);
-        if let Some(page) = known {
-            page.give(unit, &mut self.gradients, row, order);
+        self.orbits[row] = match known {
+            Some(number) => Orbits::Known(number, unit),
+            None => Orbits::Sought(place, unit),
+        };
+        if let Some(number) = known {
+            let page = self.almanac.page(number);
+            page.begin(unit, &mut self.gradients, row, order);
         }
-        self.places[row] = known.is_none().then_some((place, unit));
         known.is_some()
     }
 
-    /// The series of the orbits, where they are not known.
+    /// The series of the orbits. Pages are first found for all rows, then read: so the memory, where it is far, is waited for once.
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
-        if Self::LOOKS_UP && self.places.iter().all(Option::is_none) {
+        let is_sought = |orbits: &Orbits| matches!(orbits, Orbits::Sought(..));
+        if Self::LOOKS_UP && !self.orbits.iter().any(is_sought) {
+            for (row, orbits) in self.orbits.iter_mut().enumerate() {
+                if let Orbits::Known(number, unit) = replace(orbits, Orbits::Own) {
+                    let page = self.almanac.page(number);
+                    page.go_on(unit, &mut self.gradients, row, order);
+                }
+            }
             return;
         }
         for gradient in &mut self.gradients {
             gradient.expand(order);
         }
-        for (row, place) in self.places.iter_mut().enumerate() {
-            if let Some((place, unit)) = place.take() {
+        for (row, orbits) in self.orbits.iter_mut().enumerate() {
+            if let Orbits::Sought(place, unit) = replace(orbits, Orbits::Own) {
                 self.almanac
                     .put(place, unit, &mut self.gradients, row, order);
             }

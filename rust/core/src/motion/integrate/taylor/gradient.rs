@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::circuit::Circuit;
 use super::field::Field;
 use super::frame::of_matrix;
-use super::pack::{Pack, plus};
+use super::pack::{Lined, Pack, plus};
 use super::pulled::{Crossed, Squared, Turned, pointed, square_terms};
 use super::series::Series;
 use super::twin::COUNT;
@@ -36,6 +36,8 @@ pub(super) struct Gradient<T> {
     /// m.
     pointing: [[T; 3]; COUNT],
     strength: T,
+    /// −3μκ of the step.
+    on_products: [T; 3],
     /// The coefficient of the angular acceleration that was found last.
     ahead: [T; 3],
     /// Whether the tensor that is pulled has elements off the diagonal.
@@ -59,6 +61,7 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
             turned: [[zero; 4]; COUNT],
             pointing: [[zero; 3]; COUNT],
             strength: zero,
+            on_products: [zero; 3],
             ahead: [zero; 3],
             is_aside: false,
         }
@@ -113,6 +116,8 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
     #[inline(always)]
     pub(super) fn start<const B: usize>(&mut self, field: &Field<Pack<L, R>, B>) {
         self.is_aside = field.is_pulled_aside();
+        let ([a, b, c], pull) = (field.pull.0, -self.strength);
+        self.on_products = [pull * a, pull * b, pull * c];
     }
 
     /// The orbit's series.
@@ -151,12 +156,13 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         series: &impl Series<Pack<L, R>, B>,
         field: &Field<Pack<L, R>, B>,
     ) {
+        // What goes in and out stands in lines of the cache: see Pack.
+        self.attitude[k] = series.get(k).q;
         // A function of its own: within a larger one the sums are not kept in registers, and the caller of numbers with
         // derivatives is not compiled for the widest lanes.
-        self.ahead = dispatch(Next {
+        dispatch(Next {
             gradient: self,
             k,
-            q: series.get(k).q,
             field,
         });
     }
@@ -207,75 +213,72 @@ impl<N: Number, const R: usize> Kernel for Expand<'_, Pack<N, R>> {
     }
 }
 
-/// The next coefficient of a gradient.
+/// The next coefficient of a gradient, in place of whose attitude of that order stands the attitude in N.
 struct Next<'a, L, const R: usize, const B: usize> {
     gradient: &'a mut Gradient<Pack<L, R>>,
     k: usize,
-    q: [Pack<L, R>; 4],
     field: &'a Field<Pack<L, R>, B>,
 }
 
 impl<N: Number, const R: usize, const B: usize> Kernel for Next<'_, N, R, B> {
-    type Output = [Pack<N, R>; 3];
+    type Output = ();
 
     /// Sums of what is known before `q` come first, and what the newest order takes part in last: it is linear in it, and the
     /// processor, which may still be busy with `q`, does not wait.
     #[inline(always)]
-    fn run<L: Lane>(self) -> [Pack<N, R>; 3] {
+    fn run<L: Lane>(self) {
         let Self {
             gradient: it,
             k,
-            q: [x, y, z, w],
             field,
         } = self;
         let known = it.pointing[..k].get(1..).unwrap_or(&[]);
-        let mut products = dispatch(Crossed(known));
+        let Lined([first, second, third]) = dispatch(Crossed(known));
         let known = it.turned[..k].get(1..).unwrap_or(&[]);
-        let mut pointing = dispatch(Squared(known));
-        let turned = dispatch(Turned(&it.orbit.half_turn()[1..=k], &it.attitude[..k]));
-        let [a, b, c, d] = it.frame;
+        let Lined([along, aside, above]) = dispatch(Squared(known));
+        let (half_turn, earlier) = (&it.orbit.half_turn()[1..=k], &it.attitude[..k]);
+        let Lined([e, f, g, h]) = dispatch(Turned(half_turn, earlier));
+        let ([x, y, z, w], [a, b, c, d]) = (it.attitude[k], it.frame);
         let attitude = [
             d.mul_add(x, c * y) - b.mul_add(z, a * w),
             d.mul_add(y, a * z) - c.mul_add(x, b * w),
             d.mul_add(z, b * x) - a.mul_add(y, c * w),
             d.mul_add(w, a * x) + b.mul_add(y, c * z),
         ];
+        it.attitude[k] = attitude;
+        // Written out, since a closure of `map` would be compiled without the instructions of the level.
+        let [x, y, z, w] = attitude;
         let turned = if k > 0 {
-            [0, 1, 2, 3].map(|i| turned[i] + attitude[i])
+            [e + x, f + y, g + z, h + w]
         } else {
             attitude
         };
-        it.attitude[k] = attitude;
         it.turned[k] = turned;
         let [x, y, z, w] = turned;
-        if k == 0 {
-            pointing = pointed(square_terms(&turned, &turned, [[Pack::new(0.0); 4]; 3]));
+        let (pointing, products) = if k == 0 {
+            let pointing = pointed(square_terms(&turned, &turned, [[Pack::new(0.0); 4]; 3]));
             let [a, b, c] = pointing;
-            products = [b * c, c * a, a * b];
+            (pointing, [b * c, c * a, a * b])
         } else {
             // m is twice the products of two orders.
-            let [p, q, r, s] = it.turned[0].map(|x| x + x);
-            let [along, second, third] = pointing;
-            pointing = [
-                x.mul_add(p, w.mul_add(s, along)) - y.mul_add(q, z * r),
-                x.mul_add(q, y.mul_add(p, second)) - z.mul_add(s, w * r),
-                x.mul_add(r, z.mul_add(p, third)) + y.mul_add(s, w * q),
-            ];
-            let ([a, b, c], [p, q, r]) = (pointing, it.pointing[0]);
-            let [first, second, third] = products;
-            products = [
+            let [p, q, r, s] = it.turned[0];
+            let [p, q, r, s] = [p + p, q + q, r + r, s + s];
+            let a = x.mul_add(p, w.mul_add(s, along)) - y.mul_add(q, z * r);
+            let b = x.mul_add(q, y.mul_add(p, aside)) - z.mul_add(s, w * r);
+            let c = x.mul_add(r, z.mul_add(p, above)) + y.mul_add(s, w * q);
+            let [p, q, r] = it.pointing[0];
+            let products = [
                 b.mul_add(r, c.mul_add(q, first)),
                 c.mul_add(p, a.mul_add(r, second)),
                 a.mul_add(q, b.mul_add(p, third)),
             ];
-        }
+            ([a, b, c], products)
+        };
         it.pointing[k] = pointing;
-        let ([a, b, c], [p, q, r]) = (field.pull.0, products);
-        let pull = -it.strength;
-        let torque = [(pull * a) * p, (pull * b) * q, (pull * c) * r];
+        let ([a, b, c], [p, q, r]) = (it.on_products, products);
+        it.ahead = [a * p, b * q, c * r];
         if it.is_aside {
-            return plus(torque, it.tilt(k, field, &products));
+            it.ahead = plus(it.ahead, it.tilt(k, field, &products));
         }
-        torque
     }
 }

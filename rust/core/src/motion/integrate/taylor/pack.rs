@@ -11,6 +11,11 @@ use crate::numerics::number::Number;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pack<L, const R: usize>(pub(super) [L; R]);
 
+/// Packs that a function gives, aligned like what holds many of them.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Lined<T>(pub(super) T);
+
 macro_rules! each {
     ($operator:ident, $method:ident, $symbol:tt) => {
         impl<L: Number, const R: usize> $operator for Pack<L, R> {

@@ -1,6 +1,6 @@
 //! The sums of products of series that the torque of a gravity gradient is made of: see [`Gradient`](super::gradient::Gradient).
 
-use super::pack::{Pack, plus};
+use super::pack::{Lined, Pack, plus};
 use crate::numerics::dispatch::Kernel;
 use crate::numerics::lane::Lane;
 use crate::numerics::number::Number;
@@ -96,10 +96,10 @@ pub(super) fn pointed<L: Number, const R: usize>(
 pub(super) struct Crossed<'a, T>(pub(super) &'a [[T; 3]]);
 
 impl<N: Number, const R: usize> Kernel for Crossed<'_, Pack<N, R>> {
-    type Output = [Pack<N, R>; 3];
+    type Output = Lined<[Pack<N, R>; 3]>;
 
     #[inline(always)]
-    fn run<L: Lane>(self) -> [Pack<N, R>; 3] {
+    fn run<L: Lane>(self) -> Self::Output {
         let half = self.0.len() / 2;
         let mut sums = [[Pack::new(0.0); 2]; 3];
         let late = &self.0[self.0.len() - half..];
@@ -110,10 +110,10 @@ impl<N: Number, const R: usize> Kernel for Crossed<'_, Pack<N, R>> {
         let (x, y) = (first[0] + first[1], second[0] + second[1]);
         let z = third[0] + third[1];
         if self.0.len().is_multiple_of(2) {
-            return [x, y, z];
+            return Lined([x, y, z]);
         }
         let [a, b, c] = self.0[half];
-        [b.mul_add(c, x), c.mul_add(a, y), a.mul_add(b, z)]
+        Lined([b.mul_add(c, x), c.mul_add(a, y), a.mul_add(b, z)])
     }
 }
 
@@ -121,10 +121,10 @@ impl<N: Number, const R: usize> Kernel for Crossed<'_, Pack<N, R>> {
 pub(super) struct Squared<'a, T>(pub(super) &'a [[T; 4]]);
 
 impl<N: Number, const R: usize> Kernel for Squared<'_, Pack<N, R>> {
-    type Output = [Pack<N, R>; 3];
+    type Output = Lined<[Pack<N, R>; 3]>;
 
     #[inline(always)]
-    fn run<L: Lane>(self) -> [Pack<N, R>; 3] {
+    fn run<L: Lane>(self) -> Self::Output {
         let half = self.0.len() / 2;
         let mut sums = [[Pack::new(0.0); 4]; 3];
         let late = &self.0[self.0.len() - half..];
@@ -134,13 +134,13 @@ impl<N: Number, const R: usize> Kernel for Squared<'_, Pack<N, R>> {
         let m = pointed(sums);
         let m = plus(m, m);
         if self.0.len().is_multiple_of(2) {
-            return m;
+            return Lined(m);
         }
         let middle = &self.0[half];
-        plus(
+        Lined(plus(
             m,
             pointed(square_terms(middle, middle, [[Pack::new(0.0); 4]; 3])),
-        )
+        ))
     }
 }
 
@@ -148,15 +148,15 @@ impl<N: Number, const R: usize> Kernel for Squared<'_, Pack<N, R>> {
 pub(super) struct Turned<'a, T>(pub(super) &'a [[T; 2]], pub(super) &'a [[T; 4]]);
 
 impl<N: Number, const R: usize> Kernel for Turned<'_, Pack<N, R>> {
-    type Output = [Pack<N, R>; 4];
+    type Output = Lined<[Pack<N, R>; 4]>;
 
     #[inline(always)]
-    fn run<L: Lane>(self) -> [Pack<N, R>; 4] {
+    fn run<L: Lane>(self) -> Self::Output {
         let mut sums = [[Pack::new(0.0); 4]; 2];
         for (half, q) in self.0.iter().rev().zip(self.1) {
             sums = turn_terms(half, q, sums);
         }
         let [p, s] = sums;
-        [p[0] + s[0], p[1] - s[1], p[2] - s[2], p[3] + s[3]]
+        Lined([p[0] + s[0], p[1] - s[1], p[2] - s[2], p[3] + s[3]])
     }
 }
