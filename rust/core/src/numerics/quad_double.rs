@@ -1,7 +1,7 @@
 //! Numbers of four times the precision, for the few differences that decide what a motion does for ever after.
 //!
 //! Near a separatrix the difference of two large terms sets the period. What [`DoubleDouble`] leaves of it when its first
-//! hundred bits cancel is too little; here two hundred are carried. Slow, and used only where that happens.
+//! hundred bits cancel is too little; here two hundred are carried, and only where that happens.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -9,8 +9,8 @@ use super::double_double::{DoubleDouble, fast_two_sum, two_product, two_sum};
 
 /// A number as the unevaluated sum of four doubles, each at most half a unit in the last place of the one before: 212 bits.
 ///
-/// Sums and products are accurate to a few units of 2⁻²⁰⁸ of the larger term, quotients and roots of themselves, within the
-/// range that [`two_product`] states.
+/// Sums are accurate to 2⁻²⁰⁶ of the larger term, products, quotients and roots to 2⁻²⁰³ of themselves, within the range that
+/// [`two_product`] states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct QuadDouble([f64; 4]);
 
@@ -63,32 +63,16 @@ impl QuadDouble {
         start + rest.into()
     }
 
-    /// The sum of terms of any sizes: sweeps of error-free sums gather it in the first ones.
-    fn of_terms<const N: usize>(mut terms: [f64; N]) -> Self {
-        for _ in 0..SWEEPS {
-            gather(&mut terms);
-        }
-        let mut parts = [0.0; 4];
-        for (k, part) in parts.iter_mut().enumerate() {
-            gather(&mut terms[k..]);
-            *part = terms[k];
-        }
-        // Each part is near the rounded rest; carries go up once more.
-        gather(&mut parts);
-        for k in 0..3 {
-            (parts[k], parts[k + 1]) = fast_two_sum(parts[k], parts[k + 1]);
-        }
-        Self(parts)
-    }
-}
-
-/// After so many sweeps the errors of a sum are 2⁻²¹² of its largest term.
-const SWEEPS: usize = 3;
-
-/// Error-free sums from the last term to the first, which becomes the rounded sum of them all.
-fn gather(terms: &mut [f64]) {
-    for k in (1..terms.len()).rev() {
-        (terms[k - 1], terms[k]) = two_sum(terms[k - 1], terms[k]);
+    /// The sum of parts that need not be apart, each near a unit in the last place of the one before, or below it.
+    #[inline]
+    fn of_parts([mut a, mut b, mut c, mut d]: [f64; 4]) -> Self {
+        // Up once, what is carried; then what is left between two parts goes to the upper one.
+        (c, d) = two_sum(c, d);
+        (b, c) = two_sum(b, c);
+        (a, b) = two_sum(a, b);
+        (b, c) = fast_two_sum(b, c);
+        (c, d) = fast_two_sum(c, d);
+        Self([a, b, c, d])
     }
 }
 
@@ -115,9 +99,17 @@ impl Neg for QuadDouble {
 impl Add for QuadDouble {
     type Output = Self;
 
+    /// Parts of one order, and the errors of their sums to the next order.
+    #[inline]
     fn add(self, other: Self) -> Self {
         let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
-        Self::of_terms([a, p, b, q, c, r, d, s])
+        let (first, e1) = two_sum(a, p);
+        let (second, e2) = two_sum(b, q);
+        let (third, e3) = two_sum(c, r);
+        let (second, f2) = two_sum(second, e1);
+        let (third, f3) = two_sum(third, e2);
+        let (third, g3) = two_sum(third, f2);
+        Self::of_parts([first, second, third, (d + s) + (e3 + f3 + g3)])
     }
 }
 
@@ -132,25 +124,26 @@ impl Sub for QuadDouble {
 impl Mul for QuadDouble {
     type Output = Self;
 
-    /// The products of parts down to 2⁻²¹² of the first, those above it with their rests.
+    /// The products of parts down to 2⁻¹⁵⁹ of the first, those above it with their errors.
+    #[inline]
     fn mul(self, other: Self) -> Self {
-        let mut terms = [0.0; 23];
-        let mut filled = 0;
-        for order in 0..=4_usize {
-            for i in order.saturating_sub(3)..=order.min(3) {
-                let (a, b) = (self.0[i], other.0[order - i]);
-                if order < 4 {
-                    let (product, rest) = two_product(a, b);
-                    terms[filled] = product;
-                    terms[filled + 1] = rest;
-                    filled += 2;
-                } else {
-                    terms[filled] = a * b;
-                    filled += 1;
-                }
-            }
-        }
-        Self::of_terms(terms)
+        let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
+        let (first, e1) = two_product(a, p);
+        let [(ap, e2), (bp, f2)] = [two_product(a, q), two_product(b, p)];
+        let (sum, g2) = two_sum(ap, bp);
+        let (second, h2) = two_sum(sum, e1);
+        let [(ar, e3), (bq, f3), (cp, g3)] =
+            [two_product(a, r), two_product(b, q), two_product(c, p)];
+        let (outer, h3) = two_sum(ar, cp);
+        let (inner, i3) = two_sum(bq, e2);
+        let (errors, j3) = two_sum(f2, g2);
+        let (sum, k3) = two_sum(outer, inner);
+        let (rest, l3) = two_sum(errors, h2);
+        let (third, m3) = two_sum(sum, rest);
+        let products = (a * s + d * p) + (b * r + c * q);
+        let of_products = (e3 + g3) + f3;
+        let of_sums = ((h3 + i3) + (j3 + k3)) + (l3 + m3);
+        Self::of_parts([first, second, third, products + (of_products + of_sums)])
     }
 }
 
@@ -170,7 +163,10 @@ impl Div for QuadDouble {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+    use crate::numerics::expansion::Expansion;
 
     fn size(x: QuadDouble) -> f64 {
         x.rounded().abs()
@@ -192,6 +188,68 @@ mod tests {
         assert_eq!(size(square), 2.0_f64.powi(-180));
         assert_eq!(size(small - small), 0.0);
         assert!(size((small * third) / third - small) <= 2.0_f64.powi(-206));
+    }
+
+    /// What a sum of terms lacks to be this number.
+    fn rest(found: QuadDouble, terms: &[f64]) -> f64 {
+        let mut sum = Expansion::default();
+        for &x in terms {
+            sum.add(x);
+        }
+        for part in found.0 {
+            sum.add(-part);
+        }
+        sum.rounded()
+    }
+
+    /// Numbers whose parts have gaps of any size between them, or none.
+    fn number() -> impl Strategy<Value = QuadDouble> {
+        let part = (any::<bool>(), 1.0..2.0_f64, 53..75_i32);
+        [part.clone(), part.clone(), part.clone(), part].prop_map(|parts| {
+            let mut size = 0;
+            parts.into_iter().fold(
+                QuadDouble::default(),
+                |sum, (is_negative, digits, below)| {
+                    size -= below;
+                    let part = digits * 2.0_f64.powi(53 + size);
+                    sum + QuadDouble::from(if is_negative { -part } else { part })
+                },
+            )
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn sums_are_exact_but_for_their_last_bits(a in number(), b in number(), scale in -220..5_i32) {
+            let b = b.scaled(2.0_f64.powi(scale));
+            let terms = [a.0, b.0].concat();
+            let larger = size(a).max(size(b));
+            prop_assert!(rest(a + b, &terms).abs() <= 2.0_f64.powi(-206) * larger);
+            prop_assert!(rest(a - a, &[]).abs() == 0.0);
+            // What cancels leaves what is exact.
+            let difference = (a + b) - a;
+            prop_assert!(size(difference - b) <= 2.0_f64.powi(-205) * larger);
+        }
+
+        #[test]
+        fn products_are_exact_but_for_their_last_bits(a in number(), b in number()) {
+            let terms: Vec<f64> = (a.0.into_iter())
+                .flat_map(|x| b.0.map(|y| <[f64; 2]>::from(two_product(x, y))))
+                .flatten()
+                .collect();
+            let product = a * b;
+            prop_assert!(rest(product, &terms).abs() <= 2.0_f64.powi(-206) * size(product));
+        }
+
+        #[test]
+        fn parts_are_apart(a in number(), b in number(), scale in -220..5_i32) {
+            let b = b.scaled(2.0_f64.powi(scale));
+            for found in [a + b, a - b, a * b] {
+                for pair in found.0.windows(2) {
+                    prop_assert!(pair[0] + pair[1] == pair[0], "{found:?}");
+                }
+            }
+        }
     }
 
     #[test]

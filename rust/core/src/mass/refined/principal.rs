@@ -14,6 +14,7 @@ use crate::mass::provenance::MomentsFrom;
 use crate::mass::validity::ROUNDING;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::power_below;
+use crate::numerics::quad_double::QuadDouble;
 use crate::principal::{PrincipalAxes, principal_axes};
 
 /// The principal moments, ascending, with their axes, to twice the precision.
@@ -186,6 +187,16 @@ impl RefinedPrincipal {
     /// Whether moments and axes are what they are to the last bit.
     pub(crate) fn is_exact(&self) -> bool {
         self.source == Source::Exact
+    }
+
+    /// The rows of the tensor in B that moments and axes were refined from; `None` where these are given.
+    pub(crate) fn tensor(&self) -> Option<[[QuadDouble; 3]; 3]> {
+        match &self.source {
+            Source::Exact | Source::Axes(_) => None,
+            Source::Tensor(rows, unit) => {
+                Some(rows.map(|row| row.map(|x| QuadDouble::from(x.scaled(*unit)))))
+            }
+        }
     }
 
     /// Moments and axes to four times the precision.

@@ -64,7 +64,8 @@ impl Separation {
         }
         let finest = principal.finest();
         let largest = omega.amax();
-        let components = finest.components(omega).map(|rate| {
+        let exact = [omega.x, omega.y, omega.z].map(QuadDouble::from);
+        let components = finest.components(&exact).map(|rate| {
             if rate.rounded().abs() <= ROUNDING * FINER_ROUNDING * largest {
                 QuadDouble::default()
             } else {

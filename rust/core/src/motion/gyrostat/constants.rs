@@ -98,11 +98,7 @@ struct Pace {
 }
 
 /// The motion of a start that is not steady.
-pub(super) fn moving(
-    given: &Given<'_>,
-    start: &Start<DoubleDouble>,
-    spinor: &Spinor,
-) -> (Propagator, Secular) {
+pub(super) fn moving(given: &Given<'_>, start: &Start, spinor: &Spinor) -> (Propagator, Secular) {
     let unit = start.unit;
     let mut columns = spinor.columns;
     let pace = match spinor.regime {
@@ -293,7 +289,7 @@ fn circular(spinor: &Spinor) -> Circular {
 /// turns.
 fn attitude(
     given: &Given<'_>,
-    start: &Start<DoubleDouble>,
+    start: &Start,
     columns: &[[Number; 2]; 2],
     turned: f64,
 ) -> [[f64; 4]; 4] {
@@ -323,11 +319,7 @@ fn attitude(
 }
 
 /// From the products of the two theta functions to D ω: `ω_i = (|L| n_i − h_i)/I_i` along the principal axes, `D n = χ†σχ`.
-fn omega(
-    given: &Given<'_>,
-    start: &Start<DoubleDouble>,
-    columns: &[[Number; 2]; 2],
-) -> [[f64; 3]; 4] {
+fn omega(given: &Given<'_>, start: &Start, columns: &[[Number; 2]; 2]) -> [[f64; 3]; 4] {
     let [u, v] = columns;
     let two = |x: DoubleDouble| x.scaled(2.0);
     // u†σv and u†v.

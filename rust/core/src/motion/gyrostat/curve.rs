@@ -1,10 +1,10 @@
-//! The elliptic curve of a motion: from the invariants of its quartic to roots, periods and nome.
+//! The elliptic curve of a motion: from its invariants to roots, periods and nome.
 //!
 //! `4E³ − G₂E + G₃ = 0` has the roots `E_k`, whose sum is zero. `G₃ ≤ 0` means that the one that stands apart is the
 //! largest: then the real period is not long beside the imaginary one and sines serve. Where `G₃ > 0` all is done for −E and
 //! the time i t, in which the two periods exchange their roles, with hyperbolic functions.
 
-use super::quartic::Invariants;
+use super::pencil::Invariants;
 use crate::numerics::double_double::DoubleDouble;
 
 /// A way to measure the curve: from the root E to the means of its real period.
@@ -45,17 +45,16 @@ pub(super) struct Curve {
 const STEPS: usize = 60;
 
 impl Curve {
-    pub(super) fn of(invariants: &Invariants<DoubleDouble>) -> Self {
-        let (second, third) = (invariants.second, invariants.third);
-        let is_turned = third.high > 0.0;
-        let third = if is_turned { third } else { -third };
-        let root = largest_root(second, third);
+    /// From the root that stands apart.
+    pub(super) fn of(invariants: &Invariants, apart: DoubleDouble) -> Self {
+        let is_turned = invariants.third.high > 0.0;
+        let root = if is_turned { -apart } else { apart };
         let three = DoubleDouble::from(3.0);
-        let square = three * (root * root) - second.scaled(0.25);
+        let square = three * (root * root) - invariants.second.scaled(0.25);
         if square.high <= 0.0 {
             return Self::cusp();
         }
-        let gap = invariants.discriminant.scaled(1.0 / 16.0) / (square * square);
+        let gap = invariants.discriminant / (square * square);
         let height = square.sqrt();
         let sum = three * root + height.scaled(2.0);
         let apart = Means::of(root, height, sum);
@@ -96,6 +95,16 @@ impl Curve {
         } else {
             None
         }
+    }
+}
+
+/// The root that stands apart from the other two.
+pub(super) fn apart(invariants: &Invariants) -> DoubleDouble {
+    let (second, third) = (invariants.second, invariants.third);
+    if third.high > 0.0 {
+        -largest_root(second, third)
+    } else {
+        largest_root(second, -third)
     }
 }
 

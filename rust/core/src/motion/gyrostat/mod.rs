@@ -11,7 +11,9 @@
 //! | `mode.rs` | the ways to move |
 //! | `motion.rs` | a motion from its start, its states |
 //! | `start.rs` | the frame of L and ω at the start, and the matrix of the motion there |
-//! | `quartic.rs` | the quartic that the spinor of L obeys, its invariants |
+//! | `quartic.rs` | the quartic that the spinor of L obeys |
+//! | `pencil.rs` | the real quartic of energy and momentum, the invariants of both |
+//! | `remnant.rs` | what is left of it next to a separatrix, to four times the precision |
 //! | `curve.rs` | roots, periods and nome |
 //! | `logarithm.rs` | where the start is on the curve: an elliptic logarithm by means |
 //! | `spinor.rs` | M and ν from the start |
@@ -61,8 +63,10 @@ mod inside;
 mod logarithm;
 pub mod mode;
 mod motion;
+mod pencil;
 mod propagator;
 mod quartic;
+mod remnant;
 mod spinor;
 mod start;
 #[cfg(test)]

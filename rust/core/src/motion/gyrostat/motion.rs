@@ -3,10 +3,11 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::constants::{Given, Secular, moving, steady};
-use super::curve::Curve;
+use super::curve::{Curve, apart};
 use super::mode::Mode;
+use super::pencil::Pencil;
 use super::propagator::Propagator;
-use super::quartic::Invariants;
+use super::remnant::remnant;
 use super::spinor::Spinor;
 use super::start::Start;
 use crate::error::{Error, MotionFault, all_finite};
@@ -16,7 +17,6 @@ use crate::motion::free::{self, FreeMotion};
 use crate::motion::state::{ClosedForm, State};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
-use crate::numerics::quad_double::QuadDouble;
 
 /// The motion of a body with constant angular momentum h inside, on which no torque acts about its centre of mass, from its
 /// state at t = 0: `I ω̇ + ω × (I ω + h) = 0`.
@@ -59,8 +59,6 @@ enum Way {
 const LOST: f64 = 1e-24;
 /// Of a motion whose ω at the start is off by more than this part of it too many digits are lost.
 const TOO_FAR_OFF: f64 = 1e-9;
-/// With four times the precision it is zero if it is below this part of its terms.
-const NOTHING: f64 = 1e-58;
 
 impl GyrostatMotion {
     /// From the principal moments and axes of the tensor I, h and ω at the start, components in B, and the attitude.
@@ -237,7 +235,7 @@ fn kept(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3
 
 /// A start with its curve and its spinor.
 struct Solved {
-    start: Start<DoubleDouble>,
+    start: Start,
     curve: Curve,
     spinor: Spinor,
 }
@@ -251,44 +249,25 @@ impl Solved {
         rotor: &Vector,
         rotor_along: &Vector,
     ) -> Option<Self> {
-        let mut start = Start::of(moments, &principal.components(omega), rotor_along)?;
-        let mut quartic = start.quartic();
-        let mut invariants = quartic.invariants();
+        let start = Start::of(moments, &principal.components(omega), rotor_along)?;
+        let (quartic, pencil) = (start.quartic(), Pencil::of(&start));
+        let mut invariants = pencil.invariants();
+        let apart = apart(&invariants);
         let is_degenerate = is_degenerate(moments, rotor_along);
         if is_degenerate {
             invariants.discriminant = DoubleDouble::default();
         } else if !invariants.is_cusp
             && invariants.discriminant.high.abs() < LOST * invariants.terms
         {
-            // What is left of it comes from what the axes were refined from.
-            let finest = principal.finest();
             let unit = moments[2].high / principal.moments[2].high;
-            let finer = finest.moments.map(|moment| moment.scaled(unit));
-            let high = rotor.map(|x| x.high);
-            let low = rotor.map(|x| x.low);
-            let [high, low] = [high, low].map(|parts| finest.components(&Vector3::from(parts)));
-            let inside: [QuadDouble; 3] = std::array::from_fn(|k| high[k] + low[k]);
-            let there = Start::of(&finer, &finest.components(omega), &inside)?;
-            let found = there.quartic().invariants();
-            let discriminant = if found.discriminant.rounded().abs() <= NOTHING * found.terms {
-                DoubleDouble::default()
-            } else {
-                found.discriminant.twofold()
-            };
-            start = there.twofold();
-            quartic = start.quartic();
-            invariants = Invariants {
-                second: found.second.twofold(),
-                third: found.third.twofold(),
-                discriminant,
-                terms: found.terms,
-                is_cusp: found.is_cusp,
-            };
+            let y = pencil.meeting(apart.high);
+            let left = remnant(principal, unit, omega, rotor, &start, y);
+            invariants.discriminant = pencil.discriminant_of(y, left);
         }
         let (curve, spinor) = if invariants.is_cusp && !is_degenerate {
             (Curve::cusp(), Spinor::cusp(&quartic, start.across))
         } else {
-            let curve = Curve::of(&invariants);
+            let curve = Curve::of(&invariants, apart);
             (curve, Spinor::of(&quartic, &curve, start.across))
         };
         Some(Self {

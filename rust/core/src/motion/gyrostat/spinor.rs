@@ -62,7 +62,7 @@ const TERMS: i32 = 8;
 
 impl Spinor {
     /// Of the quartic of the start, its curve and ρ. The start: ψ = (1, 0), `ψ̇ = ½i (ω_n, ρ)`.
-    pub(super) fn of(quartic: &Quartic<DoubleDouble>, curve: &Curve, rho: DoubleDouble) -> Self {
+    pub(super) fn of(quartic: &Quartic, curve: &Curve, rho: DoubleDouble) -> Self {
         let [value, derivative] = quartic.place();
         let place = if curve.is_turned {
             [-value, -derivative.times_i()]
@@ -124,7 +124,7 @@ impl Spinor {
     }
 
     /// Of a curve with three equal roots: `P = (t − s)⁻²`, which is zero for a quartic with four equal zeros.
-    pub(super) fn cusp(quartic: &Quartic<DoubleDouble>, rho: DoubleDouble) -> Self {
+    pub(super) fn cusp(quartic: &Quartic, rho: DoubleDouble) -> Self {
         let [value, derivative] = quartic.place();
         let mut slope = value.sqrt();
         if (slope * value).is_opposite_to(derivative) {
@@ -150,7 +150,7 @@ impl Spinor {
 
 /// `Mₑ` and `Mₒ` from `d log ϑ₁`, the two functions with their rates, and ρ.
 fn columns(
-    quartic: &Quartic<DoubleDouble>,
+    quartic: &Quartic,
     slope: Number,
     [even, odd]: [[Number; 2]; 2],
     rho: DoubleDouble,

@@ -6,46 +6,47 @@
 //! h has no part.
 
 use super::quartic::Quartic;
+use crate::mass::refined::Vector;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elliptic::Real;
 use crate::numerics::power_of_two::power_below;
-use crate::numerics::quad_double::QuadDouble;
 
 /// The start, in units in which nothing is far from one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Start<T> {
+pub(super) struct Start {
     /// `e₁`, `e₂`, n; components along the principal axes.
-    pub(super) frame: [[T; 3]; 3],
+    pub(super) frame: [Vector; 3],
     /// |L|.
-    pub(super) momentum: T,
+    pub(super) momentum: DoubleDouble,
     /// ρ, over `unit`.
-    pub(super) across: T,
+    pub(super) across: DoubleDouble,
     /// `B₁₁, B₁₂, B₁₃, B₂₂, B₂₃, B₃₃`, over `unit`.
-    pub(super) matrix: [T; 6],
+    pub(super) matrix: [DoubleDouble; 6],
+    /// `ω·n`, in units of the rates.
+    pub(super) along: DoubleDouble,
     /// `|L| e₂·I⁻¹e₂`, in units of the rates.
-    pub(super) transverse: T,
+    pub(super) transverse: DoubleDouble,
     /// A power of two near the largest of `matrix` and `across`.
     pub(super) unit: f64,
 }
 
-/// A component of L × ω this small beside its terms is zero, in units of what the numbers are rounded to.
-const NOISE: f64 = 100.0;
+/// A component of L × ω this small beside its terms is zero.
+const NOISE: f64 = 1e-30;
 
-pub(super) fn cross<T: Real>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
     [[1, 2], [2, 0], [0, 1]].map(|[j, k]| a[j] * b[k] - a[k] * b[j])
 }
 
-pub(super) fn dot<T: Real>(a: &[T; 3], b: &[T; 3]) -> T {
+pub(super) fn dot(a: &Vector, b: &Vector) -> DoubleDouble {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn largest<T: Real>(v: &[T]) -> f64 {
+fn largest(v: &[DoubleDouble]) -> f64 {
     v.iter()
         .fold(0.0, |most: f64, x| most.max(x.rounded().abs()))
 }
 
 /// The unit vector along v, and its length as a number near one and a power of two; `None` of zero.
-pub(super) fn direction<T: Real>(v: &[T; 3]) -> Option<([T; 3], T, f64)> {
+pub(super) fn direction(v: &Vector) -> Option<(Vector, DoubleDouble, f64)> {
     let size = largest(v);
     if size == 0.0 {
         return None;
@@ -56,17 +57,17 @@ pub(super) fn direction<T: Real>(v: &[T; 3]) -> Option<([T; 3], T, f64)> {
     let again = power_below(largest(&v));
     let v = v.map(|x| x.scaled(1.0 / again));
     let length = dot(&v, &v).sqrt();
-    let inverse = T::from(1.0) / length;
+    let inverse = DoubleDouble::from(1.0) / length;
     Some((v.map(|x| x * inverse), length.scaled(again), unit))
 }
 
-impl<T: Real> Start<T> {
+impl Start {
     /// Of positive moments, ω and h along the principal axes; `None` where ω is constant.
-    pub(super) fn of(moments: &[T; 3], omega: &[T; 3], rotor: &[T; 3]) -> Option<Self> {
+    pub(super) fn of(moments: &Vector, omega: &Vector, rotor: &Vector) -> Option<Self> {
         let [i1, i2, i3] = *moments;
-        let momentum: [T; 3] = std::array::from_fn(|k| moments[k] * omega[k] + rotor[k]);
+        let momentum: Vector = std::array::from_fn(|k| moments[k] * omega[k] + rotor[k]);
         // L × ω, whose terms keep their digits where ω or h is along an axis.
-        let torque: [T; 3] = std::array::from_fn(|k| {
+        let torque: Vector = std::array::from_fn(|k| {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
             let terms = [
                 (moments[a] - moments[b]) * (omega[a] * omega[b]),
@@ -74,8 +75,8 @@ impl<T: Real> Start<T> {
                 -(rotor[b] * omega[a]),
             ];
             let sum = terms[0] + terms[1] + terms[2];
-            if sum.rounded().abs() <= NOISE * T::CLOSE * T::CLOSE * largest(&terms) {
-                T::from(0.0)
+            if sum.rounded().abs() <= NOISE * largest(&terms) {
+                DoubleDouble::from(0.0)
             } else {
                 sum
             }
@@ -87,15 +88,15 @@ impl<T: Real> Start<T> {
         let along = dot(&e2, &n);
         let (e2, ..) = direction(&std::array::from_fn(|k| e2[k] - along * n[k]))?;
         let frame = [cross(&e2, &n), e2, n];
-        let over = moments.map(|moment| T::from(1.0) / moment);
+        let over = moments.map(|moment| DoubleDouble::from(1.0) / moment);
         // The inverse moments less the middle one.
         let excess = [(i2 - i1) * over[0] * over[1], (i2 - i3) * over[2] * over[1]];
         let element = |i: usize, j: usize| {
-            let (a, b): ([T; 3], [T; 3]) = (frame[i], frame[j]);
+            let (a, b): (Vector, Vector) = (frame[i], frame[j]);
             length * (excess[0] * (a[0] * b[0]) + excess[1] * (a[2] * b[2]))
         };
         let third = element(2, 2);
-        let inner: [T; 3] = std::array::from_fn(|k| rotor[k] * over[k]);
+        let inner: Vector = std::array::from_fn(|k| rotor[k] * over[k]);
         let shift = dot(&frame[2], &inner) - third;
         let second = element(1, 1);
         let matrix = [
@@ -114,6 +115,7 @@ impl<T: Real> Start<T> {
             momentum: length,
             across: across.scaled(turning_unit).scaled(1.0 / unit),
             matrix: matrix.map(|x| x.scaled(1.0 / unit)),
+            along: dot(&frame[2], omega),
             transverse: length * over[1] + second,
             unit,
         })
@@ -121,21 +123,7 @@ impl<T: Real> Start<T> {
 
     /// The quartic `ẋ² = −¼(1 + 4a₁x + 6a₂x² + 4a₃x³ + a₄x⁴)` of the spinor of n, x = 0 at the start, whose x is in units
     /// of ρ.
-    pub(super) fn quartic(&self) -> Quartic<T> {
+    pub(super) fn quartic(&self) -> Quartic {
         Quartic::of(&self.matrix, self.across)
-    }
-}
-
-impl Start<QuadDouble> {
-    /// Rounded to twice the precision.
-    pub(super) fn twofold(&self) -> Start<DoubleDouble> {
-        Start {
-            frame: self.frame.map(|axis| axis.map(QuadDouble::twofold)),
-            momentum: self.momentum.twofold(),
-            across: self.across.twofold(),
-            matrix: self.matrix.map(QuadDouble::twofold),
-            transverse: self.transverse.twofold(),
-            unit: self.unit,
-        }
     }
 }
