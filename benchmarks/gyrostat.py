@@ -16,6 +16,14 @@ MOMENTS = np.array([1.0, 2.0, 2.5])
 ROTOR = np.array([0.4, -0.2, 0.9])
 OMEGA = np.array([0.3, 0.4, 1.1])
 ROTATION = 2 * np.pi / np.linalg.norm(OMEGA)
+BESIDE = np.array([-1.5 * (1 - 2.0**-40), 1.0, -1.5])
+"""A start 1e-12 off a separatrix."""
+TURN = np.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2]])
+"""Three times a rotation: what it makes of whole numbers is exact."""
+TURNED = TURN @ np.diag([18.0, 27.0, 36.0]) @ TURN.T / 9
+TURNED_ROTOR = TURN @ np.array([9.0, 9.0, 18.0])
+BORDER = TURN @ np.array([-2.5, 1.0, -2.5])
+"""A start on a separatrix."""
 STATES = 100_000
 FAR = 10_000
 INTEGRATED = 10
@@ -65,10 +73,30 @@ def rows() -> Iterator[Row]:
     # Set-up, and what of a state is computed: beside those of the free motion.
     body = RigidBody.from_principal(1.0, MOMENTS)
     free = body.free_motion(OMEGA)
+    beside = RigidBody.from_principal(1.0, (3.0, 4.0, 6.0)).gyrostat((2.5, 0.0, -1.0))
     yield Row(
         name="gyrostat, set-up",
         peer="our free motion",
         ours=lambda: gyrostat.free_motion(OMEGA),
+        theirs=lambda: body.free_motion(OMEGA),
+        compare=lambda _ours, _theirs: None,
+        most_seconds=10e-6,
+    )
+    # Next to a separatrix one number more is needed, to four times the precision; here of a tensor whose axes are turned.
+    turned = RigidBody(1.0, TURNED).gyrostat(TURNED_ROTOR)
+    assert turned.free_motion(BORDER).mode == "separatrix"
+    yield Row(
+        name="gyrostat, set-up on a separatrix, axes turned",
+        peer="our free motion",
+        ours=lambda: turned.free_motion(BORDER),
+        theirs=lambda: body.free_motion(OMEGA),
+        compare=lambda _ours, _theirs: None,
+        most_seconds=10e-6,
+    )
+    yield Row(
+        name="gyrostat, set-up next to a separatrix",
+        peer="our free motion",
+        ours=lambda: beside.free_motion(BESIDE),
         theirs=lambda: body.free_motion(OMEGA),
         compare=lambda _ours, _theirs: None,
         most_seconds=10e-6,

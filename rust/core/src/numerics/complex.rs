@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use super::double_double::DoubleDouble;
 use super::elliptic::Real;
 
 /// `re + i im`.
@@ -96,29 +97,40 @@ impl<T: Real> Complex<T> {
         (self * b.conjugate()).times(inverse)
     }
 
-    /// The square root in the right half plane.
-    #[must_use]
-    pub(crate) fn sqrt(self) -> Self {
-        let size = self.norm_squared().sqrt();
-        let larger = ((size + self.re.abs()).scaled(0.5)).sqrt();
-        if larger.rounded() == 0.0 {
-            return Self::zero();
-        }
-        let smaller = self.im / larger.scaled(2.0);
-        if self.re.rounded() >= 0.0 {
-            Self::new(larger, smaller)
-        } else if self.im.rounded() < 0.0 {
-            Self::new(-smaller, -larger)
-        } else {
-            Self::new(smaller, larger)
-        }
-    }
-
     /// Whether `Re(a b̄) < 0`: a and b point to opposite sides.
     #[inline]
     #[must_use]
     pub(crate) fn is_opposite_to(self, b: Self) -> bool {
         self.re.rounded() * b.re.rounded() + self.im.rounded() * b.im.rounded() < 0.0
+    }
+}
+
+impl Complex<DoubleDouble> {
+    /// The square root in the right half plane: that of the rounded number, and one step of Newton's method.
+    #[must_use]
+    pub(crate) fn sqrt(self) -> Self {
+        let (x, y) = (self.re.high, self.im.high);
+        let size = x.hypot(y);
+        let larger = (0.5 * (size + x.abs())).sqrt();
+        if larger == 0.0 {
+            return Self::zero();
+        }
+        let smaller = 0.5 * y / larger;
+        let (x, y) = if x >= 0.0 {
+            (larger, smaller)
+        } else if y < 0.0 {
+            (-smaller, -larger)
+        } else {
+            (smaller, larger)
+        };
+        let square = DoubleDouble::product(x, x) - DoubleDouble::product(y, y);
+        let rest = (self.re - square).high;
+        let across = (self.im - DoubleDouble::product(x, y).scaled(2.0)).high;
+        let half = 0.5 / size;
+        Self::new(
+            DoubleDouble::sum(x, (rest * x + across * y) * half),
+            DoubleDouble::sum(y, (across * x - rest * y) * half),
+        )
     }
 }
 
@@ -164,7 +176,6 @@ impl<T: Real> Mul for Complex<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::double_double::DoubleDouble;
 
     #[test]
     fn roots_and_quotients_undo_products() {
@@ -189,7 +200,7 @@ mod tests {
             let w = number(0.3, -5.0);
             assert!(((z * w).over(w) - z).size() <= 1e-30 * z.size());
         }
-        assert_eq!(Complex::<f64>::zero().sqrt(), Complex::new(0.0, 0.0));
+        assert_eq!(Complex::<DoubleDouble>::zero().sqrt(), Complex::zero());
     }
 
     #[test]

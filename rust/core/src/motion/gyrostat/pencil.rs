@@ -13,6 +13,8 @@ use crate::numerics::double_double::DoubleDouble;
 pub(super) struct Pencil {
     /// `b₀`, `b₁`, `b₂`, `b₃`.
     b: [DoubleDouble; 4],
+    /// The sizes of the terms that each is the sum of.
+    sizes: [f64; 4],
 }
 
 /// The invariants of the motion, with what decides how it looks.
@@ -57,12 +59,20 @@ impl Pencil {
         let rho = start.across;
         let (m11, m13) = (b22 * b33 - b23 * b23, b12 * b23 - b13 * b22);
         let m33 = b11 * b22 - b12 * b12;
+        let [s11, s12, s13, s22, s23, s33] = start.matrix.map(|x| x.high.abs());
+        let s = rho.high;
         Self {
             b: [
                 rho * rho * m11,
                 -(rho * (m13.scaled(2.0) + rho * (b22 + b33))),
                 m33 - rho * (b13.scaled(2.0) - rho),
                 -(b11 + b22),
+            ],
+            sizes: [
+                s * s * (s22 * s33 + s23 * s23),
+                s * (2.0 * (s12 * s23 + s13 * s22) + s * (s22 + s33)),
+                s11 * s22 + s12 * s12 + s * (2.0 * s13 + s),
+                s11 + s22,
             ],
         }
     }
@@ -104,7 +114,7 @@ impl Pencil {
         let r = product.scaled(8.0) + cross * b2 - number(3.0) * (slope + bend);
         let lowest = product.scaled(4.0) - slope - bend;
         let sum = p * p * (p + square) + square * b2 * lowest;
-        let [s0, s1, s2, s3] = self.b.map(|x| x.high.abs());
+        let [s0, s1, s2, s3] = self.sizes;
         let sp = 4.0 * s0 + s1 * s3;
         let s_slope = s1 * s1 + s0 * s3 * s3;
         let sr = 8.0 * s0 * s2 + s1 * s2 * s3 + 3.0 * s_slope;
@@ -145,6 +155,7 @@ impl Pencil {
                 b2 + y * (number(3.0) * b3 + six),
                 b3 + y.scaled(4.0),
             ],
+            ..*self
         };
         let [b0, b1, b2, _] = there.b.map(DoubleDouble::rounded);
         let flat = FLAT * (self.b[1].high.abs() + steep.high.abs());
@@ -163,14 +174,14 @@ mod tests {
     fn with_zeros(y: [f64; 4]) -> Pencil {
         let [p, q, r, s] = y.map(DoubleDouble::from);
         let (sum, product, other, both) = (p + q, p * q, r + s, r * s);
-        Pencil {
-            b: [
-                product * both,
-                -(product * other + sum * both),
-                product + both + sum * other,
-                -(sum + other),
-            ],
-        }
+        let b = [
+            product * both,
+            -(product * other + sum * both),
+            product + both + sum * other,
+            -(sum + other),
+        ];
+        let sizes = b.map(|x| x.high.abs());
+        Pencil { b, sizes }
     }
 
     #[test]
@@ -185,7 +196,7 @@ mod tests {
             // E′ − E″ = (p − q)(r − s), and so on.
             let [a, b, c] = [(p - q) * (r - s), (p - r) * (s - q), (p - s) * (q - r)];
             let second = 2.0 / 3.0 * (a * a + b * b + c * c);
-            let third = -4.0 / 27.0 * (a - b) * (b - c) * (c - a);
+            let third = 4.0 / 27.0 * (a - b) * (b - c) * (c - a);
             let discriminant = (a * b * c).powi(2);
             assert!(
                 (found.second.high - second).abs() <= 1e-14 * second,
