@@ -10,8 +10,10 @@ import pytest
 from ensemble_cases import BODY, SPIN, all_bytes, twisted
 from polhode import RigidBody, distributions, ensemble, errors, loads, reductions
 from polhode.ensembles import cluster as cluster_of_ensembles
+from polhode.errors import FileFormatError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from polhode import Trajectory
@@ -208,3 +210,98 @@ class TestWhatCannotBeSent:
         ):
             self.held().to_npz(tmp_path / "out")
         assert len(self.held().compute().member) == 20
+
+
+def once(**options: Any) -> Any:
+    given: dict[str, Any] = {"body": BODY, "t": [0, 1], "omega": SPIN, "n": 10, "seed": 1}
+    return ensemble(**(given | options))
+
+
+def inverse(numbers: Any) -> Any:
+    raise ZeroDivisionError(f"of {len(numbers)}")
+
+
+@pytest.mark.parametrize(
+    ("make", "notes"),
+    [
+        (
+            lambda: once(omega=lambda rng: {}[rng.integers(1)]),
+            ["raised by ", "for member 0", "in the argument 'omega' of the ensemble"],
+        ),
+        (
+            lambda: once(body=distributions.made(inverse, distributions.normal(1.0, sigma=0.1))),
+            ["in the argument 'body' of the ensemble"],
+        ),
+        (
+            lambda: once(reduce=reductions.mean(lambda motion: 1 / 0 * motion.t)).compute(),
+            ["raised by the function of a reduction, of="],
+        ),
+    ],
+)
+def test_errors_of_functions_say_where_they_stand(make: Callable[[], object], notes: list[str]) -> None:
+    with pytest.raises((KeyError, ZeroDivisionError)) as raised:
+        make()
+    told = " ".join(raised.value.__notes__)
+    assert all(note in told for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "message"),
+    [
+        (
+            lambda: once(omega=lambda rng: (1, 2)[: rng.integers(1, 3)]),
+            ValueError,
+            "omega: expected 3 numbers",
+        ),
+        (lambda: once(omega=lambda rng: rng and None), ValueError, "the function gave None for one"),
+        (lambda: once(n=2**62), ValueError, "n: expected an integer below 2\\*\\*62, got 4611"),
+        (
+            lambda: once(n=2**61).to_npz("never"),
+            ValueError,
+            "chunk: 2305843009213693952 members in chunks of 4096 are 562949953421312 chunks, more than "
+            "16777216; give chunk=137438953472 or more",
+        ),
+        (
+            lambda: once(n=2**50, chunk=2**50).to_npz("never"),
+            MemoryError,
+            "chunk: 1125899906842624 members together take .* GB and this machine has .* give a smaller",
+        ),
+        (lambda: once(reduce={}), TypeError, "reduce: expected a reduction or a dict of them, got an empty"),
+        (lambda: once(states=5), TypeError, "states: expected a dict of names to numbers, got int"),
+        (lambda: once(max_steps=1.5), TypeError, "max_steps: expected a positive integer, got 1.5"),
+        (lambda: once(rtol=-1), ValueError, "^rtol must be between"),
+        (lambda: once(atol=-1), ValueError, "^atol must be zero or more, got -1"),
+        (lambda: once().member(1.5), TypeError, "k: expected the number of a member, an integer, got 1.5"),
+        (
+            lambda: once(reduce=reductions.mean("omega")).compute(checkpoint="no/such/file"),
+            FileNotFoundError,
+            "checkpoint: no.such.file: there is no directory no.such; check the path or create it first",
+        ),
+        (
+            lambda: once(t=[0, 1], omega=(0, 0, 1e300)),
+            ValueError,
+            "none of the first 10 members can begin; member 0: t = ",
+        ),
+    ],
+)
+def test_what_can_never_run_is_refused_before_anything_is(
+    make: Callable[[], object],
+    error: type[Exception],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(error, match=message):
+        make()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("header", [b"{", b"[]", b"\xff\xfe"])
+def test_a_damaged_header_is_told(tmp_path: Path, header: bytes) -> None:
+    once().to_npz(tmp_path / "out")
+    (tmp_path / "out" / "ensemble.json").write_bytes(header)
+    with pytest.raises(
+        FileFormatError, match=r"ensemble\.json does not say what ensemble this is; begin anew"
+    ):
+        once().resume(tmp_path / "out")

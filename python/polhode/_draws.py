@@ -293,6 +293,9 @@ class PerMember(Distribution):
             except PolhodeError as error:
                 # Of this member alone: whoever asks for its value is told.
                 found.append(Refusal(error))
+            except Exception as error:
+                error.add_note(f"raised by {_called(self.function)} for member {member}")
+                raise
         return found
 
     def __repr__(self) -> str:

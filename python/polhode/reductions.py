@@ -47,6 +47,7 @@ __all__ = [
 Of: TypeAlias = str | Callable[[Any], Any]
 
 STATES: Final = ("omega", "quaternion", "position", "velocity")
+_RAISED: Final = "raised by the function of a reduction, of="
 MOST_CORRELATED: Final = 1000
 """Numbers of a member whose covariance is taken: its matrix has a million elements."""
 MODES: Final = ("long-axis", "short-axis", "separatrix", "steady", "symmetric", "spherical")
@@ -64,6 +65,10 @@ class Reduction(ABC):
             if "read-only" in str(error):
                 way = "all reductions share the states; change a copy, such as motion.omega.copy()"
                 raise ValueError(f"of: {error}: {way}") from error
+            error.add_note(_RAISED)
+            raise
+        except Exception as error:
+            error.add_note(_RAISED)
             raise
         array = _core.real_numbers(found, "of")
         count = len(trajectory.omega)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,7 +20,7 @@ from polhode.ensembles.trial import outputs_of, settled, trial_of
 from polhode.reductions import Reduction
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import ArrayLike
 
@@ -112,6 +113,8 @@ def ensemble(
         "body": body, "omega": omega, "attitude": attitude, "load": load, "position": position,
         "velocity": velocity,
     }  # fmt: skip
+    if states is not None and not isinstance(states, Mapping):
+        raise TypeError(f"states: expected a dict of names to numbers, got {type(states).__name__}")
     given |= {f"states.{name}": value for name, value in sorted((states or {}).items())}
     arguments = {place: _argument(place, value) for place, value in given.items()}
     times = _core.real_numbers(t, "t").copy()
@@ -152,8 +155,10 @@ def ensemble(
 def _count(number: Any, name: str) -> int:
     if isinstance(number, bool) or not isinstance(number, int | np.integer):
         raise TypeError(f"{name}: expected a positive integer, got {number!r}")
-    if not 0 < number < 2**62:
+    if number <= 0:
         raise ValueError(f"{name}: expected a positive integer, got {number}")
+    if number >= 2**62:
+        raise ValueError(f"{name}: expected an integer below 2**62, got {number}")
     return int(number)
 
 
@@ -204,9 +209,9 @@ def _check_reduce(reduce: Any, plan: Plan) -> None:
         return
     if not isinstance(reduce, Reduction):
         if not isinstance(reduce, dict) or not reduce:
+            what = "an empty dict" if reduce == {} else type(reduce).__name__
             raise TypeError(
-                f"reduce: expected a reduction or a dict of them, got {type(reduce).__name__}; "
-                "polhode.reductions has them"
+                f"reduce: expected a reduction or a dict of them, got {what}; polhode.reductions has them"
             )
         for name, one in reduce.items():
             if not isinstance(one, Reduction):

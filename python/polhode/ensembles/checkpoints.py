@@ -60,6 +60,10 @@ class Checkpoint:
         self.is_new = False
         """Whether chunks are in the tree that are not in the file."""
         self.written = time.monotonic()
+        if not path.parent.is_dir():  # told before anything is run
+            raise FileNotFoundError(
+                f"checkpoint: {path}: there is no directory {path.parent}; check the path or create it first"
+            )
         if path.exists():
             self._read()
 

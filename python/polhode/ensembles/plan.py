@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -62,9 +63,10 @@ class Plan:
 
     def inputs(self, first: int, count: int) -> Inputs:
         """Draw the numbers of members."""
-        drawn = {
-            place: draw.distribution.rows(draw.source, first, count) for place, draw in self.draws().items()
-        }
+        drawn = {}
+        for place, draw in self.draws().items():
+            with _told_place(place):
+                drawn[place] = draw.distribution.rows(draw.source, first, count)
         return Inputs(self, first, count, drawn)
 
 
@@ -112,7 +114,8 @@ class Inputs:
         """
         found: dict[str, Any] = {"states": {}}
         for place, node in self.plan.recipe.items():
-            one = value(node, self.drawn, rows)
+            with _told_place(place):
+                one = value(node, self.drawn, rows)
             if place in VECTORS and one is not None:
                 one = _vectors(one, place, VECTORS[place], len(rows))
             elif place == "body":
@@ -142,9 +145,26 @@ def is_each_alone(plan: Plan) -> bool:
     )
 
 
+@contextmanager
+def _told_place(place: str) -> Iterator[None]:
+    """Say of errors that a function of the user's raises which argument it stands for."""
+    try:
+        yield
+    except PolhodeError:
+        raise
+    except Exception as error:
+        error.add_note(f"in the argument {place!r} of the ensemble")
+        raise
+
+
 def _vectors(given: Any, place: str, size: int, count: int) -> Floats:
     if isinstance(given, list):  # of a function that is called for each member
         given = [one.as_quat() if hasattr(one, "as_quat") else one for one in given]
+        for one in given:
+            if np.shape(one) != (size,):
+                raise ValueError(
+                    f"{place}: expected {size} numbers for each member, and the function gave {one!r} for one"
+                )
     elif hasattr(given, "as_quat"):
         given = given.as_quat()
     array = _core.real_numbers(given, place)

@@ -42,6 +42,8 @@ R = TypeVar("R")
 _STATE: Final = 120
 """Bytes of a state while it is integrated and handed over, beside the copies that are kept; measured."""
 _MEMBER: Final = 500
+_MOST_CHUNKS: Final = 2**24
+"""Their numbers are kept in memory where some of them may be done."""
 _MADE: Final = 2000
 """Bytes of a body or a load that a member has for itself."""
 
@@ -151,6 +153,9 @@ class Ensemble:
         Trajectory(2 times from 0 to 10)
         """
         plan = self.plan
+        if isinstance(k, bool) or not isinstance(k, int | np.integer):
+            raise TypeError(f"k: expected the number of a member, an integer, got {k!r}")
+        k = int(k)
         if not 0 <= k < plan.n:
             raise IndexError(f"k: there are members 0 to {plan.n - 1}, got {k}")
         made = plan.inputs(k, 1).made(np.arange(1))
@@ -191,6 +196,7 @@ class Ensemble:
         """
         plan = self.plan
         if self.reduce is not None:
+            self._check_chunk(may_be_done=checkpoint is not None)
             return self._reduced(None if checkpoint is None else Path(checkpoint))
         if checkpoint is not None:
             raise ValueError(
@@ -199,6 +205,7 @@ class Ensemble:
             )
         xarray = require("xarray", extra="cluster", purpose="Ensemble.compute")
         _check_room(self.memory.results, plan.n)
+        self._check_chunk(may_be_done=False)
         variables = layout(plan)
         arrays = {name: np.empty((plan.n, *one.tail), one.dtype) for name, one in variables.items()}
         for index, chunk in self._run(partial(arrays_of_chunk, plan), range(plan.chunks)):
@@ -265,6 +272,22 @@ class Ensemble:
             raise ValueError(
                 f"{what}: writes states, and with reduce= none are kept; call compute, or leave it out"
             )
+        self._check_chunk(may_be_done=True)
+
+    def _check_chunk(self, *, may_be_done: bool) -> None:
+        """Refuse chunks that this machine has no memory for, before any of them is run."""
+        plan = self.plan
+        if may_be_done and plan.chunks > _MOST_CHUNKS:
+            raise ValueError(
+                f"chunk: {plan.n} members in chunks of {plan.chunk} are {plan.chunks} chunks, more than "
+                f"{_MOST_CHUNKS}; give chunk={-(-plan.n // (_MOST_CHUNKS * BLOCK)) * BLOCK} or more"
+            )
+        needed, room = self.memory.worker, _room()
+        if self.client is None and room is not None and needed > room:
+            raise MemoryError(
+                f"chunk: {plan.chunk} members together take {_size(needed)} and this "
+                f"machine has {_size(room)}; give a smaller chunk=, or ask for fewer times"
+            )
 
     def _fill(self, store: Store) -> None:
         for index, arrays in self._run(partial(arrays_of_chunk, self.plan), store.pending()):
@@ -303,15 +326,20 @@ class Ensemble:
 
 def _check_room(needed: int, n: int) -> None:
     """Refuse what the machine does not have, before any of it is computed."""
-    try:
-        room = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):  # not every system tells
-        return
-    if needed > room:
+    room = _room()
+    if room is not None and needed > room:
         raise MemoryError(
             f"compute: the states of {n} members take {_size(needed)} and this machine has {_size(room)}; "
             "write them with to_zarr or to_npz, ask for fewer times, or give reduce="
         )
+
+
+def _room() -> int | None:
+    """Give the memory of this machine; not every system tells."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):
+        return None
 
 
 def _size(count: int) -> str:

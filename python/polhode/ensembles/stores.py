@@ -69,7 +69,7 @@ class NpzStore:
             path.mkdir(parents=True, exist_ok=True)
             write_bytes(path / _HEADER, json.dumps(header(plan), indent=1).encode())
         else:
-            check_same(path, json.loads((path / _HEADER).read_text("utf-8")), header(plan))
+            check_same(path, _header_in(path), header(plan))
 
     def pending(self) -> list[int]:
         """Give the chunks that are not there."""
@@ -187,7 +187,20 @@ def opened(path: Path, plan: Plan) -> Store:
         return ZarrStore(path, plan, is_new=False)
     if not path.exists():
         raise FileNotFoundError(f"{path}: there is nothing to go on with; to_zarr and to_npz begin anew")
-    raise FileFormatError(f"{path}: holds no ensemble that to_zarr or to_npz has begun")
+    raise FileFormatError(f"{path}: holds no ensemble that to_zarr or to_npz has begun; give another path")
+
+
+def _header_in(path: Path) -> dict[str, Any]:
+    """Read what ensemble the files of a directory are of."""
+    try:
+        found = json.loads((path / _HEADER).read_text("utf-8"))
+    except ValueError as error:
+        found = error
+    if not isinstance(found, dict):
+        raise FileFormatError(
+            f"{path}: {_HEADER} does not say what ensemble this is; begin anew at another path"
+        )
+    return found
 
 
 def _check_new(path: Path) -> None:
@@ -201,7 +214,7 @@ def check_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> Non
     """Refuse what is no ensemble, or another one than is wanted."""
     if found.get("kind") != wanted["kind"]:
         what = "ensemble that to_zarr or to_npz" if wanted["kind"] == _KIND else "reductions that compute"
-        raise FileFormatError(f"{path}: holds no {what} has begun")
+        raise FileFormatError(f"{path}: holds no {what} has begun; give another path")
     more = " or an option" if wanted["kind"] == _KIND else ", an option or a reduction"
     for name, here in wanted.items():
         there = found.get(name)
