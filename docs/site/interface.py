@@ -7,6 +7,7 @@ import inspect
 import re
 import tomllib
 import types
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -103,7 +104,9 @@ def of_class(name: str, cls: type, apart: set[str]) -> list[str]:
         if not k.startswith("_")
         and k not in fields | apart
         and (
-            callable(v) or inspect.isdatadescriptor(v) or isinstance(v, property | staticmethod | classmethod)
+            callable(v)
+            or inspect.isdatadescriptor(v)
+            or isinstance(v, cached_property | staticmethod | classmethod)
         )
     ]
     lines = [f".. autoclass:: {name}"]
