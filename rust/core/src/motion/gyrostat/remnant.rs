@@ -31,19 +31,16 @@ pub(super) fn remnant(
 ) -> Remnant {
     let omega = [omega.x, omega.y, omega.z].map(QuadDouble::from);
     let rotor = rotor.map(QuadDouble::from);
-    let (inertia, omega, rotor) = match principal.tensor() {
-        Some(rows) => {
-            let rows = rows.map(|row| row.map(|x| x.scaled(unit)));
-            (Inertia::Tensor(rows), omega, rotor)
-        }
-        None => {
-            let finest = principal.finest();
-            (
-                Inertia::Moments(finest.moments.map(|moment| moment.scaled(unit))),
-                finest.components(&omega),
-                finest.components(&rotor),
-            )
-        }
+    let (inertia, omega, rotor) = if let Some(rows) = principal.tensor() {
+        let rows = rows.map(|row| row.map(|x| x.scaled(unit)));
+        (Inertia::Tensor(rows), omega, rotor)
+    } else {
+        let finest = principal.finest();
+        (
+            Inertia::Moments(finest.moments.map(|moment| moment.scaled(unit))),
+            finest.components(&omega),
+            finest.components(&rotor),
+        )
     };
     let turned = inertia.times(&omega);
     let momentum: Vector4 = std::array::from_fn(|k| turned[k] + rotor[k]);
