@@ -42,6 +42,13 @@ impl Damping {
     pub fn torque(&self, omega: &Vector3<f64>) -> Vector3<f64> {
         -(self.linear * omega + self.quadratic * (omega * omega.norm()))
     }
+
+    /// [`Self::torque`] with ω in registers. Loaded from memory, two of its numbers at a time would have to wait for the two
+    /// stores that they have just come from.
+    #[inline(never)]
+    fn exerted(&self, x: f64, y: f64, z: f64) -> Wrench {
+        Wrench::couple(self.torque(&Vector3::new(x, y, z)))
+    }
 }
 
 impl Law for Damping {
@@ -85,8 +92,11 @@ impl Law for Damping {
         Ok(())
     }
 
+    // Out of line in every build: where it is inlined, ω is loaded as other laws need it.
+    #[inline(never)]
     fn wrench(&self, _: &Subject, _: f64, phase: &Phase) -> Wrench {
-        Wrench::couple(self.torque(&phase.omega))
+        let omega = &phase.omega;
+        self.exerted(omega.x, omega.y, omega.z)
     }
 
     fn potential(&self, _: &Subject, _: &Phase) -> Option<f64> {

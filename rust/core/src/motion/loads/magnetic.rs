@@ -259,8 +259,11 @@ impl Law for Magnetic {
     }
 
     fn wrench(&self, subject: &Subject, t: f64, phase: &Phase) -> Wrench {
-        let [field, rate] = self.field.at(subject.start, t);
         let in_body = |vector| phase.attitude.inverse_transform_vector(vector);
+        if let Some(field) = self.constant() {
+            return Wrench::couple(self.dipole.cross(&in_body(field)));
+        }
+        let [field, rate] = self.field.at(subject.start, t);
         let (field, rate) = (in_body(&field), in_body(&rate));
         let seen = rate - phase.omega.cross(&field);
         let moment = self

@@ -212,29 +212,52 @@ impl<L: Lane, const R: usize, const B: usize> Squares<Pack<L, R>, B> {
         Self([[Pack::new(0.0); 6]; B])
     }
 
+    // One axis after the other, written out: a loop would keep the sums in memory.
+
     #[inline(always)]
     fn add(&mut self, one: &Order<Pack<L, R>>, other: &Order<Pack<L, R>>) {
-        for b in 0..B {
+        self.add_along(0, one, other);
+        self.add_along(1, one, other);
+        self.add_along(2, one, other);
+    }
+
+    #[inline(always)]
+    fn add_along(&mut self, b: usize, one: &Order<Pack<L, R>>, other: &Order<Pack<L, R>>) {
+        if let Some(sums) = self.0.get_mut(b) {
             let n = axis::<B>(b);
-            self.0[b] = add_squares(self.0[b], &roots(n, &one.q), &roots(n, &other.q));
+            *sums = add_squares(*sums, &roots(n, &one.q), &roots(n, &other.q));
         }
     }
 
     #[inline(always)]
     fn add_middle(&mut self, middle: &Order<Pack<L, R>>) {
-        for b in 0..B {
+        self.add_middle_along(0, middle);
+        self.add_middle_along(1, middle);
+        self.add_middle_along(2, middle);
+    }
+
+    #[inline(always)]
+    fn add_middle_along(&mut self, b: usize, middle: &Order<Pack<L, R>>) {
+        if let Some(sums) = self.0.get_mut(b) {
             let roots = roots(axis::<B>(b), &middle.q);
-            self.0[b] = add_squares(self.0[b], &halved(&roots), &roots);
+            *sums = add_squares(*sums, &halved(&roots), &roots);
         }
     }
 
     #[inline(always)]
     fn directions(&self) -> [[Pack<L, R>; 3]; B] {
         let mut directions = [[Pack::new(0.0); 3]; B];
-        for b in 0..B {
-            let [s, t, u, v, w, x] = self.0[b];
-            directions[b] = from_squares(axis::<B>(b), [s + t, u + v, w + x]);
-        }
+        self.put_direction(0, &mut directions);
+        self.put_direction(1, &mut directions);
+        self.put_direction(2, &mut directions);
         directions
+    }
+
+    #[inline(always)]
+    fn put_direction(&self, b: usize, directions: &mut [[Pack<L, R>; 3]; B]) {
+        if let (Some(&[s, t, u, v, w, x]), Some(direction)) = (self.0.get(b), directions.get_mut(b))
+        {
+            *direction = from_squares(axis::<B>(b), [s + t, u + v, w + x]);
+        }
     }
 }
