@@ -9,10 +9,12 @@ SHARED := --features polhode/serde
 
 RUST := Cargo.toml Cargo.lock pyproject.toml $(shell find rust -name '*.rs' -o -name Cargo.toml)
 
-# All commands fill one environment.
+# All commands fill one environment, but for checks that only read it.
+ifndef ABREAST
 .NOTPARALLEL:
+endif
 
-.PHONY: help setup build demo quick test optional licences test-rust test-python test-long fuzz coverage mutants lint declare format docs figures package package-tests bench clean
+.PHONY: help setup build demo quick test optional licences test-rust test-python test-long fuzz coverage mutants lint lint-rust lint-python pytest declare format docs figures package package-tests bench clean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -20,20 +22,27 @@ help: ## list the commands
 demo: build ## the tumbling brick and the T-handle: report, motion and picture
 	$(BIN)/polhode demo
 
-test: build setup ## every test, Rust and Python, with lints and type checks
-	@for stage in lint test-rust test-python; do \
-		start=$$(date +%s); \
-		$(MAKE) --no-print-directory $$stage || exit 1; \
-		echo "== $$stage: $$(($$(date +%s) - start)) s"; \
-	done
+test: build setup licences optional $(VENV)/.docs ## every test, Rust and Python, with lints and type checks
+	@start=$$(date +%s); \
+		$(MAKE) --no-print-directory --jobs=2 ABREAST=yes lint-rust lint-python test-rust docs || exit 1; \
+		echo "== lints, tests of the core, pages: $$(($$(date +%s) - start)) s"
+	@start=$$(date +%s); \
+		$(MAKE) --no-print-directory pytest || exit 1; \
+		echo "== tests of the package: $$(($$(date +%s) - start)) s"
 
 quick: setup ## lints and tests of what differs from the last commit
 	$(BIN)/python tests/quick.py
 
-test-rust: ## the tests of the core, which `make build` has compiled
-	cargo test --locked --profile editable $(SHARED)
+# Without optimization a unit test needs more than the two megabytes of stack that a thread has by itself.
+test-rust: ## the tests of the core: its units, then the crate from outside, which `make build` has compiled
+	RUST_MIN_STACK=8388608 cargo test --locked --profile units $(SHARED) --package polhode --lib
+	cargo test --locked --profile editable $(SHARED) --test '*' --examples
+	cargo test --locked --profile editable $(SHARED) --doc
 
 test-python: build setup optional docs ## the tests of the package, on all cores; then those that measure time, by themselves
+	@$(MAKE) --no-print-directory pytest
+
+pytest:
 	$(BIN)/python -m pytest -m "not long and not alone" --numprocesses auto --dist loadfile
 	$(BIN)/python -m pytest -m "alone and not long"
 
@@ -52,9 +61,14 @@ mutants: build setup ## small faults put into core, bindings and package, and wh
 	cd tests && $(abspath $(BIN))/python -m mutants
 
 lint: build setup licences ## formatting, lints, types, stubs
+	@$(MAKE) --no-print-directory --jobs=2 ABREAST=yes lint-rust lint-python
+
+lint-rust:
 	cargo fmt --all --check
 	cargo clippy --locked --workspace --all-targets --features polhode/serde -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --package polhode --features serde --no-deps --quiet
+
+lint-python:
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy

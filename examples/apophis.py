@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from polhode import RigidBody, flybys, orbits, plot
 
-# Pravec et al. 2014 (Icarus 233, 48): a short-axis mode with these periods; ratios of the moments.
+# Lee et al. 2022 (A&A 661, L3): a short-axis mode with these periods; ratios of the moments.
 HOUR, DAY = 3600.0, 86400.0
 ROTATION, PRECESSION = 264.178 * HOUR, 27.38547 * HOUR
 MOMENTS = (0.64, 0.97, 1.0)

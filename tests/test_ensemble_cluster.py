@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from command_line import run
 from ensemble_cases import BODY, all_bytes, all_reductions, slow, twisted
 from polhode import distributions, ensemble, loads, reductions
 from polhode.ensembles import cluster as cluster_of_ensembles
@@ -80,6 +81,30 @@ def test_bits_of_seven_workers(workers: Any) -> None:
     assert all_bytes(twisted(5000, chunk=60, client=workers).compute()) == all_bytes(twisted(5000).compute())
     many = twisted(100_000, reduce=all_reductions(), client=workers)
     assert all_bytes(many.compute()) == all_bytes(twisted(100_000, reduce=all_reductions()).compute())
+
+
+def test_the_command_prints_the_same_numbers_by_workers(workers: Any, tmp_path: Path) -> None:
+    words = (
+        "ensemble",
+        "--moments",
+        "1.00(1), 2.00(2), 2.5",
+        "--omega",
+        "0, 1.00 ± 0.05, 0.01",
+        "--until",
+        "9",
+    )
+    many = (*words, "--members", "9000")
+    code, out, err = run(*many, "--client", workers.scheduler.address)
+    assert (code, err) == (0, "")
+    assert out == run(*many)[1]
+    for place in ("here.npz", "there.npz"):
+        to = ("--client", workers.scheduler.address) if place == "there.npz" else ()
+        assert run(*words, "--chunk", "300", "--save", tmp_path / place, *to)[0] == 0
+    assert (tmp_path / "there.npz").stat().st_size == (tmp_path / "here.npz").stat().st_size
+    with np.load(tmp_path / "here.npz") as here, np.load(tmp_path / "there.npz") as there:
+        assert all(
+            here[name].tobytes() == there[name].tobytes() for name in ("omega", "quaternion", "status")
+        )
 
 
 def test_functions_of_ones_own_go_along(workers: Any) -> None:

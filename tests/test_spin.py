@@ -41,6 +41,14 @@ def test_spin_of_a_brick(tmp_path: Path) -> None:
     assert report["angular_momentum"] == pytest.approx(np.linalg.norm(omega * brick.MOMENTS), rel=1e-13)
 
 
+def test_a_wrong_path_is_told_before_a_start_that_is_missing(tmp_path: Path) -> None:
+    path = tmp_path / "nothing.stl"
+    code, _, error = run("spin", path)
+    assert code == 2
+    assert "nothing.stl: No such file or directory" in error
+    assert "--omega" not in error
+
+
 def test_spin_along_principal_axes(tmp_path: Path) -> None:
     path = write_obj(tmp_path / "box.obj", *box((3.0, 1.0, 2.0)))
     report = json.loads(

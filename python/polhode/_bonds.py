@@ -38,7 +38,7 @@ def bonds(labels: Sequence[str | Isotope], positions: ArrayLike) -> list[tuple[i
     labels : sequence of str or Isotope
         As :func:`isotopes` takes them, or what it gave.
     positions : array_like, shape (n, 3)
-        In angstrom.
+        Positions of the atoms, in angstrom.
 
     Returns
     -------
@@ -86,9 +86,9 @@ def uncertain_positions(
     labels : sequence of str or Isotope
         As :func:`isotopes` takes them, or what it gave.
     positions : array_like, shape (n, 3)
-        In angstrom, where bonds are to be found; else in any unit.
+        Positions of the atoms, in angstrom where bonds are to be found; else in any unit.
     sigma : array_like, shape () or (bonds,)
-        Of the length of each bond, in the unit of the positions.
+        Standard deviation of the length of each bond, in the unit of the positions.
     bonds : array_like of int, shape (bonds, 2), optional
         Pairs of indices; by default those that :func:`bonds` finds. Parts between which there is no bond are
         at places that are known exactly.

@@ -29,7 +29,7 @@ class ContinuousAxes(NamedTuple):
     Attributes
     ----------
     moments : numpy.ndarray, shape (..., 3)
-        Of each axis that is followed: no longer ascending where two moments have changed places.
+        Moment of each axis that is followed: no longer ascending where two moments have changed places.
     axes : numpy.ndarray, shape (..., 3, 3)
         As columns, right-handed.
     order : numpy.ndarray of int, shape (..., 3)

@@ -37,8 +37,8 @@ class StateSigma(_StateSigma):
     Attributes
     ----------
     attitude : numpy.ndarray, shape (..., T, 3)
-        Of the small rotation δ from the attitude, ``R → R exp(δ×)``, components in the body frame, in
-        radians.
+        Standard deviations of the small rotation δ from the attitude, ``R → R exp(δ×)``, components in the
+        body frame, in radians.
     omega : numpy.ndarray, shape (..., T, 3)
     """
 

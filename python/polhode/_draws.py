@@ -72,7 +72,7 @@ class Distribution(ABC):
     Attributes
     ----------
     name : str or None
-        In place of the argument's name: distributions of one name draw from the same numbers.
+        Name in place of the argument's name: distributions of one name draw from the same numbers.
     """
 
     name: str | None

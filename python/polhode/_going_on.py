@@ -99,7 +99,7 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     Parameters
     ----------
     t : array_like, shape (T,)
-        As of `simulate`; the first must be the last of this motion.
+        Times as in `simulate`; the first must be the last of this motion.
     **options
         Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`; with another
         `load` its own states begin anew.

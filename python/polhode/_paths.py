@@ -56,11 +56,11 @@ class Elements(NamedTuple):
     inclination : float or numpy.ndarray, shape (...)
         Between the normal of the orbit and z.
     node : float or numpy.ndarray, shape (...)
-        From x to where the orbit crosses the plane xy upward; 0 for an orbit in that plane.
+        Angle from x to where the orbit crosses the plane xy upward; 0 for an orbit in that plane.
     argument : float or numpy.ndarray, shape (...)
-        From the node to the periapsis; 0 for a circle.
+        Angle from the node to the periapsis; 0 for a circle.
     anomaly : float or numpy.ndarray, shape (...)
-        From the periapsis to the body (the true anomaly); of a circle from the node.
+        Angle from the periapsis to the body (the true anomaly); of a circle from the node.
     """
 
     periapsis: Any
@@ -117,7 +117,7 @@ class Path(ABC):
         Parameters
         ----------
         t : array_like, shape (T...)
-            As of :meth:`at`.
+            Times as in :meth:`at`.
 
         Returns
         -------
@@ -153,7 +153,7 @@ class SampledOrbit(Path):
         Gravitational parameter of the attractor.
     times : numpy.ndarray, shape (n,)
     position : numpy.ndarray, shape (..., n, 3)
-        From the attractor, in space, at the times.
+        Positions from the attractor, in space, at the times.
     """
 
     mu: Any
@@ -176,7 +176,7 @@ class SampledOrbit(Path):
         Parameters
         ----------
         t : array_like, shape (T...)
-            From the first of its times to the last.
+            Times from the first of the table to the last.
 
         Returns
         -------
@@ -207,7 +207,7 @@ class DipoleField:
         Parameters
         ----------
         t : array_like, shape (T...)
-            As of :meth:`Orbit.at`.
+            Times as in :meth:`Orbit.at`.
 
         Returns
         -------

@@ -53,8 +53,8 @@ class PrincipalSigma(NamedTuple):
     ----------
     moments : numpy.ndarray, shape (..., 3)
     axes : numpy.ndarray, shape (..., 3)
-        Of the small rotation of the axes about each of them, in radians; NaN where the two other moments are
-        equal, or nearly so.
+        Standard deviations of the small rotation of the axes about each of them, in radians; NaN where the
+        two other moments are equal, or nearly so.
     linear : PrincipalLinear
         Whether the first order is enough for each of them.
     """
@@ -74,14 +74,14 @@ class PrincipalAxes:
     Attributes
     ----------
     moments : numpy.ndarray, shape (..., 3)
-        Ascending.
+        Principal moments, ascending.
     axes : numpy.ndarray, shape (..., 3, 3)
         The axes are the **columns**, right-handed: ``inertia = axes @ diag(moments) @ axes.T`` and
         ``v_body = axes @ v_principal``.
     top_rtol : float or numpy.ndarray, shape (..., 3)
-        At which `top` is decided, relative to the largest moment: 1e-6, or for a molecule from a file of few
-        digits one each for I1 = 0, I1 = I2 and I2 = I3, as much as the rounding of its coordinates can make
-        and at least 1e-6.
+        Tolerance at which `top` is decided, relative to the largest moment: 1e-6, or for a molecule from a
+        file of few digits one each for I1 = 0, I1 = I2 and I2 = I3, as much as the rounding of its
+        coordinates can make and at least 1e-6.
     sigma : PrincipalSigma or None
         Their standard deviations, of a body with uncertain numbers.
     """

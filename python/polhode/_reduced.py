@@ -91,7 +91,8 @@ class QuantileLevels(NamedTuple):
     values : numpy.ndarray, shape (parts, ...)
         Not a number where a member's is not.
     rank_error : float
-        By which part of all members the rank of a value may be wrong, at most; 0 where they are exact.
+        Largest part of all members by which the rank of a value may be wrong, at most; 0 where they are
+        exact.
     members, left_out : int
         Members that are in it, and those that failed.
     """

@@ -55,14 +55,14 @@ def normal(
     Parameters
     ----------
     mean : array_like
-        Of any shape, k numbers.
+        Means of the k numbers, of any shape.
     covariance : array_like, shape (k, k), optional
-        Of the numbers in the order of the flattened mean; it may be singular.
+        Covariance of the numbers in the order of the flattened mean; it may be singular.
     sigma : array_like, optional
         In its place: standard deviations of independent numbers, of a shape that broadcasts to that of
         `mean`.
     name : str, optional
-        In place of the argument's name; see the top of this page.
+        Name in place of the argument's name; see the top of this page.
 
     Returns
     -------
@@ -120,9 +120,9 @@ def uniform(low: ArrayLike, high: ArrayLike, *, name: str | None = None) -> Unif
     Parameters
     ----------
     low, high : array_like
-        Of shapes that broadcast.
+        Limits, of shapes that broadcast.
     name : str, optional
-        In place of the argument's name; see the top of this page.
+        Name in place of the argument's name; see the top of this page.
 
     Returns
     -------
@@ -157,7 +157,7 @@ def uniform_rotation(*, name: str | None = None) -> UniformRotation:
     Parameters
     ----------
     name : str, optional
-        In place of the argument's name; see the top of this page.
+        Name in place of the argument's name; see the top of this page.
 
     Returns
     -------
@@ -187,7 +187,7 @@ def samples(
     order : {"as given", "shuffled", "with replacement"}
         Member k takes row k; each row once, in random order; or any row, drawn anew for each member.
     name : str, optional
-        In place of the argument's name; see the top of this page.
+        Name in place of the argument's name; see the top of this page.
 
     Returns
     -------
@@ -221,7 +221,7 @@ def per_member(function: Callable[[np.random.Generator], Any], *, name: str | No
         :class:`numpy.random.Philox`, whose key is the seed and the argument's name and whose counter begins
         with the member.
     name : str, optional
-        In place of the argument's name; see the top of this page.
+        Name in place of the argument's name; see the top of this page.
 
     Returns
     -------

@@ -87,7 +87,7 @@ class QuadratureError(PolhodeError):
     error : float
         Its estimated relative error.
     evaluations : int
-        At how many points the density was asked for.
+        Number of points at which the density was asked for.
     """
 
     estimate: RigidBody

@@ -64,7 +64,7 @@ class Event:
         wheel : str
             The name of its state in `states` of the trajectory.
         terminal : bool or int
-            As of an event.
+            As in an event.
 
         Examples
         --------
@@ -93,7 +93,7 @@ class Event:
         direction : float
             Positive: only where the motor saturates; negative: only where it no longer does; zero: both.
         terminal : bool or int
-            As of an event.
+            As in an event.
         """
         return cls._told("limit", wheel, direction, terminal)
 

@@ -34,7 +34,7 @@ class Tumble(NamedTuple):
     Attributes
     ----------
     mode : numpy.ndarray of str, shape (n,)
-        As of :attr:`FreeMotion.mode`; empty for a clone that failed.
+        Mode of each clone, as in :attr:`FreeMotion.mode`; empty for a clone that failed.
     rotation_period, precession_period : numpy.ndarray, shape (n,)
         P_ψ and P_φ.
     spin_rate : numpy.ndarray, shape (n,)
@@ -116,7 +116,7 @@ def clones(
     body : RigidBody
         One body; only the ratios of its moments matter.
     orbit : Orbit or SampledOrbit
-        About the planet.
+        Orbit of the body about the planet.
     span : float
         How long, from the epoch of the orbit, or from 0 where it has none; from the first time of a table.
     rotation_period, precession_period, mode, sense
@@ -190,7 +190,7 @@ def flyby(
     body, orbit, span, rotation_period, precession_period, n, seed
         As of :func:`clones`.
     progress : bool or callable, optional
-        As of :func:`polhode.ensemble`.
+        As in :func:`polhode.ensemble`.
     **options
         Further arguments of :func:`clones`: `mode`, `sense`, `pole`, `pole_sigma`, `rtol`, `client` …
 

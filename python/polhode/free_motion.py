@@ -51,19 +51,20 @@ class _Periods(NamedTuple):
 class Periods(_Periods):
     """The periods of a free motion, in the long-axis convention of tumbling asteroids.
 
-    The Euler angles (ZXZ) refer to axis 1, of the least moment, with L along z.
+    The Euler angles (ZXZ) refer to axis 1, of the least moment, with L along z. Periods are in
+    the unit of time of the motion.
 
     Attributes
     ----------
     rotation : float or numpy.ndarray, shape (...)
-        P_ψ, of the rotation about the long axis in long-axis mode, of its swinging to and fro in
-        short-axis mode: after it ω is again where it was in the body. Infinite on the separatrix and
-        where nothing drives ω; the period of small oscillations in the limit of a steady spin about
-        axis 1 or 3.
+        Period P_ψ after which ω in the body repeats: that of the rotation about the long axis in long-axis
+        mode, that of the swing of the long axis to and fro in short-axis mode. Infinite on the separatrix
+        and where ω is constant in the body for any start; for a steady spin about axis 1 or 3 the period of
+        small oscillations about it.
     precession : float or numpy.ndarray, shape (...)
-        P_φ, the mean period of axis 1 about L.
+        Period P_φ, the mean one in which axis 1 goes round L.
     flip : float or numpy.ndarray, shape (...)
-        From one turning over of the intermediate axis to the next, half of `rotation`.
+        Time from one turning over of the intermediate axis to the next, half of `rotation`.
     rates : numpy.ndarray, shape (..., 3)
         Mean rate, in radians a unit of time, at which each principal axis goes about L. The two axes that are
         not circled share theirs; axis 3, where it is circled, is ahead of them by 2π/P_ψ, axis 1 behind. NaN
@@ -165,7 +166,7 @@ class Poinsot(NamedTuple):
     semi_axes : numpy.ndarray, shape (..., 3)
         ``√(2T/I_k)`` along the principal axes; infinite for a zero moment.
     normal : numpy.ndarray, shape (..., 3)
-        Of the plane, in space: the direction of L.
+        Normal of the plane, in space: the direction of L.
     distance : float or numpy.ndarray, shape (...)
         ``2T/L``, of the plane from C.
     radii : numpy.ndarray, shape (..., 2)
@@ -192,10 +193,10 @@ class Sensitivity(NamedTuple):
     Attributes
     ----------
     state : numpy.ndarray, shape (..., 6, 6)
-        Of (δ, ω) at the time by (δ, ω) at t = 0.
+        Derivatives of (δ, ω) at the time by (δ, ω) at t = 0.
     moments : numpy.ndarray, shape (..., 6, 3)
-        Of (δ, ω) at the time by the principal moments, ascending, with axes and initial state held.
-        NaN for a body with a zero moment.
+        Derivatives of (δ, ω) at the time by the principal moments, ascending, with axes and initial state
+        held. NaN for a body with a zero moment.
     """
 
     state: Floats

@@ -51,22 +51,22 @@ class Equilibria(NamedTuple):
     Attributes
     ----------
     direction : numpy.ndarray, shape (k, 3)
-        ``L/|L|`` in the body frame; of a circle of equilibria one of them.
+        Unit vector ``L/|L|`` in the body frame; of a circle of equilibria one of them.
     omega : numpy.ndarray, shape (k, 3)
-        In the body frame, along L.
+        Angular velocity in the body frame, along L.
     kinetic_energy : numpy.ndarray, shape (k,)
         ``½ ω·I ω``.
     squared_rate : numpy.ndarray, shape (k,)
-        The squared frequency with which L circles about a stable equilibrium in the body; negative: minus the
-        squared rate at which departures grow.
+        Squared frequency, in radians a unit of time, with which L circles a stable equilibrium in the body;
+        negative at an unstable one: minus the squared rate of exponential growth of a departure.
     kind : numpy.ndarray of str, shape (k,)
-        What the energy is there among states with this ``|L|``: ``"minimum"`` (stable, also with
-        dissipation), ``"maximum"`` (stable without), ``"saddle"`` (unstable), ``"degenerate"`` (some meet
-        here).
+        Kind of stationary point of the energy among states with this ``|L|``: ``"minimum"`` (stable, also
+        with dissipation), ``"maximum"`` (stable without dissipation), ``"saddle"`` (unstable),
+        ``"degenerate"`` (several equilibria meet here).
     circle : numpy.ndarray, shape (k, 3)
-        The axis of the circle that this one stands for, of a body with two equal moments; else zero.
+        Axis of the circle of equilibria that this one stands for, if two moments are equal; else zero.
     bifurcations : Bifurcations
-        Where their number changes.
+        Momenta inside at which the number of equilibria changes.
     """
 
     direction: Floats

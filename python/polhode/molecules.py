@@ -63,13 +63,13 @@ def body_of_atoms(
     Parameters
     ----------
     masses : array_like, shape (n,)
-        Of the atoms.
+        Masses of the atoms.
     positions : array_like, shape (n, 3)
-        In the unit of length of the body.
+        Positions of the atoms, in the unit of length of the body.
     source : {"most_common", "average", "own"}
         Whose masses they are: of isotopes, of elements, or given with the atoms. `provenance` tells it.
     rounding : float
-        By how much each coordinate was rounded at most, where that is known. The class of the top then takes
+        Largest amount by which a coordinate was rounded, where that is known. The class of the top then takes
         moments as equal that differ by no more than this can make.
 
     Returns

@@ -56,7 +56,7 @@ class Orbit(Path):
     mu : float or numpy.ndarray, shape (...)
         Gravitational parameter of the attractor.
     position, velocity : numpy.ndarray, shape (..., 3)
-        From the attractor, in space, at the epoch.
+        Position and velocity from the attractor, in space, at the epoch.
     epoch : float or None
         When the orbit has that state; None: when a motion starts.
     j2, radius : float, numpy.ndarray of shape (...) or None
@@ -133,7 +133,7 @@ class Orbit(Path):
         Parameters
         ----------
         t : array_like, shape (T...)
-            From the epoch on they are ``t - epoch`` later; where there is none, from 0 on.
+            Times. From the epoch on they are ``t - epoch`` later; where there is none, from 0 on.
 
         Returns
         -------
@@ -180,7 +180,7 @@ def kepler(
     mu : array_like, shape (...)
         Gravitational parameter of the attractor.
     position, velocity : array_like, shape (..., 3)
-        From the attractor, in space, at the epoch.
+        Position and velocity from the attractor, in space, at the epoch.
     epoch : float, optional
         When the orbit has that state; the start of a motion by default.
     j2, radius : array_like, shape (...), optional
@@ -235,7 +235,7 @@ def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
     t : array_like, shape (n,)
         Ascending.
     position : array_like, shape (..., n, 3)
-        From the attractor, in space.
+        Positions from the attractor, in space.
 
     Returns
     -------
@@ -297,7 +297,7 @@ def from_elements(
     epoch : float, optional
         When it is there; the start of a motion by default.
     j2, radius, pole : array_like, optional
-        As of :func:`kepler`; the elements are then those of the Kepler orbit that touches it at the epoch.
+        As in :func:`kepler`; the elements are then those of the Kepler orbit that touches it at the epoch.
     degrees : bool, optional
         Inclination, node, argument and anomaly are in degrees.
 

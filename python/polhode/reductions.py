@@ -309,7 +309,7 @@ def quantiles(q: ArrayLike, of: Of) -> Reduction:
     Parameters
     ----------
     q : array_like, shape (parts,) or ()
-        From 0 to 1; 0.5 is the median.
+        Ranks from 0 to 1; 0.5 is the median.
     of : str or callable
         See the top of this page.
 

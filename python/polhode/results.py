@@ -141,13 +141,13 @@ class Sigma(NamedTuple):
     mass : float or numpy.ndarray, shape (...)
     center_of_mass : numpy.ndarray, shape (..., 3)
     inertia : numpy.ndarray, shape (..., 3, 3)
-        Of the elements of the tensor about C.
+        Standard deviations of the elements of the tensor about C.
     principal_moments : numpy.ndarray, shape (..., 3)
     axes : numpy.ndarray, shape (..., 3)
-        Of the small rotation of the principal axes about each of them, in radians; NaN where the two other
-        moments are equal, or nearly so: there the axes are not determined.
+        Standard deviations of the small rotation of the principal axes about each of them, in radians; NaN
+        where the two other moments are equal, or nearly so: there the axes are not determined.
     radii_of_gyration : numpy.ndarray, shape (..., 3)
-        About the principal axes. NaN where a moment is zero and may leave zero.
+        Standard deviations of those about the principal axes. NaN where a moment is zero and may leave zero.
     linear : Linear
         Whether the first order is enough for each of them.
     """
@@ -165,16 +165,18 @@ class Sigma(NamedTuple):
 
 
 class ErrorBound(NamedTuple):
-    """What rounding can have done to a body's numbers, against exact arithmetic on what was given.
+    """Bounds of the rounding errors of a body's numbers, each in the unit of its number.
+
+    The errors are those against exact arithmetic on what was given.
 
     Attributes
     ----------
     mass : float or numpy.ndarray, shape (...)
-        Of the mass.
+        Bound of the error of the mass.
     center_of_mass : float or numpy.ndarray, shape (...)
-        Of each component of the centre of mass.
+        Bound of the error of each component of the centre of mass.
     inertia : float or numpy.ndarray, shape (...)
-        Of each element of the tensor about the centre of mass.
+        Bound of the error of each element of the tensor about the centre of mass.
     """
 
     mass: Any
@@ -206,14 +208,14 @@ class Provenance:
     closure : str
         How an open mesh was closed on request: ``"caps"``, ``"hull"`` or ``""``.
     volume_change : float
-        By how much that changed the volume that the faces span with the middle of the mesh.
+        Amount by which that changed the volume that the faces span with the middle of the mesh.
     moments : str
         What the principal moments were found from: ``"given"``, ``"tensor"``, ``"second moment"`` (before it
         is rounded to a tensor) or ``"second moment in own axes"`` (summed again, for thin bodies).
     rounded_to_zero : int
         Principal moments that rounding had left, or a table had admitted, and that are stored as zero.
     rounding : float
-        By how much each coordinate of the particles was rounded at most, in the unit of length, where a
+        Largest amount by which a coordinate of the particles was rounded, in the unit of length, where a
         file's digits tell it; else 0. The class of the top follows it.
     """
 
@@ -273,7 +275,7 @@ class State(NamedTuple):
     attitude : numpy.ndarray, shape (..., 4)
     position, velocity : numpy.ndarray, shape (..., 3)
     states : dict of str and numpy.ndarray, shape (..., k), or None
-        Of the load, by name, where it has states of its own.
+        States of the load, by name, where it has states of its own.
     """
 
     omega: Floats
@@ -297,8 +299,8 @@ class Invariants(NamedTuple):
     energy : numpy.ndarray, shape (..., T), or None
         Kinetic and potential; None where the load has no potential.
     angular_momentum : numpy.ndarray, shape (..., T, 3) or (..., T), or None
-        About the point `about`, in space, where no torque acts; its component along the field where the
-        torque of a uniform field acts; None where neither is kept.
+        Angular momentum about the point `about`, in space, where no torque acts; its component along the
+        field where the torque of a uniform field acts; None where neither is kept.
     energy_drift, angular_momentum_drift : float or numpy.ndarray, shape (...), or None
         The largest change since the start, relative to the largest sum of the sizes of both energies, and to
         the largest angular momentum.
@@ -323,17 +325,18 @@ class MotionSensitivity(NamedTuple):
     Attributes
     ----------
     state : numpy.ndarray, shape (..., T, 6, 6)
-        By (δ, ω) and the load's states at the first time, each with the others held: the state-transition
-        matrix. By the momentum of a wheel whose speed is given, which follows from ω, it is zero.
+        Derivatives by (δ, ω) and the load's states at the first time, each with the others held: the
+        state-transition matrix. By the momentum of a wheel whose speed is given, which follows from ω, it is
+        zero.
     moments : numpy.ndarray, shape (..., T, 6, 3)
-        By the principal moments about the point `about` of the motion, ascending, with principal axes, mass
-        and centre of mass held; not a number, as are `products`, for a body with a zero moment.
+        Derivatives by the principal moments about the point `about` of the motion, ascending, with principal
+        axes, mass and centre of mass held; not a number, as are `products`, for a body with a zero moment.
     products : numpy.ndarray, shape (..., T, 6, 3)
-        By the elements 23, 31 and 12 of that tensor in its principal axes.
+        Derivatives by the elements 23, 31 and 12 of that tensor in its principal axes.
     center_of_mass : numpy.ndarray, shape (..., T, 6, 3)
-        By the centre of mass in the body frame, with that tensor held.
+        Derivatives by the centre of mass in the body frame, with that tensor held.
     mass : numpy.ndarray, shape (..., T, 6)
-        By the mass, with that tensor held.
+        Derivatives by the mass, with that tensor held.
     load : tuple of dict
         For each term of the load: by each argument of the function of :mod:`polhode.loads` that makes it,
         under its name, shape (..., T, 6) and then that of the argument, a matrix in full. The target

@@ -43,7 +43,7 @@ class Trajectory:
     quaternion : numpy.ndarray, shape (..., T, 4)
         Attitude R_NB as (x, y, z, w), continuous in time.
     position, velocity : numpy.ndarray, shape (..., T, 3)
-        Of the point `about`, in space.
+        Position and velocity of the point `about`, in space.
     about : numpy.ndarray, shape (..., 3)
         The point the motion refers to, in the body frame.
     steps, evaluations : numpy.ndarray, shape (...)
@@ -192,7 +192,7 @@ class Trajectory:
         Parameters
         ----------
         frame : {"space", "body"}
-            Whose axes the components refer to.
+            The frame whose axes the components refer to.
 
         Returns
         -------

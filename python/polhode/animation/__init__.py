@@ -76,12 +76,12 @@ def animate(
         Title and unit of time as they are shown. A page can convert ns, us, ms, s, min, h, d and yr to
         seconds.
     size : int or (int, int), optional
-        Of a film: width and height in pixels; 480 by default.
+        Size of a film: width and height in pixels; 480 by default.
     fps : float, optional
-        Of a film: pictures a second, at most 50 of a GIF; 30 by default. A GIF stores times in hundredths of
-        a second. At 30 pictures a second they are shown for 3, 3 and 4 hundredths in turn.
+        Rate of a film: pictures a second, at most 50 of a GIF; 30 by default. A GIF stores times in
+        hundredths of a second. At 30 pictures a second they are shown for 3, 3 and 4 hundredths in turn.
     labels : bool, optional
-        Of a film: whether anything is written: the names of arrows, axes and wheels, title, time, speeds of
+        Whether, on a film, anything is written: the names of arrows, axes and wheels, title, time, speeds of
         wheels. In a small picture names without room are left out, and a long title has several lines.
     progress : callable, optional
         Is told the fraction of a film that is drawn; an exception it raises ends the drawing.

@@ -31,11 +31,11 @@ class Member(NamedTuple):
     id : str
         The names from the whole down, with / between them; a copy by its number.
     body : RigidBody
-        In the axes of the whole, in kg and m.
+        The body in the axes of the whole, in kg and m.
     solid : str
         The name of its shape; "" where it is of a file or of numbers.
     arguments : dict
-        Of that shape, lengths in metres.
+        Arguments of that shape, lengths in metres.
     file : pathlib.Path or None
         What it was read from.
     metres : float

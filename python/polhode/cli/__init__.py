@@ -23,7 +23,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         import rich  # noqa: F401  (the commands import it when they print)
 
-        from polhode.cli.app import run
+        from polhode.cli.running import run
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("cyclopts", "rich"):
             raise

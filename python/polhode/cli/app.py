@@ -1,20 +1,16 @@
-"""The commands and how they end: with an exit code, and after an error with one line on stderr.
+"""The commands: what each takes, and what it hands on.
 
 What a command does is imported when it runs, so that the help appears without NumPy.
 """
 
 from __future__ import annotations
 
-import errno
-import re
-import sys
-from contextlib import suppress
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import Annotated, Final
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, Parameter
 
+from polhode.cli.ensemble_options import EnsembleOptions
 from polhode.cli.options import (
     AssembleOptions,
     BodyOptions,
@@ -27,23 +23,12 @@ from polhode.cli.options import (
     SpinOptions,
 )
 from polhode.cli.showing import held_and_shown, show, show_lines
-from polhode.cli.standard_output import ReaderLeft, standard_output
-from polhode.cli.text import in_options, note, printable
+from polhode.cli.text import note
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+__all__ = ["BAD_VERDICT", "GOOD", "app"]
 
-
-__all__ = ["app", "run"]
-
-COMMANDS: Final = (
-    "report", "check", "molecule", "spin", "flyby", "assemble", "ledger", "samples", "demo", "validate",
-)  # fmt: skip
 GOOD: Final = 0
 BAD_VERDICT: Final = 1
-BAD_INPUT: Final = 2
-INTERRUPTED: Final = 130
-NO_FAULT_OF_THE_PATH: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 
 
 def _version() -> str:
@@ -206,6 +191,32 @@ def flyby(
 
 
 @app.command
+def ensemble(
+    file: Annotated[Path | None, Parameter(allow_leading_hyphen=True)] = None,
+    /,
+    *,
+    ensemble: Annotated[EnsembleOptions, Parameter(name="*")] = EnsembleOptions(),  # noqa: B008
+    body: Body = AS_STORED,
+    output: Output = SHOWN,
+) -> int:
+    """Run one motion many times with numbers that are drawn, and tell their spread or save all states.
+
+    Parameters
+    ----------
+    file
+        A mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plates ...), CAD (STEP), a molecule (XYZ, PDB ...), a saved
+        body (JSON, NPZ), an assembly (TOML), or - for standard input; without one, --moments or --inertia.
+    """
+    from polhode.cli.ensemble import ensemble_report
+    from polhode.cli.outputs import check_outputs
+
+    places = [("--save", ensemble.save), ("--checkpoint", ensemble.checkpoint), ("--output", output.output)]
+    check_outputs(places, [file])
+    show(ensemble_report(file, ensemble, body), output)
+    return GOOD
+
+
+@app.command
 def assemble(
     file: File,
     /,
@@ -320,68 +331,3 @@ def validate(*, output: Output = SHOWN) -> int:
     told, is_good = validation()
     show(told, output)
     return GOOD if is_good else BAD_VERDICT
-
-
-def _version_in_full() -> None:
-    """Print what a report of a fault has to tell."""
-    from polhode.cli.machine import as_text
-
-    print(as_text())
-
-
-def overview() -> str:
-    """List the commands, each with the first line of its docstring."""
-    lines = ["Usage: polhode COMMAND", "", app.help, "", "Commands:"]
-    for name in COMMANDS:
-        document = app[name].default_command.__doc__ or ""
-        lines.append(f"  {name:<12}{document.partition(chr(10))[0]}")
-    lines += ["", "polhode COMMAND --help tells what a command takes; polhode --version the version."]
-    lines += ["polhode --version --verbose tells of the machine too, for reports of faults."]
-    lines += ["Exit codes: 0 good, 1 the verdict is bad, 2 bad input."]
-    return "\n".join(lines)
-
-
-def run(arguments: list[str]) -> int:
-    """Run one command and turn every foreseen error into one line and an exit code."""
-    command: Callable[[], object] = partial(
-        app,
-        [_as_value(argument) for argument in arguments],
-        exit_on_error=False,
-        print_error=False,
-        result_action="return_value",
-    )
-    if arguments in ([], ["--help"], ["-h"]):
-        command = partial(print, overview())
-    if sorted(arguments) == ["--verbose", "--version"]:
-        command = _version_in_full
-    try:
-        with standard_output():
-            code = command()
-    except CycloptsError as error:
-        return _fail(f"{error} (see polhode --help)")
-    except ReaderLeft:
-        return GOOD
-    except OSError as error:
-        what = f"{error.filename}: {error.strerror}" if error.filename is not None else str(error)
-        return _fail(what if error.errno in NO_FAULT_OF_THE_PATH else f"{what}; check the path")
-    except MemoryError as error:
-        return _fail(f"there is not enough memory for it ({error})")
-    except (ValueError, ModuleNotFoundError) as error:
-        return _fail(str(error))
-    except KeyboardInterrupt:
-        return _fail("interrupted", code=INTERRUPTED)
-    return code if isinstance(code, int) else 0
-
-
-def _as_value(argument: str) -> str:
-    """Keep ``"-1 0 0 deg/s"`` from being taken for an option, and the file ``./-`` for standard input."""
-    if argument == "./-":  # a path without its "./" would be "-"
-        return str(Path.cwd() / "-")
-    return f" {argument}" if re.match(r"-\.?\d", argument) else argument
-
-
-def _fail(message: str, code: int = BAD_INPUT) -> int:
-    if sys.stderr is not None:
-        with suppress(OSError):  # nobody reads it: the exit code remains
-            print("polhode:", printable(in_options(" ".join(message.split()))), file=sys.stderr, flush=True)
-    return code

@@ -9,6 +9,7 @@ import numpy as np
 from polhode import RigidBody, orbits, plot
 from polhode._extras import require
 from polhode._quantities import quantities, quantity, vector
+from polhode.cli.cluster import client_at
 from polhode.cli.layout import Cell, Column, Field, Report, Table
 from polhode.cli.source import shown
 from polhode.cli.whole import any_body, check_moments_alone
@@ -126,11 +127,7 @@ def _run(
         argument=quantity(options.argument, "rad", "--argument"),
         since_periapsis=-0.5 * span,
     )
-    client = None
-    if options.client is not None:
-        distributed: Any = require("distributed", extra="cluster", purpose="--client")
-        client = distributed.Client(options.client)
-    try:
+    with client_at(options.client) as client:
         found = flyby(
             asteroid,
             orbit,
@@ -145,9 +142,6 @@ def _run(
             rtol=options.rtol,
             client=client,
         )
-    finally:
-        if client is not None:
-            client.close()
     return found, orbit, notes
 
 

@@ -8,18 +8,12 @@ from typing import Annotated, Literal, TypeAlias
 
 from cyclopts import Parameter
 
+from polhode.cli.counts import Count  # noqa: TC001  (cyclopts reads annotations)
+
 __all__ = [
-    "AssembleOptions",
-    "BodyOptions",
-    "CheckOptions",
-    "FlybyOptions",
-    "LedgerOptions",
-    "LengthUnit",
-    "MoleculeOptions",
-    "OutputOptions",
-    "ReportOptions",
-    "SpinOptions",
-]
+    "AssembleOptions", "BodyOptions", "CheckOptions", "FlybyOptions", "LedgerOptions", "LengthUnit",
+    "MoleculeOptions", "OutputOptions", "ReportOptions", "SpinOptions",
+]  # fmt: skip
 
 LengthUnit: TypeAlias = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]
 Described: TypeAlias = Literal["urdf", "sdf", "mjcf"]
@@ -162,7 +156,7 @@ class AssembleOptions:
         .npz), or its tree as a ledger (.csv). May be repeated.
     """
 
-    depth: Annotated[int, Parameter(name="--depth")] = 2
+    depth: Annotated[Count, Parameter(name="--depth")] = 2
     every: Annotated[bool, Parameter(name="--all", negative="")] = False
     save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()
 
@@ -253,7 +247,7 @@ class LedgerOptions:
     """
 
     tree: Annotated[Path | None, Parameter(name="--tree")] = None
-    depth: Annotated[int, Parameter(name="--depth")] = 2
+    depth: Annotated[Count, Parameter(name="--depth")] = 2
     of: Annotated[str, Parameter(name="--of")] = "mass"
     at: Annotated[str | None, Parameter(name="--at")] = None
     overwrite: Annotated[bool, Parameter(name="--overwrite", negative="")] = False
@@ -328,8 +322,8 @@ class FlybyOptions:
         Words, Parameter(name="--pole", negative="", consume_multiple=True, show_default=False)
     ] = ()
     pole_sigma: Annotated[str, Parameter(name="--pole-sigma")] = "0"
-    clones: Annotated[int, Parameter(name="--clones")] = 1000
-    seed: Annotated[int, Parameter(name="--seed")] = 0
+    clones: Annotated[Count, Parameter(name="--clones")] = 1000
+    seed: Annotated[Count, Parameter(name="--seed")] = 0
     rtol: Annotated[float, Parameter(name="--rtol")] = 1e-10
     client: Annotated[str | None, Parameter(name="--client")] = None
     save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()
@@ -396,5 +390,5 @@ class SpinOptions:
     until: Annotated[str | None, Parameter(name="--until")] = None
     degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False
     axes: Annotated[Literal["file", "principal"], Parameter(name="--axes")] = "file"
-    samples: Annotated[int, Parameter(name="--samples")] = 1001
+    samples: Annotated[Count, Parameter(name="--samples")] = 1001
     save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()

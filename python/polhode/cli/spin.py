@@ -13,7 +13,7 @@ from polhode._scene.sampling import fastest
 from polhode.cli.layout import Field, Report
 from polhode.cli.loading import LoadedBody
 from polhode.cli.sigmas import note_linear, told
-from polhode.cli.source import shown
+from polhode.cli.source import STDIN, shown
 from polhode.cli.spin_gyrostat import GyrostatKind, momentum_inside
 from polhode.cli.spin_kinds import FreeKind, TopKind
 from polhode.cli.spin_output import DRAWN, check_paths, drawable, save
@@ -131,6 +131,8 @@ def _checked(file: Path | None, spin: SpinOptions, options: BodyOptions) -> floa
         raise PolhodeError("--moments and --inertia: both say what the body is; give one of the two")
     if file is not None and spin.moments:
         raise PolhodeError(f"--moments: the body is that of {shown(file)}; give one of the two")
+    if file is not None and file != STDIN:
+        file.stat()  # a wrong path is told before a start that is missing
     if bool(spin.omega) == bool(spin.periods):
         both = "give one of the two" if spin.omega else 'state the start, as in --omega "10 20 30 deg/s"'
         raise PolhodeError(f"--omega and --periods: {both}")

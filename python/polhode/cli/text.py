@@ -34,7 +34,9 @@ _WAYS_OUT: Final = (
     ("give the body a thickness, or nothing inside", "leave out --wheel"),
     ("integrate with simulate()", "integrate with RigidBody.simulate in Python"),
 )
-_NAMED: Final = re.compile(r"^(weld|closure|orient|union|repair|index_base|length_unit|mass|density)(?=: )")
+_NAMED: Final = re.compile(
+    r"^(weld|closure|orient|union|repair|index_base|length_unit|mass|density|seed|chunk)(?=: )"
+)
 """Of arguments that are options by the same names."""
 _CLOSURE: Final = re.compile(r'\bclosure="(caps|hull)"(?=\)| takes)')
 _WELD: Final = re.compile(r"\bweld=(?=\S+ joins)")

@@ -64,12 +64,12 @@ def ensemble(
     t : array_like, shape (T,)
         Output times, as of :meth:`RigidBody.simulate`.
     omega, attitude, position, velocity : array_like or distribution
-        At the start, for each member.
+        Values at the start, for each member.
     load : Load or distribution, optional
     n : int
         How many members.
     seed : int
-        From 0 to 2**64 - 1.
+        Seed of all draws, from 0 to 2**64 - 1.
     chunk : int, optional
         Members that are run, written or sent to a worker together. With `reduce` a multiple of 4096.
     about, method, rtol, atol, states, max_steps
@@ -85,7 +85,7 @@ def ensemble(
     reduce : Reduction or dict of str to Reduction, optional
         What is kept in place of the states, from :mod:`polhode.reductions`.
     client : distributed.Client, optional
-        Of a dask cluster that runs the chunks; by default the threads of this machine do.
+        Client of a dask cluster that runs the chunks; by default the threads of this machine do.
     progress : bool or callable, optional
         A function of the fraction done, or whether to show a bar; by default on a terminal after two seconds.
 
@@ -115,14 +115,14 @@ def ensemble(
     given |= {f"states.{name}": value for name, value in sorted((states or {}).items())}
     arguments = {place: _argument(place, value) for place, value in given.items()}
     times = _core.real_numbers(t, "t").copy()
-    # Times that make no run are refused now, by one that costs nothing.
-    _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0.0, 0.0, 0.0))
+    steps = {} if max_steps is None else {"max_steps": _count(max_steps, "max_steps")}
+    # Times and tolerances that make no run are refused now, by one that costs nothing.
+    _core.RigidBody.from_principal(1.0, (1.0, 1.0, 1.0)).simulate(times, (0, 0, 0), rtol=rtol, atol=atol)
     times.setflags(write=False)
     plan = Plan(
         recipe=resolved(arguments, seed),
         t=times,
-        options={"about": about, "method": method, "rtol": rtol, "atol": atol}
-        | ({} if max_steps is None else {"max_steps": max_steps}),
+        options={"about": about, "method": method, "rtol": rtol, "atol": atol} | steps,
         n=size,
         seed=int(seed),
         chunk=min(cut, size),

@@ -54,7 +54,7 @@ class Memory(NamedTuple):
     worker : int
         While one chunk is run: on this machine, or on each thread of a worker.
     results : int
-        Of all members, where ``compute`` keeps their states; 0 where they are reduced.
+        Bytes of the results of all members, where ``compute`` keeps their states; 0 where they are reduced.
     """
 
     worker: int
@@ -77,7 +77,7 @@ class _Work:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ensemble:
-    """Many members of which each has drawn its numbers; :func:`polhode.ensemble` makes it.
+    """Many motions, the *members*, each with random numbers of its own; made by :func:`polhode.ensemble`.
 
     Nothing is run before :meth:`compute`, :meth:`to_zarr` or :meth:`to_npz`. All numbers are the same for any
     number of threads and workers, and in whatever order chunks are run.
@@ -85,10 +85,13 @@ class Ensemble:
     Attributes
     ----------
     plan : Plan
-        What goes to other processes.
+        Description of body, load, start and random numbers, which is sent to other processes.
     reduce : Reduction, mapping of str to Reduction or None
+        Statistics that are kept in place of the states.
     client : distributed.Client or None
+        Client of the dask cluster that runs the chunks; None for the threads of this machine.
     progress : bool, callable or None
+        Whether a bar shows the progress, or a function of the fraction done.
     """
 
     plan: Plan
@@ -112,7 +115,7 @@ class Ensemble:
 
     @property
     def memory(self) -> Memory:
-        """How much memory it takes."""
+        """Memory that the ensemble takes, in bytes."""
         plan = self.plan
         kept = bytes_of_member(plan)
         rows = min(plan.chunk, plan.n)
@@ -127,12 +130,12 @@ class Ensemble:
         Parameters
         ----------
         k : int
-            From 0 on.
+            Number of the member, from 0 on.
 
         Returns
         -------
         Trajectory
-            With the bits that the member has in the ensemble.
+            The motion of the member, with the same bits as in the ensemble.
 
         Raises
         ------
@@ -215,7 +218,7 @@ class Ensemble:
         Parameters
         ----------
         path : str or os.PathLike
-            Of a directory that is not there yet. ``xarray.open_zarr(path)`` reads it.
+            Name of a directory that is not there yet. ``xarray.open_zarr(path)`` reads it.
 
         Raises
         ------
@@ -231,7 +234,7 @@ class Ensemble:
         Parameters
         ----------
         path : str or os.PathLike
-            Of a directory that is not there yet: ``chunk-00000000.npz`` and so on, with the arrays of
+            Name of a directory that is not there yet: ``chunk-00000000.npz`` and so on, with the arrays of
             :meth:`compute`, beside ``ensemble.json``, which tells what ensemble it is.
 
         Raises

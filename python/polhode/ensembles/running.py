@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
 
-__all__ = ["REFUSED", "Run", "arrays_of_chunk", "run_members"]
+__all__ = ["REFUSED", "ROW", "Run", "arrays_of_chunk", "run_members"]
 
 T = TypeVar("T")
 
 REFUSED: Final = "refused"
 """The status of a member that has no motion: its numbers make no body, load or state."""
 FAILED: Final = ("failed", REFUSED)
-_ROW: Final = re.compile(r"row [\d, ()]+: ")
+ROW: Final = re.compile(r"row [\d, ()]+: ")
 """How errors of stacks name a row of theirs, which is none of the ensemble's."""
 
 
@@ -184,11 +184,11 @@ def _each(
     try:
         return rows, attempt(rows), {}
     except PolhodeError as error:
-        named = _ROW.match(str(error))
+        named = ROW.match(str(error))
         if is_run and not named:
             raise
         if len(rows) == 1:
-            error.args = (_ROW.sub("", str(error), count=1),)
+            error.args = (ROW.sub("", str(error), count=1),)
             return rows[:0], None, {int(rows[0]): error}
     half = len(rows) // 2
     able: Rows = rows[:0]
@@ -209,7 +209,7 @@ def _raise_first(run: Run, faults: dict[int, PolhodeError]) -> None:
     row = int(failed[0])
     member = run.inputs.first + row
     fault = faults[row] if row in faults else _failure(run, row)
-    told = type(fault)(f"member {member}: {_ROW.sub('', str(fault), count=1)}")
+    told = type(fault)(f"member {member}: {ROW.sub('', str(fault), count=1)}")
     told.__dict__.update(vars(fault))
     raise told
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode.ensembles.plan import is_each_alone
 from polhode.ensembles.recipe import draws
-from polhode.ensembles.running import admitted, output
+from polhode.ensembles.running import ROW, admitted, output
 from polhode.errors import IntegrationError, PolhodeError
 
 if TYPE_CHECKING:
@@ -66,7 +66,8 @@ def trial_of(plan: Plan) -> tuple[Rows, Trajectory]:
             first = trial
     if first is None:
         row, fault = min(faults.items())
-        raise type(fault)(f"none of the first {inputs.count} members can begin; member {row}: {fault}")
+        what = ROW.sub("", str(fault), count=1)
+        raise type(fault)(f"none of the first {inputs.count} members can begin; member {row}: {what}")
     return np.array(begun), first
 
 

@@ -62,10 +62,11 @@ def body_from_file(
     weld, closure, orient, repair, index_base
         Of a mesh; see :func:`solid_from_file`.
     union : bool
-        Of a mesh: join components that overlap, so that what they share counts once; by manifold3d (extra
-        ``union``). How far it moves corners, a part in 1e12 or so of the size, is in no bound.
+        Whether to join, in a mesh, components that overlap, so that what they share counts once; by
+        manifold3d (extra ``union``). How far it moves corners, a part in 1e12 or so of the size, is in no
+        bound.
     masses : {"most_common", "average"}
-        Of a molecule; see :func:`polhode.molecules.isotopes`.
+        Masses of the atoms of a molecule; see :func:`polhode.molecules.isotopes`.
     progress : callable, optional
         Is told the fraction of a large mesh file done, now and then; an exception it raises ends the reading.
 

@@ -49,7 +49,7 @@ def body(
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default.
     opacity : float
-        Of the surface, from 0 to 1.
+        Opacity of the surface, from 0 to 1.
     length_unit : str, optional
         Name of the unit of the coordinates; without it the coordinate axes are not drawn.
     colors : array_like, shape (m, 3), optional
@@ -115,11 +115,11 @@ def principal_axes(
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D
         Where to draw.
     length : float
-        From the centre to each tip.
+        Length from the centre to each tip.
     center : array_like, shape (3,), optional
         Where to draw the centre of mass; where it is by default.
     labels : tuple of str
-        At the tips, in the order of ascending moments.
+        Labels at the tips, in the order of ascending moments.
 
     Returns
     -------

@@ -29,7 +29,7 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     Parameters
     ----------
     motion : FreeMotion
-        Of one body.
+        Motion of one body.
     t : array_like, shape (T,)
         Times over which ω sweeps the space cone, between which as many more are put as it needs; the body
         cone is drawn as it is at the last of them. For a body that is not symmetric the cones are not round,

@@ -64,7 +64,7 @@ def ellipsoid(
     center : array_like, shape (3,), optional
         Where to draw the centre of mass; where it is by default.
     opacity : float
-        Of the surface, from 0 to 1.
+        Opacity of the surface, from 0 to 1.
     coverage : float or None
         Probability of the error ellipses, 0.95 for 2.4477 standard deviations; None draws none.
     enlarged : float
@@ -117,7 +117,7 @@ def polhodes(
     energy : float
         T, in the units of the body.
     rate_unit : str
-        Of ω, for the labels.
+        Unit of ω, for the labels.
 
     Returns
     -------
@@ -179,11 +179,11 @@ def polhode(
     Parameters
     ----------
     motion : FreeMotion or GyrostatMotion
-        Of one body without zero moments.
+        Motion of one body without zero moments.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default.
     rate_unit : str
-        Of ω, for the label.
+        Unit of ω, for the label.
 
     Returns
     -------
@@ -239,14 +239,14 @@ def poinsot(
     Parameters
     ----------
     motion : FreeMotion
-        Of one body.
+        Motion of one body.
     t : array_like, shape (T,)
         Times of the herpolhode, between which as many more are put as its path needs; the ellipsoid is drawn
         as it is at the last of them.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default. L is drawn upward.
     rate_unit : str
-        Of ω, for the label.
+        Unit of ω, for the label.
 
     Returns
     -------

@@ -31,11 +31,11 @@ def flyby(
     Parameters
     ----------
     found : Flyby
-        Of :func:`polhode.flybys.flyby`.
+        Result of :func:`polhode.flybys.flyby`.
     of : {"spin_ratio", "pole_shift", "rotation_period", "precession_period"}
     ax : matplotlib.axes.Axes, optional
     time_unit : str, optional
-        Of the periods, for the label.
+        Unit of the periods, for the label.
     time_scale : float, optional
         How many units of time that unit is: periods are divided by it.
     bins : int, optional

@@ -56,7 +56,7 @@ def angular_velocity(
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     end : float, optional
-        Of a motion in closed form, which has no times of its own: it is drawn from 0 to this time.
+        For a motion in closed form, which has no times of its own: the motion is drawn from 0 to this time.
     frame : {"body", "principal"}
         Components along the body's axes or along its principal axes (ascending moments).
     degrees : bool
@@ -116,7 +116,7 @@ def angular_momentum(
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     frame : {"space", "body"}
-        Whose axes the components refer to.
+        The frame whose axes the components refer to.
     unit, time_unit : str
         For the labels.
     coverage : float or None

@@ -131,10 +131,10 @@ def portraits(
     momentum : float
         The length of L.
     factors : sequence of float, optional
-        Of the momentum inside; by default one in each range of ``|h|`` between those at which the number of
-        equilibria changes.
+        Factors of the momentum inside; by default one in each range of ``|h|`` between those at which the
+        number of equilibria changes.
     levels : int
-        As of :func:`portrait`.
+        As in :func:`portrait`.
 
     Returns
     -------

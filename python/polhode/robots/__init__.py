@@ -184,7 +184,7 @@ def check(
     Parameters
     ----------
     robot : Robot
-        From :func:`read_robot`.
+        A robot from :func:`read_robot`.
     packages : sequence of str or os.PathLike
         Folders that hold the packages of ``package://`` and ``model://`` addresses; folders above the file,
         ``ROS_PACKAGE_PATH``, ``GZ_SIM_RESOURCE_PATH`` and ``AMENT_PREFIX_PATH`` are searched too.
@@ -197,9 +197,9 @@ def check(
         marked as one. Links to files elsewhere are not followed. What is not read is told in the notes of
         the link.
     density : float, optional
-        In kg/m^3, of links for which the file says no mass: what :func:`fixed` then writes for them.
+        Density in kg/m^3 of links for which the file says no mass: what :func:`fixed` then writes for them.
     mass : float, optional
-        In kg, of all these links together, shared by volume; instead of `density`.
+        Mass in kg of all these links together, shared by volume; instead of `density`.
 
     Returns
     -------
@@ -232,7 +232,7 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
     ----------
     robot : Robot
     verdicts : sequence of Verdict
-        From :func:`check`.
+        Verdicts from :func:`check`.
     words : collection of str
         Links with one of these verdicts are corrected.
 

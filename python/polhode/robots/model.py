@@ -62,7 +62,7 @@ class Inertial(NamedTuple):
     mass : float
     center_of_mass : numpy.ndarray, shape (3,)
     inertia : numpy.ndarray, shape (3, 3)
-        About the centre of mass.
+        Tensor about the centre of mass.
     """
 
     mass: float
@@ -82,7 +82,7 @@ class Shape:
     size : tuple of float
         Sides; radius; radius and length; radius and length of the straight part; semi-axes; scale.
     place : Place
-        In the link.
+        Place in the link.
     role : {"collision", "visual"}
     mesh : str
         Address of a mesh, as the file has it.
@@ -154,7 +154,7 @@ class Link:
     ----------
     name : str
     line : int
-        Of its element in the file.
+        Line of its element in the file.
     inertial : Inertial or None
         What the file declares.
     problem : str
@@ -205,7 +205,7 @@ class Robot:
     ----------
     format : {"URDF", "SDF", "MJCF"}
     name : str
-        Of the robot, model or world.
+        Name of the robot, model or world.
     links : tuple of Link
     folder : pathlib.Path
         Where relative addresses start.

@@ -53,7 +53,7 @@ class Verdict(NamedTuple):
     ----------
     name : str
     line : int
-        Of the link in the file.
+        Line of the link in the file.
     verdict : str
         ``"good"``; ``"suspect"``: possible, but far from what its shape has; ``"coarse"``: larger than
         its shape has room for, but by no more than the error of the shape;

@@ -23,7 +23,8 @@ def function(expression: Any, arguments: Iterable[Any]) -> Callable[..., NDArray
     ----------
     expression : sympy.Expr or sympy.Matrix
     arguments : iterable of sympy.Symbol
-        In the order in which the function takes their values. Each symbol of the expression is among them.
+        Symbols in the order in which the function takes their values. Each symbol of the expression is among
+        them.
 
     Returns
     -------

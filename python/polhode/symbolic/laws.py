@@ -28,10 +28,10 @@ def parallel_axis(inertia: Any = None, mass: Any = None, displacement: Any = Non
     Parameters
     ----------
     inertia : Matrix, optional
-        About the centre of mass.
+        Tensor about the centre of mass.
     mass : Expr, optional
     displacement : sequence of three Expr, optional
-        From the centre of mass to the point.
+        Vector from the centre of mass to the point.
 
     Returns
     -------
@@ -91,12 +91,12 @@ def kinetic_energy(
     Parameters
     ----------
     inertia : Matrix, optional
-        About the reference point.
+        Tensor about the reference point.
     mass : Expr, optional
     omega, velocity : sequence of three Expr, optional
         Angular velocity, and velocity of the reference point, components in the body.
     center : sequence of three Expr, optional
-        From the reference point to the centre of mass; zero where that is the reference.
+        Vector from the reference point to the centre of mass; zero where that is the reference.
 
     Returns
     -------
@@ -143,7 +143,7 @@ def torque(inertia: Any = None, omega: Any = None, angular_acceleration: Any = N
     Parameters
     ----------
     inertia : Matrix, optional
-        About the centre of mass or a fixed point; diagonal with the principal moments by default.
+        Tensor about the centre of mass or a fixed point; diagonal with the principal moments by default.
     omega, angular_acceleration : sequence of three Expr, optional
         Components in the body.
 
@@ -162,7 +162,7 @@ def angular_acceleration(inertia: Any = None, omega: Any = None, torque: Any = N
     Parameters
     ----------
     inertia : Matrix, optional
-        About the centre of mass or a fixed point; diagonal with the principal moments by default.
+        Tensor about the centre of mass or a fixed point; diagonal with the principal moments by default.
     omega, torque : sequence of three Expr, optional
         Components in the body.
 
@@ -229,7 +229,7 @@ def angular_velocity(
     sequence : str, optional
         As in :mod:`polhode.euler_angles`.
     frame : {"body", "space"}, optional
-        Whose axes the components refer to.
+        The frame whose axes the components refer to.
     angles, rates : sequence of three Expr, optional
 
     Returns

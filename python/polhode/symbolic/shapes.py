@@ -29,15 +29,15 @@ class Shape:
     room : str
         ``"solids"``, ``"laminae"`` or ``"rods"``, whose function of that name gives the numbers.
     sizes : dict of str and Symbol or tuple of Symbol
-        By the arguments of that function.
+        Symbols by the arguments of that function.
     mass : Symbol
         M.
     measure : Expr
         Volume, area or length: M is that times the density.
     center_of_mass : Matrix, shape (3, 1)
-        In the axes of that function.
+        Centre of mass in the axes of that function.
     inertia : Matrix, shape (3, 3)
-        About the centre of mass.
+        Tensor about the centre of mass.
     """
 
     name: str
@@ -90,7 +90,7 @@ class Shape:
         Parameters
         ----------
         point : sequence of three Expr
-            In the axes of `center_of_mass`.
+            Point in the axes of `center_of_mass`.
 
         Returns
         -------
@@ -150,7 +150,7 @@ def shape(name: str, *, corners: int | None = None) -> Shape:
     name : str
         One of `names`, as ``"cone"``.
     corners : int, optional
-        Of a polygon.
+        Number of corners of a polygon.
 
     Returns
     -------

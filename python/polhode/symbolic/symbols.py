@@ -39,12 +39,12 @@ class Symbols(NamedTuple):
     omega, angular_acceleration, torque : Matrix, shape (3, 1)
         ω, its derivative and N, components in the body.
     velocity, position : Matrix, shape (3, 1)
-        Of the reference point, components in the body.
+        Velocity and position of the reference point, components in the body.
     angles, rates : tuple of Symbol
         φ, θ, ψ and their derivatives.
     axial, transverse, gravity, arm : Symbol
-        Of a top: I_s along its axis and I_t across it, both about the pivot, g, and l from the pivot to the
-        centre of mass.
+        Symbols of a top: I_s along its axis and I_t across it, both about the pivot, g, and l from the pivot
+        to the centre of mass.
     vertical_momentum, axial_momentum : Symbol
         L_z about the upward vertical and L_s about the axis.
     """

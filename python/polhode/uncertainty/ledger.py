@@ -58,7 +58,7 @@ def ledger(
     ignore : collection of str, optional
         Columns that are left out; others that are not known are an error.
     rtol : float, optional
-        By how much a tensor may break the laws of bodies, of its largest moment; see `RigidBody`.
+        How much a tensor may break the laws of bodies, relative to its largest moment; see `RigidBody`.
 
     Returns
     -------

@@ -34,7 +34,7 @@ class AxisProbabilities(NamedTuple):
     Attributes
     ----------
     least, intermediate, greatest : numpy.ndarray, shape (..., 3)
-        Of the axes of ``body.principal``, as they are; the three of one axis add up to one.
+        Probabilities of the axes of ``body.principal``, as they are; the three of one axis add up to one.
     stable : numpy.ndarray, shape (..., 3)
         That a steady spin about the axis is stable: that its moment is not the intermediate one.
     """
@@ -75,7 +75,7 @@ def axis_probabilities(body: RigidBody) -> AxisProbabilities:
     Parameters
     ----------
     body : RigidBody
-        With a covariance; or a stack.
+        A body with a covariance; or a stack.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
     Parameters
     ----------
     motion : FreeMotion
-        Of a body with a covariance, or from an `Uncertain` angular velocity; or a stack.
+        Motion of a body with a covariance, or from an `Uncertain` angular velocity; or a stack.
 
     Returns
     -------

@@ -43,11 +43,11 @@ class Propagated(NamedTuple):
     Attributes
     ----------
     value : float or numpy.ndarray
-        Of the body itself for ``"linear"``; the mean for ``"second-order"`` and ``"monte-carlo"``.
+        Value of the body itself for ``"linear"``; the mean for ``"second-order"`` and ``"monte-carlo"``.
     sigma : float or numpy.ndarray
         Standard deviations, of the same shape.
     covariance : numpy.ndarray, shape (k, k)
-        Of the k numbers of the value in C order.
+        Covariance of the k numbers of the value in C order.
     linear : bool or numpy.ndarray of bool
         Whether the first order is enough for each number, within about a percent of its sigma. Draws need
         less: False only where the body's own second order leads elsewhere than the draws.
@@ -90,7 +90,7 @@ def propagate(
     n : int, optional
         How many draws.
     seed : int, optional
-        Of the draws; the same seed gives the same draws. Required for ``"monte-carlo"``.
+        Seed of the draws; the same seed gives the same draws. Required for ``"monte-carlo"``.
     progress : bool or callable, optional
         A function of the fraction done, or whether to show a bar; by default on a terminal after two
         seconds.

@@ -48,11 +48,11 @@ def body(
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default.
     opacity : float
-        Of the surface, from 0 to 1.
+        Opacity of the surface, from 0 to 1.
     length_unit : str, optional
         Name of the unit of the coordinates; without it the coordinate axes are not drawn.
     name : str
-        Of the actors; another body of that name is replaced.
+        Name of the actors; another body of that name is replaced.
 
     Returns
     -------
@@ -94,13 +94,13 @@ def principal_axes(
     plotter : pyvista.Plotter, optional
         Where to show them; a new one by default.
     length : float
-        From the centre to each tip.
+        Length from the centre to each tip.
     center : array_like, shape (3,), optional
         Where to show the centre of mass; where it is by default.
     labels : tuple of str
-        At the tips, in the order of ascending moments.
+        Labels at the tips, in the order of ascending moments.
     name : str
-        Of the actors; other axes of that name are replaced.
+        Name of the actors; other axes of that name are replaced.
 
     Returns
     -------
@@ -141,9 +141,9 @@ def ellipsoid(
     center : array_like, shape (3,), optional
         Where to show the centre of mass; where it is by default.
     opacity : float
-        Of the surface, from 0 to 1.
+        Opacity of the surface, from 0 to 1.
     name : str
-        Of the actors; another ellipsoid of that name is replaced.
+        Name of the actors; another ellipsoid of that name is replaced.
 
     Returns
     -------
@@ -191,7 +191,7 @@ def rigid_body(
         A mesh of the body in its frame, (n, 3) and (m, 3). By default what the body was made of, see
         :func:`polhode.animation.animate`.
     opacity : float
-        Of the ellipsoid, from 0 to 1.
+        Opacity of the ellipsoid, from 0 to 1.
 
     Returns
     -------

@@ -55,13 +55,13 @@ def motion(
     Parameters
     ----------
     trajectory : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
-        Of one body. Where nothing acts on it, what is shown are as many states of its motion as it needs;
-        else its samples, between which the body should turn by no more than 30 degrees.
+        Motion of one body. Where nothing acts on it, what is shown are as many states of its motion as it
+        needs; else its samples, between which the body should turn by no more than 30 degrees.
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default. On one that shows the motion already, another `at` moves it.
     end : float, optional
-        Of a motion in closed form, which has no times of its own: it is shown from 0 to this time. Of a
-        gyrostat its wheels turn then one by one; the states of one tell their momentum alone.
+        For a motion in closed form, which has no times of its own: the motion is shown from 0 to this time.
+        Of a gyrostat its wheels turn then one by one; the states of one tell their momentum alone.
     at : float, optional
         Time to begin with, as the nearest state that is shown has it; the start by default.
     shape : (vertices, faces), optional
@@ -73,7 +73,7 @@ def motion(
     title, time_unit : str
         As the viewer reads them.
     name : str
-        Of the actors; another motion of that name is replaced.
+        Name of the actors; another motion of that name is replaced.
 
     Returns
     -------

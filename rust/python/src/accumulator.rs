@@ -61,8 +61,9 @@ impl PyMassAccumulator {
     /// Parameters
     /// ----------
     /// masses : array_like, shape (n,)
+    ///     Masses of the particles.
     /// positions : array_like, shape (n, 3)
-    ///     Those of dask, zarr, h5py and memory maps are not loaded as a whole.
+    ///     Positions of the particles. Arrays of dask, zarr, h5py and memory maps are not loaded as a whole.
     /// start : int, optional
     ///     The number of the first of these particles in the whole; by default they come after the last one.
     ///     With it chunks may come in any order, and from several accumulators that are merged.
@@ -125,6 +126,7 @@ impl PyMassAccumulator {
     /// Parameters
     /// ----------
     /// other : MassAccumulator
+    ///     Accumulator of other particles.
     ///
     /// Raises
     /// ------

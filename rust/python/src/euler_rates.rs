@@ -16,11 +16,11 @@ use crate::stack::{Broadcast, Stack};
 /// Parameters
 /// ----------
 /// angles, rates : array_like, shape (..., 3)
-///     In radians unless `degrees`, and their derivatives with respect to time, in the order of the sequence.
+///     Angles in radians unless `degrees`, and their derivatives with respect to time, in the order of the sequence.
 /// sequence : str, optional
 ///     As in `to_quaternion`; the default is the (φ, θ, ψ) of Goldstein and Landau.
 /// frame : {"body", "space"}, optional
-///     Whose axes the components of the result refer to.
+///     The frame whose axes the components of the result refer to.
 /// degrees : bool, optional
 ///     Angles and rates are in degrees; the result is in radians per time all the same.
 ///
@@ -68,13 +68,13 @@ pub(crate) fn angular_velocity_from_euler_rates<'py>(
 /// Parameters
 /// ----------
 /// angles : array_like, shape (..., 3)
-///     In radians unless `degrees`, in the order of the sequence.
+///     Angles in radians unless `degrees`, in the order of the sequence.
 /// omega : array_like, shape (..., 3)
 ///     Angular velocity of the body relative to space, components in `frame`.
 /// sequence : str, optional
 ///     As in `to_quaternion`; the default is the (φ, θ, ψ) of Goldstein and Landau.
 /// frame : {"body", "space"}, optional
-///     Whose axes the components of `omega` refer to.
+///     The frame whose axes the components of `omega` refer to.
 /// singular : {"raise", "nan"}, optional
 ///     What to do where the first and third angle turn about the same axis (sine of the middle angle, or
 ///     cosine for three different axes, below 1e-12): raise, or give NaN for the rates of these two.

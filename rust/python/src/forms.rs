@@ -294,7 +294,7 @@ pub(crate) fn from_parameters(
 /// Parameters
 /// ----------
 /// body : RigidBody
-///     With a thickness: of a lamina or rod there is no logarithm.
+///     A body with a thickness: of a lamina or rod there is no logarithm.
 ///
 /// Returns
 /// -------

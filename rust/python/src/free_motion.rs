@@ -33,11 +33,11 @@ use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
 /// omega : numpy.ndarray, shape (..., 3)
 ///     Angular velocity at t = 0, of the body relative to space, components in the body frame.
 /// quaternion : numpy.ndarray, shape (..., 4)
-///     R_NB at t = 0 as (x, y, z, w).
+///     Attitude R_NB at t = 0 as (x, y, z, w).
 /// uncertain_start : tuple of Uncertain or None
-///     Angular velocity and attitude at t = 0 where they were given with a sigma.
+///     Angular velocity and attitude at t = 0 where they were given with a sigma, else None.
 /// shape : tuple of int
-///     Of the stack of motions: bodies, angular velocities and attitudes broadcast together.
+///     Shape of the stack of motions: bodies, angular velocities and attitudes broadcast together.
 ///
 /// Examples
 /// --------

@@ -28,7 +28,7 @@ use crate::stack::{Broadcast, Stack};
 /// wheels : tuple of Wheel
 ///     The wheels.
 /// shape : tuple of int
-///     Of the stack.
+///     Shape of the stack.
 ///
 /// Examples
 /// --------

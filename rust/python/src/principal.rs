@@ -97,7 +97,7 @@ pub(crate) fn principal_axes<'py>(
 /// Parameters
 /// ----------
 /// inertia : array_like, shape (..., 3, 3)
-///     As for `principal_axes`.
+///     As in `principal_axes`.
 ///
 /// Returns
 /// -------

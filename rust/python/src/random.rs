@@ -30,7 +30,7 @@ enum Law {
 ///     Words of 64 bits; numbers between 0 and 1, neither of which they are; standard normal numbers; unit
 ///     quaternions (x, y, z, w) of rotations drawn uniformly.
 /// seed, stream : int
-///     From 0 to 2**64 - 1.
+///     Numbers from 0 to 2**64 - 1.
 /// first, count : int
 ///     The first member and how many.
 /// width : int

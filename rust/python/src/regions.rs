@@ -66,7 +66,7 @@ pub(crate) fn cuboid(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>) -> PyResul
 /// center : array_like, shape (3,), optional
 ///     The origin by default.
 /// inner_radius : float, optional
-///     Of a concentric cavity.
+///     Radius of a concentric cavity.
 ///
 /// Returns
 /// -------
@@ -142,7 +142,7 @@ pub(crate) fn ellipsoid(semi_axes: &Bound<'_, PyAny>, center: Argument<'_>) -> P
 /// center : array_like, shape (3,), optional
 ///     The middle of its axis; the origin by default.
 /// inner_radius : float, optional
-///     Of a hole along the axis.
+///     Radius of a hole along the axis.
 ///
 /// Returns
 /// -------

@@ -59,7 +59,7 @@ pub(crate) fn raises_where_singular(word: &str) -> PyResult<bool> {
 /// Parameters
 /// ----------
 /// angles : array_like, shape (..., 3)
-///     In radians unless `degrees`, in the order in which the sequence names its axes.
+///     Angles in radians unless `degrees`, in the order in which the sequence names its axes.
 /// sequence : str, optional
 ///     Three axes: intrinsic in upper case (``"ZXZ"``: R_NB = Rz(φ) Rx(θ) Rz(ψ)), extrinsic in lower
 ///     case; or ``"goldstein"``, ``"landau"`` (ZXZ), ``"aerospace"`` (ZYX).

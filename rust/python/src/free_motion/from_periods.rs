@@ -26,7 +26,7 @@ impl PyRigidBody {
     /// mode : {"long-axis", "short-axis"}, optional
     ///     Whether the angular velocity circles axis 1 or axis 3 in the body.
     /// sense : {1, -1}, optional
-    ///     On which side of that axis the angular velocity is.
+    ///     The side of that axis the angular velocity is.
     /// phase : array_like, shape (...), optional
     ///     Fraction of the rotation period that has passed at t = 0 since the angular velocity lay in the plane of axes 1
     ///     and 3, on the positive side of the one that is not circled.

@@ -36,7 +36,7 @@ use crate::uncertain::{StartGiven, UncertainStart};
 /// quaternion : numpy.ndarray, shape (..., 4)
 ///     R_NB at t = 0 as (x, y, z, w).
 /// shape : tuple of int
-///     Of the stack of motions: gyrostats, angular velocities and attitudes broadcast together.
+///     Shape of the stack of motions: gyrostats, angular velocities and attitudes broadcast together.
 ///
 /// Examples
 /// --------

@@ -47,7 +47,7 @@ pub(super) struct Start {
 /// uncertain_start : tuple of Uncertain or None
 ///     Angular velocity and attitude at t = 0 where they were given with a sigma.
 /// shape : tuple of int
-///     Of the stack of motions: bodies, angular velocities, attitudes and gravities broadcast together.
+///     Shape of the stack of motions: bodies, angular velocities, attitudes and gravities broadcast together.
 /// path : str or numpy.ndarray of str, shape (...)
 ///     What the axis draws on a sphere about the pivot. "cusp": it rests whenever it is highest. "loop": its precession
 ///     turns back while it is high. "wave": it does not. "regular": steady precession. "crossing": it goes through the
@@ -56,7 +56,7 @@ pub(super) struct Start {
 /// nutation_limits : numpy.ndarray, shape (..., 2)
 ///     Least and largest inclination θ of the axis, from the pivot to the centre of mass, from the upward vertical.
 /// nutation_period : float or numpy.ndarray, shape (...)
-///     From one least inclination to the next: infinite on an asymptotic path, NaN where the axis rests.
+///     Time from one least inclination to the next: infinite on an asymptotic path, NaN where the axis rests.
 /// mean_precession : float or numpy.ndarray, shape (...)
 ///     Mean rate at which the axis goes about the upward vertical, the mean of φ̇. Through the vertical φ jumps by half a
 ///     turn.

@@ -138,7 +138,7 @@ impl PyLoad {
     /// quaternion : array_like, shape (..., 4), or rotation
     ///     Attitude R_NB as (x, y, z, w), or anything with ``as_quat()``.
     /// position, velocity : array_like, shape (..., 3), optional
-    ///     Of the reference point, in space; zero by default.
+    ///     Position and velocity of the reference point, in space; zero by default.
     /// body : RigidBody, optional
     ///     Needed by loads that depend on it: weight, forces at a point, gravity gradient.
     /// about : {"center_of_mass", "origin"}, optional
@@ -228,7 +228,7 @@ impl PyLoad {
     /// body : RigidBody
     /// quaternion : array_like, shape (..., 4), or rotation
     /// position : array_like, shape (..., 3), optional
-    ///     Of the reference point, in space; zero by default.
+    ///     Position of the reference point, in space; zero by default.
     /// about : {"center_of_mass", "origin"}, optional
     ///
     /// Returns

@@ -25,7 +25,7 @@ use crate::stack::{Broadcast, Stack};
 ///     Gravitational parameter of the attractor; or an orbit of :mod:`polhode.orbits`, alone. On one with ``j2`` or along
 ///     samples "auto" is "dop853", and derivatives come by differences.
 /// position, velocity : array_like, shape (..., 3)
-///     Of the centre of mass relative to the attractor, in space, at the epoch.
+///     Position and velocity of the centre of mass relative to the attractor, in space, at the epoch.
 /// epoch : float, optional
 ///     When the orbit has that state; the first time of a simulation by default.
 ///

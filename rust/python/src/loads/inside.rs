@@ -26,7 +26,7 @@ impl PyLoad {
     /// Returns
     /// -------
     /// momentum : numpy.ndarray, shape (..., 3)
-    ///     In the body frame.
+    ///     Momentum in the body frame.
     /// energy : numpy.ndarray, shape (...)
     #[pyo3(signature = (t, omega, states=None))]
     fn carried<'py>(

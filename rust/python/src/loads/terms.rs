@@ -19,7 +19,7 @@ use crate::stack::{Broadcast, Stack};
 /// ----------
 /// vector : array_like, shape (..., 3)
 /// frame : {"body", "space"}, optional
-///     Whose axes the components refer to: a torque constant in the body turns with it, one constant
+///     The frame whose axes the components refer to: a torque constant in the body turns with it, one constant
 ///     in space keeps its direction.
 ///
 /// Returns
@@ -52,7 +52,7 @@ pub(crate) fn constant_torque(
 /// ----------
 /// vector : array_like, shape (..., 3)
 /// frame : {"body", "space"}, optional
-///     Whose axes the components refer to: the thrust of a nozzle turns with the body, a steady wind
+///     The frame whose axes the components refer to: the thrust of a nozzle turns with the body, a steady wind
 ///     does not.
 /// point : array_like, shape (..., 3), optional
 ///     Where it acts, in the body frame; at the centre of mass by default.
@@ -173,7 +173,7 @@ pub(crate) fn damping(
 /// t : array_like, shape (n,)
 ///     Ascending, at least two.
 /// torque : array_like, shape (..., n, 3)
-///     About the reference point of the motion.
+///     Torques about the reference point of the motion.
 /// frame : {"body", "space"}, optional
 ///
 /// Returns

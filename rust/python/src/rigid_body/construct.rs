@@ -100,7 +100,7 @@ impl PyRigidBody {
     /// ----------
     /// mass : array_like, shape (...)
     /// moments : array_like, shape (..., 3)
-    ///     In any order.
+    ///     Principal moments, in any order.
     /// axes : array_like, shape (..., 3, 3), or rotation, optional
     ///     The axes they belong to as columns, in the body frame: a right-handed rotation matrix,
     ///     quaternions (..., 4) as (x, y, z, w), or anything with ``as_quat()``. The body axes by
@@ -190,7 +190,7 @@ impl PyRigidBody {
     /// index_base : {1, 0}, optional
     ///     What the faces of an OBJ or plate file count vertices from.
     /// masses : {"most_common", "average"}, optional
-    ///     Of a molecule, where a label names no isotope: of the element's most common isotope or the average over them.
+    ///     Masses for a molecule where a label names no isotope: of the element's most common isotope or the average over them.
     /// progress : callable, optional
     ///     Is told the fraction of a large mesh file done, now and then; an exception it raises ends the
     ///     reading. Binary STL and PLY go through memory block by block, whatever their size.

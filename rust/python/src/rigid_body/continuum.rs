@@ -98,7 +98,7 @@ impl PyRigidBody {
     ///     Bound on the estimated error of the mass, relative; of the centre of mass, relative to the
     ///     radius of gyration; and of the second moments, relative to their sum.
     /// max_evaluations : int, optional
-    ///     At how many points the density may be asked for at most; to look for jumps beside the faces of the
+    ///     Largest number of points at which the density is evaluated; to look for jumps beside the faces of the
     ///     cells takes up to a sixth more.
     ///
     /// Returns
@@ -152,7 +152,7 @@ impl PyRigidBody {
     /// rtol : float, optional
     ///     Bound on the estimated relative errors of mass and moments.
     /// max_evaluations : int, optional
-    ///     At how many radii the density may be asked for at most; to look for jumps beside the boundaries
+    ///     Largest number of radii at which the density is evaluated; to look for jumps beside the boundaries
     ///     takes up to twice as many more.
     ///
     /// Returns

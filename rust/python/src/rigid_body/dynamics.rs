@@ -90,7 +90,7 @@ impl PyRigidBody {
     /// omega : array_like, shape (..., 3)
     ///     Angular velocity relative to space, components in the body frame.
     /// velocity, position : array_like, shape (..., 3), optional
-    ///     Of the point P relative to space, components in the body frame.
+    ///     Velocity and position of the point P relative to space, components in the body frame.
     /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
     ///     The point P of the body; ``c_P = C − P``.
     ///
@@ -151,7 +151,7 @@ impl PyRigidBody {
     /// omega : array_like, shape (..., 3)
     ///     Angular velocity relative to space, components in the body frame.
     /// torque : array_like, shape (..., 3), optional
-    ///     About P, components in the body frame.
+    ///     Torque about P, components in the body frame.
     /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
     ///     P: the centre of mass of a body that moves freely, or a point fixed in space.
     ///

@@ -198,7 +198,7 @@ impl PyRigidBody {
     ///     Mass per area of a thin shell, mass per volume of one with `thickness`, or the mass in all:
     ///     exactly one of them.
     /// thickness : float, optional
-    ///     From face to face; without it the shell is thin.
+    ///     Thickness from face to face; without it the shell is thin.
     ///
     /// Returns
     /// -------

@@ -67,7 +67,7 @@ impl PyRigidBody {
     /// conformer : int, optional
     ///     Which of an RDKit molecule's; its first by default.
     /// masses : {"most_common", "average"}
-    ///     Of each element: of its most common isotope, as spectroscopists and molecules in files have it, or the
+    ///     Masses of each element: of its most common isotope, as spectroscopists and molecules in files have it, or the
     ///     average over its isotopes, as in a bottle. Those that the object was given stand: masses set in ASE,
     ///     isotopes in RDKit. `provenance` tells whose they are.
     ///

@@ -32,7 +32,7 @@ impl PyRigidBody {
     /// mass : array_like, shape (...), optional
     /// center_of_mass : array_like, shape (..., 3), optional
     /// inertia : array_like, shape (..., 3, 3), optional
-    ///     Of the elements of the tensor about C, symmetric.
+    ///     Standard deviations of the elements of the tensor about C, symmetric.
     /// source : str, optional
     ///     A name for the draw: as of `Uncertain`.
     ///
@@ -150,7 +150,8 @@ impl PyRigidBody {
     /// Parameters
     /// ----------
     /// covariance : array_like, shape (10, 10)
-    ///     Of m, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz: the tensor's elements about C, off the diagonal *minus* the products.
+    ///     Covariance of m, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz: the tensor's elements about C, off the diagonal
+    ///     *minus* the products.
     /// source : str, optional
     ///     A name for the draw: as of `Uncertain`.
     ///

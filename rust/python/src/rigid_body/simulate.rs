@@ -45,7 +45,7 @@ impl PyRigidBody {
     ///     What acts on the body, from :mod:`polhode.loads`; nothing by default. Its torques are about
     ///     the point `about`; its forces move a body that is free.
     /// position, velocity : array_like, shape (..., 3), optional
-    ///     Of the point `about` at the start, in space; zero by default.
+    ///     Position and velocity of the point `about` at the start, in space; zero by default.
     /// about : {"center_of_mass", "origin"}, optional
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.

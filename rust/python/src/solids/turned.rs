@@ -109,7 +109,7 @@ shape_function! {
     /// ----------
     /// radius : array_like, shape (...)
     /// length : array_like, shape (...)
-    ///     Of the cylinder, between the centres of the half balls; the whole is 2 × radius longer.
+    ///     Length of the cylinder, between the centres of the half balls; the whole is 2 × radius longer.
     /// mass, density : array_like, shape (...)
     ///     Exactly one of the two.
     ///

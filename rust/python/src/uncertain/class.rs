@@ -13,7 +13,7 @@ use crate::shape::tuple;
 
 /// Numbers that are not known exactly: values with standard deviations or a covariance.
 ///
-/// It is taken wherever a body is made of numbers: by the constructors of `RigidBody`, the solids, laminae and rods, and by
+/// It is accepted wherever a body is made from numbers: by the constructors of `RigidBody`, the solids, laminae and rods, and by
 /// `translated`, `rotated` and `scaled`. The bodies carry the covariance from there on. What comes from one source stays one
 /// source: two bodies made of one `Uncertain` are correlated by it.
 ///
@@ -132,13 +132,13 @@ impl PyUncertain {
         })
     }
 
-    /// The numbers, or the rotation.
+    /// Values of the numbers, or the rotation.
     #[getter]
     pub(super) fn value<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         scalar(self.value.bind(py))
     }
 
-    /// Their standard deviations.
+    /// Standard deviations of the numbers, in their units; of a rotation in radians.
     #[getter]
     fn sigma<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         match (&self.sigma, &self.covariance) {
@@ -167,7 +167,7 @@ impl PyUncertain {
         numpy::PyArray1::from_vec(py, numbers).call_method1("reshape", ((count, count),))
     }
 
-    /// The name of the draw, if it has one.
+    /// Name of the draw, if it has one.
     #[getter]
     fn source(&self) -> Option<&str> {
         self.source.as_deref()

@@ -37,7 +37,7 @@ impl Circled {
 /// use polhode::motion::free::{Circled, FreeMotion, FromPeriods, attitude_about};
 /// use polhode::nalgebra::{Matrix3, Vector3};
 ///
-/// // The asteroid Toutatis (Ostro et al. 1995): it rotates about its long axis in 5.41 days, which precesses in 7.35.
+/// // The asteroid Toutatis (Hudson and Ostro 1995; moments of Ostro et al. 1999): it rotates about its long axis in 5.41 days, which precesses in 7.35.
 /// let moments = [1.0, 3.09, 3.22];
 /// let given = FromPeriods { rotation: 5.41, precession: 7.35, circled: Circled::Long, sense: 1.0, phase: 0.0 };
 /// let omega = given.omega(&moments)?;
