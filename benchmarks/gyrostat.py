@@ -82,7 +82,7 @@ def rows() -> Iterator[Row]:
         compare=lambda _ours, _theirs: None,
         most_seconds=10e-6,
     )
-    # Next to a separatrix one number more is needed, to four times the precision; here of a tensor whose axes are turned.
+    # On a separatrix one number is needed to four times the precision; here of a tensor with turned axes.
     turned = RigidBody(1.0, TURNED).gyrostat(TURNED_ROTOR)
     assert turned.free_motion(BORDER).mode == "separatrix"
     yield Row(
