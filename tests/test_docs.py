@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import inspect
 import re
 import runpy
 import sys
@@ -121,6 +122,23 @@ class TestInterface:
             if export != "__version__"
         }
         assert {export: count for export, count in found.items() if count != 1} == {}
+
+    def test_every_member_of_a_class_is_on_its_page(self, pages: dict[str, str]) -> None:
+        text = "\n".join(pages.values())
+        missing = {}
+        for export in polhode.__all__:
+            value = getattr(polhode, export)
+            if not isinstance(value, type) or value is RigidBody:  # which has pages of its own
+                continue
+            listed = re.search(rf"autoclass:: polhode\.{export}\n(?:   :members: (.*))?", text)
+            assert listed
+            # The class describes its fields.
+            fields = {*inspect.get_annotations(value), *getattr(value, "_fields", ())}
+            fields |= {name for name, member in vars(value).items() if inspect.ismemberdescriptor(member)}
+            members = {name for name in vars(value) if not name.startswith("_")} - fields
+            missing[export] = members - set((listed[1] or "").split(", "))
+        assert {export: names for export, names in missing.items() if names} == {}
+        assert "top" in vars(polhode.PrincipalAxes)  # a cached property is among them
 
     def test_every_member_of_a_body_is_on_one_page(self, pages: dict[str, str]) -> None:
         rest, *parts = (text for name, text in pages.items() if name.startswith("RigidBody."))

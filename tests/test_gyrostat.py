@@ -149,6 +149,34 @@ def test_from_one_equilibrium_to_another() -> None:
         assert np.abs(ends - [[3, 0.5, 0], [3, -0.5, 0]]).max() <= 1e-9 * (t < 1e3) + 1e-13
 
 
+@pytest.mark.parametrize("is_turned", [False, True])
+@pytest.mark.parametrize(
+    ("off", "mode"),
+    [
+        (-(2.0**-40), "single"),
+        (-(2.0**-50), "single"),
+        (0.0, "separatrix"),
+        (2.0**-50, "paired"),
+        (2.0**-40, "paired"),
+    ],
+)
+def test_a_start_on_the_separatrix_and_next_to_it(off: float, mode: str, *, is_turned: bool) -> None:
+    """Numbers are whole, so that the start is on it exactly; a third of the matrix is a rotation."""
+    turn = np.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2]])
+    omega = np.array([-2.5 * (1.0 + off), 1.0, -2.5])
+    if is_turned:
+        gyrostat = RigidBody(1.0, turn @ np.diag([18.0, 27.0, 36.0]) @ turn.T / 9).gyrostat(
+            turn @ [9.0, 9.0, 18.0]
+        )
+        motion = gyrostat.free_motion(turn @ omega)
+    else:
+        motion = (
+            RigidBody.from_principal(1.0, (2.0, 3.0, 4.0)).gyrostat((3.0, 3.0, 6.0)).free_motion(3.0 * omega)
+        )
+    assert motion.mode == mode
+    assert np.isinf(motion.period) == (mode == "separatrix")
+
+
 def test_a_start_next_to_the_middle_axis_turns_over_when_it_should() -> None:
     # The time to turn over grows by ln(10)/rate with each decade.
     gyrostat = BODY.gyrostat((0.0, 0.3, 0.0))
