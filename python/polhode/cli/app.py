@@ -10,7 +10,7 @@ from typing import Annotated, Final
 
 from cyclopts import App, Parameter
 
-from polhode.cli.ensemble_options import EnsembleOptions
+from polhode.cli.motion_options import EnsembleOptions, SpinOptions
 from polhode.cli.options import (
     AssembleOptions,
     BodyOptions,
@@ -20,7 +20,6 @@ from polhode.cli.options import (
     MoleculeOptions,
     OutputOptions,
     ReportOptions,
-    SpinOptions,
 )
 from polhode.cli.showing import held_and_shown, show, show_lines
 from polhode.cli.text import note

@@ -24,7 +24,7 @@ from polhode.euler_angles import to_quaternion
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from polhode.cli.ensemble_options import EnsembleOptions
+    from polhode.cli.motion_options import EnsembleOptions
     from polhode.cli.options import BodyOptions
     from polhode.ensembles.result import Ensemble
 

@@ -12,7 +12,7 @@ from polhode.cli.counts import Count  # noqa: TC001  (cyclopts reads annotations
 
 __all__ = [
     "AssembleOptions", "BodyOptions", "CheckOptions", "FlybyOptions", "LedgerOptions", "LengthUnit",
-    "MoleculeOptions", "OutputOptions", "ReportOptions", "SpinOptions",
+    "MoleculeOptions", "OutputOptions", "ReportOptions",
 ]  # fmt: skip
 
 LengthUnit: TypeAlias = Literal["m", "mm", "cm", "um", "nm", "km", "in", "ft", "angstrom"]
@@ -326,69 +326,4 @@ class FlybyOptions:
     seed: Annotated[Count, Parameter(name="--seed")] = 0
     rtol: Annotated[float, Parameter(name="--rtol")] = 1e-10
     client: Annotated[str | None, Parameter(name="--client")] = None
-    save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class SpinOptions:
-    """How the body spins and what is kept of it.
-
-    Attributes
-    ----------
-    moments
-        Three principal moments instead of a file, as in "1 3 3.2" or "2 4 5 g cm^2"; a bare number is kg m^2.
-        With sigmas: "1.00 ± 0.01, 3.00(2), 3.2".
-    omega
-        Angular velocity at the start, its components in the body, as in 0 6 0.01 or "10 20 30 deg/s"; a bare
-        number is rad/s. With sigmas: "0, 6.00 ± 0.05, 0.010(2)".
-    periods
-        Instead of --omega, the two periods of a tumbling asteroid: rotation about the long axis and mean
-        precession of that axis, as in "5.41 d, 7.35 d"; a bare number is in s.
-    mode
-        Which of the two motions has these periods.
-    gravity
-        A top: the origin of the body stays where it is and this acceleration pulls along -z, as in 9.81; a
-        bare number is m/s^2. The centre of mass and the origin have to lie on the symmetry axis.
-    wheel
-        A wheel that turns in the body: its axis, along the axes of --omega, and its momentum relative to the
-        body, which is held, as in "z, 2.5 kg m^2/s" or "0, 0.6, 0.8, 1.2 N m s"; x, y and z name those axes,
-        e1, e2 and e3 the principal ones. A bare number is in the report's unit of |L|. May be repeated. The
-        moments of the body are those with its wheels locked.
-    attitude
-        Euler angles phi theta psi (ZXZ) at the start, as in "0 30 0 deg"; a bare number is in radians.
-    until
-        Time of the end, as in 20 or "30 d"; in s if bare. The start is 0. Without it the report tells
-        what kind of motion it is, and nothing is saved.
-    degrees
-        Print angular velocity in deg/s, and read --omega without a unit in deg/s.
-    axes
-        Axes of the components: the file's, or the principal axes (ascending moments).
-    samples
-        Number of times, start and end included.
-    save
-        Where to write the motion: a picture (.png, .pdf, .svg), an animation (.html, .gif, .mp4) or its
-        numbers (.csv, .npz, .json). May be repeated. A mesh is drawn as it is, one of more than
-        10 000 triangles coarser; a molecule as balls, an assembly part by part, and a body of which
-        only the moments are known as the box of the same inertia.
-    """
-
-    moments: Annotated[
-        Words, Parameter(name="--moments", negative="", consume_multiple=True, show_default=False)
-    ] = ()
-    omega: Annotated[
-        Words, Parameter(name="--omega", negative="", consume_multiple=True, show_default=False)
-    ] = ()
-    periods: Annotated[
-        Words, Parameter(name="--periods", negative="", consume_multiple=True, show_default=False)
-    ] = ()
-    mode: Annotated[Literal["long-axis", "short-axis"], Parameter(name="--mode")] = "long-axis"
-    gravity: Annotated[str | None, Parameter(name="--gravity")] = None
-    wheel: Annotated[Words, Parameter(name="--wheel", negative="", show_default=False)] = ()
-    attitude: Annotated[
-        Words, Parameter(name="--attitude", negative="", consume_multiple=True, show_default=False)
-    ] = ()
-    until: Annotated[str | None, Parameter(name="--until")] = None
-    degrees: Annotated[bool, Parameter(name="--degrees", negative="")] = False
-    axes: Annotated[Literal["file", "principal"], Parameter(name="--axes")] = "file"
-    samples: Annotated[Count, Parameter(name="--samples")] = 1001
     save: Annotated[tuple[Path, ...], Parameter(name="--save", negative="", show_default=False)] = ()

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from polhode import FreeMotion, GyrostatMotion, HeavyTop
-    from polhode.cli.options import BodyOptions, SpinOptions
+    from polhode.cli.motion_options import SpinOptions
+    from polhode.cli.options import BodyOptions
 
     Floats = NDArray[np.float64]
 

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
     from polhode import FreeMotion, GyrostatMotion, HeavyTop, Trajectory
     from polhode.cli.loading import LoadedBody
-    from polhode.cli.options import BodyOptions, SpinOptions
+    from polhode.cli.motion_options import SpinOptions
+    from polhode.cli.options import BodyOptions
 
     Part: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64]]
 
