@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from polhode import RigidBody, plot
 
 # Ostro et al. 1999 (Icarus 137, 122): periods of rotation about the long axis and of its precession about L,
-# and ratios of the moments to the one about the long axis.
+# and ratios of the moments to the one about the long axis, fitted to the rotation.
 ROTATION, PRECESSION = 5.41, 7.35  # days
 MOMENTS = (1.0, 3.09, 3.22)
 
