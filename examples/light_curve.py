@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from polhode import RigidBody
 
-# (4179) Toutatis: ratios of the moments fitted to its rotation, and periods (Ostro et al., Icarus 137 (1999) 122). Its
-# radar shape with a uniform density gives 1 : 3.013 : 3.190.
+# (4179) Toutatis: ratios of the moments fitted to its rotation, and periods (Ostro et al., Icarus 137 (1999)
+# 122). Its radar shape with a uniform density gives 1 : 3.013 : 3.190.
 TOUTATIS = RigidBody.from_principal(1.0, (1.0, 3.09, 3.22))
 SHAPE = np.array([2.3, 1.2, 0.95])
 """Half-axes in km of an ellipsoid that reflects the light."""
