@@ -45,12 +45,10 @@ def elsewhere(found: dict[str, Any]) -> str:
     """Give the page of the same problems in other programs."""
     lines = [
         "# The same elsewhere\n",
-        "Four problems, in polhode and in other programs: how many lines it takes, how long, and how far "
-        "the answer is from the exact "
-        "one. *First* is a call in a fresh interpreter with what it imports beside NumPy, *again* "
-        "one after it. The "
-        "other programs can do much that "
-        "polhode does not; these four problems are those that polhode is made for.\n",
+        "Four problems are solved with polhode and with other programs. The tables compare the lines of code, "
+        "the time and the error of the result. *First* is the time of the first call in a new interpreter, "
+        "with all imports except NumPy. *Again* is the time of a second call. The other programs can do much "
+        "that polhode cannot; polhode is made for problems like these four.\n",
         where(found) + "\n",
     ]
     for problem, title, text in PROBLEMS:
@@ -82,29 +80,30 @@ PROBLEMS = (
     (
         "motion",
         "A body that flips",
-        "Angular velocity and attitude of a free body at 601 times of a minute. All find both; the error is "
-        "that of the angular velocity, held against Jacobi's functions in 45 digits. SymPy's attitude is in "
-        "Euler angles, the others' in quaternions. The integrators have "
-        "tolerances of 1e-12, heyoka its own default, MuJoCo steps of a millisecond.",
+        "Each program computes angular velocity and attitude of a free body at 601 times of one minute. The "
+        "error is the error of the angular velocity, compared with Jacobi's functions in 45 digits. SymPy "
+        "gives the attitude in Euler angles, the others give quaternions. The integrators have "
+        "a tolerance of 1e-12; heyoka has its default tolerance, and MuJoCo has steps of a millisecond.",
     ),
     (
         "tensor",
         "The tensor of a mesh",
-        "A torus of 20 000 triangles, held against rational numbers. polhode checks that the mesh is "
-        "closed and wound one way "
-        "and refuses it otherwise; trimesh reports this on request; the sum in NumPy does not check it.",
+        "The mesh is a torus of 20 000 triangles. The result is compared with rational arithmetic. polhode "
+        "checks that the mesh is closed and that all its faces have the same orientation, and refuses it "
+        "otherwise. trimesh checks this on request. The sum in NumPy does not check it.",
     ),
     (
         "axes",
         "Principal moments and axes of many bodies",
-        "Right-handed axes and ascending moments of a thousand tensors. The error is that of the moments, "
-        "held against mpmath in forty digits, relative to the largest of all.",
+        "Each program computes right-handed axes and ascending moments of a thousand tensors. The error is "
+        "the error of the moments, compared with mpmath in forty digits, relative to the largest moment.",
     ),
     (
         "particles",
         "The tensor of particles far from the origin",
-        "A thousand particles, a hundred times as far from the origin as from each other, held against "
-        "rational numbers. The sum by NumPy is about the centre of mass, as it has to be here.",
+        "A thousand particles are a hundred times as far from the origin as from each other. The result is "
+        "compared with rational arithmetic. The sum in NumPy is taken about the centre of mass; about the "
+        "origin it would lose digits.",
     ),
 )
 
@@ -115,15 +114,15 @@ def validation(found: dict[str, Any]) -> str:
         "# How it is checked\n",
         "Each formula is compared with something that is not polhode: a closed form, rational numbers, "
         "many digits, published figures or "
-        "another engine. The tests do that at each change; here are some of the errors, relative to the "
-        "largest number of the answer. "
+        "another engine. The tests repeat this after each change of the code. The table shows some of the "
+        "errors, relative to the largest number of the result. "
         "The spacing of floating-point numbers is 2.2e-16.\n",
         where(found) + "\n",
-        "| what | against | error |",
+        "| what | compared with | error |",
         "|---|---|---|",
         *(f"| {row['what']} | {row['against']} | {power(row['error'])} |" for row in found["validation"]),
-        "\nThe oracles are in `tests/oracles`; `tests/claims.toml` names for each promise of these pages "
-        "the test that keeps it.\n",
+        "\nThe code of the reference solutions is in `tests/oracles`. For each promise on these pages, "
+        "`tests/claims.toml` names the test that checks it.\n",
     ]
     return "\n".join(lines)
 
@@ -134,7 +133,7 @@ def performance(ratios: dict[str, Any]) -> str:
         "# How fast it is\n",
         "The ratio is the time of the other program for the same answer, divided by the time of polhode. "
         "Above 1, polhode is faster. In some rows polhode is compared with itself: the same work in another "
-        "way, or for another body. Both ran in turn in one process, on one thread, in several rounds. The "
+        "way, or for another body. The two ran alternately in one process, on one thread, in several rounds. The "
         "ratio is the median of the rounds. If the least and the largest ratio of a release were "
         "kept, the table shows them as the spread. "
         "`make bench` measures anew; `python benchmarks/run.py --keep RELEASE` keeps what "
