@@ -45,8 +45,9 @@ def elsewhere(found: dict[str, Any]) -> str:
     """Give the page of the same problems in other programs."""
     lines = [
         "# The same elsewhere\n",
-        "Four problems are solved with polhode and with other programs. The tables compare the lines of code, "
-        "the time and the error of the result. *First* is the time of the first call in a new interpreter, "
+        "Four problems are solved with polhode and with other programs. The tables compare the lines of "
+        "code, the time and the error of the result. *First* is the time of the first call in a new "
+        "interpreter, "
         "with all imports except NumPy. *Again* is the time of a second call. The other programs can do much "
         "that polhode cannot; polhode is made for problems like these four.\n",
         where(found) + "\n",
@@ -133,7 +134,8 @@ def performance(ratios: dict[str, Any]) -> str:
         "# How fast it is\n",
         "The ratio is the time of the other program for the same answer, divided by the time of polhode. "
         "Above 1, polhode is faster. In some rows polhode is compared with itself: the same work in another "
-        "way, or for another body. The two ran alternately in one process, on one thread, in several rounds. The "
+        "way, or for another body. The two ran alternately in one process, on one thread, in several rounds. "
+        "The "
         "ratio is the median of the rounds. If the least and the largest ratio of a release were "
         "kept, the table shows them as the spread. "
         "`make bench` measures anew; `python benchmarks/run.py --keep RELEASE` keeps what "
