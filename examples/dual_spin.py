@@ -1,4 +1,4 @@
-"""A wheel inside makes the spin about the middle axis stable, which no body is by itself."""
+"""A wheel inside makes the spin about the intermediate axis stable. Without a wheel it is unstable."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Flat spin, as of Explorer 1: friction inside turns the spin from the long axis to a transverse one."""
+"""Flat spin, as of Explorer 1: friction inside moves the spin from the long axis to an axis across it."""
 
 import sys
 

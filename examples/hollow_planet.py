@@ -1,4 +1,4 @@
-"""What a moment of inertia tells about the interior: I/(M R²) of planets with two layers."""
+"""What the moment of inertia says about the interior of a planet: I/(M R²) for two layers."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""The parallel-axis theorem: a pendulum swings fastest about points one radius of gyration from C."""
+"""The parallel-axis theorem: a pendulum swings fastest if its pivot is one radius of gyration from C."""
 
 import sys
 

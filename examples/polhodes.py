@@ -1,4 +1,4 @@
-"""Polhodes: all curves that the angular velocity of one body can draw on its ellipsoid."""
+"""Polhodes: the curves that the angular velocity of a body draws on its ellipsoid of inertia."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Long, flat or neither: six molecules by Ray's asymmetry, from their atoms."""
+"""Long, flat or neither? Ray's parameter of six molecules, computed from their atoms."""
 
 import sys
 

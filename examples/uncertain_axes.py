@@ -1,4 +1,4 @@
-"""How certain are the axes? The closer two moments are, the less is known about their axes."""
+"""How certain are the axes? The closer two moments are, the less certain are their axes."""
 
 import sys
 
