@@ -1,4 +1,4 @@
-"""Apophis passes the Earth on 13 April 2029: the possible changes of its spin, from many clones."""
+"""Apophis passes the Earth on 13 April 2029. The possible changes of its spin, computed with many clones."""
 
 import sys
 

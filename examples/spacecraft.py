@@ -1,4 +1,4 @@
-"""A spacecraft of several parts: as propellant is used, its centre of mass moves and its axes turn."""
+"""A spacecraft of several parts. While propellant is used, its centre of mass moves and its axes turn."""
 
 import sys
 

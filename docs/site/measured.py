@@ -150,7 +150,7 @@ def performance(ratios: dict[str, Any]) -> str:
         ]
         has_spread = any(isinstance(kept, list) for kept in found["ratios"].values())
         lines += [
-            "| what | beside | ratio |" + " spread |" * has_spread,
+            "| what | compared with | ratio |" + " spread |" * has_spread,
             "|---|---|---|" + "---|" * has_spread,
         ]
         for name, kept in found["ratios"].items():
