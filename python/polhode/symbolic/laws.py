@@ -214,7 +214,7 @@ def rotation(sequence: str = "ZXZ", angles: Any = None) -> Any:
     Matrix
     """
     turned = sympy.eye(3)
-    for axis, angle in _intrinsic(sequence, symbols.angles if angles is None else angles):
+    for axis, angle in _intrinsic(sequence, _given(angles)):
         turned = turned * _about(axis, angle)
     return turned
 
@@ -260,25 +260,47 @@ def euler_rates(sequence: str = "ZXZ", frame: str = "body", angles: Any = None, 
     Matrix, shape (3, 1)
         Not defined where the sine of the middle angle is zero, its cosine for three different axes.
     """
-    matrix = _columns(sequence, frame, angles)
-    w = _vector(omega, symbols.omega, "omega")
-    return (matrix.adjugate() / sympy.trigsimp(matrix.det())).applyfunc(sympy.trigsimp) * w
+    _check_frame(frame)
+    (first, start), (second, middle), (third, end) = _intrinsic(sequence, _given(angles))
+    # Next to the middle axis stands a frame in which the three axes depend on the middle angle alone.
+    middle_turn = _about(second, middle)
+    if frame == "space":
+        axes, into = [_axis(first), _axis(second), middle_turn * _axis(third)], _about(first, start).T
+    else:
+        axes, into = [middle_turn.T * _axis(first), _axis(second), _axis(third)], _about(third, end)
+    matrix = sympy.Matrix.hstack(*axes)
+    rates = (matrix.adjugate() / matrix.det()).applyfunc(sympy.trigsimp) * into
+    if _is_extrinsic(sequence):
+        rates = sympy.Matrix.vstack(*(rates[k, :] for k in (2, 1, 0)))
+    return rates * _vector(omega, symbols.omega, "omega")
 
 
 def _columns(sequence: str, frame: str, angles: Any) -> Any:
     """Give the matrix of ω = J (rates): the axes about which the angles turn."""
-    if frame not in ("body", "space"):
-        raise ValueError(f"frame: expected 'body' or 'space', got {frame!r}")
-    turns = _intrinsic(sequence, symbols.angles if angles is None else angles)
-    before, columns = sympy.eye(3), []
-    for axis, angle in turns:
-        columns.append(before[:, axis])
-        before = before * _about(axis, angle)
-    if frame == "body":
-        columns = [(before.T * column).applyfunc(sympy.trigsimp) for column in columns]
-    if sequence.islower() and sequence not in _NAMES:
+    _check_frame(frame)
+    turns = _intrinsic(sequence, _given(angles))
+    columns = [_axis(axis) for axis, _ in turns]
+    for k in range(3):
+        # An axis is turned in space by the angles before it; the body has the later ones turned back.
+        for axis, angle in turns[k + 1 :] if frame == "body" else turns[:k][::-1]:
+            turn = _about(axis, angle)
+            columns[k] = (turn.T if frame == "body" else turn) * columns[k]
+    if _is_extrinsic(sequence):
         columns.reverse()
     return sympy.Matrix.hstack(*columns)
+
+
+def _check_frame(frame: str) -> None:
+    if frame not in ("body", "space"):
+        raise ValueError(f"frame: expected 'body' or 'space', got {frame!r}")
+
+
+def _given(angles: Any) -> Any:
+    return symbols.angles if angles is None else angles
+
+
+def _is_extrinsic(sequence: str) -> bool:
+    return sequence.islower() and sequence not in _NAMES
 
 
 def _intrinsic(sequence: str, angles: Any) -> list[tuple[int, Any]]:
@@ -292,6 +314,11 @@ def _intrinsic(sequence: str, angles: Any) -> list[tuple[int, Any]]:
         )
     turns = list(zip(("XYZ".index(letter) for letter in upper), angles, strict=True))
     return turns if letters == upper else turns[::-1]
+
+
+def _axis(axis: int) -> Any:
+    """Give a coordinate axis."""
+    return sympy.eye(3)[:, axis]
 
 
 def _about(axis: int, angle: Any) -> Any:
