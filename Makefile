@@ -42,9 +42,11 @@ test-rust: ## the tests of the core: its units, then the crate from outside, whi
 test-python: build setup optional docs ## the tests of the package, on all cores; then those that measure time, by themselves
 	@$(MAKE) --no-print-directory pytest
 
+# Tests start hundreds of processes: modules are compiled once for all of them, whatever the environment says.
+pytest: export PYTHONDONTWRITEBYTECODE :=
 pytest:
 	$(BIN)/python -m pytest -m "not long and not alone" --numprocesses auto --dist loadfile
-	$(BIN)/python -m pytest -m "alone and not long"
+	$(BIN)/python -m pytest -m "alone and not long" $$(grep -lw mark.alone tests/test_*.py)
 
 test-long: build setup ## the tests that take minutes: more random cases than `make test` draws
 	$(BIN)/python -m pytest -m long
@@ -72,7 +74,7 @@ lint-python:
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(BIN)/python -m mypy.stubtest polhode._core
+	$(BIN)/python -m mypy.stubtest --mypy-config-file rust/python/stubtest.ini polhode._core
 	$(BIN)/zizmor --offline --no-progress --quiet .github
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-issue-forms .github/ISSUE_TEMPLATE/[!c]*.yml

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -96,6 +97,21 @@ PIECES: dict[str, list[Piece]] = {
 """Places over their coordinates with the limits, innermost first: nothing of the table."""
 
 
+@cache
+def definite(part: Any, limit: Any) -> Any:
+    """An integral that many terms share."""
+    return sympy.integrate(part, limit)
+
+
+def term_by_term(value: Any, limit: Any) -> Any:
+    """The integral of a sum, over one letter."""
+    whole = sympy.S.Zero
+    for term in sympy.Add.make_args(sympy.expand(value)):
+        factor, part = term.as_independent(limit[0])
+        whole += factor * definite(part, limit)
+    return whole
+
+
 def integrated(pieces: list[Piece]) -> tuple[Any, Any]:
     """Measure, and ∫ r rᵀ dm/M about the centre of mass."""
     measure, first, second = sympy.S.Zero, sympy.zeros(3, 1), sympy.zeros(3, 3)
@@ -110,16 +126,19 @@ def integrated(pieces: list[Piece]) -> tuple[Any, Any]:
         full = sympy.Matrix([*at, *[0] * (3 - len(at))])
 
         def over(value: Any, element: Any = element, limits: Any = limits) -> Any:
+            value = value * element
             for limit in limits:
-                value = sympy.integrate(sympy.expand(value * element), limit)
-                element = 1
+                value = term_by_term(value, limit)
             return value
 
         one = over(sympy.S.One)
         sign = 1 if one.subs({R: 2, r: 1, h: 1, L: 1, a: 1, b: 1, c: 1, alpha: 1}) > 0 else -1
         measure += sign * one
         first += sign * full.applyfunc(over)
-        second += sign * (full * full.T).applyfunc(over)
+        second += sign * sympy.Matrix(
+            3, 3, lambda i, j, of=full, over=over: over(of[i] * of[j]) if i <= j else 0
+        )
+    second = sympy.Matrix(3, 3, lambda i, j: second[min(i, j), max(i, j)])
     center = first / measure
     return measure, second / measure - center * center.T
 

@@ -53,7 +53,9 @@ class Model:
         w, speed = y[4:7], y[7:]
         outer, motors = self.push(t, y)
         spin = self.tensor @ w + (self.inertia * speed) @ self.axes
-        force = np.concatenate([outer - np.cross(w, spin), motors - self.most * turns])
+        (a, b, c), (u, v, x) = w, spin
+        turning = [b * x - c * v, c * u - a * x, a * v - b * u]  # ω×L; np.cross takes as long as all the rest
+        force = np.concatenate([outer - turning, motors - self.most * turns])
         free = np.concatenate([[True] * 3, turns != 0])
         found = np.zeros(len(force))
         found[free] = np.linalg.solve(self.mass[np.ix_(free, free)], force[free])

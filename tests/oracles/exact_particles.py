@@ -5,8 +5,11 @@ Straight from the definitions, particle by particle: no theorem that the library
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import chain
+from operator import mul
 from typing import Any
 
 import mpmath
@@ -29,15 +32,31 @@ def sum_vectors(vectors: Sequence[Vector]) -> Vector:
 
 
 def inertia_about(masses: Exact, positions: Exact, point: Exact) -> list[Vector]:
-    """I_ij = Σ m (r² δ_ij − r_i r_j) with r from `point`."""
-    total = [[Fraction(0)] * 3 for _ in range(3)]
-    for m, position in zip(masses, positions, strict=True):
-        r = [x - p for x, p in zip(position, point, strict=True)]
-        square = dot(r, r)
-        for i in range(3):
-            for j in range(3):
-                total[i][j] += m * ((square if i == j else 0) - r[i] * r[j])
-    return total
+    """I_ij = Σ m (r² δ_ij − r_i r_j) with r from `point`.
+
+    In integers over common denominators: fractions would look for a common divisor in each sum.
+    """
+    (masses, unit), (numbers, length) = _over_one(masses), _over_one([*point, *chain(*positions)])
+    p, q, s = numbers[:3]
+    products = [0] * 6  # Σ m r_i r_j: xx, yy, zz, xy, xz, yz
+    for m, x, y, z in zip(masses, numbers[3::3], numbers[4::3], numbers[5::3], strict=True):
+        x, y, z = x - p, y - q, z - s
+        for k, product in enumerate((x * x, y * y, z * z, x * y, x * z, y * z)):
+            products[k] += m * product
+    xx, yy, zz, xy, xz, yz = (Fraction(one, unit * length**2) for one in products)
+    return [[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]
+
+
+def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
+    """Scalar product of long vectors."""
+    (one, unit), (other, length) = _over_one(a), _over_one(b)
+    return Fraction(sum(map(mul, one, other)), unit * length)
+
+
+def _over_one(values: Sequence[Fraction]) -> tuple[list[int], int]:
+    """Numerators over the least common denominator, and that."""
+    whole = math.lcm(*{value.denominator for value in values})
+    return [value.numerator * (whole // value.denominator) for value in values], whole
 
 
 def moments(inertia: Exact) -> list[float]:
@@ -53,9 +72,10 @@ class Particles:
     def __init__(self, masses: Any, positions: Any) -> None:
         self.masses: Vector = rational(masses)
         self.positions: list[Vector] = rational(positions)
-        self.mass: Fraction = sum(self.masses, Fraction(0))
-        weighted = [[m * x for x in r] for m, r in zip(self.masses, self.positions, strict=True)]
-        self.center_of_mass: Vector = [x / self.mass for x in sum_vectors(weighted)]
+        self.mass: Fraction = _dot(self.masses, [Fraction(1)] * len(self.masses))
+        self.center_of_mass: Vector = [
+            _dot(self.masses, column) / self.mass for column in zip(*self.positions, strict=True)
+        ]
         self.inertia: list[Vector] = inertia_about(self.masses, self.positions, self.center_of_mass)
 
     def velocities(self, omega: Exact, velocity: Exact, about: Exact) -> list[Vector]:

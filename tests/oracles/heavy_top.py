@@ -15,6 +15,7 @@ gravity against the third axis of space,
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from operator import itemgetter
 from typing import Any
 
 import mpmath
@@ -54,6 +55,7 @@ class HeavyTop:
             self.start = mpc(w, z) / norm, mpc(x, y) / norm, mpc(omega[0], omega[1])
             self.order = int(digits * 1.16) + 4
             self.period: mpf | None = None
+            self._pieces: list[tuple[mpf, list[list[mpc]]]] = []
             self.turns = mpc(1), mpc(1)
 
     def find_period(self) -> None:
@@ -61,8 +63,9 @@ class HeavyTop:
         with mp.workdps(self.digits):
             times: list[mpf] = []
             t, state = mpf(0), self.start
-            while len(times) < 3:
+            while len(times) < 3 or t < times[2] + (times[2] - times[0]) / 7:
                 series, step = self._series(state)
+                self._pieces.append((t, series))
                 now, later = self._rate(state), self._rate(_sum(series, step))
                 if mpmath.sign(now) * mpmath.sign(later) < 0:
 
@@ -72,19 +75,24 @@ class HeavyTop:
                     times.append(t + _zero(rate, step))
                 state, t = _sum(series, step), t + step
             self.period = times[2] - times[0]
-            early = self._advance(self.start, self.period / 7)
-            late = self._advance(early, self.period)
+            early, late = (self._found(self.period / 7 + turn) for turn in (mpf(0), self.period))
             self.turns = tuple(b / a for a, b in zip(early[:2], late[:2], strict=True))
+
+    def _found(self, time: mpf) -> State:
+        """A state on the way on which the period was found."""
+        start, series = max((piece for piece in self._pieces if piece[0] <= time), key=itemgetter(0))
+        return _sum(series, time - start)
 
     def at(self, t: float) -> tuple[list[mpf], list[mpf]]:
         """ω in the body and the quaternion (x, y, z, w)."""
         with mp.workdps(self.digits):
             time, factors = mpf(t), (mpc(1), mpc(1))
             if self.period is not None:
-                count = int(mpmath.nint(time / self.period))
-                time -= count * self.period
+                count = int(mpmath.floor(time / self.period))
                 factors = tuple(f**count for f in self.turns)
-            alpha, beta, w = self._advance(self.start, time)
+                alpha, beta, w = self._found(time - count * self.period)
+            else:
+                alpha, beta, w = self._advance(self.start, time)
             w *= factors[1] * mpmath.conj(factors[0])
             alpha, beta = alpha * factors[0], beta * factors[1]
             return [w.real, w.imag, self.w3], [beta.real, beta.imag, alpha.imag, alpha.real]
