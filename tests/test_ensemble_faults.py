@@ -278,6 +278,17 @@ def test_errors_of_functions_say_where_they_stand(make: Callable[[], object], no
             "checkpoint: no.such.file: there is no directory no.such; check the path or create it first",
         ),
         (
+            lambda: once(reduce=reductions.mean("omega")).compute(checkpoint="."),
+            IsADirectoryError,
+            "checkpoint: . is a directory; give the name of a file in it",
+        ),
+        (
+            lambda: once(reduce=reductions.mean("omega"), n=10_000, chunk=5000),
+            ValueError,
+            "multiple of 4096.*; got 5000, and the next one is 8192$",
+        ),
+        (lambda: once().to_npz(f"{__file__}/all"), NotADirectoryError, "all: .* is a file, not a directory"),
+        (
             lambda: once(t=[0, 1], omega=(0, 0, 1e300)),
             ValueError,
             "none of the first 10 members can begin; member 0: t = ",

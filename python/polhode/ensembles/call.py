@@ -219,7 +219,8 @@ def _check_reduce(reduce: Any, plan: Plan) -> None:
     if plan.chunk % BLOCK and plan.chunks > 1:
         raise ValueError(
             f"chunk: with reduce= it must be a multiple of {BLOCK}, the blocks that are merged in a fixed "
-            f"tree so that bits are the same for every chunk; got {plan.chunk}"
+            f"tree so that bits are the same for every chunk; got {plan.chunk}, and the next one is "
+            f"{-(-plan.chunk // BLOCK) * BLOCK}"
         )
     if is_each_alone(plan):
         raise ValueError(

@@ -64,6 +64,8 @@ class Checkpoint:
             raise FileNotFoundError(
                 f"checkpoint: {path}: there is no directory {path.parent}; check the path or create it first"
             )
+        if path.is_dir():
+            raise IsADirectoryError(f"checkpoint: {path} is a directory; give the name of a file in it")
         if path.exists():
             self._read()
 

@@ -208,6 +208,9 @@ def _check_new(path: Path) -> None:
         return
     if path.exists():
         raise FileExistsError(f"{path}: is there already; resume goes on with it, another path begins anew")
+    for parent in path.parents:
+        if parent.exists() and not parent.is_dir():
+            raise NotADirectoryError(f"{path}: {parent} is a file, not a directory; give another path")
 
 
 def check_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:

@@ -79,6 +79,30 @@ impl Almanac {
         &self.pages[number]
     }
 
+    /// Gives each row the orbits of a page that was found, in its unit of rates.
+    #[inline(always)]
+    pub(super) fn give_all<L: Number, const R: usize>(
+        &self,
+        known: &[(usize, f64); R],
+        gradients: &mut [Gradient<Pack<L, R>>],
+        order: usize,
+    ) {
+        let mut ratio = Pack::new(1.0);
+        for row in 0..R {
+            let (number, unit) = known[row];
+            ratio.set(row, self.pages[number].unit / unit);
+        }
+        let size = numbers(order);
+        for (which, gradient) in gradients.iter_mut().enumerate() {
+            let mut sheets: [&[f64]; R] = [&[]; R];
+            for row in 0..R {
+                let (number, _) = known[row];
+                sheets[row] = &self.pages[number].numbers[which * size..][..size];
+            }
+            gradient.start_all(&sheets, ratio);
+        }
+    }
+
     /// Puts down the orbits of one row.
     #[inline(never)]
     pub(super) fn put<L: Number, const R: usize>(
@@ -129,8 +153,8 @@ impl Page {
         }
     }
 
-    /// Gives one row the orbits at the start of the step.
-    #[inline(always)]
+    /// Gives one row the orbits at the start of the step, in a unit of rates.
+    #[inline(never)]
     pub(super) fn begin<L: Number, const R: usize>(
         &self,
         unit: f64,
@@ -141,36 +165,7 @@ impl Page {
         let sheets = self.numbers.chunks_exact(numbers(order));
         for (gradient, sheet) in gradients.iter_mut().zip(sheets) {
             gradient.start_at(row, from_fn(|i| sheet[i].into()));
-            if self.unit != unit {
-                gradient.rescale(row, self.unit / unit);
-            }
-        }
-    }
-
-    /// Gives one row the orbits' half turns in the step.
-    #[inline(always)]
-    pub(super) fn go_on<L: Number, const R: usize>(
-        &self,
-        unit: f64,
-        gradients: &mut [Gradient<Pack<L, R>>],
-        row: usize,
-        order: usize,
-    ) {
-        let sheets = self.numbers.chunks_exact(numbers(order));
-        for (gradient, sheet) in gradients.iter_mut().zip(sheets) {
-            let half_turn = sheet[AT_START..].as_chunks().0.iter();
-            let orbit = gradient.orbit();
-            if self.unit == unit {
-                orbit.put_half_turn(row, half_turn.map(|pair: &[f64; 2]| pair.map(Into::into)));
-            } else {
-                let ratio = self.unit / unit;
-                let mut power = 1.0;
-                let pairs = half_turn.map(|&[a, b]: &[f64; 2]| {
-                    power *= ratio;
-                    [(a * power).into(), (b * power).into()]
-                });
-                orbit.put_half_turn(row, pairs);
-            }
+            gradient.rescale(row, self.unit / unit);
         }
     }
 }
@@ -254,12 +249,14 @@ mod tests {
         assert!(almanac.find(&place(1.0), 1.0).is_none());
         almanac.put(place(1.0), 1.0, &mut begun(1.0), 1, 8);
         for unit in [1.0, 0.25, 64.0] {
-            let mut taken = [Gradient::<Pair>::new()];
             let number = almanac.find(&place(1.0), unit).expect("a page");
-            let page = almanac.page(number);
-            page.begin(unit, &mut taken, 1, 8);
-            page.go_on(unit, &mut taken, 1, 8);
             let mut own = begun(unit);
+            let mut begins = [Gradient::<Pair>::new()];
+            almanac.page(number).begin(unit, &mut begins, 1, 8);
+            assert_eq!(begins[0].at_start(1), own[0].at_start(1));
+            // The row beside it in another unit.
+            let mut taken = [Gradient::<Pair>::new()];
+            almanac.give_all(&[(number, 8.0), (number, unit)], &mut taken, 8);
             assert_eq!(taken[0].at_start(1), own[0].at_start(1));
             for k in 0..8 {
                 let [taken, own] = [&mut taken, &mut own].map(|it| it[0].orbit().half_turn()[k]);

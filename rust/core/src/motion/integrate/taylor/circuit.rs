@@ -45,6 +45,12 @@ impl<L: Number, const R: usize> Circuit<Pack<L, R>> {
         self.pull[0].put(row, pull);
     }
 
+    /// The same for all rows.
+    #[inline(always)]
+    pub(super) fn set_all(&mut self, [radial, around, pull]: [Pack<L, R>; 3]) {
+        (self.radial[0], self.around[0], self.pull[0]) = (radial, around, pull);
+    }
+
     /// Those rates.
     pub(super) fn rates(&self, row: usize) -> [L::Real; 3] {
         [&self.radial, &self.around, &self.pull].map(|series| series[0].real(row))
@@ -56,12 +62,23 @@ impl<L: Number, const R: usize> Circuit<Pack<L, R>> {
         &self.half
     }
 
-    /// The coefficients of c from order 1 on, one row's of which another step has found.
+    /// Takes the coefficients of c from order 1 on that other steps have found, of each row in a unit of rates that is `ratio` of its
+    /// own: pairs from a place in a slice to its end. Row beside row, since a register is stored in one go.
     #[inline(always)]
-    pub(super) fn put_half_turn(&mut self, row: usize, known: impl Iterator<Item = [L::Real; 2]>) {
-        for (half, [a, b]) in self.half[1..].iter_mut().zip(known) {
-            half[0].put(row, a);
-            half[1].put(row, b);
+    pub(super) fn put_half_turns(&mut self, known: &[&[f64]; R], from: usize, ratio: Pack<L, R>) {
+        let mut power = ratio;
+        let (mut at, end) = (from, known[0].len());
+        for half in &mut self.half[1..] {
+            if at + 1 >= end {
+                break;
+            }
+            let [mut a, mut b] = [Pack::new(0.0); 2];
+            for row in 0..R {
+                a.set(row, known[row][at]);
+                b.set(row, known[row][at + 1]);
+            }
+            *half = [a * power, b * power];
+            (power, at) = (power * ratio, at + 2);
         }
     }
 

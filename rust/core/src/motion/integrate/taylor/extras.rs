@@ -1,7 +1,5 @@
 //! The terms of a load that are not linear in the coefficients of one order, together.
 
-use std::mem::replace;
-
 use nalgebra::Vector3;
 
 use super::almanac::{Almanac, Place, rounded};
@@ -100,12 +98,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
 
     /// Whether the orbits of one row, where a step begins, are known already.
     #[inline(always)]
-    pub(super) fn recall(
-        &mut self,
-        row: usize,
-        order: usize,
-        place: impl FnOnce() -> (Place, f64),
-    ) -> bool {
+    pub(super) fn recall(&mut self, row: usize, place: impl FnOnce() -> (Place, f64)) -> bool {
         if !Self::LOOKS_UP || self.gradients.is_empty() {
             return L::Real::CARRIES_ORBITS && self.are_carried[row];
         }
@@ -115,35 +108,55 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
             Some(number) => Orbits::Known(number, unit),
             None => Orbits::Sought(place, unit),
         };
-        if let Some(number) = known {
-            let page = self.almanac.page(number);
-            page.begin(unit, &mut self.gradients, row, order);
-        }
         known.is_some()
     }
 
-    /// The series of the orbits. Pages are first found for all rows, then read: so the memory, where it is far, is waited for once.
+    /// The series of the orbits: read where those of all rows are known, else found for all and put down. In no step are pages read
+    /// after one is put down, which may take the place of another.
     #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
-        let is_sought = |orbits: &Orbits| matches!(orbits, Orbits::Sought(..));
-        if Self::LOOKS_UP && !self.orbits.iter().any(is_sought) {
-            for (row, orbits) in self.orbits.iter_mut().enumerate() {
-                if let Orbits::Known(number, unit) = replace(orbits, Orbits::Own) {
-                    let page = self.almanac.page(number);
-                    page.go_on(unit, &mut self.gradients, row, order);
-                }
-            }
+        if Self::LOOKS_UP && self.reads_all(order) {
             return;
+        }
+        for row in 0..self.orbits.len() {
+            if let Orbits::Known(number, unit) = self.orbits[row] {
+                let page = self.almanac.page(number);
+                page.begin(unit, &mut self.gradients, row, order);
+            }
         }
         for gradient in &mut self.gradients {
             gradient.expand(order);
         }
-        for (row, orbits) in self.orbits.iter_mut().enumerate() {
-            if let Orbits::Sought(place, unit) = replace(orbits, Orbits::Own) {
-                self.almanac
-                    .put(place, unit, &mut self.gradients, row, order);
+        for row in 0..self.orbits.len() {
+            if let Orbits::Sought(place, unit) = self.orbits[row] {
+                (self.almanac).put(place, unit, &mut self.gradients, row, order);
             }
         }
+    }
+
+    /// Gives all rows their orbits at once, if they are all known; a row without motion gets those of another.
+    #[inline(always)]
+    fn reads_all(&mut self, order: usize) -> bool {
+        let (mut pages, mut any) = ([None; R], None);
+        for row in 0..R {
+            match self.orbits[row] {
+                Orbits::Own => {}
+                Orbits::Known(number, unit) => {
+                    pages[row] = Some((number, unit));
+                    any = pages[row];
+                }
+                Orbits::Sought(..) => return false,
+            }
+        }
+        let Some(any) = any else {
+            return false;
+        };
+        let mut known = [any; R];
+        for row in 0..R {
+            known[row] = pages[row].unwrap_or(any);
+        }
+        self.almanac.give_all(&known, &mut self.gradients, order);
+        true
     }
 
     /// A step from `now`, as long ago as that is, shortened so that orbits may be looked up at its end.
@@ -182,6 +195,7 @@ impl<L: Number<Real: Precision>, const R: usize> Extras<Pack<L, R>> {
     /// Leaves one row without such terms.
     pub(super) fn vacate(&mut self, row: usize) {
         self.restart(row);
+        self.orbits[row] = Orbits::Own;
         self.set(row, &Forcing::default(), &Vector3::zeros());
     }
 

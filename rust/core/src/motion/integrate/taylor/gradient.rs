@@ -107,6 +107,23 @@ impl<L: Number, const R: usize> Gradient<Pack<L, R>> {
         self.put(row, [x, y, z, w], [radial, around, pull], strength);
     }
 
+    /// Takes for each row those numbers of another step, and after them the half turns in it from order 1 on, which were found in a
+    /// unit of rates that is `ratio` of the row's.
+    #[inline(always)]
+    pub(super) fn start_all(&mut self, known: &[&[f64]; R], ratio: Pack<L, R>) {
+        let mut at_start = [Pack::new(0.0); AT_START];
+        for (i, number) in at_start.iter_mut().enumerate() {
+            for row in 0..R {
+                number.set(row, known[row][i]);
+            }
+        }
+        let ([x, y, z, w, radial, around, pull, strength], twice) = (at_start, ratio * ratio);
+        self.frame = [x, y, z, w];
+        (self.orbit).set_all([radial * ratio, around * ratio, pull * twice]);
+        self.strength = strength * twice;
+        self.orbit.put_half_turns(known, AT_START, ratio);
+    }
+
     #[inline(always)]
     pub(super) fn orbit(&mut self) -> &mut Circuit<Pack<L, R>> {
         &mut self.orbit

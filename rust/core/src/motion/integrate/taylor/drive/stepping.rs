@@ -115,8 +115,7 @@ where
                     let course = &lead.job.course;
                     let now = self.now[row];
                     self.forcing.clear();
-                    self.forcing.has_orbits =
-                        (self.extras).recall(row, order, || course.place(now));
+                    self.forcing.has_orbits = (self.extras).recall(row, || course.place(now));
                     if self.forcing.has_orbits && self.extras.has_orbits_alone() {
                         continue;
                     }
