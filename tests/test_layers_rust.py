@@ -20,6 +20,20 @@ def house(request: pytest.FixtureRequest) -> tuple[Crate, dict[str, Any]]:
     return Crate(ROOT / SOURCES[request.param]), LAYERS[request.param]
 
 
+def test_every_test_of_the_core_is_in_a_program() -> None:
+    folder = ROOT / "rust/core/tests"
+    declared = {
+        name
+        for path in folder.rglob("*.rs")
+        for name in re.findall(r"^mod (\w+);$", path.read_text("utf-8"), flags=re.MULTILINE)
+    }
+    programs = {"outside", "levels"}
+    files = {path.parent.name if path.stem == "mod" else path.stem for path in folder.rglob("*.rs")}
+    assert files - declared == programs
+    told = tomllib.loads((ROOT / "rust/core/Cargo.toml").read_text("utf-8"))
+    assert {program["name"] for program in told["test"]} == programs
+
+
 class TestThisHouse:
     def test_every_name_is_followed(self, house: tuple[Crate, Any]) -> None:
         crate, _ = house

@@ -2,22 +2,15 @@
 //!
 //! The eigenvalues themselves are held against a reference of more than 50 digits in `tests/test_principal_axes.py`.
 
-use std::ops::ControlFlow;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use crate::watch::go_on;
 
+use crate::settings::take_turn;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use polhode::inside::{Double, Kernel, Lane, dispatch, eigen3, eigen3_many, eigenvalues3_many};
 use polhode::parallel::{Level, level, set_level, set_thread_limit};
 use polhode::principal::{principal_axes, principal_axes_many};
 
 type Row = [f64; 9];
-
-/// The level is one for the whole process, so the tests of this file take turns.
-static LEVEL: Mutex<()> = Mutex::new(());
-
-fn take_turn() -> MutexGuard<'static, ()> {
-    LEVEL.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// Runs `check` at every level of this machine.
 fn at_every_level(mut check: impl FnMut(Level)) {
@@ -237,8 +230,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         set_thread_limit(std::num::NonZeroUsize::new(count));
         let mut moments = vec![[0.0; 3]; rows.len()];
         let mut axes = vec![[0.0; 9]; rows.len()];
-        let go_on = &mut |_| ControlFlow::Continue(());
-        let outcome = principal_axes_many(&rows, 0.0, &mut moments, &mut axes, go_on);
+        let outcome = principal_axes_many(&rows, 0.0, &mut moments, &mut axes, &mut go_on);
         assert_eq!(outcome, Ok(()));
         assert!(
             moments == expected.0 && axes == expected.1,

@@ -1,15 +1,10 @@
 //! What must hold for every free motion: any finite body and state, any scale, any time.
 
-// The strategies are part of the tests.
-#![allow(clippy::expect_used)]
-
-mod strategies;
-
+use crate::strategies::{any_body, rotation, vector};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::free::FreeMotion;
 use proptest::prelude::*;
-use strategies::{any_body, rotation, vector};
 
 /// Sizes of the parts of a second moment: of one size, of many, equal, nearly equal, and none.
 fn spread() -> impl Strategy<Value = [f64; 3]> {

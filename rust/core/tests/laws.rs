@@ -1,10 +1,7 @@
 //! What must hold for every body, at every scale.
 
-// The strategies are part of the tests.
-#![allow(clippy::expect_used)]
-
-mod strategies;
-
+use crate::strategies::{any_body, rotation, vector};
+use crate::watch::go_on;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::mass::equimomental::equimomental_particles;
@@ -16,8 +13,6 @@ use polhode::motion::kinetic_energy::kinetic_energy;
 use polhode::motion::loads::Analytic;
 use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance, simulate};
 use proptest::prelude::*;
-use std::ops::ControlFlow;
-use strategies::{any_body, rotation, vector};
 
 /// The size that errors of a tensor are relative to.
 fn size(inertia: &Matrix3<f64>) -> f64 {
@@ -209,7 +204,7 @@ proptest! {
         let task = Task::free(&body, initial, &times, Method::Dop853, tolerance);
         let mut load = Analytic::new(&[], task.subject);
         let samples =
-            simulate(&task, &mut load, &mut NoEvents::new(), &mut |_| ControlFlow::Continue(())).samples;
+            simulate(&task, &mut load, &mut NoEvents::new(), &mut go_on).samples;
         let zero = Vector3::zeros();
         let energy = |state: &Phase| kinetic_energy(&body, &state.omega, &zero, &center).total();
         let momentum = |state: &Phase| {

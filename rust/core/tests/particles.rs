@@ -1,13 +1,11 @@
 //! Particles, stacks of them and accumulators: the same bits however the work is cut, at every level and on any threads.
 
-// The strategies are part of the tests.
-#![allow(clippy::expect_used)]
-
+use crate::watch::go_on;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use crate::settings::take_turn;
 use polhode::error::BodyFault;
 use polhode::mass::particles::{Particles, particle_stack, particles, particles_watched};
 use polhode::mass::voxels::{Grid, voxels};
@@ -15,16 +13,6 @@ use polhode::mass::{MassAccumulator, RigidBody};
 use polhode::parallel::{Level, level, set_level, set_thread_limit, set_watch_interval};
 use polhode::{Error, PrincipalAxes};
 use proptest::prelude::*;
-
-/// Level and number of threads belong to the whole process: tests that set them take turns.
-fn take_turn() -> MutexGuard<'static, ()> {
-    static TURN: Mutex<()> = Mutex::new(());
-    TURN.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn go_on(_: f64) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
 
 /// Pseudo-random numbers in [0, 1).
 fn numbers(seed: u64) -> impl FnMut() -> f64 {
@@ -176,6 +164,7 @@ proptest! {
         count in 1_usize..30_000, cuts in proptest::collection::vec(any::<prop::sample::Index>(), 0..8), seed in 0_u64..1000,
         squeeze in prop_oneof![Just(0.5), Just(1e-8)], keys in proptest::collection::vec(0_u32..1000, 9),
     ) {
+        let _turn = take_turn();
         let (masses, positions) = cloud(count, squeeze, seed);
         let mut edges: Vec<usize> = cuts.iter().map(|cut| cut.index(count)).collect();
         edges.extend([0, count]);
@@ -211,6 +200,7 @@ proptest! {
 
     #[test]
     fn a_body_is_the_same_alone_and_in_a_stack(seed in 0_u64..1000, size in 1_usize..70, squeeze in prop_oneof![Just(0.5), Just(1e-9)]) {
+        let _turn = take_turn();
         let (masses, positions) = cloud(size * 70, squeeze, seed);
         let row = |k: usize| {
             let range = size * k..size * (k + 1);

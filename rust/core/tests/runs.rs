@@ -1,8 +1,6 @@
 //! What runs refuse, how they end, and loads that are closures.
 
-// Failing to make a test's own input fails the test.
-#![allow(clippy::expect_used)]
-
+use crate::watch::go_on;
 use std::error::Error as _;
 use std::ops::ControlFlow;
 
@@ -17,10 +15,6 @@ use polhode::motion::simulate::{
 };
 use polhode::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::{Error, RigidBody};
-
-fn go_on(_: f64) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
 
 fn body() -> RigidBody {
     let (moments, centre) = ([1.0, 2.0, 2.5], Vector3::zeros());

@@ -1,8 +1,5 @@
 //! Values in JSON and back: the same bits, and nothing that a constructor would refuse.
 
-// Failing to make a test's own input fails the test.
-#![allow(clippy::expect_used)]
-
 use std::fmt::Debug;
 
 use polhode::io::TriangleMesh;

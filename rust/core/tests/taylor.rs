@@ -1,12 +1,9 @@
 //! Taylor series: what a motion conserves, closed forms, the other method, and the same bits however motions are run.
 
-// Failing to make a test's own input fails the test.
-#![allow(clippy::expect_used)]
-
-mod motions;
-mod strategies;
-
-use motions::{aligned, apart, asymmetric, gradient, kept_by_a_top, loads, skew, turned};
+use crate::motions::{aligned, apart, asymmetric, gradient, kept_by_a_top, loads, skew, turned};
+use crate::settings::take_turn;
+use crate::strategies::{any_body, vector};
+use crate::watch::go_on;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::integrate::taylor::{solve_many, solve_one};
@@ -18,18 +15,13 @@ use polhode::parallel::{Level, level, set_level, set_thread_limit};
 use proptest::prelude::*;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use strategies::{any_body, vector};
-
-fn watch(_: f64) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
 
 fn tightest() -> Tolerance {
     Tolerance::new(TIGHTEST, 0.0).expect("a tolerance")
 }
 
 fn run(task: &Task<'_>, terms: &[Term]) -> Run<polhode::Error> {
-    let run = solve_one(task, terms, &mut watch);
+    let run = solve_one(task, terms, &mut go_on);
     assert_eq!(run.end, End::Complete);
     run
 }
@@ -57,7 +49,7 @@ fn every_term_agrees_with_runge_and_kutta() {
             let of = if pivoted { Task::pivoted } else { Task::free };
             let task = of(&body, initial, &times, Method::Dop853, tolerance);
             let mut load = Analytic::new(terms, task.subject);
-            let other = simulate(&task, &mut load, &mut NoEvents::new(), &mut watch);
+            let other = simulate(&task, &mut load, &mut NoEvents::new(), &mut go_on);
             for (a, b) in run(&task, terms).samples.iter().zip(&other.samples) {
                 let error = apart(a, b);
                 // Runge and Kutta step over the flips of a feedback.
@@ -227,7 +219,7 @@ fn a_rod_is_not_twisted() {
     assert_eq!(end.omega.x, 3.0);
     assert!((end.omega.norm() - initial.omega.norm()).abs() < 1e-14);
     let twist = Term::constant_torque(&Vector3::x(), Frame::Body).expect("finite");
-    let refused = solve_one(&task, &[twist], &mut watch).end;
+    let refused = solve_one(&task, &[twist], &mut go_on).end;
     assert!(matches!(
         refused,
         End::Failed(polhode::Error::Motion(
@@ -245,6 +237,7 @@ fn spindle(moments: &[f64; 3]) -> RigidBody {
 /// In one test, since level and threads are the whole process's.
 #[test]
 fn a_motion_has_the_same_bits_alone_in_a_stack_on_any_threads_and_at_any_level() {
+    let _turn = take_turn();
     let (free, pivoted) = (false, true);
     let bodies = [
         (asymmetric(), free),
@@ -282,7 +275,6 @@ fn a_motion_has_the_same_bits_alone_in_a_stack_on_any_threads_and_at_any_level()
                     set_thread_limit(NonZeroUsize::new(threads));
                     for count in [2, 21] {
                         let mut runs = vec![None; count];
-                        let go_on = |_| ControlFlow::Continue(());
                         solve_many(&task, &|_| &terms[..], &mut runs, &go_on);
                         for (row, (run, alone)) in runs.iter().zip(&alone).enumerate() {
                             let run = run.as_ref().expect("begun");
@@ -340,7 +332,7 @@ proptest! {
         prop_assume!(omega.norm() > 0.0);
         let times = [0.0, 30.0 / omega.norm()];
         let task = Task::free(&body, turned(skew(), omega), &times, Method::Taylor, tightest());
-        let run = solve_one(&task, &[], &mut watch);
+        let run = solve_one(&task, &[], &mut go_on);
         prop_assert_eq!(&run.end, &End::Complete);
         let axes = body.principal().axes;
         let moments = Vector3::from(body.principal().moments);

@@ -1,11 +1,8 @@
 //! Taylor series in numbers of twice the precision: the laws of those in doubles, to more digits.
 
-// Failing to make a test's own input fails the test.
-#![allow(clippy::expect_used)]
-
-mod motions;
-
-use motions::{aligned, apart, asymmetric, gradient, kept_by_a_top, loads, skew, turned};
+use crate::motions::{aligned, apart, asymmetric, gradient, kept_by_a_top, loads, skew, turned};
+use crate::settings::take_turn;
+use crate::watch::go_on;
 use nalgebra::{Matrix3, Vector3};
 use polhode::RigidBody;
 use polhode::motion::integrate::taylor::{solve_many, solve_one};
@@ -13,14 +10,13 @@ use polhode::motion::loads::{Damping, Frame, Term};
 use polhode::motion::simulate::{End, Method, Phase, Run, TIGHTEST, Task, Tolerance};
 use polhode::parallel::{Level, level, set_level, set_thread_limit};
 use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
 
 fn tolerance(relative: f64) -> Tolerance {
     Tolerance::new(relative, 0.0).expect("a tolerance")
 }
 
 fn run(task: &Task<'_>, terms: &[Term]) -> Run<polhode::Error> {
-    let run = solve_one(task, terms, &mut |_| ControlFlow::Continue(()));
+    let run = solve_one(task, terms, &mut go_on);
     assert_eq!(run.end, End::Complete);
     run
 }
@@ -135,6 +131,7 @@ fn a_long_symmetric_rotation_keeps_its_phase() {
 /// In one test, since level and threads are the whole process's.
 #[test]
 fn a_motion_has_the_same_bits_alone_in_a_stack_on_any_threads_and_at_any_level() {
+    let _turn = take_turn();
     let (body, times) = (asymmetric(), [0.0, 1.0, 4.5]);
     let best = level();
     for (name, terms) in &loads() {
@@ -148,7 +145,6 @@ fn a_motion_has_the_same_bits_alone_in_a_stack_on_any_threads_and_at_any_level()
                 assert!(set_level(level));
                 set_thread_limit(NonZeroUsize::new(threads));
                 let mut runs = vec![None; alone.len()];
-                let go_on = |_| ControlFlow::Continue(());
                 solve_many(&task, &|_| &terms[..], &mut runs, &go_on);
                 for (row, (run, alone)) in runs.iter().zip(&alone).enumerate() {
                     let run = run.as_ref().expect("begun");
@@ -179,7 +175,7 @@ fn a_rod_is_not_twisted() {
     let task = free(&rod, initial, &[0.0, 10.0], 1e-25);
     assert_eq!(run(&task, &[]).phase.omega.x, 3.0);
     let twist = Term::constant_torque(&Vector3::x(), Frame::Body).expect("finite");
-    let refused = solve_one(&task, &[twist], &mut |_| ControlFlow::Continue(())).end;
+    let refused = solve_one(&task, &[twist], &mut go_on).end;
     assert!(matches!(
         refused,
         End::Failed(polhode::Error::Motion(

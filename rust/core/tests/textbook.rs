@@ -6,16 +6,8 @@
 //! | `motion` | mln24, mln25, mex173, angular momentum, msl25, msl26, mex174, mln27, mex175 |
 //! | `tops` | part II: free precession, steady spins, sleeping, steady precession |
 
-// The helpers are part of the tests.
-#![allow(clippy::expect_used)]
-
-mod strategies;
-
-#[path = "textbook/mass.rs"]
 mod mass;
-#[path = "textbook/motion.rs"]
 mod motion;
-#[path = "textbook/tops.rs"]
 mod tops;
 
 use nalgebra::Vector3;

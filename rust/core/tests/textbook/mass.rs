@@ -11,8 +11,8 @@ use polhode::principal::{TOP_RTOL, Top, classify, principal_axes};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use super::strategies::{any_body, rotation, vector};
 use super::{body, close, sets};
+use crate::strategies::{any_body, rotation, vector};
 
 /// Masses and places of some particles.
 fn swarm() -> impl Strategy<Value = (Vec<f64>, Vec<[f64; 3]>)> {

@@ -12,8 +12,8 @@ use polhode::motion::pivot_reaction::pivot_reaction;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use super::strategies::{any_body, rotation, vector};
 use super::{body, close, close_vectors, sets};
+use crate::strategies::{any_body, rotation, vector};
 
 fn zxz() -> Sequence {
     "ZXZ".parse().expect("valid")

@@ -1,5 +1,6 @@
 //! Part II: tops, free and heavy.
 
+use crate::watch::go_on;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::RigidBody;
 use polhode::motion::angular_momentum::angular_momentum;
@@ -13,10 +14,9 @@ use polhode::motion::simulate::{Method, NoEvents, Phase, State, Task, Tolerance,
 use polhode::motion::stability::stability;
 use polhode::principal::{SymmetricTop, TOP_RTOL};
 use proptest::prelude::*;
-use std::ops::ControlFlow;
 
-use super::strategies::{any_body, rotation, vector};
 use super::{body, close, close_vectors, sets};
+use crate::strategies::{any_body, rotation, vector};
 
 /// `I_s`, `I_t` of a symmetric top, from disks to needles, and never quite spherical.
 fn symmetric() -> impl Strategy<Value = (f64, f64)> {
@@ -93,7 +93,7 @@ proptest! {
         let times = [0.0, t];
         let task = Task::free(&whole, initial, &times, Method::Dop853, tolerance);
         let mut load = Analytic::new(&[], task.subject);
-        let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut |_| ControlFlow::Continue(()));
+        let run = simulate(&task, &mut load, &mut NoEvents::new(), &mut go_on);
         let samples = run.samples;
         let end = at(t);
         prop_assert!((samples[1].omega - omega(t)).norm() < 1e-9 * omega(t).norm());
