@@ -34,6 +34,7 @@ autodoc_member_order = "groupwise"
 autodoc_typehints = "none"  # the docstrings say shapes, which types cannot
 autosummary_generate = False
 numpydoc_show_class_members = False
+default_role = "py:obj"  # a name in single backticks is a link wherever it has a page
 
 smartquotes_action = "qe"  # two hyphens begin an option; they are no dash
 

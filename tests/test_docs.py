@@ -139,6 +139,7 @@ class TestInterface:
             missing[export] = members - set((listed[1] or "").split(", "))
         assert {export: names for export, names in missing.items() if names} == {}
         assert "top" in vars(polhode.PrincipalAxes)  # a cached property is among them
+        assert re.search(r"orbits\.Orbit\n   :members: .*dipole_field", text)  # which its base holds
 
     def test_every_member_of_a_body_is_on_one_page(self, pages: dict[str, str]) -> None:
         rest, *parts = (text for name, text in pages.items() if name.startswith("RigidBody."))

@@ -54,7 +54,18 @@ def pages(table: Table) -> Iterator[tuple[str, str]]:
 INTRODUCTION = """# Interface
 
 Arguments broadcast over leading axes: a body may be a stack of bodies, a vector an array of shape (…, 3).
-Arrays come back in the same shape."""
+In a shape, the dots stand for these axes. Results have the same leading axes.
+
+What all pages have in common ([conventions](../conventions.md), [glossary](../glossary.md)):
+
+- **Units.** Any consistent units will do. Angles are in radians, angular velocities in radians per unit of
+  time.
+- **Frames.** Components are in the *body frame* B or *in space*, that is, in the inertial frame N.
+- **Attitude.** R_NB turns components in the body into components in space, ``v_N = R_NB v_B``. Quaternions
+  are (x, y, z, w).
+- **Symbols.** O is the origin of the body frame, C the centre of mass, I the inertia tensor, ω the angular
+  velocity, L the angular momentum, T the kinetic energy, m the mass. Axes 1, 2 and 3 are the principal axes
+  in the order of ascending moments. ε = 2.2·10⁻¹⁶ is the rounding of float64."""
 
 
 def page(name: str, value: object, table: Table, parts: dict[str, list[str]]) -> str:
@@ -96,11 +107,15 @@ def part(name: str, value: object, title: str, members: list[str]) -> str:
 
 def of_class(name: str, cls: type, apart: set[str]) -> list[str]:
     """Give the directive of a class; of one without methods its fields are described by the class."""
-    fields = {k for k, v in vars(cls).items() if type(v).__name__ in {"member_descriptor", "_tuplegetter"}}
+    held: dict[str, object] = {}  # its own members first, then those of its bases, which have no pages
+    for base in cls.__mro__:
+        if base.__module__.startswith("polhode"):
+            held = {**vars(base), **held}
+    fields = {k for k, v in held.items() if type(v).__name__ in {"member_descriptor", "_tuplegetter"}}
     fields |= set(getattr(cls, "__dataclass_fields__", ()))
     members = [
         k
-        for k, v in vars(cls).items()
+        for k, v in held.items()
         if not k.startswith("_")
         and k not in fields | apart
         and (
@@ -122,17 +137,19 @@ def of_name(name: str, value: object) -> list[str]:
     if callable(value):
         return [f".. autofunction:: {name}", ""]
     # Not by autodata, which would show what the type of the value says of itself.
-    return [f".. py:data:: {name}", "", f"   {DATA[name]}", ""]
+    home, _, last = name.rpartition(".")
+    return [f".. py:data:: {last}", f"   :module: {home}", "", f"   {DATA[name]}", ""]
 
 
 DATA = {
-    "polhode.files.BODY_SCHEMA": "What a body's JSON file holds, as JSON Schema.",
-    "polhode.files.TRAJECTORY_SCHEMA": "What a motion's JSON file holds, as JSON Schema.",
+    "polhode.files.BODY_SCHEMA": "JSON Schema of the JSON file of a body, as a dict.",
+    "polhode.files.TRAJECTORY_SCHEMA": "JSON Schema of the JSON file of a motion, as a dict.",
     "polhode.plot.AXIS_COLORS": "Colours of the three principal axes and of components along them.",
     "polhode.plot.MOMENTUM_COLOR": "Colour of the angular momentum.",
     "polhode.plot.OMEGA_COLOR": "Colour of the angular velocity.",
     "polhode.plot.OUTLINE_COLOR": "Colour of the edges of bodies.",
-    "polhode.animation.ANIMATION_SUFFIXES": "Endings of the files that `animate` can write.",
+    "polhode.animation.ANIMATION_SUFFIXES": "Endings of the files that :func:`animate` can write.",
+    "polhode.units.METRES": "Metres in one of each unit, as a mapping of names to exact numbers.",
 }
 """What the values of modules are; each needs a line here."""
 

@@ -22,7 +22,7 @@ __all__ = ["angular_acceleration", "force", "pivot_reaction", "potential_energy"
 def torque(self: Trajectory) -> Floats:
     """Torque of the load about the point `about` at every time, components in the body frame.
 
-    That of wheels is what ``I ω̇ + ω × I ω`` is with the wheels locked in I.
+    The torque of wheels is ``I ω̇ + ω × I ω``, where I includes the wheels as if they were locked.
 
     Returns
     -------
@@ -61,13 +61,13 @@ def angular_acceleration(self: Trajectory) -> Floats:
 
 
 def potential_energy(self: Trajectory) -> Floats:
-    """Energy of position in the field of the load at every time.
+    """Potential energy in the field of the load at every time.
 
     Returns
     -------
     numpy.ndarray, shape (..., T)
-        ``-m g·r_C`` in uniform gravity and so on, see :meth:`polhode.loads.Load.potential`; zero without
-        a load.
+        For example ``-m g·r_C`` in uniform gravity; see :meth:`polhode.loads.Load.potential`; zero without a
+        load.
 
     Raises
     ------
@@ -91,14 +91,15 @@ def pivot_reaction(
     Parameters
     ----------
     gravity : array_like, shape (..., 3)
-        g in space, where the load of the simulation held its torque but not the weight itself.
+        Gravitational acceleration g, components in space. Give it only if the load of the simulation held the
+        torque of the weight but not the weight itself.
     force : array_like, shape (..., 3)
-        The sum of forces in space that act besides those of the load.
+        Sum of the forces that act besides those of the load, components in space.
 
     Returns
     -------
     numpy.ndarray, shape (..., T, 3)
-        Force on the body, components in space: m a_C less the forces of the load, m g and `force`.
+        Force on the body, components in space: m a_C minus the forces of the load, minus m g, minus `force`.
 
     Raises
     ------

@@ -36,8 +36,8 @@ def euler_angles(
         What to do at an attitude at which two of the angles are not defined; ``np.isnan`` of the result
         is the mask of those.
     unwrap : bool
-        Let the first and the third angle run on over many turns, each by less than half a turn between
-        neighbouring times at which it is defined; else each is within its range.
+        Whether the first and the third angle are counted on over many turns. Each then changes by less than
+        half a turn from one time to the next at which it is defined. By default each is within its range.
     degrees : bool
         Give degrees.
 

@@ -31,25 +31,26 @@ _BLOCK: Final = 1 << 20
 
 
 def bonds(labels: Sequence[str | Isotope], positions: ArrayLike) -> list[tuple[int, int]]:
-    """Find which atoms are bonded, by their distances.
+    """Find bonded atoms by their distances.
 
     Parameters
     ----------
     labels : sequence of str or Isotope
-        As :func:`isotopes` takes them, or what it gave.
+        Labels as for :func:`isotopes`, or the list that it returned.
     positions : array_like, shape (n, 3)
         Positions of the atoms, in angstrom.
 
     Returns
     -------
     list of tuple of int
-        Pairs of indices, in ascending order: those nearer than the sum of their covalent radii (Cordero et
-        al., Dalton Trans. 2008, 2832) and 0.45 angstrom, the margin that Open Babel takes.
+        Pairs of indices, in ascending order. Two atoms are bonded if their distance is less than the sum of
+        their covalent radii (Cordero et al., Dalton Trans. 2008, 2832) plus 0.45 angstrom, the margin of Open
+        Babel.
 
     Raises
     ------
     PolhodeError
-        If a label names no nuclide, or an element without a radius on record.
+        If a label names no nuclide, or an element whose radius is not tabulated.
     ModuleNotFoundError
         If periodictable is not installed.
 
@@ -77,21 +78,21 @@ def uncertain_positions(
 ) -> _core.Uncertain:
     """Positions of atoms whose bond lengths are uncertain.
 
-    Each bond is a source of its own. Its length changes by moving what is beyond it along the bond, so that
-    all angles stay as they are: for a bond (i, j) the part of the molecule with atom j. Had the other part
-    been moved, the moments about the centre of mass would change by the same.
+    Each bond length has its own independent error. If the length of a bond (i, j) changes, the part of the
+    molecule with atom j moves along the bond, and all angles stay the same. If the other part moved instead,
+    the moments about the centre of mass would be the same.
 
     Parameters
     ----------
     labels : sequence of str or Isotope
-        As :func:`isotopes` takes them, or what it gave.
+        Labels as for :func:`isotopes`, or the list that it returned.
     positions : array_like, shape (n, 3)
-        Positions of the atoms, in angstrom where bonds are to be found; else in any unit.
+        Positions of the atoms: in angstrom if `bonds` is not given, else in any unit.
     sigma : array_like, shape () or (bonds,)
         Standard deviation of the length of each bond, in the unit of the positions.
     bonds : array_like of int, shape (bonds, 2), optional
-        Pairs of indices; by default those that :func:`bonds` finds. Parts between which there is no bond are
-        at places that are known exactly.
+        Pairs of indices; by default those that :func:`bonds` finds. The relative position of parts without a
+        bond between them is taken as exact.
 
     Returns
     -------
@@ -101,7 +102,7 @@ def uncertain_positions(
     Raises
     ------
     PolhodeError
-        If a bond whose length is uncertain is in a ring: it cannot be stretched alone.
+        If a bond whose length is uncertain is part of a ring, since it cannot be stretched alone.
 
     Examples
     --------

@@ -24,22 +24,22 @@ _ORDERS: Final = np.array(list(permutations(range(3))))
 
 
 class ContinuousAxes(NamedTuple):
-    """Principal axes that turn from frame to frame as little as they can.
+    """Principal axes that turn as little as possible from frame to frame.
 
     Attributes
     ----------
     moments : numpy.ndarray, shape (..., 3)
-        Moment of each axis that is followed: no longer ascending where two moments have changed places.
+        Moment of each axis. The moments are no longer ascending after two of them have changed places.
     axes : numpy.ndarray, shape (..., 3, 3)
         As columns, right-handed.
     order : numpy.ndarray of int, shape (..., 3)
-        The place of each in the ascending moments: 0, 1 or 2.
+        Place of the moment of each axis among the ascending moments: 0, 1 or 2.
     overlap : numpy.ndarray, shape (...)
-        The least cosine between an axis and the one that it comes from; 1 in the first frame. Below about
-        0.8 the frames are too far apart to tell which axis is which.
+        Least cosine of the angle between an axis and the same axis in the frame before; 1 in the first frame.
+        Below about 0.8 the frames are too far apart to identify the axes.
     determined : numpy.ndarray of bool, shape (..., 3)
-        False where another moment is so near that the tensor does not determine the axis: it is then the one
-        nearest to the frame before.
+        False where another moment is so near that the tensor does not determine the axis. The axis given is
+        then the one nearest to that of the frame before.
     """
 
     moments: Floats

@@ -72,9 +72,10 @@ class StateSigma(_StateSigma):
 def covariance(self: Trajectory) -> Floats | None:
     """Give the covariance of (δ, ω) at every time, shape (..., T, 6, 6); None where nothing is uncertain.
 
-    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
-    Uncertain are the body, and `omega` and `attitude` at the start where they were given as `Uncertain`. To
-    first order, by the derivatives of :meth:`sensitivity`; all correlations count.
+    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians. It
+    comes from the covariance of the body, and from `omega` and `attitude` at the start if they were given as
+    `Uncertain`. It is computed to first order, by the derivatives of :meth:`sensitivity`, with all
+    correlations.
 
     Examples
     --------
@@ -94,7 +95,7 @@ def covariance(self: Trajectory) -> Floats | None:
 
 
 def sigma(self: Trajectory) -> StateSigma | None:
-    """Give standard deviations of attitude and angular velocity at every time, or None as of `covariance`."""
+    """Give standard deviations of attitude and angular velocity, shape (..., T, 3) each, or None."""
     found = self.covariance
     if found is None:
         return None

@@ -67,7 +67,7 @@ def source(seed: int, name: str) -> Source:
 
 
 class Distribution(ABC):
-    """What members draw; made by the functions of this module.
+    """A distribution from which members draw; made by the functions of this module.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Distribution(ABC):
     name: str | None
 
     def draw(self, n: int, *, seed: int, argument: str = "omega", first: int = 0) -> Any:
-        """Draw what members of an ensemble with this seed draw.
+        """Draw the numbers that members of an ensemble with this seed get.
 
         Parameters
         ----------
@@ -87,7 +87,8 @@ class Distribution(ABC):
         seed : int
             As of the ensemble.
         argument : str
-            The place of the distribution in the call of the ensemble; `name` goes before it.
+            Place of the distribution in the call of the ensemble; if the distribution has a `name`, that
+            counts instead.
         first : int
             The first of the members.
 
@@ -118,15 +119,15 @@ class Distribution(ABC):
 
     @abstractmethod
     def rows(self, source: Source, first: int, count: int) -> Any:
-        """Draw those of the members from `first` on."""
+        """Draw the numbers of `count` members from `first` on."""
 
     @property
     def most(self) -> int | None:
-        """The most members that can draw from it; None for any number."""
+        """Largest number of members that can draw from it; None if there is no limit."""
         return None
 
     def check(self, n: int, place: str) -> None:
-        """Refuse a number of members that cannot be drawn."""
+        """Raise an error if `n` members cannot be drawn."""
         if self.most is not None and n > self.most:
             raise ValueError(
                 f"{place}: {n} members want a row each and the samples have {self.most}; "

@@ -18,14 +18,15 @@ __all__ = ["EquivalentEllipsoid", "ellipsoid"]
 
 
 class EquivalentEllipsoid(NamedTuple):
-    """A homogeneous ellipsoid that stands for a body.
+    """A homogeneous ellipsoid with the moments of a body.
 
     Attributes
     ----------
     semi_axes : numpy.ndarray, shape (..., 3)
-        Along the principal axes of the body, so descending; zero for a direction in which it has no extent.
+        Semi-axes along the principal axes of the body, in descending order; zero in a direction in which the
+        body has no extent.
     axes : numpy.ndarray, shape (..., 3, 3)
-        Those principal axes, as columns.
+        Principal axes of the body, as columns.
     volume : float or numpy.ndarray, shape (...)
     """
 
@@ -45,9 +46,9 @@ def ellipsoid(body: RigidBody, volume: ArrayLike | None = None) -> EquivalentEll
     body : RigidBody
         One body or a stack.
     volume : float or array_like, optional
-        Of the body. The ellipsoid then has this volume, and the axis ratios of the one with the same moments:
-        what is called the dynamically equivalent equal-volume ellipsoid of an asteroid. Its moments are those
-        of the body only where the body is as dense as it.
+        Volume of the body. The ellipsoid then has this volume, and the same ratios of semi-axes as the one
+        with the moments of the body. For an asteroid it is called the dynamically equivalent equal-volume
+        ellipsoid. Its moments are those of the body only if both have the same density.
 
     Returns
     -------

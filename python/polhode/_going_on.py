@@ -23,41 +23,45 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
     Parameters
     ----------
     method : {"series", "differences"}
-        By the linearised equations, or by differences of order six of motions that are simulated anew, for
-        loads without series, such as functions, a motor with a limit and dry friction: nine digits or so.
+        ``"series"`` integrates the linearised equations of motion. ``"differences"`` takes finite differences
+        of order six between motions that are simulated anew; it gives about nine digits. It serves loads for
+        which there are no series: functions, a motor with a limit, dry friction.
 
     Returns
     -------
     MotionSensitivity
-        Derivatives of attitude and angular velocity at every time, and of the states that the load has of its
-        own: by all of these at the first, by moments, products, centre of mass and mass, and by every
-        argument of the load.
+        Derivatives of the attitude, the angular velocity and the states of the load at every time. They are
+        taken with respect to the same quantities at the first time, to the principal moments, products of
+        inertia, centre of mass and mass of the body, and to every argument of the load.
 
     Raises
     ------
     PolhodeError
-        Of series, for a load that has none: callbacks and compiled functions, a magnetic field along an
-        orbit, B-dot, a motor with a limit, dry friction, a feedback on a target that moves. Of differences,
-        where those of order four and six differ.
+        With ``"series"``, for a load without series: a callback, a compiled function, a magnetic field along
+        an orbit, B-dot, a motor with a limit, dry friction, a feedback on a moving target. With
+        ``"differences"``, if the differences of order four and of order six do not agree.
     IntegrationError
-        Where motion or derivatives cannot go on.
+        If the integration of the motion or of the derivatives cannot go on.
 
     Notes
     -----
-    The linearised equations are integrated beside the motion, by Taylor series in which every number
-    carries its derivatives, to the last digits whatever method and tolerance found this motion. Where a
-    feedback turns its torque round, half a turn from its target, they jump as they must. For free bodies
-    :meth:`FreeMotion.sensitivity` is exact at any time.
+    The linearised equations are integrated together with the motion, by Taylor series in which every number
+    carries its derivatives. They are accurate to the last digits, whatever method and tolerance this motion
+    was computed with. A feedback reverses its torque at half a turn from its target; the derivatives jump
+    there, and the jump is computed. For free bodies :meth:`FreeMotion.sensitivity` is exact at any time.
 
-    The states of a load that were not given to `simulate` follow from its numbers: a wheel begins with
-    ``h = J (Ω + a·ω)``. The derivatives by its inertia, its axis and its rate include that; those by ω at the
-    first time hold the states, and `begins` has what they add where the rate is held in place of them.
+    If the initial states of a load were not given to `simulate`, they follow from other numbers: the momentum
+    of a wheel is ``h = J (Ω + a·ω)`` at the start. The derivatives by the inertia, the axis and the rate of
+    the wheel include the change of h. The derivatives by ω at the first time do not: they hold h fixed. For
+    derivatives by ω with the rate Ω held fixed, add the part that comes from the change of h; the field
+    ``begins`` of :class:`polhode.MotionSensitivity` serves for that.
 
-    Differences follow the motion through every change of the law, since each neighbour finds its own: a wheel
-    that stops in its bearing, a motor that saturates. Of orbits all numbers are varied: J₂, radius and
-    pole of an oblate attractor too, and each position of a table, with six runs for a number. The numbers of
-    functions are not known to them, and a target at rest is not varied; those of stacks of loads, of
-    scaled ones and beside compiled functions are not either.
+    Differences remain right where the law of the load changes on the way, as when a wheel stops in its
+    bearing or a motor saturates: each of the neighbouring motions finds its own time of the change. For an
+    orbit they vary all numbers: J₂, radius and pole of an oblate attractor too, and each position of a table.
+    Each number takes six runs. Some numbers are not varied: those inside a function, the attitude of a target
+    at rest, and the arguments of a stack of loads, of a load multiplied by a factor, or of a load that is
+    added to a compiled function.
 
     Examples
     --------
@@ -101,8 +105,8 @@ def resume(self: Trajectory, t: ArrayLike, **options: Any) -> Trajectory:
     t : array_like, shape (T,)
         Times as in `simulate`; the first must be the last of this motion.
     **options
-        Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`; with another
-        `load` its own states begin anew.
+        Further arguments of :meth:`polhode.RigidBody.simulate`, such as `method` and `rtol`; if another
+        `load` is given, its states begin anew.
 
     Returns
     -------

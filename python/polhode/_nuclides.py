@@ -40,16 +40,16 @@ class Isotope(NamedTuple):
 
 
 def isotopes(labels: Sequence[str], masses: Masses = "most_common") -> list[Isotope]:
-    """Find the nuclide each label stands for.
+    """Find the nuclide of each label.
 
     Parameters
     ----------
     labels : sequence of str
-        Element symbols (``"O"``) or atomic numbers (``"8"``) stand for the most abundant isotope, as
-        spectroscopists read them; ``"18O"``, ``"D"`` and ``"T"`` for themselves.
+        Element symbols (``"O"``) or atomic numbers (``"8"``) stand for the most abundant isotope, as in
+        spectroscopy. ``"18O"``, ``"D"`` and ``"T"`` name an isotope.
     masses : {"most_common", "average"}
-        Give an element its average mass over its isotopes instead, as in a bottle; its name is then the
-        symbol alone.
+        Mass of an element: that of the most abundant isotope, or the average over its isotopes as for a
+        substance in a bottle. With the average the name is the symbol of the element.
 
     Returns
     -------
@@ -59,7 +59,7 @@ def isotopes(labels: Sequence[str], masses: Masses = "most_common") -> list[Isot
     Raises
     ------
     PolhodeError
-        If a label names no element or isotope, or an element without natural isotopes.
+        If a label names no element or isotope, or names an element without natural isotopes.
     ModuleNotFoundError
         If periodictable is not installed.
 
@@ -122,25 +122,25 @@ def _sigma(of: Any) -> float | None:
 
 
 def uncertain_masses(labels: Sequence[str | Isotope], masses: Masses = "most_common") -> _core.Uncertain:
-    """Masses of nuclides with their standard deviations; equal nuclides are one number.
+    """Masses of nuclides with their standard deviations. Atoms of the same nuclide share one error.
 
     Parameters
     ----------
     labels : sequence of str or Isotope
-        As :func:`isotopes` takes them, or what it gave.
+        Labels as for :func:`isotopes`, or the list that it returned.
     masses : {"most_common", "average"}
         See :func:`isotopes`.
 
     Returns
     -------
     Uncertain, shape (n,)
-        In u. Each nuclide is one source, named as in ``"mass of 1H"``: all atoms of it are wrong by the same,
-        in this molecule and in those of other calls.
+        Masses in u. Each nuclide is one source of error, with a name such as ``"mass of 1H"``: all its atoms
+        have the same error, also in molecules of other calls.
 
     Raises
     ------
     PolhodeError
-        If a label names no nuclide, or one whose sigma is not on record.
+        If a label names no nuclide, or a nuclide whose standard deviation is not tabulated.
     ModuleNotFoundError
         If periodictable is not installed.
 

@@ -24,12 +24,18 @@ def save(self: Trajectory, path: str | PathLike[str]) -> None:
     Parameters
     ----------
     path : str or os.PathLike
-        ``.csv``: one line per time, ``t, omega_*`` (body), ``quaternion_*``, ``position_*, velocity_*``
-        (space), ``euler_phi, euler_theta, euler_psi`` (ZXZ, in radians; nan where not defined), ``torque_*``
-        (of the load, about the point `about`, body; where the load is known and no state is nan), and the
-        load's own states; a stack's lines begin with the indices of the body. ``.npz``: the arrays under
-        the names of the attributes, with the body's ``mass``, ``inertia`` and ``center_of_mass``.
-        ``.json``: readable, after the schema in :mod:`polhode.files`. The load and the events are not kept.
+        The ending of the name tells the format. The load and the events are not written.
+
+        ``.csv`` has one line for each time. The columns are ``t``; ``omega_*``, components in the body frame;
+        ``quaternion_*``; ``position_*`` and ``velocity_*``, components in space; the angles ``euler_phi``,
+        ``euler_theta``, ``euler_psi`` (ZXZ, in radians, nan where they are not defined); ``torque_*`` of the
+        load about the point `about`, components in the body frame; and the states of the load. The torque is
+        left out if the load is not known or a state is nan. For a stack, each line begins with the indices of
+        the body.
+
+        ``.npz`` has the arrays under the names of the attributes, and ``mass``, ``inertia`` and
+        ``center_of_mass`` of the body. ``.json`` is text after the schema
+        :data:`polhode.files.TRAJECTORY_SCHEMA`.
     """
     from polhode.files.saved_motion import save_trajectory
 
@@ -42,8 +48,8 @@ def to_xarray(self: Trajectory) -> Dataset:
     Returns
     -------
     xarray.Dataset
-        Over ``time``, after the axes ``body`` (or ``body_0``, ``body_1``, …) of a stack. Components are
-        named ``x y z`` and ``x y z w``; every variable says in which frame it is.
+        Its dimensions are ``time``, for a stack after ``body`` (or ``body_0``, ``body_1``, …). Components are
+        named ``x y z`` and ``x y z w``; an attribute of each variable names its frame.
     """
     from polhode._extras import require
 

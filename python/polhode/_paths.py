@@ -31,7 +31,7 @@ __all__ = [
 
 
 class OrbitState(NamedTuple):
-    """Where a body is on its orbit, from the attractor, in space.
+    """Position and velocity of a body on its orbit relative to the attractor, components in space.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class OrbitState(NamedTuple):
 
 
 class Elements(NamedTuple):
-    """The elements of an orbit at its epoch; angles in radians, and in degrees by :meth:`in_degrees`.
+    """The elements of an orbit at its epoch, with angles in radians; :meth:`in_degrees` gives degrees.
 
     Attributes
     ----------
@@ -54,13 +54,14 @@ class Elements(NamedTuple):
         Least distance from the attractor.
     eccentricity : float or numpy.ndarray, shape (...)
     inclination : float or numpy.ndarray, shape (...)
-        Between the normal of the orbit and z.
+        Angle between the normal of the orbit and z.
     node : float or numpy.ndarray, shape (...)
-        Angle from x to where the orbit crosses the plane xy upward; 0 for an orbit in that plane.
+        Angle from x to the ascending node, where the orbit crosses the plane xy upward; 0 for an orbit in
+        that plane.
     argument : float or numpy.ndarray, shape (...)
         Angle from the node to the periapsis; 0 for a circle.
     anomaly : float or numpy.ndarray, shape (...)
-        Angle from the periapsis to the body (the true anomaly); of a circle from the node.
+        Angle from the periapsis to the body (the true anomaly); for a circle the angle from the node.
     """
 
     periapsis: Any
@@ -71,7 +72,7 @@ class Elements(NamedTuple):
     anomaly: Any
 
     def in_degrees(self) -> Elements:
-        """Give them with the four angles in degrees."""
+        """Give the elements with the four angles in degrees."""
         angles = ("inclination", "node", "argument", "anomaly")
         return self._replace(**{name: np.rad2deg(getattr(self, name)) for name in angles})
 
@@ -80,16 +81,17 @@ class Elements(NamedTuple):
 
 
 class LocalFrame(NamedTuple):
-    """The frame that points down: z to the attractor, y along minus the normal of the orbit, x forward.
+    """The local frame of an orbit: z points to the attractor, y against the normal of the orbit, x forward.
 
     Attributes
     ----------
     quaternion : numpy.ndarray, shape (..., 4)
-        Its attitude in space as (x, y, z, w), of either sign: that of a body whose axes these are.
+        Attitude of the frame in space as (x, y, z, w), of either sign: the attitude of a body whose axes are
+        those of the frame.
     omega : numpy.ndarray, shape (..., 3)
-        Its angular velocity relative to space, components in this frame: ``(0, -h/r**2, -r a/h)`` with the
-        angular momentum h of the orbit and the acceleration a along its normal, which turns the plane; on a
-        Kepler orbit there is none.
+        Angular velocity of the frame relative to space, components in this frame: ``(0, -h/r**2, -r a/h)``.
+        Here h is the angular momentum of the orbit per mass, and a the acceleration along its normal, which
+        turns the plane of the orbit. On a Kepler orbit a is zero.
     """
 
     quaternion: Floats
@@ -112,7 +114,7 @@ class Path(ABC):
         """Give position and velocity at times of any shape."""
 
     def frame(self, t: ArrayLike) -> LocalFrame:
-        """Give the frame that points down, and its angular velocity, at times of any shape.
+        """Give the local frame of the orbit and its angular velocity at times of any shape.
 
         Parameters
         ----------
@@ -128,7 +130,7 @@ class Path(ABC):
         return LocalFrame(*(one.reshape(*one.shape[:-2], *times.shape, one.shape[-1]) for one in found))
 
     def dipole_field(self, strength: ArrayLike) -> DipoleField:
-        """Give the magnetic field along the orbit of a dipole at the attractor.
+        """Give the magnetic field, along the orbit, of a dipole at the attractor.
 
         Parameters
         ----------
@@ -145,7 +147,9 @@ class Path(ABC):
 
 @dataclass(frozen=True, eq=False)
 class SampledOrbit(Path):
-    """An orbit known at some times, or a stack of them: cubic splines through positions, as of an ephemeris.
+    """An orbit through positions at given times, as from an ephemeris, or a stack of them.
+
+    Between the times it follows cubic splines.
 
     Attributes
     ----------
@@ -162,12 +166,12 @@ class SampledOrbit(Path):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of the stack."""
+        """Shape of the stack, as a tuple of int; ``()`` for one."""
         return np.broadcast_shapes(np.shape(self.mu), self.position.shape[:-2])
 
     @property
     def begins(self) -> float:
-        """The first of its times."""
+        """First time of the table."""
         return float(self.times[0])
 
     def at(self, t: ArrayLike) -> OrbitState:
@@ -181,7 +185,7 @@ class SampledOrbit(Path):
         Returns
         -------
         OrbitState
-            Of shape (..., T..., 3): those of the stack, then those of the times.
+            Arrays of shape (..., T..., 3): axes of the stack, axes of the times, components.
         """
         times = _core.real_numbers(t, "t")
         return reshaped(_core.sampled_states(self.times, self.position, times.ravel()), times.shape)
@@ -202,7 +206,7 @@ class DipoleField:
     strength: Floats
 
     def at(self, t: ArrayLike) -> Floats:
-        """Give B in space, ``3 (M·r) r/r**5 - M/r**3``, at times of any shape.
+        """Give B at times of any shape, components in space: ``3 (M·r) r/r**5 - M/r**3``.
 
         Parameters
         ----------

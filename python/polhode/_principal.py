@@ -32,7 +32,7 @@ TOP_RTOL: Final = 1e-6
 
 
 class PrincipalLinear(NamedTuple):
-    """Whether standard deviations to first order are enough, as of :class:`polhode.Linear`.
+    """Whether standard deviations to first order are enough, as in :class:`polhode.Linear`.
 
     Attributes
     ----------
@@ -53,8 +53,8 @@ class PrincipalSigma(NamedTuple):
     ----------
     moments : numpy.ndarray, shape (..., 3)
     axes : numpy.ndarray, shape (..., 3)
-        Standard deviations of the small rotation of the axes about each of them, in radians; NaN where the
-        two other moments are equal, or nearly so.
+        Standard deviations, in radians, of a small rotation of the axes about each axis. NaN where the two
+        other moments are equal, or nearly so.
     linear : PrincipalLinear
         Whether the first order is enough for each of them.
     """
@@ -79,11 +79,12 @@ class PrincipalAxes:
         The axes are the **columns**, right-handed: ``inertia = axes @ diag(moments) @ axes.T`` and
         ``v_body = axes @ v_principal``.
     top_rtol : float or numpy.ndarray, shape (..., 3)
-        Tolerance at which `top` is decided, relative to the largest moment: 1e-6, or for a molecule from a
-        file of few digits one each for I1 = 0, I1 = I2 and I2 = I3, as much as the rounding of its
-        coordinates can make and at least 1e-6.
+        Tolerance of `top`: differences of moments below `top_rtol` times the largest moment count as zero. It
+        is 1e-6 for most bodies. For a molecule from a file with few digits it is three numbers, one for each
+        of the tests I1 = 0, I1 = I2 and I2 = I3. Each is then the largest value that the rounding of the
+        coordinates can cause, but at least 1e-6.
     sigma : PrincipalSigma or None
-        Their standard deviations, of a body with uncertain numbers.
+        Standard deviations of moments and axes, for a body with uncertain numbers; else None.
     """
 
     moments: Floats
@@ -126,12 +127,14 @@ class PrincipalAxes:
         return self.classify()
 
     def classify(self, rtol: ArrayLike | None = None) -> Any:
-        """Class of the top with moments closer than ``rtol`` times the largest taken as equal.
+        """Class of the top, as `top`, with another tolerance.
+
+        Moments that differ by less than `rtol` times the largest are taken as equal.
 
         Parameters
         ----------
         rtol : float or array_like, shape (..., 3), optional
-            One number, or one each for I1 = 0, I1 = I2 and I2 = I3; `top_rtol` by default.
+            One number, or three numbers for the tests I1 = 0, I1 = I2 and I2 = I3; `top_rtol` by default.
 
         Returns
         -------
@@ -149,17 +152,22 @@ class PrincipalAxes:
         return _core.ray_kappa(self.moments)
 
     def canonical(self, rtol: float = 1e-6) -> PrincipalAxes:
-        """Where moments are equal their axes are free: turn them to the body axes of largest projection.
+        """Choose those principal axes that equal moments leave free, by the directions of the body axes.
+
+        If two moments are equal, every pair of perpendicular axes in their plane is a pair of principal axes.
+        The pair chosen here has as its first axis the projection onto the plane of that body axis whose
+        projection is longest. For a spherical top, where any axes are principal axes, the body axes
+        themselves are chosen.
 
         Parameters
         ----------
         rtol : float, optional
-            Moments closer than this times the largest count as equal.
+            Moments that differ by less than `rtol` times the largest count as equal.
 
         Returns
         -------
         PrincipalAxes
-            With the same moments; a spherical top gets the body axes themselves.
+            The same moments with these axes.
 
         Examples
         --------
@@ -173,14 +181,14 @@ class PrincipalAxes:
         return PrincipalAxes(self.moments, axes, self.top_rtol, self.sigma)
 
     def derivative(self, tangent: ArrayLike, rtol: float = 1e-12) -> PrincipalDerivative:
-        """Change of moments and axes for a change of the tensor.
+        """Give the derivatives of moments and axes for a small change of the tensor.
 
         Parameters
         ----------
         tangent : array_like, shape (..., 3, 3)
-            dI, symmetric.
+            The change dI of the tensor; symmetric.
         rtol : float, optional
-            Moments closer than this times the largest count as equal.
+            Moments that differ by less than `rtol` times the largest count as equal.
 
         Returns
         -------
@@ -203,18 +211,18 @@ class PrincipalAxes:
 
 
 class PrincipalDerivative(NamedTuple):
-    """Derivatives of principal moments and axes in the direction of a tangent dI.
+    """Derivatives of principal moments and axes for a small change dI of the tensor.
 
     Attributes
     ----------
     moments : numpy.ndarray, shape (..., 3)
         dI_k = (Vᵀ dI V)_kk.
     axes : numpy.ndarray, shape (..., 3, 3)
-        dV = V Ω, Ω_ij = (Vᵀ dI V)_ij / (I_j − I_i): the axes turn.
+        dV = V Ω with Ω_ij = (Vᵀ dI V)_ij / (I_j − I_i), a small rotation of the axes.
     degenerate : numpy.ndarray of bool, shape (..., 3)
-        Which of the pairs (1, 2), (1, 3), (2, 3) have equal moments. Within such a pair neither the axes nor
-        the single moments have a derivative: `axes` leaves out the rotation in the plane of the pair, and
-        of the two `moments` only the sum has a meaning that does not depend on the choice of axes.
+        Which of the pairs (1, 2), (1, 3), (2, 3) have equal moments. For such a pair neither the axes nor the
+        single moments have a derivative. `axes` then leaves out the rotation in the plane of the pair, and
+        only the sum of the two `moments` does not depend on the choice of axes.
     """
 
     moments: Floats

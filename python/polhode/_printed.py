@@ -31,7 +31,7 @@ def from_printout(
     rtol: float | None = None,
     name: str = "tensor",
 ) -> RigidBody:
-    """Make the body of a printout.
+    """Make a body from the printout of a CAD program.
 
     Parameters
     ----------
@@ -41,14 +41,14 @@ def from_printout(
     tensor : array_like
         Three moments, six numbers Ixx Iyy Izz Ixy Ixz Iyz, or nine, row by row.
     products : {"positive", "negative"}, optional
-        Whether the off-diagonal numbers are ∫ x y dm or minus that, the elements of the tensor. It has to be
-        said where one is not zero.
+        ``"positive"``: the off-diagonal numbers are ∫ x y dm. ``"negative"``: they are minus that, the
+        elements of the tensor. It must be given if one of them is not zero.
     about : {"center_of_mass", "origin"}
-        The point of the tensor.
+        Point to which the tensor refers.
     rtol : float, optional
         See `RigidBody`.
     name : str
-        Of the tensor, in errors.
+        Name of the tensor in error messages.
 
     Returns
     -------

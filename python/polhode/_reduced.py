@@ -22,10 +22,10 @@ class Means(NamedTuple):
     Attributes
     ----------
     mean : numpy.ndarray
-        Not a number where no member is left, where a value is none, and where values are infinite with both
-        signs; infinite where they are so with one.
+        Mean over the members. NaN if no member is left, if a value is NaN, or if values are infinite with
+        both signs; infinite if values are infinite with one sign.
     members, left_out : int
-        Members that are in it, and those that failed.
+        Number of members that are counted, and of those that failed.
     """
 
     mean: Floats
@@ -43,9 +43,10 @@ class MeansAndCovariance(NamedTuple):
     ----------
     mean : numpy.ndarray, shape (k,)
     covariance : numpy.ndarray, shape (k, k)
-        Divided by one less than the count. Not a number where a value is none or infinite.
+        Covariance over the members, with the number of members minus one as the divisor. NaN if a value is
+        NaN or infinite.
     members, left_out : int
-        Members that are in it, and those that failed.
+        Number of members that are counted, and of those that failed.
     """
 
     mean: Floats
@@ -58,16 +59,16 @@ class MeansAndCovariance(NamedTuple):
 
 
 class HistogramCounts(NamedTuple):
-    """How many members are in each bin, see :func:`histogram`.
+    """Number of members in each bin, see :func:`histogram`.
 
     Attributes
     ----------
     counts : numpy.ndarray of int, shape (..., bins)
     edges : numpy.ndarray, shape (bins + 1,)
     below, above, not_a_number : numpy.ndarray of int, shape (...)
-        Those in no bin.
+        Number of members below the lowest edge, above the highest, and with NaN.
     members, left_out : int
-        Members that are counted, and those that failed.
+        Number of members that are counted, and of those that failed.
     """
 
     counts: Counts
@@ -83,18 +84,17 @@ class HistogramCounts(NamedTuple):
 
 
 class QuantileLevels(NamedTuple):
-    """Below which numbers parts of the members lie, see :func:`quantiles`.
+    """Quantiles over the members, see :func:`quantiles`.
 
     Attributes
     ----------
     q : numpy.ndarray, shape (parts,)
     values : numpy.ndarray, shape (parts, ...)
-        Not a number where a member's is not.
+        The quantiles. NaN if the value of a member is NaN.
     rank_error : float
-        Largest part of all members by which the rank of a value may be wrong, at most; 0 where they are
-        exact.
+        Bound on the error of the rank of a value, as a fraction of all members; 0 if the values are exact.
     members, left_out : int
-        Members that are in it, and those that failed.
+        Number of members that are counted, and of those that failed.
     """
 
     q: Floats
@@ -108,7 +108,7 @@ class QuantileLevels(NamedTuple):
 
 
 class ModeTable(NamedTuple):
-    """How the members rotate at the start and at the end, see :func:`mode_changes`.
+    """Modes of the members at the start and at the end, see :func:`mode_changes`.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ class ModeTable(NamedTuple):
     table : numpy.ndarray of int, shape (modes, modes)
         Members by their mode at the start (row) and at the end (column).
     members, left_out : int
-        Members that are counted, and those that failed.
+        Number of members that are counted, and of those that failed.
     """
 
     modes: tuple[str, ...]

@@ -43,7 +43,7 @@ def to_text(body: RigidBody, program: str) -> str:
     body : RigidBody
         One body, in kg and m.
     program : str
-        ``"urdf"``, ``"sdf"``, ``"mjcf"``: the element of such a file. ``"mujoco"``, ``"drake"``,
+        ``"urdf"``, ``"sdf"``, ``"mjcf"``: the element for such a file. ``"mujoco"``, ``"drake"``,
         ``"pinocchio"``, ``"pybullet"``: lines of Python. ``"simulink"``: the fields of Simscape Multibody.
         ``"adams"``: statements of the solver. ``"solidworks"``: the printout of its mass properties.
         ``"onshape"``: the fields of its REST interface. ``"matlab"``: a ``rigidBody``, about its origin.

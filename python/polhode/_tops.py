@@ -83,12 +83,15 @@ class NutationDamping(NamedTuple):
 
 
 class FreePrecession(NamedTuple):
-    """How a torque-free symmetric top precesses: n its symmetry axis, ω and L in one plane about L.
+    """Precession of a torque-free symmetric top.
+
+    The symmetry axis n, ω and L lie in one plane, which turns about L. I_s is the moment about n, I_t that
+    across it. Rates are in radians per unit of time, angles in radians.
 
     Attributes
     ----------
     axis : numpy.ndarray, shape (..., 3)
-        n in the body frame, toward the side of ω.
+        Symmetry axis n in the body frame, on the side of ω.
     body_rate : float or numpy.ndarray, shape (...)
         ``(I_s − I_t) ω_s/I_t``: ω and L circle about n, seen from the body. Negative for a prolate top.
     space_rate : float or numpy.ndarray, shape (...)

@@ -1,12 +1,14 @@
-"""What the members of an ensemble draw: numbers, rotations, samples, bodies and loads made of them.
+"""Distributions for ensembles: random numbers, rotations and samples, and bodies and loads made of them.
 
-A member's numbers depend on the seed, on the name of the argument and on the number of the member alone: not
-on how many members there are, nor on how these are cut into chunks. The name is the place of the distribution
-in the call (``"omega"``, ``"body.1"``, ``"load.position"``), unless `name` gives another. Distributions at
-two places draw independent numbers; one object at two places draws the same, and so do two of one `name`.
+The numbers of a member depend only on the seed, on the name of the argument and on the number of the member.
+They do not depend on how many members there are, or how these are divided into chunks. The name is the place
+of the distribution in the call (``"omega"``, ``"body.1"``, ``"load.position"``), unless `name` gives another.
+Distributions at two places draw independent numbers. If one object stands at two places, both places get the
+same numbers; the same is true for two distributions with the same `name`.
 
-The numbers come from Philox4x64-10 with transformations of its own, so that no release of another library
-changes them; those of :func:`per_member` are as NumPy's generator makes them.
+The random bits come from the generator Philox4x64-10. They are transformed by code of this package, so that
+no release of another library changes the numbers. Only those of :func:`per_member` come from NumPy's
+generator.
 """
 
 from __future__ import annotations
@@ -59,8 +61,8 @@ def normal(
     covariance : array_like, shape (k, k), optional
         Covariance of the numbers in the order of the flattened mean; it may be singular.
     sigma : array_like, optional
-        In its place: standard deviations of independent numbers, of a shape that broadcasts to that of
-        `mean`.
+        In place of `covariance`: standard deviations of independent numbers, of a shape that broadcasts to
+        that of `mean`.
     name : str, optional
         Name in place of the argument's name; see the top of this page.
 
@@ -75,7 +77,8 @@ def normal(
 
     Notes
     -----
-    The inverse of the normal law by Wichura's AS 241, from 64 random bits: numbers as large as 9.1 sigmas.
+    The inverse of the normal distribution is computed by Wichura's algorithm AS 241 from 64 random bits. The
+    largest numbers are 9.1 standard deviations from the mean.
 
     Examples
     --------
@@ -115,7 +118,7 @@ def normal(
 
 
 def uniform(low: ArrayLike, high: ArrayLike, *, name: str | None = None) -> Uniform:
-    """Draw numbers between bounds, all as likely; independent of one another.
+    """Draw independent numbers, uniformly distributed between bounds.
 
     Parameters
     ----------
@@ -152,7 +155,7 @@ def uniform(low: ArrayLike, high: ArrayLike, *, name: str | None = None) -> Unif
 
 
 def uniform_rotation(*, name: str | None = None) -> UniformRotation:
-    """Draw attitudes, all as likely, as unit quaternions (x, y, z, w).
+    """Draw uniformly distributed attitudes, as unit quaternions (x, y, z, w).
 
     Parameters
     ----------
@@ -179,13 +182,14 @@ def samples(
     *,
     name: str | None = None,
 ) -> Samples:
-    """Take the rows of an array.
+    """Draw the rows of an array.
 
     Parameters
     ----------
     values : array_like, shape (rows, ...)
     order : {"as given", "shuffled", "with replacement"}
-        Member k takes row k; each row once, in random order; or any row, drawn anew for each member.
+        ``"as given"``: member k takes row k. ``"shuffled"``: each row is taken once, in random order. ``"with
+        replacement"``: each member takes a random row.
     name : str, optional
         Name in place of the argument's name; see the top of this page.
 
@@ -211,8 +215,8 @@ def samples(
 def per_member(function: Callable[[np.random.Generator], Any], *, name: str | None = None) -> PerMember:
     """Call a function for each member, with a generator of its own.
 
-    For what has no array form; slow, since Python is called for every member. A function that stands for an
-    argument of an ensemble itself is taken as if it were in here.
+    It serves for values that no other distribution gives. It is slow, since Python is called for every
+    member. A function in place of an argument of an ensemble is treated as if it stood in a `per_member`.
 
     Parameters
     ----------
@@ -240,12 +244,13 @@ def per_member(function: Callable[[np.random.Generator], Any], *, name: str | No
 
 
 def made(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Made:
-    """Make bodies or loads of what is drawn: by one call for all members of a chunk.
+    """Make bodies or loads from drawn numbers, by one call for all members of a chunk.
 
     Parameters
     ----------
     function : callable
-        Takes stacks along a first axis, and gives a stack: the constructors of bodies and loads do.
+        Function that takes stacks along a first axis and returns a stack, as the constructors of bodies and
+        loads do.
     *args, **kwargs
         Its arguments. Distributions among them are drawn, as arrays of shape (members, ...); all others
         are passed on.

@@ -1,6 +1,6 @@
-"""Equimomental systems: other bodies with the mass, centre of mass and moments of a body.
+"""Equimomental systems: bodies with the same mass, centre of mass and moments of inertia as a given one.
 
-For the smallest set of particles that any body has see `RigidBody.equimomental_particles`.
+`polhode.RigidBody.equimomental_particles` gives the smallest set of equal particles for any body.
 """
 
 from polhode._core import stick

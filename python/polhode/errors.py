@@ -1,8 +1,7 @@
 """The exceptions of polhode.
 
-Every one of them is a :class:`ValueError`, so that ``except ValueError`` catches bad input whatever
-its kind. Each message names the argument, the row of a stack, the number that offends, the law it
-breaks and the way out.
+Each of them is also a :class:`ValueError`, so that ``except ValueError`` catches bad input of every kind. The
+message names the argument, the row of a stack, the bad number, the law that it breaks, and a remedy.
 """
 
 from __future__ import annotations
@@ -29,46 +28,46 @@ class PolhodeError(ValueError):
 
 
 class InvalidInertiaError(PolhodeError):
-    """Mass properties that no real body has."""
+    """Mass properties that no real body can have."""
 
 
 class MeshError(PolhodeError):
-    """A mesh that does not bound a solid: open, inconsistently wound, inverted or degenerate.
+    """A mesh does not bound a solid: it is open, inconsistently wound, inverted or degenerate.
 
     Attributes
     ----------
     law : str
         ``"closed"`` where the mesh is open; else ``""``.
     way_out : str
-        What the message names as the way out, at its end; ``""`` where `law` is.
+        The remedy at the end of the message; ``""`` if `law` is ``""``.
     """
 
     law: str = ""
     way_out: str = ""
 
     def offer(self, way_out: str) -> None:
-        """Name another way out, before the one that the message has."""
+        """Put another remedy into the message, before the present one."""
         fault = str(self).removesuffix(self.way_out)
         self.args = (f"{fault}{way_out}; or {self.way_out}" if self.way_out else f"{fault} ({way_out})",)
 
 
 class FileFormatError(PolhodeError):
-    """A file that is not what its name or header says."""
+    """The content of a file does not fit its name or header, or is damaged."""
 
 
 class IntegrationError(PolhodeError):
-    """An integration that could not go on; the message tells why.
+    """An integration could not go on; the message tells why.
 
     Attributes
     ----------
     row : int
-        Which body of the stack, counted through the flattened stack.
+        Index of the body in the flattened stack.
     time : float
         The time that was reached.
     state : tuple of numpy.ndarray
         ``(quaternion, omega)`` at that time.
     partial : Trajectory
-        What had been computed; not a number after ``time``.
+        The trajectory so far; states after ``time`` are NaN.
     """
 
     row: int
@@ -78,16 +77,16 @@ class IntegrationError(PolhodeError):
 
 
 class QuadratureError(PolhodeError):
-    """An integral over a density that did not reach its tolerance.
+    """An integral over a density did not reach its tolerance.
 
     Attributes
     ----------
     estimate : RigidBody
-        The body as far as it is known.
+        Best estimate of the body.
     error : float
         Its estimated relative error.
     evaluations : int
-        Number of points at which the density was asked for.
+        Number of points at which the density was evaluated.
     """
 
     estimate: RigidBody

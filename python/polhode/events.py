@@ -20,15 +20,16 @@ __all__ = ["Event", "Events"]
 
 @dataclass(frozen=True, eq=False)
 class Event:
-    """A function of the motion whose passages through zero `simulate` looks for.
+    """An event: a passage through zero of a function of the motion, which `RigidBody.simulate` searches for.
 
-    Any function will do; this gives it the attributes that SciPy's ``solve_ivp`` reads too.
+    A plain function is an event too. This class adds the attributes ``direction`` and ``terminal``, as in
+    ``solve_ivp`` of SciPy.
 
     Attributes
     ----------
     function : callable
-        ``function(t, omega, quaternion, position, velocity)`` returns a number: zero at the event. With a
-        load that has states of its own it gets a sixth argument, a dict of these states by name.
+        ``function(t, omega, quaternion, position, velocity)`` returns a number: zero at the event. If the
+        load has states, they are the sixth argument, a dict by name.
     direction : float
         Positive: only passages that rise in time count; negative: only those that fall; zero: all.
     terminal : bool or int
@@ -53,18 +54,18 @@ class Event:
 
     @classmethod
     def stop(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
-        """Tell when a wheel with dry friction comes to rest in its bearing.
+        """Make the event that a wheel with dry friction comes to rest in its bearing.
 
-        The run finds these times for its own sake, so that they are known to the last digits; the state of
-        the event is that of the wheel at rest. A motor that is stronger than the friction may turn it on at
-        once: then there is a :meth:`slip` at the same time.
+        The integration itself needs these times, and finds them to the last digits. The state of the event
+        has the wheel at rest. If the motor is stronger than the friction, the wheel goes on at once; there is
+        then a :meth:`slip` at the same time.
 
         Parameters
         ----------
         wheel : str
-            The name of its state in `states` of the trajectory.
+            Name of the state of the wheel in ``states`` of the trajectory.
         terminal : bool or int
-            As in an event.
+            As for the class.
 
         Examples
         --------
@@ -79,21 +80,21 @@ class Event:
 
     @classmethod
     def slip(cls, wheel: str = "wheel", *, terminal: bool | int = False) -> Event:
-        """Tell when a wheel at rest in its bearing begins to turn; arguments as of :meth:`stop`."""
+        """Make the event that a wheel at rest in its bearing begins to turn; arguments as :meth:`stop`."""
         return cls._told("slip", wheel, 0.0, terminal)
 
     @classmethod
     def limit(cls, wheel: str = "wheel", *, direction: float = 0.0, terminal: bool | int = False) -> Event:
-        """Tell when what a motor with a limit is asked for passes that limit.
+        """Make the event that the torque demanded of a motor passes the limit of the motor.
 
         Parameters
         ----------
         wheel : str
-            The name of its state in `states` of the trajectory.
+            Name of the state of the wheel in ``states`` of the trajectory.
         direction : float
-            Positive: only where the motor saturates; negative: only where it no longer does; zero: both.
+            Positive: only when the motor begins to saturate; negative: only when it ceases to; zero: both.
         terminal : bool or int
-            As in an event.
+            As for the class.
         """
         return cls._told("limit", wheel, direction, terminal)
 
@@ -131,21 +132,21 @@ class _Events(NamedTuple):
 
 
 class Events(_Events):
-    """The events of all bodies of a stack, one after the other: a table of its columns.
+    """Table of the events of all bodies of a stack; each field is a column.
 
     Attributes
     ----------
     row : numpy.ndarray of int, shape (n,)
-        Which body: the index into the flattened stack, see :func:`numpy.unravel_index`.
+        Index of the body in the flattened stack, see :func:`numpy.unravel_index`.
     event : numpy.ndarray of int, shape (n,)
-        Which of the functions.
+        Index of the event function.
     t : numpy.ndarray, shape (n,)
     omega : numpy.ndarray, shape (n, 3)
     quaternion : numpy.ndarray, shape (n, 4)
     position, velocity : numpy.ndarray, shape (n, 3)
-        The state then.
+        State at the event; position and velocity in space.
     states : dict of str and numpy.ndarray, shape (n, k)
-        The states of the load then, by name: beside the columns.
+        States of the load at the event, by name.
     """
 
     states: Mapping[str, Floats] = MappingProxyType({})

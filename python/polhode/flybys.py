@@ -1,7 +1,8 @@
-"""Tumbling asteroids past a planet: how the spin of many clones of one changes.
+"""Flybys of tumbling asteroids: how the spin of many clones changes when they pass a planet.
 
-On 13 April 2029 Apophis, a tumbler, passes inside the geostationary ring. Where in its tumble it is by then
-nobody knows; clones with all phases and directions tell what may become of it.
+On 13 April 2029 the asteroid Apophis, which tumbles, passes the Earth inside the geostationary ring. The
+phase of its tumbling at that time is not known. Clones with all phases and directions show the possible
+results.
 """
 
 from __future__ import annotations
@@ -29,16 +30,17 @@ __all__ = ["Flyby", "Tumble", "clones", "flyby"]
 
 
 class Tumble(NamedTuple):
-    """How clones tumble, free of torque.
+    """Torque-free motion of the clones at a time.
 
     Attributes
     ----------
     mode : numpy.ndarray of str, shape (n,)
-        Mode of each clone, as in :attr:`FreeMotion.mode`; empty for a clone that failed.
+        Mode of each clone, as in :attr:`polhode.FreeMotion.mode`; empty for a clone that failed.
     rotation_period, precession_period : numpy.ndarray, shape (n,)
         P_ψ and P_φ.
     spin_rate : numpy.ndarray, shape (n,)
-        ``2 E/|L|``: what a steady spin with this energy and momentum would have.
+        ``2 E/|L|``: the rate of a steady spin with this energy and angular momentum, in radians per unit of
+        time.
     momentum : numpy.ndarray, shape (n, 3)
         L in space.
     """
@@ -62,7 +64,7 @@ class Flyby:
     body : RigidBody
     before, after : Tumble
     failed : numpy.ndarray of bool, shape (n,)
-        Clones whose integration failed: their numbers are not numbers.
+        Clones whose integration failed. Their other fields are NaN.
     """
 
     body: RigidBody
@@ -72,7 +74,7 @@ class Flyby:
 
     @property
     def spin_ratio(self) -> Floats:
-        """The spin rate after over that before."""
+        """Spin rate after the flyby divided by that before."""
         return self.after.spin_rate / self.before.spin_rate
 
     @property
@@ -109,7 +111,7 @@ def clones(
     seed: int = 0,
     **options: Any,
 ) -> Ensemble:
-    """Make the ensemble of clones that :func:`flyby` runs: with all phases of the tumble.
+    """Make the ensemble of clones that :func:`flyby` runs, with random phases of the tumbling.
 
     Parameters
     ----------
@@ -118,13 +120,14 @@ def clones(
     orbit : Orbit or SampledOrbit
         Orbit of the body about the planet.
     span : float
-        How long, from the epoch of the orbit, or from 0 where it has none; from the first time of a table.
+        Duration of the flyby. It begins at the epoch of the orbit, at 0 if it has none, or at the first time
+        of a table.
     rotation_period, precession_period, mode, sense
-        As of :meth:`RigidBody.free_motion_from_periods`.
+        As for :meth:`polhode.RigidBody.free_motion_from_periods`.
     pole : array_like, shape (3,), optional
         Direction of the angular momentum in space; all directions by default.
     pole_sigma : float, optional
-        Standard deviation of that direction along each of two axes across it, in radians.
+        Standard deviation of this direction along each of two axes perpendicular to it, in radians.
     n, seed
         As of :func:`polhode.ensemble`.
     **options
@@ -183,7 +186,7 @@ def flyby(
     progress: Progress = None,
     **options: Any,
 ) -> Flyby:
-    """Run clones of a tumbling body past a planet, and tell how they tumble before and after.
+    """Simulate clones of a tumbling body that pass a planet, and give their motion before and after.
 
     Parameters
     ----------
@@ -201,7 +204,7 @@ def flyby(
     Raises
     ------
     PolhodeError
-        When all clones fail: why the first did.
+        When all clones fail; the message is that of the first.
 
     Examples
     --------

@@ -1,11 +1,11 @@
-"""Mass properties in the forms of other libraries, to them and from them.
+"""Conversion of mass properties to and from the forms of other libraries.
 
-Each function says about which point its numbers are, and in which order.
+Each function states the point to which its numbers refer, and their order.
 
-Positive products and log-Cholesky parameters are about the centre of mass, the others about the origin of
-the body frame, where a body that stands many of its own lengths away loses digits. Positive products come
-in by :meth:`polhode.RigidBody.from_positive_products`, and printouts of CAD programs by `from_printout`.
-`to_text` writes the numbers for other programs, each in its own conventions.
+Positive products and log-Cholesky parameters are about the centre of mass, the others about the origin of the
+body frame. If the distance from the origin is many times the size of the body, these lose digits. Positive
+products are read by :meth:`polhode.RigidBody.from_positive_products`, and printouts of CAD programs by
+`from_printout`. `to_text` writes the numbers for other programs, each in its own conventions.
 """
 
 from polhode._core import (

@@ -24,7 +24,7 @@ _MOST_ORDER: Final = 100
 
 
 class LightCurve(NamedTuple):
-    """Frequencies of the light curve of a tumbling body, ``|j f_φ + m f_ψ|``, in turns a unit of time.
+    """Frequencies of the light curve of a tumbling body, ``|j f_φ + m f_ψ|``, in cycles per unit of time.
 
     Attributes
     ----------
@@ -57,18 +57,19 @@ class Periods(_Periods):
     Attributes
     ----------
     rotation : float or numpy.ndarray, shape (...)
-        Period P_ψ after which ω in the body repeats: that of the rotation about the long axis in long-axis
-        mode, that of the swing of the long axis to and fro in short-axis mode. Infinite on the separatrix
-        and where ω is constant in the body for any start; for a steady spin about axis 1 or 3 the period of
-        small oscillations about it.
+        Period P_ψ, after which the components of ω in the body repeat. In long-axis mode the body turns once
+        about its long axis in this time; in short-axis mode the long axis swings once to and fro. For a
+        steady spin about axis 1 or 3 it is the period of small oscillations about that spin. It is infinite
+        on the separatrix, for a steady spin about axis 2, and for a spherical body.
     precession : float or numpy.ndarray, shape (...)
-        Period P_φ, the mean one in which axis 1 goes round L.
+        Period P_φ: the mean time in which axis 1 goes once round L.
     flip : float or numpy.ndarray, shape (...)
         Time from one turning over of the intermediate axis to the next, half of `rotation`.
     rates : numpy.ndarray, shape (..., 3)
-        Mean rate, in radians a unit of time, at which each principal axis goes about L. The two axes that are
-        not circled share theirs; axis 3, where it is circled, is ahead of them by 2π/P_ψ, axis 1 behind. NaN
-        without angular momentum.
+        Mean rate, in radians per unit of time, at which each principal axis goes about L. The two axes that ω
+        does not circle have the same rate. In short-axis mode the rate of axis 3 is larger than theirs by
+        2π/P_ψ; in long-axis mode the rate of axis 1 is smaller than theirs by 2π/P_ψ. NaN without angular
+        momentum.
     """
 
     _motion: _core.FreeMotion | None = None
@@ -76,29 +77,30 @@ class Periods(_Periods):
 
     @cached_property
     def sigma(self) -> PeriodsSigma | None:
-        """Standard deviations, from those of the body and of the angular velocity; None where there are none.
+        """Standard deviations of the periods; None if neither body nor initial angular velocity is uncertain.
 
         Examples
         --------
         >>> from polhode import RigidBody, Uncertain
         >>> brick = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
         >>> periods = brick.free_motion(Uncertain((0.3, 0.2, 1.1), sigma=0.001)).periods
-        >>> round(periods.rotation, 3), round(periods.sigma.rotation, 3)
-        (10.884, 0.012)
+        >>> round(periods.rotation, 3), round(float(periods.sigma.rotation), 4)
+        (9.43, 0.0088)
         """
         return None if self._motion is None else self._motion._periods_sigma()
 
     @property
     def precession_short_axis(self) -> Any:
-        """P_φ in the short-axis convention: the mean period of axis 3, of the greatest moment, about L.
+        """P_φ in the short-axis convention: the mean time in which axis 3 goes once round L.
 
-        In that convention P_ψ is of the rotation about axis 3 in short-axis mode and of its swinging to and
-        fro in long-axis mode, and has the same value; ``1/P_φ(short) = 1/P_φ(long) + 1/P_ψ``.
+        In that convention P_ψ is the period of the rotation about axis 3 in short-axis mode, and of the swing
+        of axis 3 to and fro in long-axis mode. Its value is that of `rotation` in both conventions, and
+        ``1/P_φ(short) = 1/P_φ(long) + 1/P_ψ``.
         """
         return (2.0 * np.pi / self.rates[..., 2])[()]
 
     def light_curve(self, order: int = 2) -> LightCurve:
-        """Tell at which frequencies the brightness of the body can vary, seen from a direction that stays.
+        """Give the frequencies at which the brightness of the body can vary, seen from a fixed direction.
 
         Parameters
         ----------
@@ -108,13 +110,17 @@ class Periods(_Periods):
         Returns
         -------
         LightCurve
-            All pairs but (0, 0), of two opposite ones the one with j > 0, or j = 0 and m > 0.
+            One frequency for each pair (j, m) up to `order`. Since (j, m) and (−j, −m) have the same
+            frequency, only one of them is listed: that with j > 0, or with j = 0 and m > 0. The pair (0, 0)
+            is the constant part and is left out.
 
         Notes
         -----
-        The brightness is a function of the attitude, so periodic in φ and in ψ, but for what swings with
-        P_ψ: a Fourier series in ``j f_φ + m f_ψ`` (M. Kaasalainen, Astron. Astrophys. 376 (2001) 302).
-        The other convention has the same frequencies, with m - j in place of m.
+        The brightness depends on the attitude alone, that is, on the three Euler angles. One part of each
+        angle has the period P_ψ. The rest of φ grows uniformly, by one turn in P_φ; the rest of ψ is constant
+        or grows by one turn in P_ψ. The brightness is therefore a Fourier series with the frequencies ``j f_φ
+        + m f_ψ``, where ``f_φ = 1/P_φ`` and ``f_ψ = 1/P_ψ`` (M. Kaasalainen, Astron. Astrophys. 376 (2001)
+        302). In the short-axis convention the frequencies are the same, with m − j in place of m.
 
         Examples
         --------
@@ -138,12 +144,15 @@ class Periods(_Periods):
 
 
 class Cones(NamedTuple):
-    """Body cone and space cone, half their openings in radians; round for a symmetric body.
+    """Half opening angles of the body cone and of the space cone, in radians.
+
+    For a symmetric body the cones are circular: least and greatest angle are equal.
 
     Attributes
     ----------
     axis : int or numpy.ndarray, shape (...)
-        The principal axis that ω circles in the body, 0 or 2, on the side of ω.
+        Index of the principal axis that ω circles in the body: 0 or 2. Angles are measured from its side next
+        to ω.
     body : numpy.ndarray, shape (..., 2)
         Least and greatest angle between ω and that axis.
     space : numpy.ndarray, shape (..., 2)
@@ -159,7 +168,7 @@ class Cones(NamedTuple):
 
 
 class Poinsot(NamedTuple):
-    """The ellipsoid ``ω·I ω = 2T``, fixed in the body about C, and the plane in space on which it rolls.
+    """Poinsot's construction: the ellipsoid ``ω·I ω = 2T`` and the fixed plane on which it rolls.
 
     Attributes
     ----------
@@ -168,11 +177,12 @@ class Poinsot(NamedTuple):
     normal : numpy.ndarray, shape (..., 3)
         Normal of the plane, in space: the direction of L.
     distance : float or numpy.ndarray, shape (...)
-        ``2T/L``, of the plane from C.
+        Distance of the plane from C: ``2T/L``.
     radii : numpy.ndarray, shape (..., 2)
         Least and greatest distance of the herpolhode from the foot of the perpendicular from C.
     contact : numpy.ndarray, shape (..., 3)
-        Where they touch at each time, in space: the tip of ω. The shape of the stack, then that of the times.
+        Point of contact at each time, components in space: the tip of ω. The axes are those of the stack,
+        then those of the times.
     """
 
     semi_axes: Floats
@@ -188,15 +198,15 @@ class Poinsot(NamedTuple):
 class Sensitivity(NamedTuple):
     """Derivatives of the state of a free body.
 
-    δ is a small rotation, ``R → R exp(δ×)``, components in the body frame.
+    δ is a small rotation from the attitude R, ``R → R exp(δ×)``, components in the body frame, in radians.
 
     Attributes
     ----------
     state : numpy.ndarray, shape (..., 6, 6)
-        Derivatives of (δ, ω) at the time by (δ, ω) at t = 0.
+        Derivatives of (δ, ω) at time t by (δ, ω) at t = 0.
     moments : numpy.ndarray, shape (..., 6, 3)
-        Derivatives of (δ, ω) at the time by the principal moments, ascending, with axes and initial state
-        held. NaN for a body with a zero moment.
+        Derivatives of (δ, ω) at time t by the principal moments in ascending order, with axes and initial
+        state fixed. NaN for a body with a zero moment.
     """
 
     state: Floats
@@ -207,7 +217,7 @@ class Sensitivity(NamedTuple):
 
 
 class ErrorBar(NamedTuple):
-    """Bounds on the error of a state, to first order, from errors of what it is computed from.
+    """Bounds to first order on the errors of a state, caused by errors of its input.
 
     Attributes
     ----------

@@ -46,27 +46,29 @@ class Bifurcations(NamedTuple):
 
 
 class Equilibria(NamedTuple):
-    """Steady rotations of a gyrostat that have one length of L = I ω + h, in ascending order of ω·L.
+    """Steady rotations of a gyrostat for a given length of L = I ω + h, in ascending order of ω·L.
 
     Attributes
     ----------
     direction : numpy.ndarray, shape (k, 3)
-        Unit vector ``L/|L|`` in the body frame; of a circle of equilibria one of them.
+        Unit vector ``L/|L|`` in the body frame. For a circle of equilibria it is one point of the circle.
     omega : numpy.ndarray, shape (k, 3)
         Angular velocity in the body frame, along L.
     kinetic_energy : numpy.ndarray, shape (k,)
         ``½ ω·I ω``.
     squared_rate : numpy.ndarray, shape (k,)
-        Squared frequency, in radians a unit of time, with which L circles a stable equilibrium in the body;
-        negative at an unstable one: minus the squared rate of exponential growth of a departure.
+        At a stable equilibrium the squared frequency with which L circles it in the body, in (radians per
+        unit of time)². At an unstable one it is negative: minus the squared rate of exponential growth of a
+        disturbance.
     kind : numpy.ndarray of str, shape (k,)
         Kind of stationary point of the energy among states with this ``|L|``: ``"minimum"`` (stable, also
         with dissipation), ``"maximum"`` (stable without dissipation), ``"saddle"`` (unstable),
         ``"degenerate"`` (several equilibria meet here).
     circle : numpy.ndarray, shape (k, 3)
-        Axis of the circle of equilibria that this one stands for, if two moments are equal; else zero.
+        Axis of the circle of equilibria, if two moments are equal and this entry stands for a circle; else
+        zero.
     bifurcations : Bifurcations
-        Momenta inside at which the number of equilibria changes.
+        Values of h and of ``|L|`` at which the number of equilibria changes.
     """
 
     direction: Floats
@@ -88,14 +90,14 @@ class Wheel:
     Attributes
     ----------
     axis : numpy.ndarray, shape (..., 3)
-        Its axis a, in the body frame; only the direction counts.
+        Axis a of the wheel, in the body frame; only the direction counts.
     inertia : float or numpy.ndarray, shape (...)
-        Its moment of inertia J about the axis.
+        Moment of inertia J of the wheel about its axis.
     momentum : float or numpy.ndarray, shape (...)
-        J Ω at t = 0, with Ω its rate relative to the body.
+        J Ω at t = 0, where Ω is the rate of the wheel relative to the body.
     mode : {"free", "held"}
-        ``"free"``: it keeps its momentum along its axis, ``J(Ω + a·ω)``; ``"held"``: it keeps its rate Ω
-        relative to the body.
+        ``"free"``: the momentum of the wheel along its axis, ``J (Ω + a·ω)``, is constant. ``"held"``: its
+        rate Ω relative to the body is constant.
     """
 
     axis: NDArray[np.float64]
@@ -105,7 +107,7 @@ class Wheel:
 
     @property
     def rate(self) -> Any:
-        """Rate relative to the body at t = 0; not a number for a wheel without inertia."""
+        """Rate Ω relative to the body at t = 0, in radians per unit of time; NaN if J is zero."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.true_divide(self.momentum, self.inertia)[()]
 
@@ -135,15 +137,16 @@ def wheel(
     Parameters
     ----------
     axis : array_like, shape (..., 3)
-        Its axis a, in the body frame; only the direction counts.
+        Axis a of the wheel, in the body frame; only the direction counts.
     inertia : array_like, shape (...)
-        Its moment of inertia J about the axis, which the body's inertia includes.
+        Moment of inertia J of the wheel about its axis. The inertia of the body includes it.
     rate : array_like, shape (...), optional
-        Its rate Ω relative to the body at t = 0.
+        Rate Ω of the wheel relative to the body at t = 0, in radians per unit of time.
     momentum : array_like, shape (...), optional
         J Ω, in place of `rate` (give exactly one of the two).
     mode : {"free", "held"}
-        A free wheel turns without friction and keeps J (Ω + a·ω); a held one keeps Ω.
+        A free wheel turns without friction, and J (Ω + a·ω) is constant. For a held wheel a motor keeps Ω
+        constant.
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""Rates of vectors seen from frames that turn.
+"""Rates of change of vectors in rotating frames.
 
-Velocities and accelerations of a body's points are methods of the body: `RigidBody.point_velocity`,
-`RigidBody.point_acceleration`.
+For velocity and acceleration of a point of a body see `polhode.RigidBody.point_velocity` and
+`polhode.RigidBody.point_acceleration`.
 """
 
 from polhode._core import transport

@@ -1,7 +1,8 @@
-"""Particles that say which body they belong to, by labels of any kind of whole numbers: haloes, fragments.
+"""Bodies from particles with labels, where the labels are any whole numbers: haloes, fragments.
 
-:meth:`polhode.RigidBody.from_labelled_particles` takes labels 0, 1, 2, … of which none is missing, and gives
-a stack whose row is the label. Here labels may have gaps, and come in chunks: an answer names its labels.
+:meth:`polhode.RigidBody.from_labelled_particles` takes the labels 0, 1, 2, … without gaps and gives a stack
+whose row is the label. The functions here allow labels with gaps and particles in chunks; their result
+contains the labels.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ def bodies(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> Labell
     Parameters
     ----------
     masses : array_like, shape (n,)
-        None negative, their sum positive for each label.
+        Masses of the particles; none negative, the sum positive for each label.
     positions : array_like, shape (n, 3)
     labels : array_like of int, shape (n,)
         Whole numbers; -1 for particles that belong to no body.
@@ -80,9 +81,9 @@ def bodies(masses: ArrayLike, positions: ArrayLike, labels: ArrayLike) -> Labell
 
 
 class Accumulator:
-    """Bodies from labelled particles in chunks, larger than memory or on many machines.
+    """Bodies from labelled particles in chunks: for data larger than memory, or on many machines.
 
-    A body has the particles of its label in all chunks, in the order in which they were added.
+    A body consists of the particles with its label in all chunks, in the order in which they were added.
 
     Examples
     --------
@@ -118,7 +119,7 @@ class Accumulator:
                 self._sums.setdefault(name, MassAccumulator()).add(weights[part], places[part])
 
     def merge(self, other: Accumulator) -> None:
-        """Add what another one has; its particles count as added after those here.
+        """Add the particles of another accumulator, as if they were added after those here.
 
         Parameters
         ----------
@@ -128,7 +129,7 @@ class Accumulator:
             self._sums.setdefault(name, MassAccumulator()).merge(found)
 
     def finish(self) -> Labelled:
-        """Give the bodies of all labels so far; more may be added after that.
+        """Give the bodies of all labels so far; more particles may be added afterwards.
 
         Returns
         -------

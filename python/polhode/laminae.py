@@ -1,8 +1,8 @@
 """Homogeneous laminae: sheets without thickness in the x-y plane.
 
-Those known by lengths have their centre of mass at the origin; triangles and polygons stay where their
-corners are. Each takes exactly one of ``mass=`` and ``density=``, which is mass per area. Arrays broadcast
-to a stack of bodies.
+Laminae that are given by lengths have their centre of mass at the origin. Triangles and polygons are where
+their corners are. Each function takes exactly one of ``mass=`` and ``density=``, which is mass per area.
+Arrays broadcast to a stack of bodies.
 """
 
 from typing import TYPE_CHECKING

@@ -1,10 +1,12 @@
-"""What acts on a body while it is simulated.
+"""Loads: the forces and torques on a body while it is simulated.
 
-Loads add and scale: ``a + b``, ``a - b``, ``2 * a``, ``sum(loads)``. Torques are about the reference point
-of the motion: the centre of mass of a free body, or the origin that is fixed in space.
+Loads can be added and multiplied by a factor: ``a + b``, ``a - b``, ``2 * a``, ``sum(loads)``. Torques are
+about the reference point of the motion: the centre of mass of a free body, or the origin of the body frame if
+that point is fixed in space.
 
-What the body carries along, a :func:`rotor`, a :func:`wheel` or a :func:`slug`, is a load too, since it acts
-on the body; momentum and energy of the trajectory include it. Its states are in `states` of the trajectory.
+A :func:`rotor`, a :func:`wheel` and a :func:`slug` are carried by the body. They are loads too, since they
+act on the body. Angular momentum and energy of the trajectory include theirs, and :attr:`Trajectory.states
+<polhode.Trajectory>` has their states.
 """
 
 from polhode._core import (

@@ -1,7 +1,7 @@
 """Molecules as rigid bodies: isotope masses and rotational constants.
 
-Masses are in unified atomic mass units (u) and lengths in angstrom, the units of the trade; each
-moment of inertia is then in u angstrom^2.
+Masses are in unified atomic mass units (u) and lengths in angstrom; each moment of inertia is then in u
+angstrom^2.
 """
 
 from __future__ import annotations
@@ -96,7 +96,8 @@ def rotational_constants(moments: ArrayLike, unit: Literal["MHz", "cm^-1"] = "MH
     Returns
     -------
     numpy.ndarray, shape (..., 3)
-        Infinite where the moment is zero: the axis of a linear molecule, every axis of an atom.
+        Rotational constants; infinite where the moment is zero, as about the axis of a linear molecule or for
+        an atom.
 
     Examples
     --------
@@ -130,15 +131,15 @@ def rotational_constants_sigma(
     moments : array_like, shape (..., 3)
         Principal moments in u angstrom^2, ascending.
     sigma : array_like, shape (..., 3)
-        Their standard deviations, as :attr:`polhode.RigidBody.sigma` has them.
+        Standard deviations of the moments, as in :attr:`polhode.RigidBody.sigma`.
     unit : {"MHz", "cm^-1"}
         Frequency or wave number.
 
     Returns
     -------
     numpy.ndarray, shape (..., 3)
-        Not a number where the constant is infinite. That of the atomic mass constant, 3.1e-10 of each
-        constant, is part of it; all constants of all molecules share it.
+        Standard deviations; NaN where the constant is infinite. They include the uncertainty of the atomic
+        mass constant, 3.1e-10 of each constant, which is the same error for all constants of all molecules.
 
     Raises
     ------
@@ -174,8 +175,8 @@ def ray_kappa(constants: ArrayLike) -> Any:
     Returns
     -------
     float or numpy.ndarray, shape (...)
-        -1 for a prolate, +1 for an oblate symmetric top; not a number where A = C or A is infinite,
-        where the parameter says nothing.
+        -1 for a prolate, +1 for an oblate symmetric top. NaN where A = C or A is infinite: the parameter is
+        not defined there.
 
     Examples
     --------
@@ -189,7 +190,7 @@ def ray_kappa(constants: ArrayLike) -> Any:
 
 
 def inertial_defect(moments: ArrayLike) -> Any:
-    r"""Inertial defect of principal moments, zero for matter in a plane.
+    r"""Inertial defect of principal moments; it is zero for matter in a plane.
 
     .. math:: \Delta = I_c - I_a - I_b = -2 \sum_i m_i c_i^2
 
@@ -201,8 +202,8 @@ def inertial_defect(moments: ArrayLike) -> Any:
     Returns
     -------
     float or numpy.ndarray, shape (...)
-        In the same unit; never positive for a rigid body, but for the rounding of the moments, a few units in
-        the last place of the largest. That of a vibrating planar molecule is.
+        Inertial defect in the unit of the moments. For a rigid body it is zero or negative, but for rounding
+        (a few units in the last place of the largest moment). For a vibrating planar molecule it is positive.
 
     Examples
     --------

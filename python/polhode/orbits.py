@@ -1,8 +1,9 @@
-"""Orbits about an attractor: where a body is, how it moves there, and the local frame that points down.
+"""Orbits about an attractor: position and velocity over time, and the local frame that points down.
 
 An :class:`Orbit` is made by :func:`kepler` from a state or by :func:`from_elements`; a :class:`SampledOrbit`
 by :func:`sampled` from a table of positions. The loads :func:`polhode.loads.gravity_gradient` and
-:func:`polhode.loads.magnetic` act along them, and :func:`polhode.loads.feedback` points down on them.
+:func:`polhode.loads.magnetic` act along them, and :func:`polhode.loads.feedback` can point a body down along
+them.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ __all__ = [
 
 @dataclass(frozen=True, eq=False)
 class Orbit(Path):
-    """An orbit through a state, or a stack of them: ellipses, parabolas, hyperbolas.
+    """An orbit through a given state, or a stack of them: ellipse, parabola or hyperbola.
 
     The attractor is a sphere, or an oblate body.
 
@@ -58,11 +59,11 @@ class Orbit(Path):
     position, velocity : numpy.ndarray, shape (..., 3)
         Position and velocity from the attractor, in space, at the epoch.
     epoch : float or None
-        When the orbit has that state; None: when a motion starts.
+        Time at which the orbit has that state; None: the start of a motion.
     j2, radius : float, numpy.ndarray of shape (...) or None
-        J₂ of the attractor and the radius that it refers to; None of a sphere.
+        J₂ of the attractor and the radius that it refers to; None for a sphere.
     pole : numpy.ndarray, shape (..., 3), or None
-        Its axis, in space.
+        Axis of the attractor, in space.
     """
 
     mu: Any
@@ -75,7 +76,7 @@ class Orbit(Path):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of the stack."""
+        """Shape of the stack, as a tuple of int; ``()`` for one."""
         shapes = [np.shape(self.mu), self.position.shape[:-1], self.velocity.shape[:-1]]
         if self.pole is not None:
             shapes += [np.shape(self.j2), np.shape(self.radius), self.pole.shape[:-1]]
@@ -83,22 +84,25 @@ class Orbit(Path):
 
     @property
     def begins(self) -> float:
-        """Its epoch, or zero."""
+        """Epoch of the orbit, or zero."""
         return 0.0 if self.epoch is None else self.epoch
 
     @property
     def period(self) -> Any:
-        """Time of a revolution; infinite but for ellipses. A rounded parabola may be a very long ellipse.
+        """Time of a revolution; infinite for parabola and hyperbola.
 
-        About an oblate attractor that of the Kepler orbit at the epoch.
+        Rounding may turn a parabola into a very long ellipse.
+
+        For an oblate attractor, that of the osculating Kepler orbit at the epoch.
         """
         return _core.kepler_period(self.mu, self.position, self.velocity)[()]
 
     @property
     def elements(self) -> Elements:
-        """Its elements at the epoch.
+        """Elements of the orbit at its epoch.
 
-        About an oblate attractor those of the Kepler orbit that touches it there.
+        For an oblate attractor, those of the osculating Kepler orbit: it has the same position and velocity
+        at the epoch.
         """
         r, v = self.position, self.velocity
         distance = np.linalg.norm(r, axis=-1)
@@ -133,12 +137,13 @@ class Orbit(Path):
         Parameters
         ----------
         t : array_like, shape (T...)
-            Times. From the epoch on they are ``t - epoch`` later; where there is none, from 0 on.
+            Times. The state at time t is that at ``t - epoch`` after the epoch; without an epoch, at t after
+            it.
 
         Returns
         -------
         OrbitState
-            Of shape (..., T..., 3): those of the stack, then those of the times.
+            Arrays of shape (..., T..., 3): axes of the stack, axes of the times, components.
         """
         times = _core.real_numbers(t, "t")
         if self.pole is not None:
@@ -173,7 +178,7 @@ def kepler(
     radius: ArrayLike | None = None,
     pole: ArrayLike = (0, 0, 1),
 ) -> Orbit:
-    """Give the Kepler orbit through a state; with `j2` that about an oblate attractor.
+    """Make the orbit through a given state: a Kepler orbit, or with `j2` one about an oblate body.
 
     Parameters
     ----------
@@ -182,7 +187,7 @@ def kepler(
     position, velocity : array_like, shape (..., 3)
         Position and velocity from the attractor, in space, at the epoch.
     epoch : float, optional
-        When the orbit has that state; the start of a motion by default.
+        Time at which the orbit has that state; the start of a motion by default.
     j2, radius : array_like, shape (...), optional
         J₂ of the attractor, and the radius that it refers to: of the Earth 1.08263e-3 and 6378137 m. The
         orbit is then integrated by Taylor series to rounding, and :func:`polhode.loads.gravity_gradient`
@@ -226,7 +231,7 @@ def kepler(
 
 
 def sampled(mu: ArrayLike, t: ArrayLike, position: ArrayLike) -> SampledOrbit:
-    """Give the orbit through positions at some times, as of an ephemeris.
+    """Make an orbit from positions at given times, as from an ephemeris.
 
     Parameters
     ----------
@@ -280,7 +285,7 @@ def from_elements(
     pole: ArrayLike = (0, 0, 1),
     degrees: bool = False,
 ) -> Orbit:
-    """Give the Kepler orbit with these elements.
+    """Make the orbit with given elements.
 
     Parameters
     ----------
@@ -292,12 +297,12 @@ def from_elements(
     inclination, node, argument : array_like, shape (...), optional
         As in :class:`Elements`, in radians unless `degrees`.
     anomaly, since_periapsis : array_like, shape (...), optional
-        Where the body is at the epoch: its true anomaly, or the time since it passed the periapsis. At the
-        periapsis by default.
+        Position of the body at the epoch: its true anomaly, or the time since it passed the periapsis. By
+        default it is at the periapsis.
     epoch : float, optional
-        When it is there; the start of a motion by default.
+        Time of this position; the start of a motion by default.
     j2, radius, pole : array_like, optional
-        As in :func:`kepler`; the elements are then those of the Kepler orbit that touches it at the epoch.
+        As for :func:`kepler`; the elements are then those of the osculating Kepler orbit at the epoch.
     degrees : bool, optional
         Inclination, node, argument and anomaly are in degrees.
 

@@ -1,6 +1,6 @@
 """The parallel-axis theorem (Steiner, Huygens) for bare tensors: ``I_P = I_C + m (d² 1 − d dᵀ)``.
 
-Bodies know their centre of mass and ask for the point alone: `RigidBody.inertia_about`.
+For a body, which has its centre of mass, `polhode.RigidBody.inertia_about` needs only the point.
 """
 
 from polhode._core import inertia_from_center_of_mass as from_center_of_mass

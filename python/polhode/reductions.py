@@ -1,11 +1,12 @@
-"""What is kept of an ensemble in place of its states: means, covariances, histograms, quantiles, modes.
+"""Reductions: statistics of an ensemble that are kept in place of its states.
 
-A reduction is of a number or an array of each member: of the states by name (``"omega"``, ``"quaternion"``,
-``"position"``, ``"velocity"``, at all times), or of what a function gives for a trajectory of many members,
-with an axis of these in front. Members that failed are left out and counted.
+A reduction takes a number or an array from each member. Its argument `of` is the name of a state
+(``"omega"``, ``"quaternion"``, ``"position"``, ``"velocity"``, at all times), or a function. The function
+gets a trajectory of many members and returns an array whose first axis is the members. Members that failed
+are left out and counted.
 
-Members are reduced in blocks of 4096 that are merged in a fixed tree: the result has the same bits however
-the work is cut.
+Members are reduced in blocks of 4096, which are merged in a fixed order. The result therefore has the same
+bits for any division of the work.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ MODES: Final = ("long-axis", "short-axis", "separatrix", "steady", "symmetric", 
 
 
 class Reduction(ABC):
-    """What is kept of the members in place of their states; made by the functions of this module."""
+    """Base class of the reductions, which the functions of this module make."""
 
     def values(self, trajectory: Trajectory) -> Floats:
         """Give the numbers of the members of a trajectory, shape (members, ...)."""
@@ -244,7 +245,7 @@ class _ModeChanges(Reduction):
 
 
 def mean(of: Of) -> Reduction:
-    """Take the mean over the members.
+    """Compute the mean over the members.
 
     Parameters
     ----------
@@ -270,12 +271,12 @@ def mean(of: Of) -> Reduction:
 
 
 def covariance(of: Of) -> Reduction:
-    """Take mean and covariance over the members.
+    """Compute mean and covariance over the members.
 
     Parameters
     ----------
     of : str or callable
-        See the top of this page; 1000 numbers of a member at most.
+        See the top of this page; at most 1000 numbers for each member.
 
     Returns
     -------
@@ -286,12 +287,12 @@ def covariance(of: Of) -> Reduction:
 
 
 def histogram(bins: ArrayLike, of: Of) -> Reduction:
-    """Count the members in bins; every number of a member has a histogram of its own.
+    """Count the members in bins. Every number of a member has its own histogram.
 
     Parameters
     ----------
     bins : array_like, shape (bins + 1,)
-        Edges, increasing; a bin has its lower edge, the last one both.
+        Edges of the bins, increasing. A bin contains its lower edge; the last bin contains both edges.
     of : str or callable
         See the top of this page.
 
@@ -339,7 +340,9 @@ def quantiles(q: ArrayLike, of: Of) -> Reduction:
 
 
 def mode_changes() -> Reduction:
-    """Count how the members rotate at the start and at the end: as free bodies in these states would.
+    """Count the members by mode at the start and at the end.
+
+    The mode is that of a free body in the same state, see :attr:`polhode.FreeMotion.mode`.
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""Regions of space that :meth:`polhode.RigidBody.from_density` integrates a density over.
+"""Regions of space, over which :meth:`polhode.RigidBody.from_density` integrates a density.
 
-The boundary of a region is where a density may end with a jump. For a jump inside, take a region on each
-side of it and add the bodies.
+A density may jump at the boundary of its region. For a jump inside, take one region on each side of it and
+add the two bodies.
 """
 
 from polhode._core import Region

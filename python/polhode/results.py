@@ -80,7 +80,7 @@ class AngularMomentum(NamedTuple):
 
 
 class NearestValid(NamedTuple):
-    """The tensor of a body nearest to a given one, shape (..., 3, 3), and its distance, shape (...)."""
+    """The nearest possible tensor, shape (..., 3, 3), and its distance from the given one, shape (...)."""
 
     inertia: Floats
     distance: Any
@@ -97,10 +97,10 @@ class BoxFit(NamedTuple):
     possible : bool or numpy.ndarray, shape (...)
         Whether every condition holds.
     margin : float or numpy.ndarray, shape (...)
-        The room that the tightest condition leaves, relative to the square of the box's size along its axes;
-        negative where it is broken.
+        Margin of the tightest condition, relative to the square of the size of the box along its axes;
+        negative if the condition is violated.
     axes : tuple of str or numpy.ndarray of str, shape (..., 2)
-        The two axes that condition is about; the same twice for the spread along one.
+        The two axes of this condition; the same axis twice for a condition on the spread along one axis.
     """
 
     possible: Any
@@ -112,14 +112,15 @@ class BoxFit(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """Whether standard deviations to first order are enough: within about a percent.
+    """For which results standard deviations to first order are enough, to about a percent.
 
     Attributes
     ----------
     mass, center_of_mass, inertia, principal_moments, axes, radii_of_gyration : bool or numpy.ndarray of bool
-        For each number of :class:`Sigma`. False where terms of higher order add more than 1.5 percent to the
-        variance, or moments may change places. There ``method="monte-carlo"`` of
-        :func:`polhode.uncertainty.propagate` tells what is right.
+        True or False for each number of :class:`Sigma`. False where terms of higher order add more than 1.5
+        percent to the variance, or where two moments may change places. There
+        :func:`polhode.uncertainty.propagate` with ``method="monte-carlo"`` gives the right standard
+        deviation.
     """
 
     mass: Any
@@ -134,7 +135,7 @@ class Linear(NamedTuple):
 
 
 class Sigma(NamedTuple):
-    """Standard deviations of what a body has, to first order.
+    """Standard deviations of the mass properties of a body, to first order.
 
     Attributes
     ----------
@@ -144,10 +145,11 @@ class Sigma(NamedTuple):
         Standard deviations of the elements of the tensor about C.
     principal_moments : numpy.ndarray, shape (..., 3)
     axes : numpy.ndarray, shape (..., 3)
-        Standard deviations of the small rotation of the principal axes about each of them, in radians; NaN
-        where the two other moments are equal, or nearly so: there the axes are not determined.
+        Standard deviations, in radians, of a small rotation of the principal axes about each axis. NaN where
+        the two other moments are equal, or nearly so: the axes are not determined there.
     radii_of_gyration : numpy.ndarray, shape (..., 3)
-        Standard deviations of those about the principal axes. NaN where a moment is zero and may leave zero.
+        Standard deviations of the radii of gyration about the principal axes. NaN where a moment is zero but
+        uncertain.
     linear : Linear
         Whether the first order is enough for each of them.
     """
@@ -165,9 +167,9 @@ class Sigma(NamedTuple):
 
 
 class ErrorBound(NamedTuple):
-    """Bounds of the rounding errors of a body's numbers, each in the unit of its number.
+    """Bounds on the rounding errors of the numbers of a body, each in the unit of its number.
 
-    The errors are those against exact arithmetic on what was given.
+    An error is the difference from the result of exact arithmetic with the same input.
 
     Attributes
     ----------
@@ -189,7 +191,7 @@ class ErrorBound(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Provenance:
-    """Where a body's numbers come from; for a stack each field is an array of the stack's shape.
+    """Origin of the numbers of a body. For a stack each field is an array of the shape of the stack.
 
     Attributes
     ----------
@@ -199,24 +201,29 @@ class Provenance:
         ``"rod"``, ``"bodies"``, ``"second moment"``; of a molecule ``"atoms, most common isotopes"``,
         ``"atoms, average masses"`` or ``"atoms, masses of their own"`` (set in ASE).
     elements : int
-        How many of them: particles, triangles, segments, cells, bodies; 1 for one tensor or solid.
+        Number of particles, triangles, segments, cells or bodies; 1 for one tensor or solid.
     checked : str
-        What the input has passed, separated by commas; ``"unchecked"`` among them says that checks were left
-        out on request, ``"repaired"`` that a mesh was mended on request before it passed them.
+        Checks that the input has passed, separated by commas. ``"unchecked"`` among them says that some
+        checks were skipped on request; ``"repaired"`` says that a mesh was mended on request before the
+        checks.
     welded : int
-        Corners joined to others within a length that was asked for. Equal corners are one, and not counted.
+        Number of corners that were joined to others within a given length. Equal corners are always joined
+        and not counted.
     closure : str
         How an open mesh was closed on request: ``"caps"``, ``"hull"`` or ``""``.
     volume_change : float
-        Amount by which that changed the volume that the faces span with the middle of the mesh.
+        Change of volume by this closure. The volume before is that which the faces span with the middle of
+        the mesh.
     moments : str
-        What the principal moments were found from: ``"given"``, ``"tensor"``, ``"second moment"`` (before it
-        is rounded to a tensor) or ``"second moment in own axes"`` (summed again, for thin bodies).
+        What the principal moments were computed from: ``"given"``, ``"tensor"``, ``"second moment"`` (before
+        it was rounded to a tensor) or ``"second moment in own axes"`` (summed a second time in the principal
+        axes, for thin bodies).
     rounded_to_zero : int
-        Principal moments that rounding had left, or a table had admitted, and that are stored as zero.
+        Number of principal moments that differed from zero only by rounding, or within the tolerance of a
+        table, and are stored as zero.
     rounding : float
-        Largest amount by which a coordinate of the particles was rounded, in the unit of length, where a
-        file's digits tell it; else 0. The class of the top follows it.
+        Largest rounding of a coordinate of the particles, in the unit of length, if the digits of the file
+        tell it; else 0. The class of the top (`PrincipalAxes.top`) takes it into account.
     """
 
     source: Any
@@ -257,7 +264,7 @@ class Provenance:
 
 
 class Particles(NamedTuple):
-    """Point masses: ``masses`` (..., n) and ``positions`` (..., n, 3) in the body frame."""
+    """Point masses: ``masses``, shape (..., n), and ``positions``, shape (..., n, 3), in the body frame."""
 
     masses: Floats
     positions: Floats
@@ -267,7 +274,9 @@ class Particles(NamedTuple):
 
 
 class State(NamedTuple):
-    """A state of motion, in the words of `simulate`: ``body.simulate(t, **state._asdict())``.
+    """A state of motion.
+
+    Its fields are arguments of `polhode.RigidBody.simulate`: ``body.simulate(t, **state._asdict())``.
 
     Attributes
     ----------
@@ -275,7 +284,7 @@ class State(NamedTuple):
     attitude : numpy.ndarray, shape (..., 4)
     position, velocity : numpy.ndarray, shape (..., 3)
     states : dict of str and numpy.ndarray, shape (..., k), or None
-        States of the load, by name, where it has states of its own.
+        States of the load, by name; None if it has none.
     """
 
     omega: Floats
@@ -292,18 +301,18 @@ class State(NamedTuple):
 
 
 class Invariants(NamedTuple):
-    """What a motion keeps, and how far the numbers have drifted from it.
+    """Conserved quantities of a motion, and how far the numbers have drifted from them.
 
     Attributes
     ----------
     energy : numpy.ndarray, shape (..., T), or None
-        Kinetic and potential; None where the load has no potential.
+        Sum of kinetic and potential energy; None if the load has no potential.
     angular_momentum : numpy.ndarray, shape (..., T, 3) or (..., T), or None
-        Angular momentum about the point `about`, in space, where no torque acts; its component along the
-        field where the torque of a uniform field acts; None where neither is kept.
+        Angular momentum about the point `about`, components in space, if no torque acts. In a uniform field
+        only its component along the field. None if neither is conserved.
     energy_drift, angular_momentum_drift : float or numpy.ndarray, shape (...), or None
-        The largest change since the start, relative to the largest sum of the sizes of both energies, and to
-        the largest angular momentum.
+        Largest change since the start: of the energy, relative to the largest sum of the absolute values of
+        kinetic and potential energy; of the angular momentum, relative to the largest angular momentum.
     """
 
     energy: Floats | None
@@ -316,37 +325,40 @@ class Invariants(NamedTuple):
 
 
 class MotionSensitivity(NamedTuple):
-    """How a motion depends on what it is computed from: the derivatives of (δ, ω) at every time.
+    """Derivatives of attitude and angular velocity at every time by the input of a simulation.
 
-    δ is a small rotation from the attitude, ``R → R exp(δ×)``, components in the body frame, in radians.
-    Where the load has k states of its own, they come after ω, in the order of `states` of the trajectory:
-    every 6 below is then 6 + k.
+    They are derivatives of (δ, ω), where δ is a small rotation from the attitude, ``R → R exp(δ×)``,
+    components in the body frame, in radians. If the load has k states, these come after ω, in the order of
+    ``states`` of the trajectory; every 6 below is then 6 + k.
 
     Attributes
     ----------
     state : numpy.ndarray, shape (..., T, 6, 6)
-        Derivatives by (δ, ω) and the load's states at the first time, each with the others held: the
-        state-transition matrix. By the momentum of a wheel whose speed is given, which follows from ω, it is
-        zero.
+        Derivatives by (δ, ω) and the states of the load at the first time, each with the others fixed: the
+        state-transition matrix. For a wheel whose speed is given, the momentum is not free, and the
+        derivatives by it are zero.
     moments : numpy.ndarray, shape (..., T, 6, 3)
-        Derivatives by the principal moments about the point `about` of the motion, ascending, with principal
-        axes, mass and centre of mass held; not a number, as are `products`, for a body with a zero moment.
+        Derivatives by the principal moments about the point `about` of the motion, in ascending order, with
+        principal axes, mass and centre of mass fixed. These and `products` are NaN for a body with a zero
+        moment.
     products : numpy.ndarray, shape (..., T, 6, 3)
-        Derivatives by the elements 23, 31 and 12 of that tensor in its principal axes.
+        Derivatives by the elements 23, 31 and 12 of the tensor about that point, in its principal axes.
     center_of_mass : numpy.ndarray, shape (..., T, 6, 3)
-        Derivatives by the centre of mass in the body frame, with that tensor held.
+        Derivatives by the centre of mass in the body frame, with that tensor fixed.
     mass : numpy.ndarray, shape (..., T, 6)
-        Derivatives by the mass, with that tensor held.
+        Derivatives by the mass, with that tensor fixed.
     load : tuple of dict
-        For each term of the load: by each argument of the function of :mod:`polhode.loads` that makes it,
-        under its name, shape (..., T, 6) and then that of the argument, a matrix in full. The target
-        of a feedback is varied by a small rotation. For a term that was multiplied by a factor, the
-        derivatives are by the arguments after the multiplication. Frames, times of samples, windows and
-        epochs are not varied. A wheel whose motor follows a feedback has the arguments of both.
+        One dict for each term of the load. Its keys are the arguments of the function of :mod:`polhode.loads`
+        that made the term; the values are the derivatives by this argument, of shape (..., T, 6) followed by
+        the shape of the argument. For the target of a feedback they are derivatives by a small rotation of
+        it. For a term that was multiplied by a factor, they are derivatives by the arguments after the
+        multiplication. A wheel whose motor follows a feedback has the arguments of both. There are no
+        derivatives by frames, times of samples, windows and epochs.
     begins : numpy.ndarray, shape (..., k, 3)
-        Derivatives of the load's initial states by ω at the first time; for a wheel this is ``J a``. With its
-        rate held in place of its momentum, the motion depends on ω by
-        ``state[..., 3:6] + state[..., 6:] @ begins[..., None, :, :]``. Zero for states that were given.
+        Derivatives of the initial states of the load by ω at the first time; for a wheel this is ``J a``.
+        They are zero for states that were given. `state` holds the momentum of a wheel fixed. The derivatives
+        by ω with the rate of the wheel fixed instead are ``state[..., 3:6] + state[..., 6:] @ begins[...,
+        None, :, :]``.
     """
 
     state: Floats

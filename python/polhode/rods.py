@@ -1,7 +1,7 @@
 """Homogeneous thin rods, straight and bent, with their centre of mass at the origin.
 
-Each takes exactly one of ``mass=`` and ``density=``, which is mass per length. Arrays broadcast to a stack of
-bodies.
+Each function takes exactly one of ``mass=`` and ``density=``, which is mass per length. Arrays broadcast to a
+stack of bodies.
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,9 @@
 """Homogeneous solids, each with its centre of mass at the origin and its symmetry axis along z.
 
-Narrow ends, apexes and domes are toward +z. Each takes exactly one of ``mass=`` and ``density=``; lengths are
-full lengths unless the name says radius or semi-axis. Arrays of sizes, masses or densities broadcast to a
-stack of bodies. Zero lengths are limits: a flat cylinder is a disk, a hollow sphere without thickness a
-shell.
+Narrow ends, apexes and domes are toward +z. Each function takes exactly one of ``mass=`` and ``density=``.
+Lengths are full lengths, unless the name says radius or semi-axis. Arrays of sizes, masses or densities
+broadcast to a stack of bodies. A length of zero gives the limit: a cylinder of zero height is a disk, a
+hollow sphere without thickness is a shell.
 """
 
 from typing import TYPE_CHECKING

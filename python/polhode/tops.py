@@ -1,7 +1,8 @@
-"""Symmetric tops: how a free one precesses and loses its nutation, and what a heavy one may do steadily.
+"""Symmetric tops: precession and nutation damping of a free top, and steady motions of a heavy top.
 
-Moments are named after the symmetry axis, I_s along it and I_t across it: for the free top through the
-centre of mass (or a fixed point), for the heavy top through the pivot, the origin of the body frame.
+I_s is the moment about the symmetry axis and I_t that about an axis across it. For a free top both axes pass
+through the centre of mass (or a fixed point), for a heavy top through the pivot, which is the origin of the
+body frame.
 """
 
 from polhode._core import free_precession, least_spin, nutation_damping, steady_precession

@@ -37,7 +37,8 @@ class Trajectory:
     body : RigidBody
         The body, or the stack of them.
     t : numpy.ndarray, shape (T,)
-        Times, the first being the start; of an exact motion any times, of any shape in place of (T,).
+        Times; the first is the start. For a motion in closed form these are any times, in an array of any
+        shape, which then stands in place of (T,).
     omega : numpy.ndarray, shape (..., T, 3)
         Angular velocity of the body relative to space, components in the body frame.
     quaternion : numpy.ndarray, shape (..., T, 4)
@@ -51,24 +52,27 @@ class Trajectory:
     load : Load or None
         What acted on the body.
     status : str or numpy.ndarray of str, shape (...)
-        How each run ended: ``"complete"``, ``"event"`` (one that is terminal), ``"failed"``, ``"stopped"``
-        (by Ctrl-C) or ``"not run"`` (as another one failed first). States after the end are not numbers.
+        How the run of each body ended: ``"complete"``; ``"event"``, at a terminal event; ``"failed"``;
+        ``"stopped"``, by Ctrl-C; or ``"not run"``, since another body failed first. States after the end are
+        NaN.
     events : Events
-        The passages through zero, as a table.
+        The passages of the event functions through zero, as a table.
     failures : tuple of PolhodeError
-        One for each row that failed, with its ``row``, ``time`` and ``state``.
+        One error for each body that failed, with its ``row`` in the stack, and the ``time`` and ``state``
+        that were reached.
     pivoted : bool
         Whether the point `about` is fixed in space.
     uncertain_start : tuple, FreeMotion, HeavyTop or None
         Angular velocity and attitude at the first time as `Uncertain`, each None where it was given without a
-        sigma. Of an uncertain closed form at times that do not begin with 0 that motion itself; None for a
-        run that goes on from an uncertain one.
+        sigma. For a motion in closed form it is the motion itself, if that has a sigma and the times do not
+        begin with 0: its uncertain start is at t = 0. None for a trajectory that :meth:`resume` made from an
+        uncertain one.
     states : dict of str and numpy.ndarray, shape (..., T, k)
-        The states that the load has of its own, by name: of a wheel its momentum ``J (Ω + a·ω)`` about its
-        axis, of a slug its angular velocity in the body frame.
+        The states of the load, by name: for a wheel its angular momentum ``J (Ω + a·ω)`` about its axis, for
+        a slug its angular velocity, components in the body frame.
     carried : tuple of numpy.ndarray, shapes (..., T, 3) and (..., T), or None
-        Momentum in the body frame and energy of what the body carries along under the load, beside ``I ω``
-        and ``½ ω·I ω``: of wheels, rotors and slugs. None where there are none.
+        Angular momentum (components in the body frame) and energy of the wheels, rotors and slugs of the
+        load, in addition to ``I ω`` and ``½ ω·I ω``. None if the load has none of these.
     """
 
     body: _core.RigidBody
@@ -174,8 +178,8 @@ class Trajectory:
         Returns
         -------
         KineticEnergy
-            Each part of shape (..., T). What the body carries along is in the rotational part; of a rotor
-            nothing, since the energy that such a motion keeps is ``½ ω·I ω``.
+            Each part of shape (..., T). The energy of wheels and slugs is in the rotational part. That of a
+            rotor is not counted: with a rotor the energy that stays constant is ``½ ω·I ω``.
         """
         found = self._bodies().kinetic_energy(
             self.omega,
@@ -197,7 +201,8 @@ class Trajectory:
         Returns
         -------
         AngularMomentum
-            Each part of shape (..., T, 3). What the body carries along is in the spin.
+            Each part of shape (..., T, 3). The part ``spin`` includes the angular momentum of wheels, rotors
+            and slugs.
         """
         if frame not in ("space", "body"):
             raise ValueError(f"frame: {frame!r} is not 'space' or 'body'")
@@ -236,7 +241,7 @@ class Trajectory:
         return self.position + _core.rotate(self.quaternion, self._per_time(arm))
 
     def invariants(self) -> Invariants:
-        """Tell what the motion keeps and how far the numbers have drifted from it.
+        """Give the conserved quantities of the motion, and how far the numbers have drifted from them.
 
         Returns
         -------

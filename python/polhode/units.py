@@ -1,4 +1,4 @@
-"""Units of length, for files that carry none."""
+"""Units of length, for files that do not state one."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ METRES: Final = MappingProxyType(
 
 
 def metres_per(unit: str) -> float:
-    """Metres in one `unit`.
+    """Give the number of metres in one `unit`.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Which tensors belong to bodies, and to bodies of a given size.
+"""Tests whether a tensor can be that of a body, and of a body of a given size.
 
-:class:`polhode.RigidBody` refuses what no body has. These functions say how far off it is, and whether a
-body that is possible in itself could be as small as it is said to be.
+:class:`polhode.RigidBody` refuses a tensor that no body can have. The functions here tell how far a tensor is
+from a possible one, and whether a body with given mass properties can be as small as a given box.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ __all__ = ["BoxFit", "NearestValid", "fit_in_box", "nearest_valid"]
 
 
 def nearest_valid(inertia: ArrayLike) -> NearestValid:
-    """Find the tensor of a body that is nearest to a given one.
+    """Find the possible tensor that is nearest to a given one.
 
-    The principal axes stay; the moments go to the nearest triple with none negative and no two less than the
-    third. A tensor that :class:`polhode.RigidBody` accepts comes back as it is, at distance zero.
+    The principal axes stay. The moments are replaced by the nearest three that are not negative and obey the
+    triangle inequality. A tensor that :class:`polhode.RigidBody` accepts is returned unchanged, at distance
+    zero.
 
     Parameters
     ----------
@@ -33,7 +34,7 @@ def nearest_valid(inertia: ArrayLike) -> NearestValid:
     Returns
     -------
     NearestValid
-        The tensor, and its distance from the one given in the Frobenius norm.
+        The tensor, and its distance from the given one in the Frobenius norm.
 
     Raises
     ------
@@ -52,12 +53,12 @@ def nearest_valid(inertia: ArrayLike) -> NearestValid:
 
 
 def fit_in_box(body: _core.RigidBody, low: ArrayLike, high: ArrayLike) -> BoxFit:
-    """Tell whether matter within a box could have a body's mass, centre of mass and tensor.
+    """Tell whether matter inside a box can have the mass, centre of mass and tensor of a body.
 
-    Along one axis the spread of matter is limited by its distances from the walls,
-    ``∫ (x − C_x)² dm ≤ m (C_x − low_x) (high_x − C_x)``; for two axes the products of those distances have
-    means that are not negative, which limits the products of inertia. For every axis and every pair of axes
-    the conditions decide exactly; what all three axes together forbid beyond that is not tested.
+    The walls limit the spread of matter along each axis: ``∫ (x − C_x)² dm ≤ m (C_x − low_x) (high_x −
+    C_x)``; For two axes, the means of the products of the distances from the walls cannot be negative, which
+    limits the products of inertia. The conditions are exact for each axis and for each pair of axes.
+    Conditions that involve all three axes are not tested.
 
     Parameters
     ----------
@@ -68,7 +69,7 @@ def fit_in_box(body: _core.RigidBody, low: ArrayLike, high: ArrayLike) -> BoxFit
     Returns
     -------
     BoxFit
-        Whether it fits, the room that the tightest condition leaves, and the two axes it is about.
+        Whether the body fits, the margin of the tightest condition, and the two axes of that condition.
 
     Examples
     --------

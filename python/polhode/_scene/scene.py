@@ -64,7 +64,7 @@ class Scene:
     energy : Energy
         What is known of it.
     title, time_unit : str
-        As the viewer reads them.
+        Title and unit of time as they are shown.
     duration : float
         Seconds that the whole motion takes on the screen.
     notes : tuple of str

@@ -45,33 +45,37 @@ def animate(
     Parameters
     ----------
     trajectory : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
-        The motion of one body. Its wheels are drawn as discs outside of it, not to scale, which turn by their
-        angle relative to the body. Where the momentum alone is known, as of `loads.rotor`, they do not turn.
+        The motion of one body. Its wheels are drawn as discs outside the body, not to scale, which turn by
+        their angle relative to the body. A wheel whose momentum alone is known, as for
+        :func:`polhode.loads.rotor`, does not turn.
     path : str or os.PathLike
-        ``.html`` is an interactive page that needs no network: the body, its principal axes, ω, L (with that
-        of wheels, and theirs as h) and their paths in space; the path of ω on the ellipsoid of inertia in the
-        body; of a free body also that ellipsoid rolling on its plane, and sliders for another start, whose
-        motion the page computes itself; of a top the path of its axis; the speeds of wheels, and T, V and
-        their sum where the load has a potential. A wheel that turns by more than 20 degrees from picture to
-        picture is drawn turning 2, 5, 10, … times slower than it does, as is written there. ``.gif`` and
-        ``.mp4`` need matplotlib, the latter also ffmpeg, which the extra ``film`` brings.
+        Name of the file; its ending tells the format. ``.html`` is an interactive page that needs no network.
+        ``.gif`` and ``.mp4`` need matplotlib; ``.mp4`` also needs ffmpeg, which the extra ``film`` brings.
+
+        The page shows the body and its principal axes; ω, L and their paths in space; the angular momentum h
+        of wheels, which is part of L; and the path of ω on the ellipsoid of inertia in the body. For a free
+        body it also shows that ellipsoid rolling on its plane, and has sliders for another start, whose
+        motion the page computes itself. For a top it shows the path of the axis. It shows the speeds of
+        wheels, and kinetic energy T, potential energy V and their sum if the load has a potential. A wheel
+        that turns by more than 20 degrees from picture to picture is drawn 2, 5, 10, … times slower, and a
+        label says so.
     end : float, optional
         For a motion in closed form, which has no times of its own: the motion is shown from 0 to this time.
     shape : (vertices, faces) or list, optional
         A mesh of the body in its frame, (n, 3) and (m, 3); or a list of parts, each a mesh or a body. By
-        default the body is drawn as what it was made of: solids, sheets, wires, a mesh of up to 20,000
-        triangles, up to 256 particles, or up to 256 such parts put together. Of a body of which the inertia
-        alone is known, or that was read from a saved file, it is the uniform box that has this inertia.
-        In a given mesh with more than 20,000 triangles, nearby corners are joined, and a message says so.
+        default the shape is that from which the body was made: solids, sheets, wires, a mesh of up to 20,000
+        triangles, up to 256 particles, or up to 256 such parts. If only the inertia is known, or the body was
+        read from a saved file, it is the uniform box with the same inertia. In a given mesh with more than
+        20,000 triangles, nearby corners are joined, and a message says so.
     frames : int, optional
-        Number of samples shown, evenly chosen. By default, for a free body or a heavy top under gravity
-        alone, as many as needed: states between the samples are taken from the exact motion, so that the
-        body turns by at most 20 degrees between two pictures of a film, and by 40 between two frames of a
-        page, which interpolates. For any other motion, the samples themselves.
+        Number of states shown, evenly chosen. By default, for a free body or a heavy top under gravity alone,
+        there are as many as needed: states between the samples come from the closed form, so that the body
+        turns by at most 20 degrees between two pictures of a film, and by at most 40 degrees between two
+        frames of a page, which interpolates. For any other motion the states are the samples themselves.
     duration : float, optional
-        Seconds that the motion takes on the screen. A page shows it in real time by default, or in slow or
-        fast motion by a round number, which it names; a film takes 10 seconds, and more where at 30 pictures
-        a second the body would turn by more than 20 degrees from one to the next.
+        Duration on the screen, in seconds. By default a page shows the motion in real time, or slower or
+        faster by a round factor, which it names. A film takes 10 seconds by default, or longer so that the
+        body turns by at most 20 degrees from picture to picture.
     title, time_unit : str, optional
         Title and unit of time as they are shown. A page can convert ns, us, ms, s, min, h, d and yr to
         seconds.
@@ -81,10 +85,11 @@ def animate(
         Rate of a film: pictures a second, at most 50 of a GIF; 30 by default. A GIF stores times in
         hundredths of a second. At 30 pictures a second they are shown for 3, 3 and 4 hundredths in turn.
     labels : bool, optional
-        Whether, on a film, anything is written: the names of arrows, axes and wheels, title, time, speeds of
-        wheels. In a small picture names without room are left out, and a long title has several lines.
+        Whether a film has text: names of arrows, axes and wheels, title, time, speeds of wheels. In a small
+        picture, names without room are left out, and a long title has several lines.
     progress : callable, optional
-        Is told the fraction of a film that is drawn; an exception it raises ends the drawing.
+        A function that is called with the fraction of a film that has been drawn. An exception that it raises
+        ends the drawing.
 
     Returns
     -------
@@ -94,7 +99,8 @@ def animate(
     Raises
     ------
     ValueError
-        If the body turns by half a turn or more from one frame to the next: it would seem to turn backward.
+        If the body turns by half a turn or more from one frame to the next, since it would seem to turn
+        backward.
 
     Warns
     -----

@@ -1,4 +1,4 @@
-"""Assemblies: bodies of many parts, each with its shape, its place and its matter, from one readable file.
+"""Assemblies: bodies of many parts. A text file gives the shape, position and material of each part.
 
 .. code-block:: toml
 

@@ -47,14 +47,14 @@ class _Unit:
 def read(
     assembly: str | os.PathLike[str] | Mapping[str, Any], *, folder: str | os.PathLike[str] = "."
 ) -> Assembly:
-    """Read an assembly: its parts, their places and their sum.
+    """Read an assembly: its parts, their positions and their sum.
 
     Parameters
     ----------
     assembly : path or mapping
         A TOML file, or what such a file holds: ``name``, ``length_unit`` and a list ``part`` of mappings.
     folder : path, optional
-        Where the names of files in a mapping start from; those in a file start from its own folder.
+        Folder for the names of files in a mapping. Names in a file are relative to the folder of that file.
 
     Returns
     -------
@@ -63,8 +63,8 @@ def read(
     Raises
     ------
     PolhodeError
-        If a key is not known, a part is not one thing, or an assembly is part of itself. The message names
-        the file, the part and the key.
+        If a key is not known, a part has none or several of the keys below, or an assembly is part of itself.
+        The message names the file, the part and the key.
     OSError
         If a file cannot be read.
 
@@ -80,13 +80,13 @@ def read(
     - ``inertia``: a table with ``mass``, ``com`` and ``tensor`` as a CAD program prints them, ``products``
       (``"positive"`` or ``"negative"``), ``about``, and ``rtol`` for a table of few digits.
 
-    It stands at ``position``, turned by ``rotation``: a table with ``axis`` and ``degrees`` (or ``radians``);
-    ``sequence`` and three of either; ``quaternion_xyzw``; or ``matrix``: ``r = R r_part + position``. With
-    ``count`` it is there so often, each copy moved from the one before by ``turn`` and ``step``.
+    A part is at ``position``, turned by ``rotation``: a table with ``axis`` and ``degrees`` (or ``radians``);
+    ``sequence`` and three of either; ``quaternion_xyzw``; or ``matrix``: ``r = R r_part + position``.
+    ``count`` is the number of copies; each copy is moved from the one before by ``turn`` and ``step``.
 
-    Bare lengths are in ``length_unit`` of the part, or of the file, or in metres; bare masses in kg,
-    densities in kg/m^3. A text may have its own unit: ``"2.7 g/cm^3"``, ``"5.0 ± 0.1 lbm"``,
-    ``"10 20 30 mm"``.
+    Numbers without a unit are lengths in ``length_unit`` of the part or of the file, else in metres; masses
+    in kg; densities in kg/m^3. A text may have its own unit: ``"2.7 g/cm^3"``, ``"5.0 ± 0.1 lbm"``, ``"10 20
+    30 mm"``.
 
     Examples
     --------

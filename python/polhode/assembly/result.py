@@ -24,24 +24,24 @@ __all__ = ["Assembly", "Member"]
 
 
 class Member(NamedTuple):
-    """One part of an assembly, where it stands.
+    """One part of an assembly, in its position.
 
     Attributes
     ----------
     id : str
-        The names from the whole down, with / between them; a copy by its number.
+        Names from the whole down to the part, with / between them; a copy has its number.
     body : RigidBody
         The body in the axes of the whole, in kg and m.
     solid : str
-        The name of its shape; "" where it is of a file or of numbers.
+        Name of its shape; "" if it comes from a file or from numbers.
     arguments : dict
         Arguments of that shape, lengths in metres.
     file : pathlib.Path or None
-        What it was read from.
+        File from which the part was read.
     metres : float
-        In one unit of that file.
+        Metres in one unit of length of that file.
     rotation, displacement : numpy.ndarray, shapes (3, 3) and (3,)
-        How it is placed: ``r = rotation @ r_part + displacement``.
+        Position of the part: ``r = rotation @ r_part + displacement``.
     """
 
     id: str
@@ -62,11 +62,11 @@ class Assembly:
     ----------
     name : str
     parts : tuple of Member
-        Those that have no parts of their own, in the order of the file.
+        Parts without parts of their own, in the order of the file.
     ledger : Ledger
-        The tree, rolled up to every level: :func:`polhode.uncertainty.ledger`.
+        The tree of parts with the sums at every level, see :mod:`polhode.uncertainty.ledger`.
     notes : tuple of str
-        What a reader should know, say copies at one place.
+        Remarks, for example about copies at the same place.
     """
 
     name: str
@@ -93,7 +93,7 @@ class Assembly:
         return f"<Assembly {self.name!r}: {count}, mass {float(self.body.mass):.6g}>"
 
     def plot(self, ax: Axes3D | None = None, **options: Any) -> Axes3D:
-        """Draw the parts where they stand, with the principal axes of the whole; needs matplotlib.
+        """Draw the parts in their positions, with the principal axes of the whole; needs matplotlib.
 
         Parameters
         ----------

@@ -53,11 +53,11 @@ def ensemble(
     client: Any = None,
     progress: Progress = None,
 ) -> Ensemble:
-    """Make an ensemble: one motion, many times over, with numbers that are drawn.
+    """Make an ensemble: many simulations of one motion, each with randomly drawn numbers.
 
     Every argument of :meth:`RigidBody.simulate` that describes the body, the load or the start may be a
-    distribution of :mod:`polhode.distributions`, or a function of a random generator. Member k's numbers
-    depend on `seed`, on the name of the argument and on k alone.
+    distribution of :mod:`polhode.distributions`, or a function of a random generator. The numbers of member k
+    depend only on `seed`, on the name of the argument and on k.
 
     Parameters
     ----------
@@ -72,23 +72,25 @@ def ensemble(
     seed : int
         Seed of all draws, from 0 to 2**64 - 1.
     chunk : int, optional
-        Members that are run, written or sent to a worker together. With `reduce` a multiple of 4096.
+        Number of members that are run, written or sent to a worker together. With `reduce` it must be a
+        multiple of 4096.
     about, method, rtol, atol, states, max_steps
-        As of :meth:`RigidBody.simulate`. With loads that are drawn "auto" is settled by the first members. A
-        member that takes more than `max_steps` fails.
+        As of :meth:`RigidBody.simulate`. If loads are drawn, the first members decide which method "auto"
+        takes. A member that takes more than `max_steps` steps fails.
     outputs : sequence of str, optional
-        Which states are kept: of ``"omega"``, ``"quaternion"``, ``"position"``, ``"velocity"`` and the names
-        of the load's own states. By default the first two, those of the load, and position and velocity where
-        either is given.
+        States that are kept: ``"omega"``, ``"quaternion"``, ``"position"``, ``"velocity"`` and the names of
+        the states of the load. By default the first two and the states of the load, and also position and
+        velocity if one of these is given at the start.
     on_failure : {"keep", "raise"}, optional
-        A member whose numbers make no body or whose integration fails has a `status` that says so and states
-        that are not numbers; or it ends the ensemble.
+        What happens if the numbers of a member make no body, or its integration fails. ``"keep"``: its
+        ``status`` says so, and its states are NaN. ``"raise"``: an error ends the ensemble.
     reduce : Reduction or dict of str to Reduction, optional
-        What is kept in place of the states, from :mod:`polhode.reductions`.
+        Statistics that are kept in place of the states, from :mod:`polhode.reductions`.
     client : distributed.Client, optional
         Client of a dask cluster that runs the chunks; by default the threads of this machine do.
     progress : bool or callable, optional
-        A function of the fraction done, or whether to show a bar; by default on a terminal after two seconds.
+        A function that is called with the fraction done, or whether to show a progress bar. By default a bar
+        appears on a terminal after two seconds.
 
     Returns
     -------

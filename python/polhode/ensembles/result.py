@@ -79,10 +79,10 @@ class _Work:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ensemble:
-    """Many motions, the *members*, each with random numbers of its own; made by :func:`polhode.ensemble`.
+    """Many motions, the *members*, each with its own random numbers. Made by :func:`polhode.ensemble`.
 
-    Nothing is run before :meth:`compute`, :meth:`to_zarr` or :meth:`to_npz`. All numbers are the same for any
-    number of threads and workers, and in whatever order chunks are run.
+    Nothing is simulated before :meth:`compute`, :meth:`to_zarr` or :meth:`to_npz` is called. All numbers are
+    the same for any number of threads and workers, and for any order in which chunks are run.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ class Ensemble:
         Raises
         ------
         PolhodeError
-            Where the member has no motion or its integration fails.
+            If the numbers of the member make no body, or its integration fails.
 
         Examples
         --------
@@ -177,20 +177,21 @@ class Ensemble:
         Parameters
         ----------
         checkpoint : str or os.PathLike, optional
-            A file that keeps what reductions have come to, written about every five seconds. Where it is
-            there, the run goes on with it: only chunks that are missing are run, and bits are the same.
+            A file for intermediate results of the reductions, which is written about every five seconds. If
+            it exists, the run continues from it: only missing chunks are run, and the result has the same
+            bits.
 
         Returns
         -------
         xarray.Dataset or object
             Without `reduce` the states: ``omega`` (member, time, axis), ``quaternion`` (member, time,
-            quaternion_component), ``status`` (member), those of the load, and what was drawn, under the
-            name of the argument. With it the result of the reduction, or a dict of results.
+            quaternion_component), ``status`` (member), the states of the load, and the drawn numbers under
+            the name of their argument. With `reduce` the result of the reduction, or a dict of results.
 
         Raises
         ------
         MemoryError
-            Where the states would not fit into the memory of this machine.
+            If the states do not fit into the memory of this machine.
         FileFormatError
             For the file of another ensemble, of other reductions or of another version of polhode.
         """
@@ -225,12 +226,12 @@ class Ensemble:
         Parameters
         ----------
         path : str or os.PathLike
-            Name of a directory that is not there yet. ``xarray.open_zarr(path)`` reads it.
+            Name of a new directory. ``xarray.open_zarr(path)`` reads it.
 
         Raises
         ------
         FileExistsError
-            Where there is something already; :meth:`resume` goes on with it.
+            If it exists already; :meth:`resume` continues it.
         """
         self._check_states("to_zarr")
         self._fill(ZarrStore(Path(path), self.plan, is_new=True))
@@ -241,19 +242,19 @@ class Ensemble:
         Parameters
         ----------
         path : str or os.PathLike
-            Name of a directory that is not there yet: ``chunk-00000000.npz`` and so on, with the arrays of
-            :meth:`compute`, beside ``ensemble.json``, which tells what ensemble it is.
+            Name of a new directory: ``chunk-00000000.npz`` and so on, with the arrays of :meth:`compute`,
+            beside ``ensemble.json``, which tells what ensemble it is.
 
         Raises
         ------
         FileExistsError
-            Where there is something already; :meth:`resume` goes on with it.
+            If it exists already; :meth:`resume` continues it.
         """
         self._check_states("to_npz")
         self._fill(NpzStore(Path(path), self.plan, is_new=True))
 
     def resume(self, path: str | os.PathLike[str]) -> None:
-        """Run the chunks that are missing where :meth:`to_zarr` or :meth:`to_npz` was ended.
+        """Run the missing chunks of a :meth:`to_zarr` or :meth:`to_npz` that was interrupted.
 
         Parameters
         ----------
@@ -262,7 +263,8 @@ class Ensemble:
         Raises
         ------
         FileFormatError
-            For another ensemble: of another seed, size, chunk, version of polhode, or with other inputs.
+            If the files belong to another ensemble: another seed, size, chunk or version of polhode, or other
+            inputs.
         """
         self._check_states("resume")
         self._fill(opened(Path(path), self.plan))

@@ -1,8 +1,13 @@
 """Reading and writing: bodies from meshes and molecules, and bodies and motions that keep every bit.
 
-:func:`load` opens a mesh or a molecule; ``RigidBody.from_file`` makes a body of it. ``RigidBody.save`` and
-``Trajectory.save`` write JSON after a schema and NumPy's npz, ``RigidBody.load`` and ``Trajectory.from_file``
-read them. :data:`BODY_SCHEMA` and :data:`TRAJECTORY_SCHEMA` say what the JSON files hold, as JSON Schema.
+:func:`load` opens a file that holds a mesh or a molecule; :meth:`polhode.RigidBody.from_file` makes a body of
+it. :meth:`polhode.RigidBody.save` and :meth:`polhode.Trajectory.save` write JSON and NumPy's npz;
+:meth:`polhode.RigidBody.load` and :meth:`polhode.Trajectory.from_file` read them. :data:`BODY_SCHEMA` and
+:data:`TRAJECTORY_SCHEMA` describe the JSON files, as JSON Schema.
+
+A *v/f text* is a text file whose lines ``v x y z`` give the vertices and whose lines ``f i j k`` give the
+triangles by the numbers of their vertices. OBJ files have this form, and so have the plate models of
+asteroids.
 """
 
 from __future__ import annotations

@@ -62,13 +62,14 @@ def body_from_file(
     weld, closure, orient, repair, index_base
         Of a mesh; see :func:`solid_from_file`.
     union : bool
-        Whether to join, in a mesh, components that overlap, so that what they share counts once; by
-        manifold3d (extra ``union``). How far it moves corners, a part in 1e12 or so of the size, is in no
-        bound.
+        Whether to join overlapping components of a mesh, so that the common volume counts once; by manifold3d
+        (extra ``union``). The join moves corners by about 1e-12 of the size of the mesh. No error bound
+        includes this.
     masses : {"most_common", "average"}
         Masses of the atoms of a molecule; see :func:`polhode.molecules.isotopes`.
     progress : callable, optional
-        Is told the fraction of a large mesh file done, now and then; an exception it raises ends the reading.
+        A function that is called now and then with the fraction of a large mesh file that has been read. An
+        exception that it raises ends the reading.
 
     Returns
     -------
@@ -77,8 +78,8 @@ def body_from_file(
     Warns
     -----
     UserWarning
-        Of solids in a CAD file that overlap, with what counts twice. Components of a mesh are not searched
-        for overlaps; ``polhode report`` does that.
+        If solids in a CAD file overlap: the message tells the mass that counts twice. Components of a mesh
+        are not searched for overlaps; ``polhode report`` does that.
 
     Raises
     ------

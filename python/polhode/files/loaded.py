@@ -44,27 +44,29 @@ _TEXT_SUFFIXES: Final = tuple(suffix for suffix, known in EXPECTED_CONTENT.items
 class Loaded:
     """What a file holds.
 
-    What Python reads is read in the same opening of the file that told its format. Binary STL, binary PLY
-    and ``v/f`` text are for the compiled reader: the first two as a stream, see :func:`solid_of`.
+    The format is recognised by the content. Triangles of binary STL, binary PLY and v/f text are read when
+    `mesh` is first asked for. All other files are read at once, in the same opening that recognised the
+    format.
 
     Attributes
     ----------
     path : pathlib.Path
-        Of the file.
+        Path of the file.
     format : str
         ``"binary STL"``, ``"ASCII STL"``, ``"v/f text"`` (OBJ and plate files), ``"numbered plates"``,
         ``"PLY"``, ``"OFF"``, ``"GLB"``, ``"glTF"``, ``"COLLADA"``, ``"3MF"``, ``"VTK"``; of solids ``"STEP"``
         or ``"IGES"``; of a molecule ``"XYZ"``, ``"PDB"`` or ``"MOL"``.
     is_stream : bool
-        Whether its triangles can be gone through one after the other, without all of them in memory.
+        Whether the triangles can be read one after the other, without having all of them in memory.
     index_base : {1, 0}
-        What ``v``/``f`` text counts its vertices from.
+        Number of the first vertex in v/f text.
     unit : str or None
-        Of the coordinates, of :data:`polhode.units.METRES`, where the file or its format says it.
+        Unit of the coordinates, one of those in :data:`polhode.units.METRES`; None if neither the file nor
+        its format states one.
     states_unit : bool
-        Whether the file itself does, so that another unit contradicts it.
+        Whether the file itself states the unit. Another unit is then an error.
     notes : tuple of str
-        What was done to read it, and what of it was not read.
+        What was done to read the file, and which parts of it were not read.
     cad : CadFile or None
         The solids of a STEP or IGES file.
     """
@@ -85,7 +87,7 @@ class Loaded:
 
     @property
     def mesh(self) -> Mesh:
-        """The triangles; those that the compiled reader reads are read when they are first asked for."""
+        """The triangles."""
         if self._molecule is not None:
             raise FileFormatError(f"{self.path}: {self.format} holds atoms, not a mesh; ask for its molecule")
         if self.cad is not None:
@@ -106,7 +108,7 @@ class Loaded:
         return self._molecule
 
     def length(self, length_unit: str | None) -> str | None:
-        """Give the unit of the coordinates: the file's own, or the one that is stated.
+        """Give the unit of the coordinates: that of the file, or the one that the caller states.
 
         Parameters
         ----------
@@ -148,7 +150,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
         A mesh (see :func:`read_mesh`), a molecule (XYZ, see :func:`read_xyz`; PDB, MOL and SDF) or solids of
         CAD (STEP, IGES; extra ``cad``); the suffix tells which, and it may be packed (``.gz``).
     index_base : {1, 0}
-        What ``v``/``f`` text counts its vertices from: 1 in OBJ and in most plate files, 0 in some.
+        Number of the first vertex in v/f text: 1 in OBJ and in most plate files, 0 in some.
 
     Returns
     -------
@@ -299,17 +301,17 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
     Parameters
     ----------
     path : str or os.PathLike
-        Binary and ASCII STL, and ``v``/``f`` text (``.obj``, ``.tab``, ``.txt``) are read without any
-        further library, as are DAE and 3MF; PLY, OFF, GLB and glTF by trimesh (extra ``mesh``), VTK, VTU and
-        VTP by PyVista (extra ``view``), and no other format. Each may be packed with gzip (``.gz``). Nodes of
-        a scene are placed by their transforms and taken together. Coordinates are as stored: see
-        :func:`load` for the unit of those that state one.
+        Binary and ASCII STL, and ``v``/``f`` text (``.obj``, ``.tab``, ``.txt``) are read without any further
+        library, as are DAE and 3MF; PLY, OFF, GLB and glTF by trimesh (extra ``mesh``), VTK, VTU and VTP by
+        PyVista (extra ``view``), and no other format. Each may be packed with gzip (``.gz``). The meshes of a
+        scene are placed by their transforms and joined. Coordinates are those in the file; :func:`load` tells
+        the unit, if the file states one.
     index_base : {1, 0}
-        What ``v``/``f`` text counts its vertices from: 1 in OBJ and in most plate files, 0 in some.
+        Number of the first vertex in v/f text: 1 in OBJ and in most plate files, 0 in some.
     weld : float
         Corners at most this far from each other (in the unit of the file, in every coordinate) are one
-        vertex. The default joins equal corners only, as it must for STL; some exporters write the same
-        corner with other last digits in each triangle, and leave the mesh open by them.
+        vertex. By default only equal corners are joined; STL needs this. Some exporters write the same corner
+        with different last digits in each triangle, so that the mesh is open.
 
     Returns
     -------

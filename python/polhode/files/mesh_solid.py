@@ -50,19 +50,20 @@ class MeshSolid(NamedTuple):
     format : str
         As in :class:`Mesh`.
     vertices : int or None
-        How many vertices; None in a format that stores the corners of each triangle anew.
+        Number of vertices; None for a format that stores the three corners of every triangle (STL).
     faces : int
         How many triangles.
     volume, area : float
-        In units of the result; the area is that of the file's triangles, without what closed them.
+        In units of the result. The area is that of the triangles in the file, without triangles that were
+        added to close holes.
     welded : int
-        Corners that were joined to others within the length asked for.
+        Number of corners that were joined to others within the length `weld`.
     components : object
-        What a report tells of them; None where there is one.
+        The components of the mesh, as a report lists them; None for a mesh of one component.
     parts : tuple of SolidPart
         Of a CAD file: its solids, each at its place.
     steps : tuple of RepairStep
-        Of a mesh that was repaired on request: what was done to it.
+        What was done to a mesh that was repaired on request.
     """
 
     body: _core.RigidBody
@@ -90,13 +91,17 @@ def solid_from_file(
     index_base: int = 1,
     progress: Callable[[float], object] | None = None,
 ) -> MeshSolid:
-    """Make the solid that the mesh in a file bounds; an error names the file.
+    """Make a solid from the mesh in a file; errors name the file.
 
-    Binary STL and PLY go through memory block by block, whatever their size, but for the vertices of a
-    PLY, which its faces name in any order; other formats, and files that are to be welded within a length
-    or closed, are read whole. A stream is gone through again for every eight million triangles, to look for
-    faces that stand twice; that components wound inward are cavities, inside others, is checked of a
-    quarter of a million triangles at most. `provenance` lists what was checked.
+    Binary STL and binary PLY are read block by block, so that a file may be larger than the memory. Of a PLY
+    file only the vertices are kept in memory, since faces refer to them in any order. Other formats are read
+    into memory as a whole, and so is every file whose corners are welded within a length or whose holes are
+    closed.
+
+    To find duplicate faces, a file that is read in blocks is read once more for every eight million
+    triangles. A component whose faces are wound inward is a cavity if it lies inside another component. This
+    is checked for meshes of up to a quarter of a million triangles. `RigidBody.provenance` lists the checks
+    that were made.
 
     Parameters
     ----------
@@ -105,19 +110,21 @@ def solid_from_file(
     density, mass : float or Uncertain, optional
         Exactly one of them.
     scale : float, optional
-        Unit of the coordinates, in the unit of the result. By default the metres in the unit that the file or
-        its format states, and 1 for those that state none.
+        Length of one unit of the coordinates, in the unit of the result. By default this is in metres if the
+        file or its format states the unit, and 1 otherwise.
     weld, index_base
         See :func:`read_mesh`.
     closure : {"caps", "hull"}, optional
-        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`; without it, it is an error.
+        How to close an open mesh, see :meth:`polhode.RigidBody.from_mesh`. By default an open mesh is an
+        error.
     orient : bool
-        Turn triangles that face inward; without it they are an error.
+        Whether to turn triangles that face inward. By default they are an error.
     repair : bool
-        Weld corners, drop faces that stand twice, wind the others alike and fill loops, each where there is
-        need; `MeshSolid.steps` tells what was done. It takes the place of `closure` and `orient`.
+        Whether to mend the mesh where there is need: weld corners, drop duplicate faces, turn faces so that
+        all are wound alike, and fill holes. ``MeshSolid.steps`` tells what was done. It takes the place of
+        `closure` and `orient`.
     progress : callable, optional
-        Is told the fraction of the file done, now and then.
+        A function that is called now and then with the fraction of the file that has been read.
 
     Returns
     -------

@@ -141,7 +141,7 @@ def save_trajectory_json(trajectory: Trajectory, path: Path) -> None:
 
 
 def save_trajectory_npz(trajectory: Trajectory, path: Path) -> None:
-    """Write a motion as NumPy's arrays, those of the body beside the body's own under plain names.
+    """Write a motion as arrays of NumPy, together with those of its body.
 
     Parameters
     ----------

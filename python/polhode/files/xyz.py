@@ -38,10 +38,11 @@ class Molecule(NamedTuple):
     comment : str
         The second line of the file.
     rounding : float
-        By how much each coordinate was rounded at most, in the unit of the file: half a unit of the last
-        digit that the file prints. 0 where no coordinate has a digit behind the point, which tells nothing.
+        Largest amount by which a coordinate was rounded, in the unit of the file: half a unit of the last
+        digit that the file prints. 0 if no coordinate has digits after the decimal point: the rounding is
+        then not known.
     notes : tuple of str
-        What the file holds besides, or lacks.
+        What else the file holds, and what is missing in it.
     """
 
     labels: tuple[str, ...]

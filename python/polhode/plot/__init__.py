@@ -1,7 +1,7 @@
 """Pictures with matplotlib (extra ``plot``). Every function takes ``ax=`` and returns it.
 
-Colours are those of Okabe and Ito, which readers with any colour vision can tell apart; lines differ in
-their dashes too.
+The colours are those of Okabe and Ito, which are distinct for any colour vision. Lines also differ in their
+dashes.
 """
 
 from __future__ import annotations

@@ -117,7 +117,7 @@ def principal_axes(
     length : float
         Length from the centre to each tip.
     center : array_like, shape (3,), optional
-        Where to draw the centre of mass; where it is by default.
+        Where to draw the centre of mass; at its own position by default.
     labels : tuple of str
         Labels at the tips, in the order of ascending moments.
 

@@ -31,9 +31,9 @@ def cones(motion: FreeMotion, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
     motion : FreeMotion
         Motion of one body.
     t : array_like, shape (T,)
-        Times over which ω sweeps the space cone, between which as many more are put as it needs; the body
-        cone is drawn as it is at the last of them. For a body that is not symmetric the cones are not round,
-        and the space cone need not close.
+        Times over which ω sweeps the space cone; further times are added in between where needed. The body
+        cone is drawn in its position at the last time. For a body that is not symmetric the cones are not
+        circular, and the space cone need not close.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default. L is drawn upward.
 

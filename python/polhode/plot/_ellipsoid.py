@@ -47,28 +47,29 @@ def ellipsoid(
 ) -> Axes3D:
     """Draw the ellipsoid of inertia about the centre of mass and the principal axes.
 
-    Where the body's tensor has sigmas, each axis ends in an error ellipse: it points into it with the
-    probability `coverage`, to first order. The legend tells its semi-axes as angles. It is dashed where the
-    first order is not enough, as ``sigma.linear.axes`` tells; axes that are not determined, between equal
-    moments, have a dotted circle on which they may lie anywhere.
+    If the tensor of the body has sigmas, each axis ends in an error ellipse. The axis points into this
+    ellipse with the probability `coverage`, to first order. The legend gives the semi-axes of the ellipses as
+    angles. An ellipse is dashed where the first order is not enough (see `polhode.Linear`). If two moments
+    are equal, their axes are not determined; a dotted circle shows all directions that they may have.
 
     Parameters
     ----------
     body : RigidBody
         One body.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
-        Where to draw; a new figure by default. Over a body that :func:`body` has drawn, an `opacity` of 0.3
-        shows both.
+        Where to draw; a new figure by default. To see a body of :func:`body` inside the ellipsoid, use an
+        `opacity` of 0.3.
     size : float
-        Length of the longest semi-axis. They are as 1/√I_k; that of a zero moment has no end and is cut.
+        Length of the longest semi-axis. The semi-axes are proportional to 1/√I_k; for a zero moment the
+        ellipsoid is infinitely long and is cut off.
     center : array_like, shape (3,), optional
-        Where to draw the centre of mass; where it is by default.
+        Where to draw the centre of mass; at its own position by default.
     opacity : float
         Opacity of the surface, from 0 to 1.
     coverage : float or None
         Probability of the error ellipses, 0.95 for 2.4477 standard deviations; None draws none.
     enlarged : float
-        How many times larger the ellipses are drawn than they are; the legend says so.
+        Factor by which the ellipses are enlarged; the legend tells it.
 
     Returns
     -------
@@ -102,9 +103,9 @@ def polhodes(
 ) -> Axes3D:
     """Draw polhodes of a body: the curves of ω on the ellipsoid ω·I ω = 2T of one kinetic energy.
 
-    Those about the axis of the least moment are blue and dashed, those about that of the greatest green and
-    dashed with dots; the separatrix through the intermediate axis is vermilion and drawn through. The
-    components of ω are along the principal axes.
+    Polhodes about the axis of the least moment are blue and dashed. Polhodes about the axis of the greatest
+    moment are green and dash-dotted. The separatrix through the intermediate axis is a solid vermilion line.
+    The components of ω are along the principal axes.
 
     Parameters
     ----------
@@ -113,7 +114,7 @@ def polhodes(
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default.
     count : int
-        How many about each axis and side.
+        Number of polhodes about each end of each of the two axes.
     energy : float
         T, in the units of the body.
     rate_unit : str
@@ -173,8 +174,8 @@ def polhode(
 ) -> Axes3D:
     """Draw the polhode of a motion: the path of ω in the body, on the ellipsoid ω·I ω = 2T of its energy.
 
-    Of a gyrostat T leaves out the rotation of its wheels relative to the body, and I is the tensor in its
-    equations. The motion starts at the disc.
+    For a gyrostat, T does not include the rotation of the wheels relative to the body, and I is the tensor in
+    the equations of motion. A disc marks the start of the motion.
 
     Parameters
     ----------
@@ -241,8 +242,8 @@ def poinsot(
     motion : FreeMotion
         Motion of one body.
     t : array_like, shape (T,)
-        Times of the herpolhode, between which as many more are put as its path needs; the ellipsoid is drawn
-        as it is at the last of them.
+        Times of the herpolhode; further times are added in between where needed. The ellipsoid is drawn in
+        its position at the last time.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default. L is drawn upward.
     rate_unit : str

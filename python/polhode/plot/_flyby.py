@@ -26,7 +26,7 @@ def flyby(
     time_scale: float = 1.0,
     bins: int = 40,
 ) -> Axes:
-    """Draw how a number is spread among clones after a flyby, by their modes, and what it was before.
+    """Draw a histogram of a number of the clones after a flyby, by mode, with its value before.
 
     Parameters
     ----------
@@ -37,9 +37,9 @@ def flyby(
     time_unit : str, optional
         Unit of the periods, for the label.
     time_scale : float, optional
-        How many units of time that unit is: periods are divided by it.
+        Length of that unit in units of time: periods are divided by it.
     bins : int, optional
-        How many bars; long tails (the last percent at each end) are drawn in the outermost.
+        Number of bars. The outermost bars also contain the tails, the last percent at each end.
 
     Returns
     -------

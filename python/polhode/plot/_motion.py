@@ -64,10 +64,11 @@ def angular_velocity(
     time_unit : str
         Name of the unit of time, for the labels.
     coverage : float or None
-        Where body or start have sigmas, a band is drawn about each curve: at each time by itself the
-        component lies in it with this probability, 0.95 for 1.96 standard deviations, to first order. Where
-        `Trajectory.covariance` is not known the legend says why there is no band, and where a band is wider
-        than the curve is high it says from when on the first order is not enough. None draws no band.
+        If the body or the start have sigmas, a band is drawn about each curve. At any one time the component
+        is inside the band with this probability, to first order: 0.95 for 1.96 standard deviations. If
+        `polhode.Trajectory.covariance` cannot be computed, the legend says why there is no band. If a band
+        becomes wider than the range of the curve, the legend says from which time on the first order is not
+        enough. None draws no band.
 
     Returns
     -------
@@ -118,10 +119,10 @@ def angular_momentum(
     frame : {"space", "body"}
         The frame whose axes the components refer to.
     unit, time_unit : str
-        For the labels.
+        Name of the unit, for the labels.
     coverage : float or None
-        Probability of the bands, as of :func:`angular_velocity`. Correlations of the
-        tensor with the motion count.
+        Probability of the bands, as for :func:`angular_velocity`. Correlations of the tensor with the motion
+        are included.
 
     Returns
     -------
@@ -156,12 +157,14 @@ def euler_angles(
     sequence : str
         As in :mod:`polhode.euler_angles`.
     unwrap : bool
-        Let the first and third angle run on over many turns. Otherwise the line is broken where they wrap.
+        Whether the first and third angle are counted on over many turns. Otherwise the line is broken where
+        an angle jumps by a turn.
     time_unit : str
-        For the labels.
+        Name of the unit, for the labels.
     coverage : float or None
-        Probability of the bands, as of :func:`angular_velocity`. The first and third
-        angle have none where the second, within its own, may be one at which they are not defined.
+        Probability of the bands, as for :func:`angular_velocity`. The first and third angle are not defined
+        at some values of the second. They have no band where the band of the second angle contains such a
+        value.
 
     Returns
     -------
@@ -191,18 +194,18 @@ def invariants(trajectory: Trajectory, ax: Axes | None = None, *, time_unit: str
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     time_unit : str
-        For the labels.
+        Name of the unit, for the labels.
 
     Returns
     -------
     matplotlib.axes.Axes
-        Changes relative to the largest value on the way; the scale of sizes is logarithmic, and a change of
-        exactly zero is shown at half the rounding of float64.
+        Axes with the changes relative to the largest value of the motion, on a logarithmic scale. A change of
+        exactly zero is drawn at half the rounding error of float64.
 
     Raises
     ------
     ValueError
-        If the load keeps neither.
+        If the load conserves neither.
     """
     kept = trajectory.invariants()
     if kept.energy is None and kept.angular_momentum is None:

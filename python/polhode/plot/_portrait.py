@@ -48,27 +48,26 @@ def portrait(
     levels: int = 4,
     labels: bool = True,
 ) -> Axes3D:
-    """Draw the paths of the total angular momentum in the body, with all equilibria.
+    """Draw the paths of the total angular momentum L in the body, with all equilibria.
 
-    L = I ω + h keeps its length, so that in the body its tip moves on a sphere, on a curve of
-    constant energy.
-    Curves below the lowest saddle go round a minimum and are green and dashed with dots, those above the
-    highest go round a maximum and are blue and dashed; separatrices are vermilion and drawn through, what
-    lies between two of them is grey. Minima are discs, maxima triangles, saddles crosses; where a body with
-    two equal moments has a circle of equilibria it is thick, with a mark on it.
+    The length of L = I ω + h is constant. In the body its tip therefore moves on a sphere, along a curve of
+    constant energy. Curves around a minimum of the energy are green and dash-dotted, curves around a maximum
+    are blue and dashed. Separatrices are solid vermilion lines, and curves between two of them are grey.
+    Discs are minima, triangles maxima, crosses saddles. For a body with two equal moments, a thick line with
+    a mark is a circle of equilibria.
 
     Parameters
     ----------
     gyrostat : Gyrostat or GyrostatMotion
-        One gyrostat; or one motion, whose own path is drawn too, black and thick, with its start.
+        One gyrostat; or one motion. The path of a motion is drawn as a thick black line with its start.
     momentum : float, optional
-        The length of L, for a gyrostat; a motion has its own.
+        The length of L, for a gyrostat; for a motion it is known.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
         Where to draw; a new figure by default.
     levels : int
-        How many curves between an extremum of the energy and the next saddle.
+        Number of curves between an extremum of the energy and the next saddle.
     labels : bool
-        Whether the axes, h and the marks are named.
+        Whether to label the axes, h and the marks.
 
     Returns
     -------
@@ -122,17 +121,17 @@ def portraits(
     *,
     levels: int = 3,
 ) -> NDArray[np.object_]:
-    """Draw a row of portraits as the momentum inside grows.
+    """Draw a row of portraits for growing momentum inside.
 
     Parameters
     ----------
     gyrostat : Gyrostat
-        One gyrostat, with something inside.
+        One gyrostat with momentum inside.
     momentum : float
         The length of L.
     factors : sequence of float, optional
-        Factors of the momentum inside; by default one in each range of ``|h|`` between those at which the
-        number of equilibria changes.
+        Factors by which the momentum inside is multiplied. By default there is one factor in each range of
+        ``|h|`` with a constant number of equilibria.
     levels : int
         As in :func:`portrait`.
 

@@ -27,7 +27,7 @@ _SAMPLES = 721
 
 
 def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: str = "J") -> Axes:
-    """Draw the effective potential of a heavy top over its inclination, and the level of its motion.
+    """Draw the effective potential V(θ) of a heavy top, and the constant ``I_t θ̇²/2 + V(θ)`` of its motion.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
     ax : matplotlib.axes.Axes, optional
         Where to draw; a new figure by default.
     energy_unit : str
-        For the labels.
+        Name of the unit, for the labels.
 
     Returns
     -------
@@ -77,17 +77,17 @@ def effective_potential(top: HeavyTop, ax: Axes | None = None, *, energy_unit: s
 
 
 def nutation(top: HeavyTop, t: ArrayLike, ax: Axes3D | None = None) -> Axes3D:
-    """Draw the path of a heavy top's axis on the unit sphere, between its two circles of inclination.
+    """Draw the path of the axis of a heavy top on the unit sphere, between its limits of inclination.
 
     Parameters
     ----------
     top : HeavyTop
         One top, whose centre of mass is not the fixed point.
     t : array_like, shape (T,)
-        Times of the path, between which as many more are put as it needs; the axis is drawn as it is at the
-        last of them.
+        Times of the path; further times are added in between where needed. The axis is drawn in its position
+        at the last time.
     ax : mpl_toolkits.mplot3d.axes3d.Axes3D, optional
-        Where to draw; a new figure by default. Against gravity is upward.
+        Where to draw; a new figure by default. Upward in the picture is against gravity.
 
     Returns
     -------

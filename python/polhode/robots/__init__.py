@@ -1,8 +1,8 @@
-"""Robots from URDF, SDF and MJCF: whether each link's inertia can be trusted, and a better one.
+"""Robots from URDF, SDF and MJCF files: tests of the inertia of each link, and better values.
 
-The simulators take what a file says. :func:`check` holds every link against the laws that each body obeys,
-against the size of its own geometry, and against that geometry filled evenly; :func:`fixed` writes better
-values and leaves every other byte of the file as it is.
+Simulators use the inertia that a file declares, without a test. :func:`check` compares each link with the
+laws that every rigid body obeys, with the size of its geometry, and with that geometry filled uniformly.
+:func:`fixed` writes better values, and leaves every other byte of the file as it is.
 """
 
 from __future__ import annotations
@@ -63,14 +63,14 @@ def read_robot(
     Parameters
     ----------
     path : str or os.PathLike
-        URDF, SDF or MJCF; its root element tells which. Declarations of entities and document types are
-        refused. Files that it includes, and models that it attaches, are read too; nothing is fetched from
-        a network.
+        A URDF, SDF or MJCF file; its root element tells the format. Declarations of entities and document
+        types are an error. Included files and attached models are read too; nothing is fetched from a
+        network.
     packages : sequence of str or os.PathLike
         Folders that hold the packages of ``package://`` and ``model://`` addresses, see :func:`check`.
     allow_outside : bool
-        Whether what the file names may lie anywhere. By default it is read only in the model's own package
-        and in those of `packages`, see :func:`check`.
+        Whether files that the robot file names may be in any folder. By default they are read only in the
+        package of the model and in those of `packages`, see :func:`check`.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def read_robot(
     Raises
     ------
     FileFormatError
-        If it is none of these, or damaged.
+        If the file has none of these formats, or is damaged.
     OSError
         If the file cannot be read.
     """
@@ -108,14 +108,14 @@ def parse_robot(
     source : bytes
         XML in UTF-8.
     name : str
-        For what is wrong with it.
+        Name of the file in error messages.
     folder : str or os.PathLike
         Where relative addresses of meshes and included files start.
     packages : sequence of str or os.PathLike
         See :func:`check`.
     allow_outside : bool
-        Whether what the file names may lie anywhere. By default it is read only in the model's own package
-        and in those of `packages`, see :func:`check`.
+        Whether files that the robot file names may be in any folder. By default they are read only in the
+        package of the model and in those of `packages`, see :func:`check`.
 
     Returns
     -------
@@ -189,17 +189,18 @@ def check(
         Folders that hold the packages of ``package://`` and ``model://`` addresses; folders above the file,
         ``ROS_PACKAGE_PATH``, ``GZ_SIM_RESOURCE_PATH`` and ``AMENT_PREFIX_PATH`` are searched too.
     allow_outside : bool
-        Whether meshes may lie anywhere. By default they are read only in these folders and where the model
-        is: in the package that encloses it (marked by ``package.xml``, ``manifest.xml`` or
+        Whether meshes may be in any folder. By default they are read only in these folders and where the
+        model is: in the package that contains it (marked by ``package.xml``, ``manifest.xml`` or
         ``model.config``) or, without one, its checkout (``.git``, ``.hg``), its Python package, or its own
-        folder. If the name of this folder is ``urdf``, ``sdf``, ``mjcf``, ``xml``, ``robots`` or
-        ``worlds``, its parent folder is allowed too; another package above or beside it is read where it is
-        marked as one. Links to files elsewhere are not followed. What is not read is told in the notes of
-        the link.
+        folder. If the name of this folder is ``urdf``, ``sdf``, ``mjcf``, ``xml``, ``robots`` or ``worlds``,
+        its parent folder is allowed too; Other packages above or beside it are read too, if they are marked
+        as packages. Symbolic links to files elsewhere are not followed. The notes of the link name the files
+        that were not read.
     density : float, optional
-        Density in kg/m^3 of links for which the file says no mass: what :func:`fixed` then writes for them.
+        Density in kg/m^3 of links for which the file states no mass; :func:`fixed` writes the mass that
+        follows.
     mass : float, optional
-        Mass in kg of all these links together, shared by volume; instead of `density`.
+        Total mass in kg of these links, divided among them by volume; in place of `density`.
 
     Returns
     -------
@@ -226,7 +227,7 @@ def check(
 
 
 def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FAILURES) -> bytes:
-    """Write better values into the links that fail.
+    """Write better values into the links that fail the test.
 
     Parameters
     ----------
@@ -239,7 +240,7 @@ def fixed(robot: Robot, verdicts: Sequence[Verdict], words: Collection[str] = FA
     Returns
     -------
     bytes
-        The file; everything but the numbers of those links stands as it did.
+        The file; only the numbers of those links are changed.
 
     Examples
     --------

@@ -55,7 +55,7 @@ class Place(NamedTuple):
 
 
 class Inertial(NamedTuple):
-    """Declared mass properties, in the axes and from the origin of the link.
+    """Declared mass properties, in the axes of the link and relative to its origin.
 
     Attributes
     ----------
@@ -77,27 +77,28 @@ class Shape:
     Attributes
     ----------
     kind : str
-        ``"box"``, ``"sphere"``, ``"cylinder"``, ``"capsule"``, ``"ellipsoid"``, ``"mesh"``; any other has no
-        volume that could be told.
+        ``"box"``, ``"sphere"``, ``"cylinder"``, ``"capsule"``, ``"ellipsoid"``, ``"mesh"``; the volume of any
+        other kind is not known.
     size : tuple of float
-        Sides; radius; radius and length; radius and length of the straight part; semi-axes; scale.
+        For these kinds in this order: sides; radius; radius and length; radius and length of the straight
+        part; semi-axes; scale.
     place : Place
         Place in the link.
     role : {"collision", "visual"}
     mesh : str
         Address of a mesh, as the file has it.
     density : float
-        Weighs it against the other shapes of the link.
+        Density relative to the other shapes of the link.
     mass : float, optional
-        Its own mass, where the file gives one.
+        Mass of this shape, if the file gives one.
     where : str
-        Line, and file where that is included by another one.
+        Line in the file, with the name of the file if it is an included one.
     problem : str
-        Why the numbers of a visual shape cannot be read; "" if they can. Those of a collision shape end the
-        verdict of the link.
+        Why the numbers of a visual shape cannot be read; "" if they can. If those of a collision shape cannot
+        be read, the link is ``"unreadable"``.
     counting : str
-        How a simulator that takes the inertia from a mesh counts its matter: ``"legacy"`` or ``"convex"``
-        (MuJoCo). Any other value: the mesh is filled as it is.
+        How a simulator that computes the inertia from a mesh fills it: ``"legacy"`` or ``"convex"`` (MuJoCo).
+        For any other value the mesh is filled as it is.
     """
 
     kind: str
@@ -129,15 +130,15 @@ class Compiler(NamedTuple):
 
 
 class Joint(NamedTuple):
-    """What ties two links.
+    """A joint between two links.
 
     Attributes
     ----------
     name : str
     kind : str
-        As the file has it; ``"fixed"`` where it allows no motion.
+        Kind of the joint as in the file; ``"fixed"`` if it allows no motion.
     parent, child : str
-        Keys of links; ``"world"`` for what never moves.
+        Keys of the two links; ``"world"`` for the frame that never moves.
     """
 
     name: str
@@ -161,24 +162,26 @@ class Link:
         Why the declaration, or a shape, cannot be read; "" if they can.
     shapes : tuple of Shape
     inferred : bool
-        Whether a simulator takes the inertia from the geometry (MJCF without any, SDF where it says so).
+        Whether a simulator computes the inertia from the geometry: in MJCF if none is declared, in SDF if the
+        file says so.
     rewrite : callable, optional
-        Given the source and other mass properties, the edits that write them; None where another file
-        holds the link.
+        Function of the source and new mass properties that returns the edits of the file; None if another
+        file contains the link.
     file : str
-        The file that it stands in, where that is included by the robot's own.
+        File that contains the link, if the robot file includes it.
     folder : pathlib.Path, optional
-        Where the relative addresses of its meshes start; that of the robot by default.
+        Folder from which relative addresses of its meshes are read; that of the robot by default.
     key : str
-        What joints call it: its name with those of the models that it stands in.
+        Name of the link for joints: its own name with the names of the models that contain it.
     defaults : str
-        What the file leaves out and the format sets instead (SDF: 1 kg, the unit tensor); "" for nothing.
+        Values that the file leaves out and the format replaces by defaults (SDF: 1 kg, the unit tensor); ""
+        for none.
     is_static : bool
         Whether it belongs to a model that never moves.
     reach : float
-        How far it stands from what the file places it in, in metres.
+        Distance of the link from the frame in which the file places it, in metres.
     compiler : Compiler, optional
-        Of MJCF, where it changes anything.
+        Settings of the MJCF compiler, if they change anything.
     """
 
     name: str
@@ -212,9 +215,10 @@ class Robot:
     source : bytes
         The file.
     notes : tuple of str
-        What of the file is not judged.
+        Parts of the file that are not tested.
     roots : tuple of pathlib.Path
-        Where else its files may lie: where the file is in truth, if it was read through a link.
+        Further folders in which its files may be: the real folder of the file, if it was read through a
+        symbolic link.
     joints : tuple of Joint
     total_mass : float
         The total mass to which the MJCF compiler scales all bodies together; 0 if it does not scale.

@@ -47,7 +47,7 @@ _NEAR: Final = 0.1
 
 
 class Verdict(NamedTuple):
-    """What was found about one link.
+    """Result of the test of one link.
 
     Attributes
     ----------
@@ -62,23 +62,24 @@ class Verdict(NamedTuple):
         moves; ``"unreadable"``: a number is missing or is not a number; ``"none"``: nothing is declared, nor
         needed; ``"inferred"``: nothing is declared, and a simulator computes it from the geometry.
     reason : str
-        Which law fails and by how much.
+        The law that fails, and by how much.
     mass : float or None
-        Declared, or as the simulator computes it where it is inferred; so the moments.
+        Declared mass; for the verdict ``"inferred"`` the mass that the simulator computes. The same holds for
+        `moments`.
     moments : numpy.ndarray, shape (3,), or None
         Declared principal moments about the centre of mass, ascending.
     shape_moments : numpy.ndarray, shape (3,), or None
-        Those of the link's shapes, filled evenly with the declared mass.
+        Principal moments of the shapes of the link, filled uniformly with the declared mass.
     factor : float or None
-        The declared moment over the shape's, where it is farthest from 1.
+        Ratio of declared moment to moment of the shape, for the axis where it is farthest from 1.
     shapes : str
-        The shapes compared with: ``"collision"``, ``"visual"`` or ``""``.
+        Kind of the shapes that were compared: ``"collision"``, ``"visual"``, or ``""`` for none.
     notes : tuple of str
-        What could not be told about the geometry.
+        Remarks on the geometry, such as shapes that could not be read.
     better : Inertial or None
-        What to declare instead: that of the shape, or the nearest tensor that a body has.
+        Values to declare instead: those of the shape, or the nearest possible tensor.
     file : str
-        The file that the link stands in, where that is included by the robot's own.
+        File that contains the link, if the robot file includes it.
     """
 
     name: str

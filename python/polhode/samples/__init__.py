@@ -1,7 +1,7 @@
-"""Files to try things with, which ship with the package: meshes, molecules, a robot, a ledger, an assembly.
+"""Sample files in the package: meshes, molecules, a robot, a ledger, an assembly.
 
-``polhode samples FOLDER`` puts them into a folder. All are made for this package, by formulas or by hand, and
-may be used as the package itself.
+``polhode samples FOLDER`` copies them into a folder. They were made for this package, by formulas or by hand,
+and have the licence of the package.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def names() -> tuple[str, ...]:
 
 
 def about(name: str) -> str:
-    """Tell in a line what a file holds, with the unit of its lengths where it states none.
+    """Describe a file in one line, with the unit of its lengths if the file does not state it.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def about(name: str) -> str:
 
 
 def path(name: str) -> Path:
-    """Give the place of a file, for every function that reads one.
+    """Give the path of a file, for functions that read one.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def path(name: str) -> Path:
     Returns
     -------
     pathlib.Path
-        In the installed package: to be read, not changed.
+        Path in the installed package. The file should be read, not changed.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def path(name: str) -> Path:
 
 
 def copy(folder: str | PathLike[str]) -> tuple[Path, ...]:
-    """Put all files into a folder, which is made where there is none.
+    """Copy all files into a folder, which is created if needed.
 
     Parameters
     ----------
@@ -95,12 +95,12 @@ def copy(folder: str | PathLike[str]) -> tuple[Path, ...]:
     Returns
     -------
     tuple of pathlib.Path
-        Where they are.
+        Paths of the copies.
 
     Raises
     ------
     PolhodeError
-        Where one of the names is taken there by something else; then nothing is written.
+        If a file of one of these names exists there with another content. Nothing is written then.
     """
     from polhode.files.writing import write_bytes
 

@@ -1,7 +1,7 @@
 """Formulas instead of numbers, as expressions of SymPy (extra ``symbolic``).
 
-Shapes with their tensors, moments and axes by :func:`shape`; the theorems as functions; :func:`function`
-makes of any expression a function of arrays, whose numbers are those of the numeric core.
+:func:`shape` gives tensor, moments and axes of a shape. The theorems of rigid-body mechanics are functions of
+this module. :func:`function` turns an expression into a numeric function of arrays.
 """
 
 from __future__ import annotations

@@ -17,19 +17,19 @@ __all__ = ["function"]
 
 
 def function(expression: Any, arguments: Iterable[Any]) -> Callable[..., NDArray[np.float64]]:
-    """Make a function of arrays of an expression, a vector or a matrix.
+    """Turn an expression, a vector or a matrix into a numeric function of arrays.
 
     Parameters
     ----------
     expression : sympy.Expr or sympy.Matrix
     arguments : iterable of sympy.Symbol
-        Symbols in the order in which the function takes their values. Each symbol of the expression is among
-        them.
+        Symbols in the order in which the function takes their values. They must include every symbol of the
+        expression.
 
     Returns
     -------
     callable
-        Takes array_like values that broadcast to a shape (...). Gives numpy.ndarray of the shape (...) for
+        Function of array_like values that broadcast to a shape (...). It returns an array of shape (...) for
         an expression, (..., 3) for a vector and (..., 3, 3) for a matrix.
 
     Examples

@@ -23,7 +23,7 @@ _NAMES: Final = {"goldstein": "ZXZ", "landau": "ZXZ", "aerospace": "ZYX"}
 
 
 def parallel_axis(inertia: Any = None, mass: Any = None, displacement: Any = None) -> Any:
-    """Tensor about a point from that about the centre of mass: ``I + M (d² 1 − d dᵀ)``.
+    """Tensor about a point from the tensor about the centre of mass: ``I + M (d² 1 − d dᵀ)``.
 
     Parameters
     ----------
@@ -96,7 +96,8 @@ def kinetic_energy(
     omega, velocity : sequence of three Expr, optional
         Angular velocity, and velocity of the reference point, components in the body.
     center : sequence of three Expr, optional
-        Vector from the reference point to the centre of mass; zero where that is the reference.
+        Vector from the reference point to the centre of mass; zero if the reference point is the centre of
+        mass.
 
     Returns
     -------
@@ -124,7 +125,7 @@ def angular_momentum(
     inertia, mass, omega, velocity, center : optional
         As in `kinetic_energy`.
     position : sequence of three Expr, optional
-        X of the reference point, components in the body.
+        Position X of the reference point, components in the body.
 
     Returns
     -------
@@ -187,12 +188,13 @@ def effective_potential(inclination: Any = None) -> Any:
     Parameters
     ----------
     inclination : Expr, optional
-        θ, of the axis from the upward vertical.
+        Angle θ between the axis and the upward vertical.
 
     Returns
     -------
     Expr
-        ``I_t θ̇²/2`` and this are together constant: the energy less that of the axial spin.
+        The potential. Its sum with ``I_t θ̇²/2`` is constant: the energy minus the energy of the spin about
+        the axis.
     """
     theta = symbols.angles[1] if inclination is None else sympy.sympify(inclination)
     precession = symbols.vertical_momentum - symbols.axial_momentum * sympy.cos(theta)
@@ -258,7 +260,8 @@ def euler_rates(sequence: str = "ZXZ", frame: str = "body", angles: Any = None, 
     Returns
     -------
     Matrix, shape (3, 1)
-        Not defined where the sine of the middle angle is zero, its cosine for three different axes.
+        The rates. They are not defined where the sine of the middle angle is zero; for sequences of three
+        different axes, where its cosine is zero.
     """
     _check_frame(frame)
     (first, start), (second, middle), (third, end) = _intrinsic(sequence, _given(angles))

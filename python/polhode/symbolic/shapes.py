@@ -21,19 +21,20 @@ __all__ = ["Shape", "names", "shape"]
 
 @dataclass(frozen=True, repr=False)
 class Shape:
-    """A solid, lamina or rod of uniform density, in letters.
+    """Formulas of a solid, lamina or rod of uniform density.
 
     Attributes
     ----------
     name : str
     room : str
-        ``"solids"``, ``"laminae"`` or ``"rods"``, whose function of that name gives the numbers.
+        ``"solids"``, ``"laminae"`` or ``"rods"``: the module whose function `name` makes the same shape from
+        numbers.
     sizes : dict of str and Symbol or tuple of Symbol
-        Symbols by the arguments of that function.
+        Symbols of the sizes, by the names of the arguments of that function.
     mass : Symbol
         M.
     measure : Expr
-        Volume, area or length: M is that times the density.
+        Volume, area or length; M is the product of this and the density.
     center_of_mass : Matrix, shape (3, 1)
         Centre of mass in the axes of that function.
     inertia : Matrix, shape (3, 3)
@@ -54,7 +55,7 @@ class Shape:
 
     @property
     def arguments(self) -> tuple[Any, ...]:
-        """The letters: M, then the sizes."""
+        """The symbols: M, then the sizes."""
         flat: list[Any] = [self.mass]
         for size in self.sizes.values():
             flat += sympy.flatten([size])
@@ -74,7 +75,7 @@ class Shape:
 
     @property
     def axes(self) -> Any:
-        """Principal axes, the columns of a right-handed matrix; those of the body wherever they will do."""
+        """Principal axes, as the columns of a right-handed matrix; the body axes if possible."""
         pair, axes = self._pair(), sympy.eye(3)
         if pair is not None:
             i, j = pair
@@ -108,11 +109,11 @@ class Shape:
         return parallel_axis(self.inertia, self.mass, away)
 
     def function(self) -> Callable[..., NDArray[Any]]:
-        """Give the tensor as a function of arrays, with the values of `arguments`."""
+        """Give the tensor as a numeric function of arrays; it takes values of `arguments`."""
         return function(self.inertia, self.arguments)
 
     def latex(self) -> str:
-        r"""Tell measure and moments in LaTeX.
+        r"""Give measure and moments in LaTeX.
 
         Examples
         --------
@@ -143,12 +144,12 @@ def names() -> tuple[str, ...]:
 
 
 def shape(name: str, *, corners: int | None = None) -> Shape:
-    """Give a shape by the name of the function that makes it in numbers.
+    """Give the formulas of a shape by its name.
 
     Parameters
     ----------
     name : str
-        One of `names`, as ``"cone"``.
+        One of :func:`names`, for example ``"cone"``.
     corners : int, optional
         Number of corners of a polygon.
 

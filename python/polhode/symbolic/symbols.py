@@ -22,7 +22,7 @@ def real(names: str) -> Any:
 
 
 class Symbols(NamedTuple):
-    """The symbols that the theorems use where they are given no other.
+    """The symbols that the theorems use by default.
 
     Attributes
     ----------

@@ -1,4 +1,7 @@
-"""Uncertainty beyond a body's own sigma: of any function of a body, and of a whole tree of parts."""
+"""Uncertainty of any function of a body, probabilities of axes and modes, and ledgers of parts.
+
+`RigidBody.sigma` gives the standard deviations of a body itself.
+"""
 
 from polhode.uncertainty.joined import joined
 from polhode.uncertainty.ledger import Ledger, Part, Shares, Sigmas, ledger

@@ -61,17 +61,17 @@ class Ledger:
     depth : numpy.ndarray
         0 for the root.
     is_part : numpy.ndarray of bool
-        Whether nothing is below it.
+        Whether a node has no children.
     mass : numpy.ndarray
         Basic mass, shape (n,).
     center_of_mass : numpy.ndarray
         Shape (n, 3).
     inertia : numpy.ndarray
-        Tensors about the own centres, shape (n, 3, 3).
+        Tensor of each node about its own centre of mass, shape (n, 3, 3).
     predicted_mass : numpy.ndarray
-        Basic mass and what it is allowed to grow by, rolled up.
+        Basic mass plus mass growth allowance, rolled up.
     unstated : int
-        How many parts state no standard deviation; they count as exact.
+        Number of parts without standard deviations; these count as exact.
     """
 
     ids: tuple[str, ...]
@@ -93,7 +93,7 @@ class Ledger:
 
     @cached_property
     def bodies(self) -> RigidBody:
-        """All of them as a stack of bodies, without their uncertainties."""
+        """All nodes as a stack of bodies, without uncertainties."""
         values = np.concatenate([self._values.mass[None], self._values.center, self._values.inertia])
         return bodies_of(values[:, self._tree.place], self._rtol)
 
@@ -101,8 +101,8 @@ class Ledger:
     def covariance(self) -> Floats | None:
         """Covariances of the ten numbers, shape (n, 10, 10); None where no part states a standard deviation.
 
-        In the order mass, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz; tensors about the own centres, as
-        elements (minus the products).
+        The order is mass, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz. Tensors are about the centre of mass of
+        the node; Ixy, Ixz, Iyz are elements of the tensor (minus the products of inertia).
         """
         if self._covariances is None:
             return None
@@ -119,11 +119,13 @@ class Ledger:
 
     @property
     def growth(self) -> Floats:
-        """Mass growth allowance as a fraction of the basic mass: of an assembly, its parts' together."""
+        """Mass growth allowance as a fraction of the basic mass; for an assembly that of all parts."""
         return self.predicted_mass / self.mass - 1.0
 
     def variance_shares(self, of: str = "mass", at: str | None = None) -> Shares:
-        """Tell which part contributes what to the variance of a number: the scale that has to become better.
+        """Compute the contribution of each part to the variance of a number.
+
+        It shows which measurement to improve.
 
         Parameters
         ----------
@@ -169,7 +171,7 @@ class Ledger:
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write all rows as a table that `ledger` reads with ``overwrite=True``.
 
-        Standard deviations are in it, correlations are not; those are in what `to_json` writes.
+        It contains standard deviations but no correlations; `to_json` writes these too.
 
         Parameters
         ----------
@@ -195,7 +197,7 @@ class Ledger:
     def plot(
         self, ax: Axes | None = None, *, of: str = "mass", at: str | None = None, number: str = "mass"
     ) -> Axes:
-        """Draw who contributes mass, as a sunburst, or variance, as bars.
+        """Draw the contributions of the parts: to the mass as a sunburst, or to a variance as bars.
 
         Parameters
         ----------
@@ -236,14 +238,14 @@ class Ledger:
         return (Part(self, row) for row in range(len(self)))
 
     def walk(self, depth: int | None = None, at: str | None = None) -> Iterator[Part]:
-        """Give the nodes from the root down, each before its children.
+        """Iterate over the nodes from the root down, each before its children.
 
         Parameters
         ----------
         depth : int, optional
-            The level of the last ones, counted from the root; all by default.
+            Lowest level to visit, counted from the root; all levels by default.
         at : str, optional
-            The id of the node to begin with; the root by default.
+            Id of the first node; the root by default.
         """
         waiting = [self[self.root if at is None else at]]
         while waiting:
@@ -276,7 +278,7 @@ class Part:
     ----------
     ledger : Ledger
     row : int
-        Its row.
+        Row of the node in the ledger.
     """
 
     ledger: Ledger
@@ -289,13 +291,13 @@ class Part:
 
     @property
     def parent(self) -> Part | None:
-        """What it is part of; None for the root."""
+        """Parent of the node; None for the root."""
         name = self.ledger.parents[self.row]
         return self.ledger[name] if name else None
 
     @property
     def children(self) -> tuple[Part, ...]:
-        """Its parts, in the order of the table."""
+        """Children of the node, in the order of the table."""
         return tuple(Part(self.ledger, row) for row in self.ledger._tree.children(self.row))
 
     @property
@@ -310,7 +312,7 @@ class Part:
 
     @property
     def predicted_mass(self) -> float:
-        """Basic mass and what it is allowed to grow by."""
+        """Basic mass plus mass growth allowance."""
         return float(self.ledger.predicted_mass[self.row])
 
     @property
@@ -346,7 +348,7 @@ class Part:
         return None if sigma is None else Sigmas(*(values[self.row] for values in sigma))
 
     def with_sigma(self, number: str) -> tuple[float, float | None]:
-        """Give one of the ten numbers and its standard deviation, None where there is none.
+        """Give one of the ten numbers and its standard deviation, which is None if no part states one.
 
         Parameters
         ----------

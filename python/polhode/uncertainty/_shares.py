@@ -19,7 +19,7 @@ __all__ = ["Shares"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Shares:
-    """Who contributes what to the variance of one number: the largest first.
+    """Contributions to the variance of one number, the largest first.
 
     Attributes
     ----------
@@ -28,17 +28,17 @@ class Shares:
     at : str
         The id of the node.
     names : tuple of str
-        The part, or of parts that share a source its name.
+        Name of the part; for parts that share a source, the name of the source.
     is_source : numpy.ndarray of bool
-        Whether a name is that of a shared source.
+        Whether the name is that of a shared source.
     fraction : numpy.ndarray
-        The share of each in the variance; they sum to 1.
+        Share of each in the variance; the shares add up to 1.
     by_number : numpy.ndarray
-        The same split by the ten numbers of the part whose error it is, shape (n, 10): mass, Cx, Cy, Cz, Ixx,
-        Iyy, Izz, Ixy, Ixz, Iyz. Of a part of which a tensor about the origin, a mass of a shape or a density
-        is stated, the numbers as they are stated; a density counts as mass.
+        The same shares, divided by the ten numbers of the part, shape (n, 10): mass, Cx, Cy, Cz, Ixx, Iyy,
+        Izz, Ixy, Ixz, Iyz. If the table states a tensor about the origin, a shape with its mass, or a
+        density, the numbers are those that it states; a density counts as mass.
     sigma : float
-        The standard deviation whose square is shared.
+        Standard deviation whose square is divided into these shares.
     """
 
     of: str
@@ -53,7 +53,7 @@ class Shares:
         return len(self.names)
 
     def largest(self, row: int) -> str:
-        """Give which of the ten numbers of the part in a row contributes most."""
+        """Give the name of that number of the part in a row which contributes most."""
         return NUMBERS[int(np.argmax(self.by_number[row]))]
 
     def __repr__(self) -> str:

@@ -15,24 +15,24 @@ __all__ = ["joined"]
 
 
 def joined(values: Any) -> Any:
-    """Make one `Uncertain` of numbers among which some are uncertain; None when none is.
+    """Join numbers, some of them uncertain, into one `Uncertain`; None if none is uncertain.
 
-    Each argument that may be uncertain takes such a list too; this is what it becomes there.
+    An argument that may be uncertain also accepts such a list, and joins it in this way.
 
     Parameters
     ----------
     values : Uncertain, uncertainties.UFloat, or nested sequences of them
-        Plain numbers and arrays may stand among them. What is an `Uncertain` of an array counts as its rows.
+        Plain numbers and arrays are allowed too. An `Uncertain` of an array stands for its rows.
 
     Returns
     -------
     Uncertain or None
-        Each number depends on what it depended on before: numbers of one source stay correlated.
+        The numbers with their correlations: each depends on the same sources as before.
 
     Raises
     ------
     TypeError
-        For a rotation, a text or anything else among them that is no number.
+        For a rotation, a text or anything else that is not a number.
     ValueError
         For rows of different lengths, or a list that holds itself.
 

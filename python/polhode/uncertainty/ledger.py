@@ -1,8 +1,9 @@
-"""A ledger of parts: a tree rolled up to every level, each number with its uncertainty.
+"""A ledger of parts: mass properties of every level of a tree of parts, with uncertainties.
 
-A table says of each part its mass, centre and tensor with their standard deviations, and what it is part of.
-All centres are in one frame, that of the whole. Errors are propagated to first order with all their
-correlations: the moments of an assembly lean on the same masses and centres, and their errors go together.
+A table gives mass, centre of mass and tensor of each part with their standard deviations, and the assembly
+that the part belongs to. All centres are in one frame, that of the whole. The parts are summed up (*rolled
+up*) to every level of the tree. Errors are propagated to first order with all their correlations: the moments
+of an assembly depend on the same masses and centres, so that their errors are correlated.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def ledger(
     ignore: Collection[str] = (),
     rtol: float | None = None,
 ) -> Ledger:
-    """Roll a tree of parts up to every level, with covariances.
+    """Sum up a tree of parts to every level, with covariances.
 
     Parameters
     ----------
@@ -53,12 +54,12 @@ def ledger(
         The edges, with the columns ``child`` (or ``id``) and ``parent``, where the table has no column
         ``parent``.
     overwrite : bool, optional
-        Whether numbers that the row of an assembly states are passed over, as R massProps does; by default
-        they are an error.
+        Whether numbers in the row of an assembly are ignored, as in the R package massProps. By default they
+        are an error.
     ignore : collection of str, optional
-        Columns that are left out; others that are not known are an error.
+        Unknown columns that are ignored. Other unknown columns are an error.
     rtol : float, optional
-        How much a tensor may break the laws of bodies, relative to its largest moment; see `RigidBody`.
+        Tolerance for the tests of a tensor, relative to its largest moment; see `polhode.RigidBody`.
 
     Returns
     -------
@@ -67,7 +68,7 @@ def ledger(
     Raises
     ------
     PolhodeError
-        If the table has a bad row or the rows are no tree; the message names the line, the law and the
+        If the table has a bad row, or the rows are not a tree. The message names the line, the law and the
         number.
 
     Notes

@@ -29,14 +29,15 @@ AROUND: Final = np.array([-9.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 9.0])
 
 
 class AxisProbabilities(NamedTuple):
-    """How probable it is for each principal axis to be the one of the least, middle or greatest moment.
+    """Probabilities that an axis is that of the least, intermediate or greatest moment.
 
     Attributes
     ----------
     least, intermediate, greatest : numpy.ndarray, shape (..., 3)
-        Probabilities of the axes of ``body.principal``, as they are; the three of one axis add up to one.
+        Probabilities for each axis of ``body.principal``; the three probabilities of one axis add up to one.
     stable : numpy.ndarray, shape (..., 3)
-        That a steady spin about the axis is stable: that its moment is not the intermediate one.
+        Probability that a steady spin about the axis is stable, that is, that its moment is not the
+        intermediate one.
     """
 
     least: Floats
@@ -49,14 +50,15 @@ class AxisProbabilities(NamedTuple):
 
 
 class ModeProbabilities(NamedTuple):
-    """How probable the two modes of a free motion are.
+    """Probabilities of the two modes of a free motion.
 
     Attributes
     ----------
     long_axis, short_axis : float or numpy.ndarray, shape (...)
-        That the angular velocity circles axis 1, of the least moment, or axis 3; together one.
+        Probability that the angular velocity circles axis 1, of the least moment, and that it circles axis 3.
+        They add up to one.
     linear : bool or numpy.ndarray, shape (...)
-        Whether the first order is enough, by which they are found.
+        Whether the first order is enough, with which they are computed.
     """
 
     long_axis: Any
@@ -68,7 +70,7 @@ class ModeProbabilities(NamedTuple):
 
 
 def axis_probabilities(body: RigidBody) -> AxisProbabilities:
-    """Tell how probable it is for each principal axis to be the one of the least, middle and greatest moment.
+    """Compute the probabilities that an axis is that of the least, intermediate or greatest moment.
 
     The moments about the body's principal axes are taken as jointly normal, to first order.
 
@@ -84,7 +86,7 @@ def axis_probabilities(body: RigidBody) -> AxisProbabilities:
     Raises
     ------
     ValueError
-        For a body without one.
+        For a body without a covariance.
 
     Examples
     --------
@@ -118,9 +120,9 @@ def axis_probabilities(body: RigidBody) -> AxisProbabilities:
 
 
 def mode_probabilities(motion: FreeMotion) -> ModeProbabilities:
-    """Tell how probable it is that a free body rotates about its long or its short axis.
+    """Compute the probabilities of long-axis mode and short-axis mode of a free motion.
 
-    By the sign of ``1 − 2T I₂/L²``, which is taken as normal.
+    The mode follows from the sign of ``1 − 2T I₂/L²``, which is taken as normally distributed.
 
     Parameters
     ----------

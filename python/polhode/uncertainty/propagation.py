@@ -38,19 +38,21 @@ SMALL: Final = 1e-12
 
 
 class Propagated(NamedTuple):
-    """What a function of an uncertain body is worth.
+    """Value of a function of an uncertain body, with its uncertainty.
 
     Attributes
     ----------
     value : float or numpy.ndarray
-        Value of the body itself for ``"linear"``; the mean for ``"second-order"`` and ``"monte-carlo"``.
+        For ``"linear"`` the function of the body itself; for ``"second-order"`` and ``"monte-carlo"`` the
+        mean.
     sigma : float or numpy.ndarray
         Standard deviations, of the same shape.
     covariance : numpy.ndarray, shape (k, k)
         Covariance of the k numbers of the value in C order.
     linear : bool or numpy.ndarray of bool
-        Whether the first order is enough for each number, within about a percent of its sigma. Draws need
-        less: False only where the body's own second order leads elsewhere than the draws.
+        Whether the first order is enough for each number, to about a percent of its sigma. For
+        ``"monte-carlo"`` it is False only where the distribution of the random bodies does not fit the second
+        order of the body.
     """
 
     value: Any
@@ -77,23 +79,23 @@ def propagate(
     Parameters
     ----------
     f : callable
-        Takes the body, and the values of `arguments` after it; gives a number or an array of numbers,
-        always of the same shape.
+        Function of the body and of the values of `arguments`. It returns a number, or an array of numbers of
+        constant shape.
     body : RigidBody or None
         One body; without `arguments` it must carry a covariance. None for a function of the arguments alone.
     method : {"linear", "second-order", "monte-carlo"}
-        First order, by differences along the principal directions of the covariance; mean and covariance to
-        second order; or draws of bodies.
+        ``"linear"``: to first order, by differences along the principal directions of the covariance.
+        ``"second-order"``: mean and covariance to second order. ``"monte-carlo"``: from random bodies.
     arguments : sequence of Uncertain, optional
-        Other numbers that the function takes, such as an angular velocity. What comes from one source with
-        them or with the body stays one source.
+        Further numbers that the function takes, such as an angular velocity. Sources of error that they share
+        with each other or with the body are respected.
     n : int, optional
         How many draws.
     seed : int, optional
         Seed of the draws; the same seed gives the same draws. Required for ``"monte-carlo"``.
     progress : bool or callable, optional
-        A function of the fraction done, or whether to show a bar; by default on a terminal after two
-        seconds.
+        A function that is called with the fraction done, or whether to show a progress bar. By default a bar
+        appears on a terminal after two seconds.
 
     Returns
     -------
@@ -106,12 +108,15 @@ def propagate(
 
     Notes
     -----
-    The function is asked about 4 k + 130 times to first order, k the rank of the covariance, at most 10 for
-    a body alone; 2 k² + 6 k + 130 times to second order; n + 4 k + 65 times by draws. Draws are normal in the
-    ten numbers, and drawn again where no body has them; or, where the body's own second order is nearer to
-    that, as of a body that is turned or has no extent along an axis, in principal moments and small angles
-    of the axes. For draws of what a body is made of, make it inside of `f`, and give those numbers as
-    `arguments` and None as `body`.
+    Let k be the rank of the covariance, at most 10 for a body alone. The function is called about 4 k + 130
+    times to first order, 2 k² + 6 k + 130 times to second order, and n + 4 k + 65 times for random bodies.
+
+    Random bodies are normally distributed in the ten numbers; numbers that no body can have are drawn again.
+    For some bodies, such as one that is turned or has no extent along an axis, a normal distribution in the
+    principal moments and in small angles of the axes fits the second order better, and is used instead.
+
+    To draw the numbers that a body is made of, make the body inside `f`, pass these numbers as `arguments`,
+    and None as `body`.
 
     Examples
     --------

@@ -29,7 +29,7 @@ _MET: Final[dict[tuple[int, int], Any]] = {}
 
 
 class TenNumbers(NamedTuple):
-    """A body's numbers as `uncertainties` has them.
+    """The numbers of a body, as numbers of the package *uncertainties*.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ def _words(variable: Any) -> tuple[int, int]:
 
 
 def to_ufloats(body: RigidBody) -> TenNumbers:
-    """Give the numbers of one body to the package `uncertainties`, with all correlations among them.
+    """Give the numbers of one body as numbers of the package *uncertainties*, with all their correlations.
 
     Parameters
     ----------
@@ -89,13 +89,13 @@ def to_ufloats(body: RigidBody) -> TenNumbers:
     Returns
     -------
     TenNumbers
-        Mass, centre of mass and tensor about it. Numbers of `uncertainties` that the body was made of are
-        those that it depends on.
+        Mass, centre of mass and tensor about the centre of mass. They are correlated with those numbers of
+        *uncertainties* that the body was made of.
 
     Raises
     ------
     ModuleNotFoundError
-        Without the package; the error names the extra that installs it.
+        If the package is not installed; the message names the extra that installs it.
     ValueError
         For a stack.
 

@@ -1,8 +1,8 @@
 """Windows in three dimensions with pyvista (extra ``view``).
 
-Every function takes ``plotter=`` and returns it. ``plotter.show()`` opens the window, in a notebook too;
-without a screen, ``plotter.screenshot(path)`` of a ``pyvista.Plotter(off_screen=True)`` draws a picture. The
-colours are those of :mod:`polhode.plot`.
+Every function takes the argument ``plotter=`` and returns the plotter. ``plotter.show()`` opens the window,
+in a notebook too. Without a screen, use ``pyvista.Plotter(off_screen=True)`` and its method
+``screenshot(path)``. The colours are those of :mod:`polhode.plot`.
 """
 
 from __future__ import annotations

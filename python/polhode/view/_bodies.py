@@ -96,7 +96,7 @@ def principal_axes(
     length : float
         Length from the centre to each tip.
     center : array_like, shape (3,), optional
-        Where to show the centre of mass; where it is by default.
+        Where to show the centre of mass; at its own position by default.
     labels : tuple of str
         Labels at the tips, in the order of ascending moments.
     name : str
@@ -137,9 +137,10 @@ def ellipsoid(
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default.
     size : float
-        Length of the longest semi-axis. They are as 1/√I_k; that of a zero moment has no end and is cut.
+        Length of the longest semi-axis. The semi-axes are proportional to 1/√I_k; for a zero moment the
+        ellipsoid is infinitely long and is cut off.
     center : array_like, shape (3,), optional
-        Where to show the centre of mass; where it is by default.
+        Where to show the centre of mass; at its own position by default.
     opacity : float
         Opacity of the surface, from 0 to 1.
     name : str
@@ -188,8 +189,8 @@ def rigid_body(
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default.
     shape : (vertices, faces), optional
-        A mesh of the body in its frame, (n, 3) and (m, 3). By default what the body was made of, see
-        :func:`polhode.animation.animate`.
+        A mesh of the body in its frame, (n, 3) and (m, 3). By default the shape from which the body was made,
+        see :func:`polhode.animation.animate`.
     opacity : float
         Opacity of the ellipsoid, from 0 to 1.
 

@@ -45,33 +45,34 @@ def motion(
     time_unit: str = "s",
     name: str = "motion",
 ) -> Plotter:
-    """Show the motion of one body about its point of reference, with ω, its path in space, and L.
+    """Show the motion of one body about its reference point, with ω, the path of ω in space, and L.
 
-    L is with that of wheels, which is also shown by itself, as h. Wheels are drawn as
-    :func:`polhode.animation.animate` does.
+    L includes the angular momentum of wheels, which is also shown by itself as h. Wheels are drawn as in
+    :func:`polhode.animation.animate`.
 
-    In a window the slider chooses the time and the space bar lets the motion run and stop.
+    In a window, the slider chooses the time, and the space bar starts and stops the motion.
 
     Parameters
     ----------
     trajectory : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
-        Motion of one body. Where nothing acts on it, what is shown are as many states of its motion as it
-        needs; else its samples, between which the body should turn by no more than 30 degrees.
+        Motion of one body. For a torque-free motion as many states are shown as needed. For any other motion
+        its samples are shown, between which the body should turn by no more than 30 degrees.
     plotter : pyvista.Plotter, optional
-        Where to show it; a new one by default. On one that shows the motion already, another `at` moves it.
+        Where to show it; a new one by default. If it shows the motion already, another `at` sets its time.
     end : float, optional
         For a motion in closed form, which has no times of its own: the motion is shown from 0 to this time.
-        Of a gyrostat its wheels turn then one by one; the states of one tell their momentum alone.
+        The wheels of a `polhode.GyrostatMotion` turn one by one; its states at given times have only the sum
+        of their momenta.
     at : float, optional
-        Time to begin with, as the nearest state that is shown has it; the start by default.
+        Time to begin with, rounded to the nearest state that is shown; the start by default.
     shape : (vertices, faces), optional
-        A mesh of the body in its frame, (n, 3) and (m, 3). By default what the body was made of, see
-        :func:`polhode.animation.animate`.
+        A mesh of the body in its frame, (n, 3) and (m, 3). By default the shape from which the body was made,
+        see :func:`polhode.animation.animate`.
     duration : float, optional
-        Seconds that the whole motion takes when it runs; by default 10, and more where the body would turn by
-        more than 20 degrees from one picture to the next.
+        Duration of the whole motion on the screen, in seconds. By default 10, or more so that the body turns
+        by at most 20 degrees from picture to picture.
     title, time_unit : str
-        As the viewer reads them.
+        Title and unit of time as they are shown.
     name : str
         Name of the actors; another motion of that name is replaced.
 
@@ -82,7 +83,8 @@ def motion(
     Raises
     ------
     ValueError
-        If the body turns by half a turn or more from one sample to the next: it would seem to turn backward.
+        If the body turns by half a turn or more from one sample to the next, since it would seem to turn
+        backward.
 
     Warns
     -----

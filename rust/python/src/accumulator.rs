@@ -15,14 +15,14 @@ use crate::errors::to_py;
 use crate::particles::{ParticleArrays, watched};
 use crate::stack::Stack;
 
-/// Particles in chunks: for files larger than memory, streams, and many machines at a time.
+/// Sum of particles in chunks: for files larger than memory, for streams, and for many machines.
 ///
-/// Add the chunks, then `finish` gives the body of all of them; what is kept meanwhile is a few
-/// kilobytes. Second moments are kept in twice the precision, since there is no second pass over a
-/// stream: a rod 1e-8 as thick as long keeps its smallest moment to 1e-14. However the particles are
-/// cut into chunks, and in whatever order chunks with a `start` come, the result has the same bits.
+/// Add the chunks one by one; `finish` then gives the body. Only a few kilobytes are kept between the chunks.
+/// Second moments are summed in twice the precision, since a stream cannot be read a second time: the
+/// smallest moment of a rod with a thickness of 1e-8 of its length is accurate to 1e-14. The result has the
+/// same bits for any division into chunks, and for any order of chunks that have a `start`.
 ///
-/// Accumulators pickle: each worker adds its own chunks, and their accumulators are merged.
+/// Accumulators can be pickled: each worker adds its own chunks, and then the accumulators are merged.
 ///
 /// Examples
 /// --------
@@ -65,16 +65,16 @@ impl PyMassAccumulator {
     /// positions : array_like, shape (n, 3)
     ///     Positions of the particles. Arrays of dask, zarr, h5py and memory maps are not loaded as a whole.
     /// start : int, optional
-    ///     The number of the first of these particles in the whole; by default they come after the last one.
-    ///     With it chunks may come in any order, and from several accumulators that are merged.
+    ///     Number of the first of these particles among all particles; by default it is the next number. With
+    ///     `start` the chunks may come in any order, and from several accumulators that are merged.
     ///
     /// Raises
     /// ------
     /// InvalidInertiaError
-    ///     Naming the particle, counted within the chunk, whose mass is negative.
+    ///     When a mass is negative; the message names the particle, counted within the chunk.
     /// PolhodeError
-    ///     When a particle with the same number is there already. After any error nothing of the chunk is
-    ///     added.
+    ///     When a particle with the same number has been added before. After any error nothing of the chunk
+    ///     is added.
     ///
     /// Examples
     /// --------
@@ -118,7 +118,7 @@ impl PyMassAccumulator {
         added.map_err(|error| to_py(py, &error))
     }
 
-    /// Add what another accumulator holds, which stays as it is.
+    /// Add the particles of another accumulator, which is not changed.
     ///
     /// Chunks that were added with a `start` keep their places. Those of an accumulator without places come
     /// after the last particle here; then the last bits may depend on how accumulators were merged.
@@ -161,7 +161,7 @@ impl PyMassAccumulator {
     /// InvalidInertiaError
     ///     When the total mass is not positive.
     /// PolhodeError
-    ///     When particles before the last have not been added.
+    ///     When a particle is missing before the last one.
     fn finish(&self, py: Python<'_>) -> PyResult<PyRigidBody> {
         let body = py.detach(|| self.lock().finish());
         Ok(Stack::one(body.map_err(|error| to_py(py, &error))?).into())
@@ -169,9 +169,9 @@ impl PyMassAccumulator {
 
     /// Bounds on the errors of the principal moments of the body that `finish` returns.
     ///
-    /// They hold against exact arithmetic on the very floats that were added, and are worst cases, mostly
-    /// far above the actual errors. Of a rod thinner than 1e-8 of its length they say how far the
-    /// smallest moment can be trusted.
+    /// An error is the difference from the result of exact arithmetic with the same input. The bounds are
+    /// worst cases, mostly far above the actual errors. They tell, for example, how accurate the smallest
+    /// moment of a rod thinner than 1e-8 of its length is.
     ///
     /// Returns
     /// -------
@@ -189,7 +189,7 @@ impl PyMassAccumulator {
         write(py, &Stack::one(bounds.map_err(|error| to_py(py, &error))?))
     }
 
-    /// How many particles have been added.
+    /// Number of particles that have been added.
     #[getter]
     fn count(&self, py: Python<'_>) -> u64 {
         py.detach(|| self.lock().count())

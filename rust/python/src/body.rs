@@ -14,9 +14,9 @@ pub(crate) type Doubts = Option<Arc<Vec<Doubt>>>;
 
 /// A rigid body, or a stack of bodies: mass, centre of mass C, inertia tensor about C.
 ///
-/// Everything is expressed in the body frame B with origin O. Only possible bodies exist: the
-/// tensor must be symmetric, have no negative principal moment about C and obey the triangle
-/// inequality, all relative to its own size. Values never change; operations return new bodies.
+/// Everything is expressed in the body frame B with origin O. A tensor that no body can have is an error: it
+/// must be symmetric, have no negative principal moment about C, and obey the triangle inequality, all
+/// relative to its own size. A body is immutable; operations return new bodies.
 ///
 /// Parameters
 /// ----------
@@ -26,24 +26,24 @@ pub(crate) type Doubts = Option<Arc<Vec<Doubt>>>;
 ///     Tensor about C, ``I_ij = ∫ (r² δ_ij − r_i r_j) dm``: off-diagonal elements are *minus* the
 ///     products of inertia.
 /// center_of_mass : array_like, shape (..., 3), optional
-///     C from the origin of the body frame; the origin by default.
+///     Vector from the origin of the body frame to C; zero by default.
 /// inertia_about_origin : array_like, shape (..., 3, 3), optional
 ///     Tensor about O, in place of `inertia` (give exactly one of the two).
 /// rtol : float, optional
-///     Admits tables printed to few digits: asymmetry and violations of the triangle inequality
-///     up to this fraction. By default only rounding is admitted, 16 ε of the trace.
+///     Tolerance for tables printed to few digits: asymmetry and violations of the triangle inequality up to
+///     this fraction are accepted. By default only rounding errors are, 16 ε of the trace.
 ///
 /// Raises
 /// ------
 /// InvalidInertiaError
-///     Naming the law that fails and by how much.
+///     If no body can have these properties. The message tells which law fails and by how much.
 ///
 /// Notes
 /// -----
-/// Leading axes stack and broadcast as in NumPy, and ``body[index]`` picks from a stack. Other ways
+/// Leading axes stack and broadcast as in NumPy, and ``body[index]`` takes bodies out of a stack. Other ways
 /// to a body: `from_principal`, `from_particles`, `from_mesh`, `from_tetrahedra`, `from_density`,
-/// `from_file`, and :mod:`polhode.solids`, :mod:`polhode.laminae`, :mod:`polhode.rods`. A principal moment below 16 ε of the trace is stored as exactly zero,
-/// since a float64 tensor cannot tell it from zero.
+/// `from_file`, and :mod:`polhode.solids`, :mod:`polhode.laminae`, :mod:`polhode.rods`. A principal moment
+/// below 16 ε of the trace is stored as exactly zero, since a float64 tensor cannot tell it from zero.
 ///
 /// Examples
 /// --------

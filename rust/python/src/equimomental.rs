@@ -12,8 +12,8 @@ use crate::stack::{Broadcast, Stack};
 impl PyRigidBody {
     /// The smallest set of equal positive masses with the body's mass, centre of mass and inertia tensor.
     ///
-    /// Under the same forces they move as the body does. Their number is the rank of the second moment
-    /// plus one: four for a solid, three for a lamina, two for a rod, one for a point.
+    /// Joined rigidly, the particles move like the body under the same forces. Their number is the rank of
+    /// the second moment plus one: four for a solid, three for a lamina, two for a rod, one for a point.
     ///
     /// Returns
     /// -------
@@ -23,7 +23,7 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// InvalidInertiaError
-    ///     For a body that was admitted (``rtol=``) with moments that no masses have.
+    ///     For a body that was accepted within `rtol` although no distribution of mass has its moments.
     /// ValueError
     ///     For a stack whose bodies need different numbers of particles.
     ///
@@ -57,17 +57,19 @@ impl PyRigidBody {
     }
 }
 
-/// A stick as three particles in a row, at distances a and b from its centre of mass on either side, and there.
+/// A stick as three particles on a line: at the distance a and at the distance b on opposite sides of its
+/// centre of mass, and at the centre of mass.
 ///
-/// ``m₁ = I₀/(a (a+b))``, ``m₂ = I₀/(b (a+b))``, ``m₀ = m − I₀/(a b)``. They have the stick's mass, centre
-/// of mass and moment about every axis across it: ``I₀ + m x²`` at the distance x.
+/// ``m₁ = I₀/(a (a+b))``, ``m₂ = I₀/(b (a+b))``, ``m₀ = m − I₀/(a b)``. They have the mass and the centre of
+/// mass of the stick, and the same moment about every axis perpendicular to it: ``I₀ + m x²`` at the distance
+/// x.
 ///
 /// Parameters
 /// ----------
 /// mass : array_like, shape (...)
 ///     m, positive.
 /// inertia : array_like, shape (...)
-///     I₀, about an axis across the stick through its centre of mass; zero or more.
+///     Moment I₀ about an axis perpendicular to the stick through its centre of mass; zero or more.
 /// a, b : array_like, shape (...)
 ///     Positive; their product at least I₀/m.
 ///
@@ -79,11 +81,12 @@ impl PyRigidBody {
 /// Raises
 /// ------
 /// PolhodeError
-///     Where m₀ would be negative, with the least product of the distances.
+///     If m₀ would be negative; the message tells the least product of the distances.
 ///
 /// Examples
 /// --------
-/// A uniform stick of length 6 as particles at its ends and its middle: one sixth, one sixth, two thirds.
+/// A uniform stick of length 6 as particles at its ends and its middle, with one sixth, one sixth and two
+/// thirds of its mass:
 ///
 /// >>> from polhode import equimomental
 /// >>> equimomental.stick(mass=12.0, inertia=36.0, a=3.0, b=3.0).masses

@@ -22,7 +22,7 @@ use crate::stack::{Broadcast, Stack};
 /// frame : {"body", "space"}, optional
 ///     The frame whose axes the components of the result refer to.
 /// degrees : bool, optional
-///     Angles and rates are in degrees; the result is in radians per time all the same.
+///     Angles and rates are in degrees; the result is in radians per unit of time in any case.
 ///
 /// Returns
 /// -------
@@ -31,9 +31,9 @@ use crate::stack::{Broadcast, Stack};
 ///
 /// Notes
 /// -----
-/// For ZXZ in the body (φ̇ sin θ sin ψ + θ̇ cos ψ, φ̇ sin θ cos ψ − θ̇ sin ψ, φ̇ cos θ + ψ̇), in space
-/// (θ̇ cos φ + ψ̇ sin θ sin φ, θ̇ sin φ − ψ̇ sin θ cos φ, φ̇ + ψ̇ cos θ); of either the square is
-/// φ̇² + θ̇² + ψ̇² + 2 φ̇ ψ̇ cos θ.
+/// For ZXZ in the body (φ̇ sin θ sin ψ + θ̇ cos ψ, φ̇ sin θ cos ψ − θ̇ sin ψ, φ̇ cos θ + ψ̇), in space (θ̇
+/// cos φ + ψ̇ sin θ sin φ, θ̇ sin φ − ψ̇ sin θ cos φ, φ̇ + ψ̇ cos θ); the square of either is φ̇² + θ̇² + ψ̇²
+/// + 2 φ̇ ψ̇ cos θ.
 ///
 /// Examples
 /// --------
@@ -76,10 +76,10 @@ pub(crate) fn angular_velocity_from_euler_rates<'py>(
 /// frame : {"body", "space"}, optional
 ///     The frame whose axes the components of `omega` refer to.
 /// singular : {"raise", "nan"}, optional
-///     What to do where the first and third angle turn about the same axis (sine of the middle angle, or
-///     cosine for three different axes, below 1e-12): raise, or give NaN for the rates of these two.
+///     What to do if the first and third angle turn about the same axis (sine of the middle angle, or cosine
+///     for three different axes, below 1e-12): raise, or give NaN for the rates of these two.
 /// degrees : bool, optional
-///     The angles are in degrees, and so are the rates; `omega` is in radians per time all the same.
+///     The angles are in degrees, and so are the rates; `omega` is in radians per unit of time in any case.
 ///
 /// Returns
 /// -------

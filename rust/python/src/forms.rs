@@ -18,7 +18,7 @@ type Array<'py> = PyResult<Floats<'py>>;
 
 #[pymethods]
 impl PyRigidBody {
-    /// Body from a table that gives *positive* products of inertia, as many CAD and aerospace tables do.
+    /// Body from a table with *positive* products of inertia, as in many CAD and aerospace tables.
     ///
     /// Parameters
     /// ----------
@@ -29,7 +29,7 @@ impl PyRigidBody {
     ///     Pxy, Pxz, Pyz in this order, ``P_xy = ∫ x y dm``: the tensor's off-diagonal elements are minus these.
     /// center_of_mass : array_like, shape (..., 3), optional
     /// rtol : float, optional
-    ///     Admits violations of the triangle inequality up to this fraction.
+    ///     Tolerance: violations of the triangle inequality up to this fraction are accepted.
     ///
     /// Returns
     /// -------
@@ -99,7 +99,7 @@ impl PyRigidBody {
 ///
 /// See Also
 /// --------
-/// polhode.RigidBody.from_positive_products : the way back.
+/// polhode.RigidBody.from_positive_products : the inverse function.
 ///
 /// Examples
 /// --------
@@ -150,7 +150,7 @@ pub(crate) fn to_pseudo_inertia<'py>(py: Python<'py>, body: &PyRigidBody) -> Arr
 /// pseudo_inertia : array_like, shape (..., 4, 4)
 ///     ``[[∫ r rᵀ dm, m c], [m cᵀ, m]]``.
 /// rtol : float, optional
-///     Admits asymmetry and violations of the triangle inequality up to this fraction.
+///     Tolerance: asymmetry and violations of the triangle inequality up to this fraction are accepted.
 ///
 /// Returns
 /// -------
@@ -173,7 +173,8 @@ pub(crate) fn from_pseudo_inertia(
     try_rows(pseudo_inertia.py(), &rows, body).map(PyRigidBody::from)
 }
 
-/// Spatial inertia about the origin: the matrix of momentum over velocity, of the point at the origin.
+/// Spatial inertia about the origin: the matrix that gives the spatial momentum from the spatial velocity of
+/// the point at the origin.
 ///
 /// Parameters
 /// ----------
@@ -209,7 +210,8 @@ pub(crate) fn to_spatial_inertia<'py>(
 /// order : {"angular-linear", "linear-angular"}
 ///     ``[[I_O, m c×], [−m c×, m 1]]`` (Featherstone, Drake), or ``[[m 1, −m c×], [m c×, I_O]]`` (Pinocchio).
 /// rtol : float, optional
-///     Admits deviations from that structure and from the triangle inequality up to this fraction.
+///     Tolerance: deviations from this structure and violations of the triangle inequality up to this
+///     fraction are accepted.
 ///
 /// Returns
 /// -------
@@ -264,7 +266,7 @@ pub(crate) fn to_parameters<'py>(py: Python<'py>, body: &PyRigidBody) -> Array<'
 /// parameters : array_like, shape (..., 10)
 ///     m, m cx, m cy, m cz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz, with *minus* the products off the tensor's diagonal.
 /// rtol : float, optional
-///     Admits violations of the triangle inequality up to this fraction.
+///     Tolerance: violations of the triangle inequality up to this fraction are accepted.
 ///
 /// Returns
 /// -------
@@ -286,7 +288,7 @@ pub(crate) fn from_parameters(
     try_rows(parameters.py(), &rows, body).map(PyRigidBody::from)
 }
 
-/// Log-Cholesky parameters: any ten numbers are those of a possible body.
+/// Log-Cholesky parameters: ten numbers without constraints, any values of which belong to a possible body.
 ///
 /// The pseudo-inertia about the origin is ``J = U Uᵀ`` with
 /// ``U = e^α [[e^d1, s12, s13, t1], [0, e^d2, s23, t2], [0, 0, e^d3, t3], [0, 0, 0, 1]]``.
@@ -294,7 +296,7 @@ pub(crate) fn from_parameters(
 /// Parameters
 /// ----------
 /// body : RigidBody
-///     A body with a thickness: of a lamina or rod there is no logarithm.
+///     A body with a thickness: for a lamina or a rod a logarithm is infinite.
 ///
 /// Returns
 /// -------

@@ -23,8 +23,8 @@ use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
 
 /// The motion of a body, or of a stack of bodies, on which no torque acts about its centre of mass.
 ///
-/// Made by `RigidBody.free_motion`. Exact at any time, by theta functions: a state a million rotations away costs
-/// as much as one close by, and is as accurate. Values never change.
+/// Made by `RigidBody.free_motion`. The motion is in closed form, by theta functions: a state after a million
+/// rotations takes as long to compute as one near the start, and is as accurate. The object is immutable.
 ///
 /// Attributes
 /// ----------
@@ -35,7 +35,7 @@ use crate::uncertain::{PyUncertain, StartGiven, UncertainStart};
 /// quaternion : numpy.ndarray, shape (..., 4)
 ///     Attitude R_NB at t = 0 as (x, y, z, w).
 /// uncertain_start : tuple of Uncertain or None
-///     Angular velocity and attitude at t = 0 where they were given with a sigma, else None.
+///     Angular velocity and attitude at t = 0 as `Uncertain`, each None where it was given without a sigma.
 /// shape : tuple of int
 ///     Shape of the stack of motions: bodies, angular velocities and attitudes broadcast together.
 ///
@@ -98,7 +98,7 @@ impl PyFreeMotion {
 
 #[pymethods]
 impl PyRigidBody {
-    /// The motion of the body when no torque acts about its centre of mass: Euler's problem, exact at any time.
+    /// The motion of the body when no torque acts about its centre of mass (Euler's problem), in closed form.
     ///
     /// Parameters
     /// ----------
@@ -120,8 +120,9 @@ impl PyRigidBody {
     ///
     /// Notes
     /// -----
-    /// What defines the body is taken as exact, its principal moments or its tensor, and carried on in
-    /// twice the precision. A body without moment about an axis keeps its angular velocity along it.
+    /// The numbers that define the body, its principal moments or its tensor, are taken as exact, and the
+    /// constants of the motion are computed from them in twice the precision. About an axis with zero moment,
+    /// the angular velocity stays constant.
     ///
     /// Examples
     /// --------
@@ -149,14 +150,15 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyFreeMotion {
-    /// Angular velocity at t = 0.
+    /// Angular velocity of the body relative to space at t = 0, components in the body frame, in radians per unit
+    /// of time, shape (..., 3).
     #[getter]
     fn omega<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let omegas = write_of(py, &self.motions, |motion| motion.initial.omega)?;
         Ok(omegas.into_any())
     }
 
-    /// Attitude at t = 0.
+    /// Attitude R_NB at t = 0 as a unit quaternion (x, y, z, w), shape (..., 4).
     #[getter]
     fn quaternion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let attitude = |motion: &FreeMotion| components(&motion.initial.attitude);
@@ -169,7 +171,7 @@ impl PyFreeMotion {
         self.uncertain.to_python(py)
     }
 
-    /// The shape of the stack of motions.
+    /// Shape of the stack of motions, as a tuple of int; ``()`` for one motion.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.motions.shape)
@@ -180,24 +182,25 @@ impl PyFreeMotion {
     /// Parameters
     /// ----------
     /// t : array_like
-    ///     Times of any shape and in any order, negative ones too; every motion is asked at each.
+    ///     Times of any shape and in any order, negative ones too; each motion is evaluated at each time.
     ///
     /// Returns
     /// -------
     /// Trajectory
-    ///     Its ``omega`` and ``quaternion`` have the shape of the stack, then that of `t`, then their
-    ///     components. The quaternion is continuous in time. A time that is not finite gives NaN; one after more than 2⁸⁸ turns,
-    ///     of which nothing would be known, is refused.
-    ///     At times of dask: an `xarray.Dataset` that is computed later, chunk by chunk, with the same bits.
+    ///     The axes of its ``omega`` and ``quaternion`` are those of the stack, then those of `t`, then the
+    ///     components. The quaternion is continuous in time. A time that is not finite gives NaN. A time
+    ///     after more than 2⁸⁸ turns is an error: no digit of the phase is known there. If `t` is a dask
+    ///     array, the result is an `xarray.Dataset` that is computed later, chunk by chunk, with the same
+    ///     bits.
     ///
     /// Notes
     /// -----
-    /// The GIL is released, many states run on all cores, and Ctrl-C ends the run. A state has the
-    /// same bits alone and among others.
+    /// The computation releases the GIL and uses all cores for many states; Ctrl-C ends it. A state has the
+    /// same bits whether it is computed alone or together with others.
     ///
     /// Examples
     /// --------
-    /// In a flat disk the angular velocity circles once while it spins once:
+    /// A flat disk that wobbles: in the body, ω goes once round the axis while the disk spins once:
     ///
     /// >>> import numpy as np
     /// >>> from polhode import laminae

@@ -15,14 +15,16 @@ use crate::body::PyRigidBody;
 use crate::shape::tuple;
 use crate::stack::{Broadcast, Stack};
 
-/// A body with constant angular momentum inside, or a stack of them: made by `RigidBody.gyrostat`. Values never change.
+/// A gyrostat, or a stack of them: a rigid body with wheels or rotors that carry angular momentum.
+///
+/// Made by `RigidBody.gyrostat`. The object is immutable.
 ///
 /// Attributes
 /// ----------
 /// body : RigidBody
-///     The body, or the stack of them, its wheels locked.
+///     The body, or the stack of them, with its wheels locked.
 /// momentum : numpy.ndarray, shape (..., 3)
-///     What was given as such and ``J Ω a`` of the wheels, in the body frame. Free wheels add ``J a a·ω`` of the start.
+///     Angular momentum inside while the body does not turn, components in the body frame.
 /// inertia : numpy.ndarray, shape (..., 3, 3)
 ///     The tensor of the motion: that of the body less ``J a aᵀ`` of free wheels.
 /// wheels : tuple of Wheel
@@ -115,14 +117,15 @@ fn with_wheel(
 
 #[pymethods]
 impl PyRigidBody {
-    /// The body with constant angular momentum inside: a gyrostat.
+    /// A gyrostat: this body with constant angular momentum inside.
     ///
     /// Parameters
     /// ----------
     /// momentum : array_like, shape (..., 3), optional
-    ///     Momentum relative to the body, held constant, components in the body frame.
+    ///     Angular momentum relative to the body that is held constant, components in the body frame.
     /// wheels : sequence of Wheel, optional
-    ///     What :func:`polhode.wheel` makes. The inertia of this body includes them as if they were locked.
+    ///     Wheels, made by :func:`polhode.wheel`. The inertia of this body includes them as if they were
+    ///     locked.
     ///
     /// Returns
     /// -------
@@ -132,12 +135,12 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// InvalidInertiaError
-    ///     When free wheels have more moment than the body.
+    ///     When free wheels have a larger moment of inertia than the body.
     ///
     /// Notes
     /// -----
-    /// Momentum that is held obeys ``I ω̇ + ω×(I ω + h) = 0``. A free wheel keeps ``h = J (Ω + a·ω)`` instead, and I
-    /// becomes ``I − J a aᵀ``.
+    /// If h is held constant, the equation of motion is ``I ω̇ + ω×(I ω + h) = 0``. For a free wheel ``h = J
+    /// (Ω + a·ω)`` is constant instead, and I is replaced by ``I − J a aᵀ``.
     ///
     /// Examples
     /// --------
@@ -176,7 +179,10 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyGyrostat {
-    /// Momentum inside at rest.
+    /// Angular momentum inside while the body does not turn: the given momentum and ``J Ω a`` of the wheels.
+    ///
+    /// Components in the body frame, shape (..., 3). For a free wheel the momentum in the motion is ``J (Ω +
+    /// a·ω) a``.
     #[getter]
     fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let momentum =
@@ -184,7 +190,7 @@ impl PyGyrostat {
         Ok(write_of(py, &self.gyrostats, momentum)?.into_any())
     }
 
-    /// The shape of the stack.
+    /// Shape of the stack, as a tuple of int; ``()`` for one.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.gyrostats.shape)

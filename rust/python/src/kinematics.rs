@@ -20,26 +20,29 @@ pub(crate) fn parse_frame(word: &str) -> PyResult<Frame> {
     }
 }
 
-/// Rate of a vector in the inertial frame from its rate in a turning one: ``(dA/dt)_N = (dA/dt)_F + Ω×A``.
+/// Rate of change of a vector in the inertial frame from that in a rotating frame: ``(dA/dt)_N = (dA/dt)_F +
+/// Ω×A``.
 ///
 /// Parameters
 /// ----------
 /// rate_in_frame : array_like, shape (..., 3)
-///     Derivatives of the components of A in the turning frame F.
+///     Derivatives with respect to time of the components of A in the rotating frame F.
 /// vector : array_like, shape (..., 3)
 ///     A.
 /// frame_omega : array_like, shape (..., 3)
-///     Ω, the angular velocity of F relative to N; with ``-frame_omega`` the same formula leads from N
-///     back to F.
+///     Ω, the angular velocity of F relative to the inertial frame N. With ``-frame_omega`` the same formula
+///     leads from N to F.
 ///
 /// Returns
 /// -------
 /// numpy.ndarray, shape (..., 3)
-///     In the same axes as the three arguments, whichever these are. A row with a NaN gives NaN.
+///     Rate of change in N. All arguments and the result have components along the same axes. A row with a
+///     NaN gives NaN.
 ///
 /// Examples
 /// --------
-/// The torque that keeps a body spinning askew: its angular momentum stays as it is in the body.
+/// The torque that keeps ω constant in a body whose ω is not along a principal axis. Its angular momentum is
+/// then constant in the body:
 ///
 /// >>> from polhode import kinematics, solids
 /// >>> box, omega = solids.box((1, 2, 3), mass=12.0), (1.0, 0.0, 1.0)

@@ -22,7 +22,7 @@ type Theorem = fn(&Matrix3<f64>, f64, &Vector3<f64>) -> Matrix3<f64>;
 /// mass : array_like, shape (...)
 ///     Zero or more.
 /// displacement : array_like, shape (..., 3)
-///     d, from C to P or from P to C, in the axes of the tensor.
+///     Vector d from C to P, or from P to C, in the axes of the tensor.
 ///
 /// Returns
 /// -------
@@ -38,8 +38,8 @@ type Theorem = fn(&Matrix3<f64>, f64, &Vector3<f64>) -> Matrix3<f64>;
 ///
 /// Notes
 /// -----
-/// The theorem holds *from* C: between two other points go through C. Of bodies, which know their C,
-/// `RigidBody.inertia_about` asks for the point alone.
+/// The theorem holds only from or to the centre of mass C. Between two other points, apply it twice, through
+/// C. For a body, `polhode.RigidBody.inertia_about` needs only the point.
 ///
 /// Examples
 /// --------
@@ -70,7 +70,7 @@ pub(crate) fn inertia_from_center_of_mass<'py>(
 /// mass : array_like, shape (...)
 ///     Zero or more.
 /// displacement : array_like, shape (..., 3)
-///     d, from P to the centre of mass C or back, in the axes of the tensor.
+///     Vector d from P to C, or from C to P, in the axes of the tensor.
 ///
 /// Returns
 /// -------
@@ -86,8 +86,8 @@ pub(crate) fn inertia_from_center_of_mass<'py>(
 ///
 /// Notes
 /// -----
-/// The difference loses digits when P is many radii of gyration away, and whether it is the tensor of
-/// any body is not asked: ``RigidBody(mass, inertia_about_origin=...)`` does.
+/// The difference loses digits if the distance of P from C is many radii of gyration. It is not tested
+/// whether the result can be the tensor of a body; ``RigidBody(mass, inertia_about_origin=...)`` tests this.
 ///
 /// Examples
 /// --------

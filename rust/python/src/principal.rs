@@ -30,15 +30,15 @@ type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 ///     the smallest to the largest floats. A tensor with an element that is not finite gives NaN in
 ///     its own row only.
 /// canonical : bool, optional
-///     Turn the axes that are free because moments are equal (to 1e-6 of the largest) to the body
-///     axes of largest projection; a spherical top gets the body axes themselves.
+///     Whether to choose those axes that equal moments (to 1e-6 of the largest) leave free by the directions
+///     of the body axes, as :meth:`polhode.PrincipalAxes.canonical` does.
 ///
 /// Returns
 /// -------
 /// PrincipalAxes
 ///     ``moments`` (..., 3), ascending, and ``axes`` (..., 3, 3), whose columns are the axes: right-handed,
-///     ``inertia = axes @ diag(moments) @ axes.T``. In columns 0 and 1 the first component as large as
-///     the largest (to 1e-8) is positive.
+///     ``inertia = axes @ diag(moments) @ axes.T``. The signs: in columns 0 and 1 the component of largest
+///     size is positive (the first such, if several are equal to 1e-8).
 ///
 /// Raises
 /// ------
@@ -47,9 +47,9 @@ type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 ///
 /// Notes
 /// -----
-/// Errors are a few units in the last place of the largest moment; small moments of graded tensors, and
-/// the axes of nearly spherical ones, are accurate relative to their own size. A row's bits do not
-/// depend on its neighbours, nor on the number of threads.
+/// Errors are a few units in the last place of the largest moment; small moments of graded tensors (whose
+/// elements differ much in size) are accurate relative to their own size, and so are the axes of nearly
+/// spherical tensors. A row's bits do not depend on its neighbours, nor on the number of threads.
 ///
 /// Examples
 /// --------
@@ -92,7 +92,7 @@ pub(crate) fn principal_axes<'py>(
     results(py)?.call1((moments, axes))
 }
 
-/// Principal moments of symmetric tensors, without the axes and in less time.
+/// Principal moments of symmetric tensors, without the axes; faster than `principal_axes`.
 ///
 /// Parameters
 /// ----------
@@ -102,7 +102,7 @@ pub(crate) fn principal_axes<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray, shape (..., 3)
-///     Ascending; to the last bits those of `principal_axes`.
+///     Ascending; equal to those of `principal_axes` but for the last bits.
 ///
 /// Raises
 /// ------

@@ -178,8 +178,8 @@ pub(crate) fn cylinder(
 
 /// Inside of a closed triangle mesh.
 ///
-/// Where the mesh is not star-shaped about its centroid, a density is also asked for outside of it, where
-/// parts of opposite sign cancel; each face takes 343 evaluations or more.
+/// If the mesh is not star-shaped about its centroid, the density is also evaluated at points outside the
+/// mesh, whose contributions cancel. Each face takes 343 evaluations or more.
 ///
 /// Parameters
 /// ----------

@@ -102,8 +102,8 @@ pub(crate) fn quaternion_from_euler_angles<'py>(
 /// sequence : str, optional
 ///     As in `to_quaternion`.
 /// singular : {"raise", "nan"}, optional
-///     What to do where the first and third angle are not defined (sine of the middle angle, or cosine
-///     for three different axes, below 1e-12): raise, or give NaN for these two.
+///     What to do if the first and third angle are not defined (sine of the middle angle, or cosine for three
+///     different axes, below 1e-12): raise, or give NaN for these two.
 /// degrees : bool, optional
 ///     Give degrees.
 ///
@@ -120,7 +120,7 @@ pub(crate) fn quaternion_from_euler_angles<'py>(
 ///
 /// Notes
 /// -----
-/// A quaternion that is not a number, as a failed row of an ensemble has it, gives angles that are not.
+/// A quaternion with a NaN, as that of a failed member of an ensemble, gives NaN.
 ///
 /// Examples
 /// --------

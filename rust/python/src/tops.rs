@@ -23,13 +23,13 @@ use crate::stack::{Broadcast, Stack};
 /// Parameters
 /// ----------
 /// body : RigidBody
-///     Two principal moments equal to `rtol`, of which the mean is taken.
+///     A body with two principal moments that are equal within `rtol`; their mean is used.
 /// omega : array_like, shape (..., 3)
 ///     Angular velocity relative to space, components in the body frame.
 /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
 ///     The centre of mass of a body that moves freely, or a point fixed in space, without torque.
 /// rtol : float, optional
-///     Moments closer than this times the largest count as equal.
+///     Moments that differ by less than `rtol` times the largest count as equal.
 ///
 /// Returns
 /// -------
@@ -42,7 +42,7 @@ use crate::stack::{Broadcast, Stack};
 ///
 /// Examples
 /// --------
-/// A plate that wobbles goes up and down twice while it spins once:
+/// A plate that wobbles a little: the wobble goes round twice while the plate spins once:
 ///
 /// >>> from polhode import solids, tops
 /// >>> plate = solids.cylinder(radius=0.1, height=0.0, mass=0.2)
@@ -85,20 +85,21 @@ pub(crate) fn free_precession<'py>(
         .call1(parts)
 }
 
-/// What a small slug does to the nutation of a free symmetric top: the energy-sink model and the major-axis rule.
+/// Damping of the nutation of a free symmetric top by a small slug: the energy-sink model and the major-axis
+/// rule.
 ///
 /// The angle θ between the symmetry axis and L follows ``tan θ = tan θ0 exp(rate t)``, to first order in the moment of the slug.
 ///
 /// Parameters
 /// ----------
 /// body : RigidBody
-///     Two principal moments equal to `rtol`, of which the mean is taken.
+///     A body with two principal moments that are equal within `rtol`; their mean is used.
 /// momentum : array_like, shape (...)
 ///     The length of L.
 /// inertia, damping : array_like, shape (...)
-///     Those of :func:`polhode.loads.slug`.
+///     Moment J of the slug and coefficient k, as for :func:`polhode.loads.slug`.
 /// rtol : float, optional
-///     Moments closer than this times the largest count as equal.
+///     Moments that differ by less than `rtol` times the largest count as equal.
 ///
 /// Returns
 /// -------
@@ -111,7 +112,7 @@ pub(crate) fn free_precession<'py>(
 ///
 /// Examples
 /// --------
-/// A rod that spins about its axis goes over into a flat spin, a disk comes to rest in its nutation:
+/// A rod that spins about its axis goes over into a flat spin; the nutation of a disk is damped:
 ///
 /// >>> from polhode import RigidBody, tops
 /// >>> for moments in [(0.5, 1.0, 1.0), (1.0, 1.0, 1.8)]:
@@ -155,27 +156,30 @@ pub(crate) fn nutation_damping<'py>(
 
 /// Least spin with which a heavy symmetric top precesses steadily: ``2 √(I_t m g l cos θ)/I_s``.
 ///
-/// Upright (inclination zero, the default) it is the sleeping limit: the top stands stably where
-/// ``I_s² ω_s² ≥ 4 I_t m g l``. Below the horizontal every spin will do, and the least is zero.
+/// For the upright top (inclination zero, the default) it is the limit of the sleeping top: the top is stable
+/// if ``I_s² ω_s² ≥ 4 I_t m g l``. For an axis below the horizontal any spin is possible, and the result is
+/// zero.
 ///
 /// Parameters
 /// ----------
 /// body : RigidBody
 ///     A symmetric top whose axis passes through the origin of the body frame, the pivot.
 /// gravity : array_like, shape (..., 3)
-///     Only its size matters.
+///     Gravitational acceleration; only its magnitude matters.
 /// inclination : array_like, shape (...), optional
-///     θ, of the axis, from the pivot to the centre of mass, from the upward vertical, in radians.
+///     Angle θ between the upward vertical and the axis, which points from the pivot to the centre of mass,
+///     in radians unless `degrees`.
 /// rtol : float, optional
-///     Moments closer than this times the largest count as equal, and the pivot as lying on the axis when it
-///     is nearer to it than this times the radius of gyration.
+///     Moments that differ by less than `rtol` times the largest count as equal. The pivot counts as lying on
+///     the axis if its distance from the axis is less than `rtol` times the radius of gyration.
 /// degrees : bool, optional
 ///     The inclination is in degrees.
 ///
 /// Returns
 /// -------
 /// float or numpy.ndarray, shape (...)
-///     ω_s, the component of ω along the axis; infinite for a body without moment about it.
+///     ω_s, the component of ω along the axis, in radians per unit of time; infinite for a body without
+///     moment about the axis.
 ///
 /// Raises
 /// ------
@@ -215,7 +219,8 @@ pub(crate) fn least_spin<'py>(
     write_numbers(py, &spins)
 }
 
-/// Rates of the two steady precessions of a heavy symmetric top, the roots of ``I_t φ̇² cos θ − I_s ω_s φ̇ + m g l = 0``.
+/// Rates φ̇ of the two steady precessions of a heavy symmetric top, the roots of ``I_t φ̇² cos θ − I_s ω_s φ̇
+/// + m g l = 0``.
 ///
 /// Parameters
 /// ----------
@@ -224,9 +229,9 @@ pub(crate) fn least_spin<'py>(
 /// spin : array_like, shape (...)
 ///     ω_s, the component of ω along the axis, from the pivot to the centre of mass.
 /// inclination : array_like, shape (...)
-///     θ, of the axis from the upward vertical, in radians.
+///     Angle θ between the axis and the upward vertical, in radians unless `degrees`.
 /// gravity : array_like, shape (..., 3)
-///     Only its size matters.
+///     Gravitational acceleration; only its magnitude matters.
 /// rtol : float, optional
 ///     As in `least_spin`.
 /// degrees : bool, optional
@@ -235,7 +240,7 @@ pub(crate) fn least_spin<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray, shape (..., 2)
-///     φ̇ about the upward vertical, slow and fast.
+///     Slow and fast rate φ̇ about the upward vertical, in radians per unit of time.
 ///
 /// Raises
 /// ------

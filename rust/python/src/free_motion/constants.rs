@@ -62,9 +62,9 @@ impl PyFreeMotion {
     /// "short-axis".
     ///
     /// Spherical and symmetric bodies have equal moments. A steady spin is along a principal axis. In
-    /// long-axis mode (``L² < 2T I₂``) the angular velocity circles in the body about axis 1, that of the least
-    /// moment; in short-axis mode (``L² > 2T I₂``) about axis 3; on the separatrix (exactly equal) it goes to
-    /// the intermediate axis for ever. A string, or an array of them for a stack.
+    /// long-axis mode (``L² < 2T I₂``) the angular velocity circles in the body about axis 1, that of the
+    /// least moment; in short-axis mode (``L² > 2T I₂``) about axis 3; on the separatrix (both sides exactly
+    /// equal) it approaches the intermediate axis for ever. A string, or an array of them for a stack.
     ///
     /// Examples
     /// --------
@@ -77,13 +77,13 @@ impl PyFreeMotion {
         write_words_of(py, &self.motions, |motion| motion.mode.as_str(), "<U10")
     }
 
-    /// Angular momentum about the centre of mass, components in space, shape (..., 3): constant.
+    /// Angular momentum L about the centre of mass, components in space, shape (..., 3). It is constant.
     #[getter]
     fn angular_momentum<'py>(&self, py: Python<'py>) -> Array<'py> {
         write_of(py, &self.motions, FreeMotion::angular_momentum)
     }
 
-    /// Kinetic energy of the rotation, ½ ω·I ω: constant.
+    /// Kinetic energy of the rotation, ½ ω·I ω. It is constant.
     #[getter]
     fn kinetic_energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, Invariants::kinetic_energy)
@@ -106,7 +106,7 @@ impl PyFreeMotion {
         self.numbers(py, Invariants::modulus)
     }
 
-    /// k′ = √(1 − k²), with all its digits near the separatrix.
+    /// Complementary modulus k′ = √(1 − k²), accurate near the separatrix too.
     #[getter]
     fn complementary_modulus<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, Invariants::complementary_modulus)
@@ -117,9 +117,9 @@ impl PyFreeMotion {
     /// Returns
     /// -------
     /// Periods
-    ///     ``rotation`` P_ψ, after which ω is again where it was in the body; ``precession`` P_φ, the mean period of
-    ///     axis 1 about L; ``flip``, from one turning over of the intermediate axis to the next; ``rates``, the mean
-    ///     precession of each principal axis.
+    ///     ``rotation``: P_ψ, after which the components of ω in the body repeat. ``precession``: P_φ, the
+    ///     mean period of axis 1 about L. ``flip``: time from one turning over of the intermediate axis to
+    ///     the next. ``rates``: mean rate of precession of each principal axis about L.
     ///
     /// Examples
     /// --------
@@ -153,8 +153,8 @@ impl PyFreeMotion {
 
     /// Least and greatest angle between each principal axis and L, in radians, shape (..., 3, 2).
     ///
-    /// The range of the Euler angle θ of that axis, with L along z. NaN without angular momentum; on the
-    /// separatrix the bounds that are approached.
+    /// This is the range of the Euler angle θ of that axis, with L along z. On the separatrix the bounds are
+    /// limits, which the motion approaches. NaN without angular momentum.
     ///
     /// Examples
     /// --------
@@ -174,13 +174,13 @@ impl PyFreeMotion {
         })
     }
 
-    /// Body cone and space cone: half their openings, least and greatest.
+    /// Half opening angles of the body cone and of the space cone, least and greatest, in radians.
     ///
     /// Returns
     /// -------
     /// Cones
-    ///     ``axis``, which principal axis is circled (0 or 2); ``body``, shape (..., 2), between ω and that
-    ///     axis; ``space``, shape (..., 2), between ω and L.
+    ///     ``axis``: index of the principal axis that ω circles, 0 or 2. ``body``, shape (..., 2): angles
+    ///     between ω and that axis. ``space``, shape (..., 2): angles between ω and L.
     ///
     /// Examples
     /// --------
@@ -209,9 +209,10 @@ impl PyFreeMotion {
 
     /// Stability of the steady spins about the principal axes with this angular momentum, shape (..., 3).
     ///
-    /// Squared frequency, seen from the body, of small oscillations about a spin with ``ω = L/I_k`` about axis
-    /// k, as `RigidBody.stability` gives it for one rate. Negative: unstable. NaN for an axis with zero moment, about
-    /// which no spin has that angular momentum.
+    /// For axis k it is the squared frequency, seen from the body, of small oscillations about a spin with
+    /// ``ω = L/I_k``, in (radians per unit of time)². If it is negative, the spin is unstable.
+    /// `RigidBody.stability` gives it for a spin rate instead. NaN for an axis with zero moment: no spin
+    /// about it has angular momentum.
     ///
     /// Examples
     /// --------
@@ -239,14 +240,15 @@ impl PyFreeMotion {
     /// Parameters
     /// ----------
     /// n : int, optional
-    ///     How many points, at least two; the last is the first again.
+    ///     Number of points, at least two; the last point is equal to the first.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (..., n, 3)
-    ///     Angular velocities, components in the body frame, from that at t = 0 in the sense of the motion, in equal
-    ///     steps of the amplitude of the elliptic functions. A constant angular velocity is repeated. On the separatrix
-    ///     the limit of the curves beside it.
+    ///     Angular velocities, components in the body frame. The first is that at t = 0; the others follow in
+    ///     the sense of the motion, in equal steps of the amplitude of the elliptic functions. If the angular
+    ///     velocity is constant, all points are equal. On the separatrix the curve is the limit of the
+    ///     polhodes next to it.
     ///
     /// Examples
     /// --------

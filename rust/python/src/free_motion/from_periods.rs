@@ -14,24 +14,26 @@ use crate::uncertain::UncertainStart;
 
 #[pymethods]
 impl PyRigidBody {
-    /// The free motion that has two given periods, as the light curve of a tumbling asteroid gives them.
+    /// The free motion with two given periods, as they are found from the light curve of a tumbling asteroid.
     ///
     /// Parameters
     /// ----------
     /// rotation_period : array_like, shape (...)
-    ///     P_ψ: of the rotation about the long axis (axis 1, of the least moment) in long-axis mode; of its swinging to
-    ///     and fro in short-axis mode. After it the angular velocity is again where it was in the body.
+    ///     P_ψ: time after which the components of the angular velocity in the body repeat. In long-axis mode
+    ///     it is the period of the rotation about the long axis (axis 1, of the least moment); in short-axis
+    ///     mode that of the swing of the long axis to and fro.
     /// precession_period : array_like, shape (...)
-    ///     P_φ: mean period of the long axis about L, in both modes.
+    ///     P_φ: mean time in which the long axis goes once round L, in both modes.
     /// mode : {"long-axis", "short-axis"}, optional
     ///     Whether the angular velocity circles axis 1 or axis 3 in the body.
     /// sense : {1, -1}, optional
-    ///     The side of that axis the angular velocity is.
+    ///     Sign of the component of the angular velocity along that axis.
     /// phase : array_like, shape (...), optional
-    ///     Fraction of the rotation period that has passed at t = 0 since the angular velocity lay in the plane of axes 1
-    ///     and 3, on the positive side of the one that is not circled.
+    ///     Phase at t = 0, as a fraction of the rotation period. At phase 0 the angular velocity is in the
+    ///     plane of axes 1 and 3, and its component along the axis that it does not circle is positive.
     /// angular_momentum_direction : array_like, shape (..., 3), optional
-    ///     In space, of any length. The long axis starts with the Euler angle φ = 0 about it.
+    ///     Direction of L in space, as a vector of any length. At t = 0 the Euler angle φ of the long axis
+    ///     about L is 0.
     ///
     /// Returns
     /// -------
@@ -40,16 +42,18 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// PolhodeError
-    ///     For a body that has no such mode, or a ratio of periods out of its reach, with the range.
+    ///     If the body has no such mode, or if no motion has this ratio of periods. The message tells the
+    ///     possible range.
     ///
     /// Notes
     /// -----
-    /// The ratio P_ψ/P_φ grows from its value for a steady spin about the circled axis to infinity at the separatrix, so
-    /// at most one motion has it.
+    /// The ratio P_ψ/P_φ has its least value for a steady spin about the circled axis, and grows to infinity
+    /// at the separatrix. So at most one motion has a given ratio.
     ///
     /// Examples
     /// --------
-    /// Toutatis, of its shape's moments and its periods in days: the long axis nods between 49.18° and 50.10° from L.
+    /// Toutatis, with the moments of its shape and its periods in days. The angle between the long axis and L
+    /// varies between 49.18° and 50.10°:
     ///
     /// >>> import numpy as np
     /// >>> from polhode import RigidBody

@@ -56,8 +56,9 @@ impl PyFreeMotion {
     /// Returns
     /// -------
     /// numpy.ndarray, shape (..., 3)
-    ///     ω, components in space: the shape of the stack, then that of `t`. Its component along L is constant, the
-    ///     distance of the plane; across, it stays in the ring that `poinsot` tells. In general it never closes.
+    ///     ω, components in space; the axes are those of the stack, then those of `t`. The component of ω
+    ///     along L is constant: it is the distance of the invariable plane from C. In that plane the curve
+    ///     stays in a ring, whose radii `poinsot` gives. In general the curve never closes.
     ///
     /// Examples
     /// --------
@@ -115,7 +116,7 @@ impl PyFreeMotion {
         tuple(py, "Poinsot", parts)
     }
 
-    /// What small changes at the start, or of the moments, have become at a time: exact derivatives, at any time.
+    /// Derivatives of the state at a time by the initial state and by the principal moments, in closed form.
     ///
     /// Parameters
     /// ----------
@@ -125,21 +126,25 @@ impl PyFreeMotion {
     /// Returns
     /// -------
     /// Sensitivity
-    ///     ``state``, shape (..., 6, 6): of (δ, ω) at `t` by (δ, ω) at t = 0, where δ is a small rotation from the
-    ///     attitude, ``R → R exp(δ×)``, components in the body frame, in radians. ``moments``, shape (..., 6, 3): by the
-    ///     principal moments, ascending, with principal axes and initial state held.
+    ///     ``state``, shape (..., 6, 6): derivatives of (δ, ω) at `t` by (δ, ω) at t = 0. δ is a small
+    ///     rotation from the attitude R, ``R → R exp(δ×)``, components in the body frame, in radians.
+    ///     ``moments``, shape (..., 6, 3): derivatives of (δ, ω) at `t` by the principal moments in ascending
+    ///     order; principal axes and initial state stay fixed.
     ///
     /// Notes
     /// -----
-    /// By closed forms, no differences and no integration: the addition theorems of the elliptic functions give ω, and the
-    /// conservation of momentum and energy the attitude, so a time a million rotations away costs and is as accurate
-    /// as one close by, a few ε relative to the largest derivative in units of the spin rate. Symmetric and
-    /// spherical bodies, steady spins and the separatrix are limits without loss. `moments` is NaN for a body with a zero
-    /// moment, which has no neighbour on one side; far out on the separatrix derivatives that overflow are NaN.
+    /// No finite differences are taken and no equation is integrated. The addition theorems of the elliptic
+    /// functions give ω; the conservation of angular momentum and energy gives the attitude. The derivatives
+    /// after a million rotations therefore take as long to compute as those near the start. Their error is
+    /// the same too: a few ε relative to the largest derivative, in units of the spin rate.
+    ///
+    /// Symmetric and spherical bodies, steady spins and the separatrix are limits, which are taken without
+    /// loss of digits. `moments` is NaN for a body with a zero moment, since no moment can be negative. After
+    /// a long time on the separatrix some derivatives overflow; these are NaN.
     ///
     /// Examples
     /// --------
-    /// A disturbance of a spin about the intermediate axis grows as the theory of small ones says:
+    /// A small disturbance of a spin about the intermediate axis grows as the linear theory says:
     ///
     /// >>> import numpy as np
     /// >>> from polhode import RigidBody
@@ -162,7 +167,7 @@ impl PyFreeMotion {
         tuple(py, "Sensitivity", parts)
     }
 
-    /// How well the state at a time is determined by what it is computed from.
+    /// Bounds on the errors of the state at a time that errors of the start and of the moments cause.
     ///
     /// Parameters
     /// ----------
@@ -175,15 +180,16 @@ impl PyFreeMotion {
     /// Returns
     /// -------
     /// ErrorBar
-    ///     Bounds, to first order and in the worst directions, on the angle by which the ``attitude`` is off, in
-    ///     radians, and on the length of the error of ``omega``. The error of the computation itself is far
-    ///     smaller: it takes its input as exact. With it grows what the phases are known to, 2⁻⁹⁰ of the turns made,
-    ///     which is in the bounds even with ``rtol=0``. Infinite where nothing is known. A zero moment is taken as
-    ///     known.
+    ///     Bounds to first order, for errors in the worst directions: ``attitude`` bounds the angle by which
+    ///     the attitude is wrong, in radians; ``omega`` bounds the length of the error of the angular
+    ///     velocity. The computation takes its input as exact, and its own error is far smaller. One part of
+    ///     it grows with time: the error of the phases, 2⁻⁹⁰ of the angle turned. The bounds include it, even
+    ///     with ``rtol=0``. A bound is infinite where nothing is known about the state. A moment of zero is
+    ///     taken as exact.
     ///
     /// Examples
     /// --------
-    /// Moments known to a part in a thousand tell the attitude for a few dozen turns:
+    /// Moments that are known to one part in a thousand determine the attitude for a few dozen turns:
     ///
     /// >>> from polhode import RigidBody
     /// >>> brick = RigidBody.from_principal(mass=1.0, moments=(1.0, 2.0, 2.5))

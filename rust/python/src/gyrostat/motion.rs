@@ -22,8 +22,8 @@ use crate::uncertain::{StartGiven, UncertainStart};
 
 /// The motion of a gyrostat, or of a stack of them, on which no torque acts about its centre of mass.
 ///
-/// Made by `Gyrostat.free_motion`. Exact at any time, by theta functions: a state a million rotations away costs
-/// as much as one close by, and is as accurate. Values never change.
+/// Made by `Gyrostat.free_motion`. The motion is in closed form, by theta functions: a state after a million
+/// rotations takes as long to compute as one near the start, and is as accurate. The object is immutable.
 ///
 /// Attributes
 /// ----------
@@ -83,7 +83,7 @@ impl PyGyrostatMotion {
 
 #[pymethods]
 impl PyGyrostat {
-    /// The motion when no torque acts about the centre of mass, exact at any time.
+    /// The motion when no torque acts about the centre of mass, in closed form.
     ///
     /// Parameters
     /// ----------
@@ -101,14 +101,15 @@ impl PyGyrostat {
     /// Raises
     /// ------
     /// PolhodeError
-    ///     When `omega` is not finite, `attitude` is not a rotation, the body has a moment that is zero, or more digits
-    ///     than seven of sixteen are lost.
+    ///     When `omega` is not finite, `attitude` is not a rotation, the body has a zero moment, or more than
+    ///     seven of sixteen digits would be lost.
     ///
     /// Notes
     /// -----
-    /// ω has two errors. One is rounding times the ratio of the largest moment to the least: it counts for thin bodies that
-    /// do not turn fast about their long axis. The other is 1e-31 times the momentum inside over a moment: it counts for
-    /// bodies that hardly turn. :meth:`RigidBody.simulate` under :func:`polhode.loads.rotor` has neither.
+    /// The error of ω has two parts. The first is the rounding error times the ratio of the largest moment to
+    /// the least. It matters for thin bodies that do not turn fast about their long axis. The second is 1e-31
+    /// times h/I, the momentum inside divided by a moment. It matters for bodies that hardly turn.
+    /// :meth:`RigidBody.simulate` under :func:`polhode.loads.rotor` has neither.
     ///
     /// Examples
     /// --------
@@ -146,64 +147,70 @@ impl PyGyrostatMotion {
         self.gyrostat.get().body.clone_ref(py)
     }
 
-    /// Angular velocity at t = 0.
+    /// Angular velocity of the body relative to space at t = 0, components in the body frame, in radians per unit
+    /// of time, shape (..., 3).
     #[getter]
     fn omega<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(write_of(py, &self.motions, |motion| motion.initial.omega)?.into_any())
     }
 
-    /// Attitude at t = 0.
+    /// Attitude R_NB at t = 0 as a unit quaternion (x, y, z, w), shape (..., 4).
     #[getter]
     fn quaternion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let attitude = |motion: &GyrostatMotion| components(&motion.initial.attitude);
         Ok(write_of(py, &self.motions, attitude)?.into_any())
     }
 
-    /// The shape of the stack of motions.
+    /// Shape of the stack of motions, as a tuple of int; ``()`` for one motion.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.motions.shape)
     }
 
-    /// How the gyrostat moves: the first that fits of "steady", "circular", "separatrix", "paired", "single".
+    /// Kind of motion: the first that applies of "steady", "circular", "separatrix", "paired", "single".
     ///
-    /// In the body the angular momentum L runs along a curve on a sphere, on which the energy is constant. Steady: it
-    /// rests. Circular: elliptic functions are sines, as for equal moments or a symmetric body with its momentum along the
-    /// axis. On the separatrix it approaches an unstable steady spin for ever. Else there are two closed curves with this
-    /// energy and it is on one of them (paired, as free bodies always are), or there is one alone (single). A string, or an
-    /// array of them for a stack.
+    /// In the body frame, L moves on a sphere, along a curve of constant energy. Steady: L rests. Circular:
+    /// the elliptic functions are sines, as for equal moments or for a symmetric body with its momentum along
+    /// the axis. Separatrix: L approaches an unstable steady spin for ever. Paired: two closed curves have
+    /// this energy, and L moves on one of them, as always for a free body. Single: only one closed curve has
+    /// this energy. A string, or an array of them for a stack.
     #[getter]
     fn mode<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         write_words_of(py, &self.motions, |motion| motion.mode.as_str(), "<U10")
     }
 
-    /// The time after which ω and L are again where they were in the body; infinite where they rest or never return.
+    /// Time after which the components of ω and L in the body repeat; infinite where they are constant or
+    /// never repeat.
     #[getter]
     fn period<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, |motion| motion.period.rounded())
     }
 
-    /// Mean rate in radians at which the body turns about L, seen whenever ω has come back; known but for whole turns in
-    /// a period.
+    /// Mean rate, in radians per unit of time, at which the body precesses about L.
+    ///
+    /// It is the angle that the body has turned about L after one period of ω, divided by that period. The
+    /// angle is known only up to whole turns.
     #[getter]
     fn mean_precession<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, |motion| motion.mean_precession.rounded())
     }
 
-    /// Angular momentum about the centre of mass, components in space, shape (..., 3): constant, wheels included.
+    /// Angular momentum L about the centre of mass with that of the wheels, components in space, shape (...,
+    /// 3). It is constant.
     #[getter]
     fn angular_momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         write_of(py, &self.motions, |motion| motion.angular_momentum)
     }
 
-    /// The kinetic energy that is constant, ``½ ω·(I − Σ J a aᵀ) ω`` with the sum over free wheels: without that of the
-    /// wheels in their own rotation.
+    /// Kinetic energy without that of the wheels in their own rotation: ``½ ω·(I − Σ J a aᵀ) ω``, with the
+    /// sum over the free wheels. It is constant.
     #[getter]
     fn kinetic_energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, |motion| motion.kinetic_energy)
     }
 
-    /// The constant momentum h inside, components in the body frame, shape (..., 3); of free wheels ``J (Ω + a·ω)``.
+    /// Constant angular momentum h inside, components in the body frame, shape (..., 3); for a free wheel it
+    /// is ``J (Ω + a·ω)`` along its axis.
     #[getter]
     fn rotor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         write_of(py, &self.motions, |motion| {
@@ -216,20 +223,21 @@ impl PyGyrostatMotion {
     /// Parameters
     /// ----------
     /// t : array_like
-    ///     Times of any shape and in any order, negative ones too; every motion is asked at each.
+    ///     Times of any shape and in any order, negative ones too; each motion is evaluated at each time.
     ///
     /// Returns
     /// -------
     /// Trajectory
-    ///     Its ``omega`` and ``quaternion`` have the shape of the stack, then that of `t`, then their
-    ///     components. The quaternion is continuous in time. A time that is not finite gives NaN; one after more than 2⁸⁸ turns,
-    ///     of which nothing would be known, is refused. Its angular momentum includes the wheels.
-    ///     At times of dask: an `xarray.Dataset` that is computed later, chunk by chunk, with the same bits.
+    ///     The axes of its ``omega`` and ``quaternion`` are those of the stack, then those of `t`, then the
+    ///     components. The quaternion is continuous in time. A time that is not finite gives NaN. A time
+    ///     after more than 2⁸⁸ turns is an error: no digit of the phase is known there. The angular momentum
+    ///     of the trajectory includes the wheels. If `t` is a dask array, the result is an `xarray.Dataset`
+    ///     that is computed later, chunk by chunk, with the same bits.
     ///
     /// Notes
     /// -----
-    /// The GIL is released, many states run on all cores, and Ctrl-C ends the run. A state has the
-    /// same bits alone and among others.
+    /// The computation releases the GIL and uses all cores for many states; Ctrl-C ends it. A state has the
+    /// same bits whether it is computed alone or together with others.
     fn at<'py>(slf: &Bound<'py, Self>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let (py, this) = (slf.py(), slf.get());
         if is_any(&[Some(t)])

@@ -16,8 +16,7 @@ use crate::stack::Stack;
 
 #[pymethods]
 impl PyGyrostat {
-    /// The steady rotations that have one length of L = I ω + h: where they are, whether they are stable, and where
-    /// their number changes.
+    /// All steady rotations with a given length of L = I ω + h, and whether they are stable.
     ///
     /// Parameters
     /// ----------
@@ -27,12 +26,14 @@ impl PyGyrostat {
     /// Returns
     /// -------
     /// Equilibria
-    ///     Two, four or six of them; of a body with two equal moments some may be circles.
+    ///     Two, four or six steady rotations. For a body with two equal moments, an entry may stand for a
+    ///     circle of them.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     For a stack, and for free wheels, whose h depends on ω at the start: a motion has `equilibria` too.
+    ///     For a stack. For free wheels too, since their h depends on ω at the start; use
+    ///     :attr:`GyrostatMotion.equilibria`.
     ///
     /// Examples
     /// --------
@@ -62,7 +63,10 @@ impl PyGyrostat {
         table(py, found)
     }
 
-    /// The tensor of the motion in the body frame, shape (..., 3, 3): without what free wheels have about their axes.
+    /// Inertia tensor in the equations of motion, in the body frame, shape (..., 3, 3).
+    ///
+    /// It is that of the body minus ``J a aᵀ`` of each free wheel, whose moment about its axis does not
+    /// count.
     #[getter]
     fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let tensor = |one: &polhode::motion::gyrostat::Gyrostat| -> Matrix3<f64> { one.inertia() };
@@ -72,7 +76,8 @@ impl PyGyrostat {
 
 #[pymethods]
 impl PyGyrostatMotion {
-    /// The steady rotations that have the angular momentum and the h of this motion, as of :meth:`Gyrostat.equilibria`.
+    /// All steady rotations with the length of L and the h of this motion, as :meth:`Gyrostat.equilibria`
+    /// gives them.
     #[getter]
     fn equilibria<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let ([motion], [gyrostat]) = (

@@ -15,7 +15,14 @@ impl PyHeavyTop {
 
 #[pymethods]
 impl PyHeavyTop {
-    /// What the axis draws on a sphere about the pivot.
+    /// Path of the axis on a sphere about the pivot, as one of eight words.
+    ///
+    /// ``"cusp"``: the axis rests whenever it is highest. ``"loop"``: its precession turns back while it is
+    /// high. ``"wave"``: its precession never turns back. ``"regular"``: steady precession. ``"crossing"``:
+    /// the axis goes through the vertical in each period. ``"planar"``: it swings or turns over in a vertical
+    /// plane. ``"asymptotic"``: it approaches the upward vertical for ever. ``"steady"``: the axis rests:
+    /// upright (a sleeping top), hanging, or because there is no weight. A string, or an array of them for a
+    /// stack.
     #[getter]
     fn path<'py>(&self, py: Python<'py>) -> Array<'py> {
         write_words_of(
@@ -26,61 +33,76 @@ impl PyHeavyTop {
         )
     }
 
-    /// Least and largest inclination of the axis from the upward vertical.
+    /// Least and largest inclination of the axis, in radians, shape (..., 2).
+    ///
+    /// The inclination θ is the angle between the upward vertical and the axis, which points from the pivot
+    /// to the centre of mass.
     #[getter]
     fn nutation_limits<'py>(&self, py: Python<'py>) -> Array<'py> {
         let limits = (self.motions).map(py, |motion| motion.nutation().inclination)?;
         Ok(write(py, &limits)?.into_any())
     }
 
-    /// Time from one least inclination to the next.
+    /// Time from one least inclination to the next: infinite on an asymptotic path, NaN where the axis rests.
     #[getter]
     fn nutation_period<'py>(&self, py: Python<'py>) -> Array<'py> {
         self.numbers(py, |nutation| nutation.period)
     }
 
-    /// Mean rate of the axis about the upward vertical.
+    /// Mean rate, in radians per unit of time, at which the axis goes about the upward vertical.
+    ///
+    /// It is the mean of φ̇. Where the axis goes through the vertical, φ jumps by half a turn.
     #[getter]
     fn mean_precession<'py>(&self, py: Python<'py>) -> Array<'py> {
         self.numbers(py, |nutation| nutation.precession)
     }
 
-    /// Mean rate of the body about its axis relative to the line of nodes.
+    /// Mean rate, in radians per unit of time, at which the body turns about its axis relative to the line of
+    /// nodes.
+    ///
+    /// It is the mean of ψ̇.
     #[getter]
     fn mean_spin<'py>(&self, py: Python<'py>) -> Array<'py> {
         self.numbers(py, |nutation| nutation.spin)
     }
 
-    /// The component of ω along the axis.
+    /// Component ω_s of ω along the axis, in radians per unit of time. It is constant.
     #[getter]
     fn axial_spin<'py>(&self, py: Python<'py>) -> Array<'py> {
         let spins = (self.starts).map(py, |start| start.omega.dot(&start.top.axis))?;
         write_numbers(py, &spins)
     }
 
-    /// The spin above which the top stands stably upright.
+    /// Spin above which the top stands stably upright, 2 √(I_t m g l)/I_s, in radians per unit of time.
+    ///
+    /// I_s is the moment about the axis, I_t that across it, both about the pivot; l is the distance of the
+    /// centre of mass from the pivot. Infinite for a body without moment about the axis.
     #[getter]
     fn sleeping_limit<'py>(&self, py: Python<'py>) -> Array<'py> {
         let limit = |start: &Start| start.top.least_spin(0.0, &start.gravity);
         write_numbers_of(py, &self.starts, limit)
     }
 
-    /// Effective potential of the inclination: ``I_t θ̇²/2 + V(θ)`` is constant, the energy less that of the axial spin.
+    /// Effective potential V(θ) of the inclination.
     ///
-    /// ``V(θ) = (L_z − L_s cos θ)²/(2 I_t sin²θ) + m g l cos θ``, with the angular momenta L_z about the
-    /// upward vertical and L_s about the axis, both constant. The axis nods where V is at most that constant.
+    /// The sum ``I_t θ̇²/2 + V(θ)`` is constant: it is the energy of the top minus the energy of its spin
+    /// about the axis.
+    ///
+    /// ``V(θ) = (L_z − L_s cos θ)²/(2 I_t sin²θ) + m g l cos θ``, where L_z is the angular momentum about the
+    /// upward vertical and L_s that about the axis, both constant. The axis moves between those inclinations
+    /// where V is equal to that sum.
     ///
     /// Parameters
     /// ----------
     /// inclination : array_like, shape (n,) or ()
-    ///     θ, of the axis from the upward vertical, in radians.
+    ///     Angle θ between the axis and the upward vertical, in radians unless `degrees`.
     /// degrees : bool, optional
-    ///     It is in degrees.
+    ///     Whether the inclination is in degrees.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (..., n) or (...)
-    ///     The potential; infinite at the verticals that the axis cannot reach.
+    ///     The potential. It is infinite at θ = 0 or θ = π, if the axis cannot reach that vertical.
     ///
     /// Examples
     /// --------

@@ -29,10 +29,11 @@ pub(super) struct Start {
     pub(super) gravity: Vector3<f64>,
 }
 
-/// The motion of a heavy symmetric top, or of a stack of them, about the origin of the body frame as a fixed point.
+/// The motion of a heavy symmetric top, or of a stack of them, about the origin of the body frame, which is
+/// fixed.
 ///
-/// Made by `RigidBody.heavy_top`. Exact at any time, by theta functions: a state a million turns away costs as much as
-/// one close by, and is as accurate. Values never change.
+/// Made by `RigidBody.heavy_top`. The motion is in closed form, by theta functions: a state after a million
+/// turns takes as long to compute as one near the start, and is as accurate. The object is immutable.
 ///
 /// Attributes
 /// ----------
@@ -49,10 +50,7 @@ pub(super) struct Start {
 /// shape : tuple of int
 ///     Shape of the stack of motions: bodies, angular velocities, attitudes and gravities broadcast together.
 /// path : str or numpy.ndarray of str, shape (...)
-///     What the axis draws on a sphere about the pivot. "cusp": it rests whenever it is highest. "loop": its precession
-///     turns back while it is high. "wave": it does not. "regular": steady precession. "crossing": it goes through the
-///     vertical in each period. "planar": it swings or turns over in a vertical plane. "asymptotic": it approaches the
-///     upward vertical for ever. "steady": the axis rests, upright or hanging (a sleeping top) or without weight.
+///     Path of the axis on a sphere about the pivot, as a word.
 /// nutation_limits : numpy.ndarray, shape (..., 2)
 ///     Least and largest inclination θ of the axis, from the pivot to the centre of mass, from the upward vertical.
 /// nutation_period : float or numpy.ndarray, shape (...)
@@ -69,7 +67,8 @@ pub(super) struct Start {
 ///
 /// Examples
 /// --------
-/// A top let go at an inclination of 0.6 falls until gyroscopic torque holds it, and comes to rest again higher up:
+/// The axis of a spinning top is let go at an inclination of 0.6 rad. It sinks to 0.7426 rad, rises again,
+/// and comes to rest at 0.6 rad:
 ///
 /// >>> from polhode import RigidBody, euler_angles
 /// >>> body = RigidBody.from_principal(0.5, (2e-4, 2e-4, 3e-4), center_of_mass=(0, 0, 0.04))
@@ -134,10 +133,12 @@ impl PyHeavyTop {
 
 #[pymethods]
 impl PyRigidBody {
-    /// The motion of a symmetric top about the origin of the body frame, fixed in space, in uniform gravity: exact at any time.
+    /// The motion of a symmetric top in uniform gravity about a fixed point, in closed form.
     ///
-    /// Lagrange's top: two principal moments are equal, and both the pivot and the centre of mass lie on the axis. Among
-    /// these are the spherical pendulum and the plane one.
+    /// The fixed point, the pivot, is the origin of the body frame.
+    ///
+    /// This is Lagrange's top: two principal moments are equal, and both the pivot and the centre of mass lie
+    /// on the symmetry axis. The spherical pendulum and the plane pendulum are special cases.
     ///
     /// Parameters
     /// ----------
@@ -147,10 +148,10 @@ impl PyRigidBody {
     ///     R_NB at t = 0: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as SciPy's
     ///     Rotation. The identity by default.
     /// gravity : array_like, shape (..., 3)
-    ///     The acceleration of free fall, components in space, as ``(0, 0, -9.81)``. It must be given.
+    ///     Gravitational acceleration, components in space, for example ``(0, 0, -9.81)``. It must be given.
     /// rtol : float, optional
-    ///     Moments closer than this times the largest count as equal, and the pivot as lying on the axis when it is
-    ///     nearer to it than this times the radius of gyration.
+    ///     Moments that differ by less than `rtol` times the largest count as equal. The pivot counts as
+    ///     lying on the axis if its distance from the axis is less than `rtol` times the radius of gyration.
     ///
     /// Returns
     /// -------
@@ -160,12 +161,13 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// PolhodeError
-    ///     For a body that is no symmetric top, with the gap between its moments, or a pivot off its axis, with
-    ///     the distance; `simulate` integrates such bodies.
+    ///     For a body that is no symmetric top, or if the pivot is not on its axis. The message tells the gap
+    ///     between the moments, or the distance. `simulate` serves such bodies.
     ///
     /// Examples
     /// --------
-    /// Started with the rate of slow precession it keeps its inclination, here a million turns later:
+    /// A top that starts with the rate of slow steady precession keeps its inclination, also after a million
+    /// turns:
     ///
     /// >>> from polhode import RigidBody, euler_angles, tops
     /// >>> body = RigidBody.from_principal(0.5, (2e-4, 2e-4, 3e-4), center_of_mass=(0, 0, 0.04))
@@ -195,20 +197,21 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyHeavyTop {
-    /// Angular velocity at t = 0.
+    /// Angular velocity of the body relative to space at t = 0, components in the body frame, in radians per unit
+    /// of time, shape (..., 3).
     #[getter]
     fn omega<'py>(&self, py: Python<'py>) -> Array<'py> {
         Ok(write_of(py, &self.starts, |start| start.omega)?.into_any())
     }
 
-    /// Attitude at t = 0.
+    /// Attitude R_NB at t = 0 as a unit quaternion (x, y, z, w), shape (..., 4).
     #[getter]
     fn quaternion<'py>(&self, py: Python<'py>) -> Array<'py> {
         let quaternions = self.starts.map(py, |start| components(&start.attitude))?;
         Ok(write(py, &quaternions)?.into_any())
     }
 
-    /// The acceleration of free fall.
+    /// Gravitational acceleration, components in space, shape (..., 3).
     #[getter]
     fn gravity<'py>(&self, py: Python<'py>) -> Array<'py> {
         Ok(write_of(py, &self.starts, |start| start.gravity)?.into_any())
@@ -220,7 +223,7 @@ impl PyHeavyTop {
         self.uncertain.to_python(py)
     }
 
-    /// The shape of the stack of motions.
+    /// Shape of the stack of motions, as a tuple of int; ``()`` for one motion.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.motions.shape)
@@ -231,24 +234,25 @@ impl PyHeavyTop {
     /// Parameters
     /// ----------
     /// t : array_like
-    ///     Times of any shape and in any order, negative ones too; every motion is asked at each.
+    ///     Times of any shape and in any order, negative ones too; each motion is evaluated at each time.
     ///
     /// Returns
     /// -------
     /// Trajectory
-    ///     About the origin of the body frame, which rests. Its ``omega`` and ``quaternion`` have the shape of the stack,
-    ///     then that of `t`, then their components. The quaternion is continuous in time. A time that is not finite
-    ///     gives NaN; one after more than 2⁸⁸ turns, of which nothing would be known, is refused.
-    ///     At times of dask: an `xarray.Dataset` that is computed later, chunk by chunk, with the same bits.
+    ///     About the origin of the body frame, which rests. The axes of its ``omega`` and ``quaternion`` are
+    ///     those of the stack, then those of `t`, then the components. The quaternion is continuous in time.
+    ///     A time that is not finite gives NaN. A time after more than 2⁸⁸ turns is an error: no digit of the
+    ///     phase is known there. If `t` is a dask array, the result is an `xarray.Dataset` that is computed
+    ///     later, chunk by chunk, with the same bits.
     ///
     /// Notes
     /// -----
-    /// The GIL is released, many states run on all cores, and Ctrl-C ends the run. A state has the
-    /// same bits alone and among others.
+    /// The computation releases the GIL and uses all cores for many states; Ctrl-C ends it. A state has the
+    /// same bits whether it is computed alone or together with others.
     ///
     /// Examples
     /// --------
-    /// A plane pendulum of one metre let go at 1 rad: after half a swing it is on the other side, and rests again.
+    /// A plane pendulum of one metre is let go at 1 rad. After half a period it is at rest on the other side:
     ///
     /// >>> from polhode import solids, euler_angles
     /// >>> bob = solids.sphere(radius=0.0, mass=1.0).translated((0, 0, -1))

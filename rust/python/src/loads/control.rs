@@ -18,28 +18,30 @@ use crate::stack::{Broadcast, Stack};
 
 /// A controller that turns the body toward an attitude and damps it: ``-K sign(w) vec(e) - D (ω - ω_target)``.
 ///
-/// ``e = target⁻¹ ∘ q`` is the quaternion of what is left to turn, w its scalar part; for a small angle vec(e) is half of it
-/// about its axis. The sign takes the shorter way round.
+/// ``e = target⁻¹ ∘ q`` is the quaternion of the rotation from the target to the body, and w is its scalar
+/// part. For a small angle, vec(e) is half the angle times the axis. The factor sign(w) makes the body turn
+/// the shorter way.
 ///
 /// Parameters
 /// ----------
 /// K, D : array_like, shape (..., 3, 3), or a number
-///     Gains in the body frame; a number stands for that times the identity.
+///     Gains in the body frame; a number stands for this number times the identity.
 /// target : array_like, shape (..., 4), or rotation, or Orbit, or SampledOrbit, optional
-///     R_NB to reach as (x, y, z, w), or anything with ``as_quat()``; the identity by default. Of an orbit of
-///     :mod:`polhode.orbits` its local frame, which points down.
+///     Attitude R_NB to reach, as (x, y, z, w) or anything with ``as_quat()``; the identity by default. For
+///     an orbit of :mod:`polhode.orbits` the target is its local frame, whose z axis points to the attractor.
 /// rate : array_like, shape (..., 3), optional
 ///     Angular velocity of the target relative to space, components in space; zero by default.
 /// times : array_like, shape (n,), optional
-///     When the target, then of shape (n, 4), has these attitudes: a smooth path through them (cubic splines through the
-///     components at unit length). Neighbours are less than a quarter of a turn apart.
+///     Times of the target, which then has the shape (n, 4). Between them the target follows cubic splines
+///     through the components, normalised to unit length. Neighbouring attitudes must be less than a quarter
+///     of a turn apart.
 /// epoch : float, optional
-///     When a target with a rate has that attitude; the start of a motion by default.
+///     Time at which a target with a rate has the attitude `target`; the start of a motion by default.
 ///
 /// Returns
 /// -------
 /// Load
-///     Where the target moves, "auto" is "dop853", and derivatives come by differences.
+///     For a moving target the method "auto" is "dop853", and derivatives are by differences.
 ///
 /// Examples
 /// --------
@@ -51,7 +53,7 @@ use crate::stack::{Broadcast, Stack};
 /// >>> np.abs(motion.quaternion[-1]).round(6)
 /// array([0., 0., 1., 0.])
 ///
-/// A ball is made to turn with the target:
+/// A ball follows a target that turns:
 ///
 /// >>> from polhode import solids
 /// >>> turning = loads.feedback(K=8.0, D=4.0, rate=(0, 0, 0.5))

@@ -128,7 +128,7 @@ impl PyLoad {
 
 #[pymethods]
 impl PyLoad {
-    /// Torque of the load about the reference point of the motion, at a time and a state.
+    /// Torque of the load about the reference point of the motion at a time and a state.
     ///
     /// Parameters
     /// ----------
@@ -140,19 +140,19 @@ impl PyLoad {
     /// position, velocity : array_like, shape (..., 3), optional
     ///     Position and velocity of the reference point, in space; zero by default.
     /// body : RigidBody, optional
-    ///     Needed by loads that depend on it: weight, forces at a point, gravity gradient.
+    ///     The body. It is needed for loads that depend on it: weight, a force at a point, gravity gradient.
     /// about : {"center_of_mass", "origin"}, optional
     ///     The reference point, as in `simulate`.
     /// start : float, optional
-    ///     When the motion starts; `t` by default. Orbits without an epoch begin there.
+    ///     Time at which the motion starts; `t` by default. It is the epoch of orbits that have none.
     /// states : dict of str and array_like, shape (..., k), optional
-    ///     The states of a load that has some, as `states` of a trajectory. The torque of a wheel is the N of
-    ///     ``I ω̇ + ω × I ω = N``, where I has the wheel locked.
+    ///     States of the load, as in ``states`` of a trajectory; needed if it has any. The torque N of a
+    ///     wheel is that of ``I ω̇ + ω × I ω = N``, where I includes the wheel as if it were locked.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (..., 3)
-    ///     Components in the body frame; not a number where the quaternion is none.
+    ///     Components in the body frame; NaN for a quaternion with a NaN.
     ///
     /// Examples
     /// --------
@@ -184,12 +184,12 @@ impl PyLoad {
         write_of(py, &wrenches, |wrench| wrench.torque)
     }
 
-    /// Sum of the forces of the load, at a time and a state; arguments as of `torque`.
+    /// Sum of the forces of the load at a time and a state; arguments as for `torque`.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (..., 3)
-    ///     Components in space; not a number where the quaternion is none.
+    ///     Components in space; NaN for a quaternion with a NaN.
     ///
     /// Examples
     /// --------
@@ -221,7 +221,7 @@ impl PyLoad {
         write_of(py, &wrenches, |wrench| wrench.force)
     }
 
-    /// Energy of position in the field of the load, which is conservative: forces and torques are what it loses.
+    /// Potential energy of the body in the field of the load.
     ///
     /// Parameters
     /// ----------
@@ -291,7 +291,7 @@ impl PyLoad {
             .transpose()
     }
 
-    /// What of the angular momentum about the reference point the load leaves as it is.
+    /// Tell which part of the angular momentum about the reference point is conserved under the load.
     ///
     /// Parameters
     /// ----------
@@ -300,7 +300,8 @@ impl PyLoad {
     /// Returns
     /// -------
     /// True, numpy.ndarray of shape (..., 3), or None
-    ///     True for all of it, unit vectors in space along which its component is kept, or None.
+    ///     True if all of it is conserved; unit vectors in space if its component along them is conserved;
+    ///     else None.
     #[pyo3(signature = (about="center_of_mass"))]
     fn keeps_momentum<'py>(
         &self,

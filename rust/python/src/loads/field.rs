@@ -15,19 +15,22 @@ use crate::stack::{Broadcast, Stack};
 
 /// The torque of an attractor's field on a body in orbit.
 ///
-/// ``N = 3 mu/r**5 r_B × (I_C r_B)`` with r from the attractor to the centre of mass. A Kepler orbit is an ellipse, a parabola or
-/// a hyperbola, solved exactly; it is not changed by the body's attitude, nor are `position` and `velocity` of the trajectory
-/// by it. An orbit with ``j2`` adds that to orbit and torque. Several attractors are a sum of such loads.
+/// ``N = 3 mu/r**5 r_B × (I_C r_B)``, where r is the vector from the attractor to the centre of mass. The
+/// orbit is given: it does not depend on the attitude of the body, and it does not change ``position`` and
+/// ``velocity`` of the trajectory. A Kepler orbit may be an ellipse, a parabola or a hyperbola, and is solved
+/// exactly. For an orbit with ``j2`` the torque includes the term of J₂. Several attractors are a sum of such
+/// loads.
 ///
 /// Parameters
 /// ----------
 /// mu : array_like, shape (...), or Orbit, or SampledOrbit
-///     Gravitational parameter of the attractor; or an orbit of :mod:`polhode.orbits`, alone. On one with ``j2`` or along
-///     samples "auto" is "dop853", and derivatives come by differences.
+///     Gravitational parameter of the attractor; or an orbit of :mod:`polhode.orbits`, without further
+///     arguments. For an orbit with ``j2`` or from samples, the method "auto" is "dop853", and derivatives
+///     are by differences.
 /// position, velocity : array_like, shape (..., 3)
 ///     Position and velocity of the centre of mass relative to the attractor, in space, at the epoch.
 /// epoch : float, optional
-///     When the orbit has that state; the first time of a simulation by default.
+///     Time at which the orbit has that state; the first time of a simulation by default.
 ///
 /// Returns
 /// -------
@@ -35,7 +38,7 @@ use crate::stack::{Broadcast, Stack};
 ///
 /// Examples
 /// --------
-/// A stick across the vertical is turned toward it:
+/// The torque on a stick at an angle to the vertical turns it toward the vertical:
 ///
 /// >>> from polhode import loads, rods
 /// >>> pull = loads.gravity_gradient(1.0, (2.0, 0.0, 0.0), (0.0, 0.5, 0.0))
@@ -99,14 +102,15 @@ pub(crate) fn gravity_gradient(
 /// Parameters
 /// ----------
 /// dipole : array_like, shape (..., 3)
-///     The moment that is fixed in the body, in the body frame.
+///     Magnetic moment that is fixed in the body, components in the body frame.
 /// field : array_like, shape (..., 3) or (..., n, 3), or DipoleField
-///     B in space: uniform; known at `times`, with a cubic spline in between; or along an orbit, as
-///     :meth:`polhode.orbits.Orbit.dipole_field` makes it.
+///     B, components in space: uniform; known at `times`, with a cubic spline in between; or along an orbit,
+///     as :meth:`polhode.orbits.Orbit.dipole_field` makes it.
 /// gain : float or array_like, shape (...), optional
-///     k of a moment ``m = dipole - k dB/dt`` with the rate of the field as the body sees it ("B-dot"): it slows the body down.
+///     Gain k of the control law "B-dot": the moment is ``m = dipole - k dB/dt``, with the rate of B in the
+///     body frame. It slows the rotation of the body down.
 /// times : array_like, shape (n,), optional
-///     Ascending, for a field that is known at them.
+///     Times of `field`, ascending.
 ///
 /// Returns
 /// -------
@@ -114,8 +118,8 @@ pub(crate) fn gravity_gradient(
 ///
 /// Notes
 /// -----
-/// Methods "auto" and "taylor" follow a fixed moment in a uniform field by its series; under any other magnetic load "auto" is
-/// "dop853", and no sensitivities are known.
+/// For a fixed moment in a uniform field the method "auto" is "taylor". For any other magnetic load "auto" is
+/// "dop853", and there are no sensitivities.
 ///
 /// Examples
 /// --------

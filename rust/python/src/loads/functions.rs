@@ -26,7 +26,7 @@ use super::stateful::{self, WithStates};
 ///
 /// Examples
 /// --------
-/// A body slowed down by a medium:
+/// A body that a medium slows down:
 ///
 /// >>> from polhode import loads, solids
 /// >>> ball = solids.sphere(1.0, mass=2.5)
@@ -43,10 +43,11 @@ pub(crate) fn torque_callback(function: &Bound<'_, PyAny>) -> PyResult<PyLoad> {
 /// Parameters
 /// ----------
 /// function : callable
-///     ``function(t, omega, quaternion, position, velocity)`` returns a pair: the force through the reference
-///     point of the motion, three numbers in space, and the torque about it, three numbers in the body frame.
-///     It is given the time, the angular velocity in the body frame, shape (3,), the attitude R_NB as
-///     (x, y, z, w), shape (4,), and position and velocity of the reference point in space, shape (3,).
+///     ``function(t, omega, quaternion, position, velocity)`` returns a pair: the force at the reference
+///     point of the motion, three components in space, and the torque about that point, three components in
+///     the body frame. It is given the time, the angular velocity in the body frame, shape (3,), the attitude
+///     R_NB as (x, y, z, w), shape (4,), and position and velocity of the reference point in space, shape
+///     (3,).
 ///
 /// Returns
 /// -------
@@ -85,12 +86,12 @@ fn load(function: &Bound<'_, PyAny>, name: &str, gives: Gives) -> PyResult<PyLoa
 /// user_data : int, optional
 ///     The address that the function gets as ``user_data``; that of the ``LowLevelCallable``, or 0, by default.
 /// initial : array_like, shape (k,), optional
-///     States of the function's own at the start: ``state`` then holds them after the 13 numbers, and ``out`` takes their
-///     rates after the 6.
+///     Initial values of states of the load: ``state`` then holds these states after the 13 numbers, and
+///     ``out`` takes their derivatives after the 6.
 /// name : str, optional
 ///     The name of these states in `states` of the trajectory.
 /// scale : float or array_like, shape (k,), optional
-///     What counts as large of each of them, as of :func:`with_states`.
+///     Typical size of each of these states, as for :func:`with_states`.
 ///
 /// Returns
 /// -------
@@ -98,8 +99,8 @@ fn load(function: &Bound<'_, PyAny>, name: &str, gives: Gives) -> PyResult<PyLoa
 ///
 /// Notes
 /// -----
-/// The address is trusted: a function of another signature is undefined behaviour. Stacks call it from several threads
-/// at once. Such a load cannot be pickled.
+/// The address is not checked: a function of another signature is undefined behaviour. For stacks it is
+/// called from several threads at once. Such a load cannot be pickled.
 ///
 /// Examples
 /// --------
@@ -137,32 +138,36 @@ pub(crate) fn compiled(
     Ok(PyLoad::one(Acts::Compiled(compiled), recipe).named(name))
 }
 
-/// A load with states of its own that go on with the motion: filters, actuators, integrators, sampled controllers.
+/// A load with states that are integrated together with the motion: filters, actuators, integrators, sampled
+/// controllers.
 ///
-/// Every function is called as ``function(t, omega, quaternion, position, velocity, states)``: time, angular velocity in the
-/// body frame, attitude R_NB as (x, y, z, w), position and velocity of the reference point in space, and a dict of the
-/// states of the whole load by name, so that a controller reads the wheels beside it.
+/// Every function is called as ``function(t, omega, quaternion, position, velocity, states)``: time, angular
+/// velocity in the body frame, attitude R_NB as (x, y, z, w), position and velocity of the reference point in
+/// space, and a dict of the states of the whole load by name, so that a controller can read the states of
+/// wheels, too.
 ///
 /// Parameters
 /// ----------
 /// rates : callable or None
-///     Returns the rates of change of these states. None: they change by `update` alone.
+///     Function that returns the derivatives of these states with respect to time. None: they change by
+///     `update` alone.
 /// initial : array_like, shape (k,)
 ///     The states at the start, at most 51.
 /// wrench : callable, optional
-///     Returns a pair: the force through the reference point in space and the torque about it in the body frame. Without it
-///     the load exerts nothing.
+///     Function that returns a pair: the force at the reference point, components in space, and the torque
+///     about that point, components in the body frame. By default there is no force and no torque.
 /// name : str, optional
-///     The name of these states, in `states` here and of the trajectory.
+///     Name of these states, in the dict of states and in ``states`` of the trajectory.
 /// update : callable, optional
-///     Returns new states, which then stand in place of the old ones: at the start and after each `period`. So a sampled
-///     controller holds what it has decided.
+///     Function that returns new values of these states. It is called at the start and after each `period`.
+///     This is a sampled controller: its output is constant from one update to the next.
 /// period : float, optional
-///     The time between two updates.
+///     Time between two updates.
 /// scale : float or array_like, shape (k,), optional
-///     What counts as large of each state: errors are relative to it, or to the largest that the state has come to. Give it for
-///     a state that stays near zero, or begins there with a rate of zero: without it, the last of a chain of lags makes many
-///     small steps with method "dop853", and ends a run with method "radau".
+///     Typical size of each state. Errors are relative to it, or to the largest value of the state so far if
+///     that is larger. It is needed for a state that stays near zero, or begins at zero with a rate of zero,
+///     such as the last of a chain of lags. Without it the method "dop853" then takes many small steps, and
+///     "radau" fails.
 ///
 /// Returns
 /// -------
@@ -170,7 +175,7 @@ pub(crate) fn compiled(
 ///
 /// Examples
 /// --------
-/// A thruster that follows its command late, by a first-order lag of half a second:
+/// A thruster follows its command with a first-order lag of half a second:
 ///
 /// >>> import numpy as np
 /// >>> from polhode import RigidBody, loads

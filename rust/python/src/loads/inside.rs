@@ -15,7 +15,8 @@ type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 #[pymethods]
 impl PyLoad {
-    /// What the body carries along under the load, beside ``I ω`` and ``½ ω·I ω``: wheels, rotors, slugs.
+    /// Angular momentum and energy of the wheels, rotors and slugs of the load, in addition to ``I ω`` and
+    /// ``½ ω·I ω``.
     ///
     /// Parameters
     /// ----------
@@ -26,7 +27,7 @@ impl PyLoad {
     /// Returns
     /// -------
     /// momentum : numpy.ndarray, shape (..., 3)
-    ///     Momentum in the body frame.
+    ///     Angular momentum, components in the body frame.
     /// energy : numpy.ndarray, shape (...)
     #[pyo3(signature = (t, omega, states=None))]
     fn carried<'py>(
@@ -50,7 +51,7 @@ impl PyLoad {
         ))
     }
 
-    /// Whether the body carries something along under the load: wheels, rotors, slugs.
+    /// Whether the load has wheels, rotors or slugs, which the body carries.
     #[getter]
     fn carries(&self, py: Python<'_>) -> PyResult<bool> {
         let terms = self.terms(py)?;
@@ -61,7 +62,7 @@ impl PyLoad {
             .any(|term| term.carried().is_some()))
     }
 
-    /// The states that the load has of its own: how many, by name.
+    /// Number of states of the load, by name.
     #[getter]
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);

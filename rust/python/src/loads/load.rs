@@ -14,10 +14,10 @@ use crate::errors::to_py;
 use crate::interrupt::Beat;
 use crate::stack::{Broadcast, Stack};
 
-/// What acts on a body: a sum of terms. Made by the functions of :mod:`polhode.loads`.
+/// Forces and torques on a body, as a sum of terms. Made by the functions of :mod:`polhode.loads`.
 ///
-/// Loads add and scale: ``a + b``, ``a - b``, ``2 * a``, ``-a``, ``sum(loads)``. Arguments with leading axes make a stack of
-/// loads, which broadcasts against bodies and states.
+/// Loads can be added and multiplied by a factor: ``a + b``, ``a - b``, ``2 * a``, ``-a``, ``sum(loads)``.
+/// Arguments with leading axes make a stack of loads, which broadcasts against bodies and states.
 ///
 /// Examples
 /// --------
@@ -127,7 +127,8 @@ impl PyLoad {
         self.callbacks().next().is_some() || self.with_states().next().is_some()
     }
 
-    /// The load with orbits that have no epoch beginning at `t`: for the rest of a motion that started then.
+    /// The load with `t` as the epoch of those orbits that have none. It serves to continue a motion that
+    /// started at `t`.
     pub(super) fn with_epoch(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
         self.map(|part| {
             let mut part = part.copied(py)?;

@@ -53,7 +53,8 @@ impl PyLoad {
         PyTuple::new(py, self.stack_shape()?)
     }
 
-    /// The load with orbits that have no epoch beginning at `t`: for the rest of a motion that started then.
+    /// The load with `t` as the epoch of those orbits that have none. It serves to continue a motion that
+    /// started at `t`.
     fn anchored(&self, py: Python<'_>, t: f64) -> PyResult<Self> {
         self.with_epoch(py, t)
     }

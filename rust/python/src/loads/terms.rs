@@ -55,7 +55,7 @@ pub(crate) fn constant_torque(
 ///     The frame whose axes the components refer to: the thrust of a nozzle turns with the body, a steady wind
 ///     does not.
 /// point : array_like, shape (..., 3), optional
-///     Where it acts, in the body frame; at the centre of mass by default.
+///     Point where the force acts, in the body frame; the centre of mass by default.
 ///
 /// Returns
 /// -------
@@ -63,7 +63,7 @@ pub(crate) fn constant_torque(
 ///
 /// Examples
 /// --------
-/// A push at the centre of mass moves a body without turning it:
+/// A force at the centre of mass moves a body without turning it:
 ///
 /// >>> from polhode import loads, solids
 /// >>> cube = solids.cube(1.0, mass=2.0)
@@ -101,7 +101,7 @@ pub(crate) fn constant_force(
 /// Parameters
 /// ----------
 /// gravity : array_like, shape (..., 3)
-///     g in space.
+///     Gravitational acceleration g, components in space.
 ///
 /// Returns
 /// -------
@@ -123,8 +123,8 @@ pub(crate) fn uniform_gravity(py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyR
 
 /// A torque against the angular velocity, ``-D ω - E |ω| ω``.
 ///
-/// It comes from outside, as of the air: the angular momentum falls. What is lost inside a body, which keeps its momentum, is
-/// :func:`slug`; a momentum that turns with the body is :func:`rotor`.
+/// The torque is external, like that of the air: the angular momentum of the body decreases. For a loss of
+/// energy inside the body, at constant angular momentum, see :func:`slug`.
 ///
 /// Parameters
 /// ----------
@@ -163,7 +163,7 @@ pub(crate) fn damping(
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
 
-/// A torque known at some times, with a cubic spline in between.
+/// A torque that is known at given times, with a cubic spline in between.
 ///
 /// The spline is that of :class:`scipy.interpolate.CubicSpline` ("not-a-knot"). A simulation ends a step at each of the
 /// times, where the spline is not smooth.
@@ -183,7 +183,7 @@ pub(crate) fn damping(
 /// Raises
 /// ------
 /// ValueError
-///     In a simulation that needs the torque before the first or after the last of the times.
+///     If a simulation needs the torque before the first or after the last of the times.
 ///
 /// Examples
 /// --------
@@ -218,7 +218,7 @@ pub(crate) fn sampled(
     Ok(PyLoad::one(Acts::Term(terms), recipe))
 }
 
-/// A load that is switched on and off.
+/// A load that is switched on and off at given times.
 ///
 /// A simulation ends a step at each switch.
 ///
@@ -226,7 +226,7 @@ pub(crate) fn sampled(
 /// ----------
 /// load : Load
 /// windows : array_like, shape (n, 2)
-///     When it is switched on and off, ascending and apart; the last may end at infinity.
+///     Times at which it is switched on and off, ascending and without overlap; the last may end at infinity.
 ///
 /// Returns
 /// -------
@@ -234,7 +234,7 @@ pub(crate) fn sampled(
 ///
 /// Examples
 /// --------
-/// A wheel driven for two seconds of ten:
+/// A wheel whose motor runs for two seconds of ten:
 ///
 /// >>> from polhode import loads, solids
 /// >>> wheel = solids.cylinder(radius=1.0, height=0.2, mass=4.0)

@@ -15,9 +15,10 @@ use crate::arrays::{floats, list_floats, read, try_rows, write, write_of};
 use crate::errors::to_py;
 use crate::stack::{Broadcast, Stack};
 
-/// A rotor that keeps its angular momentum in the body: the gyrostat's torque ``-ω × h``.
+/// A rotor whose angular momentum h is constant in the body; its torque on the body is ``-ω × h``.
 ///
-/// The momentum of the trajectory includes it, and its energy is the one that the motion keeps, ``½ ω·I ω``.
+/// A body with such a rotor is called a gyrostat. The angular momentum of the trajectory includes h. Its
+/// kinetic energy is ``½ ω·I ω``, which is constant.
 ///
 /// Parameters
 /// ----------
@@ -30,7 +31,7 @@ use crate::stack::{Broadcast, Stack};
 ///
 /// Examples
 /// --------
-/// A body at rest but for a wheel that turns in it turns when it is pushed, and then nutates:
+/// A body is at rest, while a wheel turns in it. A torque turns the body; afterwards it nutates:
 ///
 /// >>> from polhode import RigidBody, loads
 /// >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
@@ -49,9 +50,11 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 
 /// A wheel in the body, with a motor and friction in its bearing.
 ///
-/// Its state is ``h = J (Ω + a·ω)``, its momentum about its axis a, with the rate Ω relative to the body; the inertia of the body
-/// includes the wheel as if it were locked. ``ḣ = τ - c Ω - c₀ sign(Ω)`` with the motor's torque τ on the wheel, and ``-a ḣ`` acts on
-/// the rest of the body. Where ``speed`` is given instead, the motor does whatever the speed needs.
+/// Its state is its angular momentum about its axis a, ``h = J (Ω + a·ω)``, where Ω is its rate relative to
+/// the body. The inertia of the body includes the wheel as if it were locked. The equation of the wheel is
+/// ``ḣ = τ - c Ω - c₀ sign(Ω)``, where τ is the torque of the motor on the wheel; ``-a ḣ`` acts on the rest
+/// of the body. If ``speed`` is given in place of ``torque``, the motor exerts the torque that this speed
+/// needs.
 ///
 /// Parameters
 /// ----------
@@ -62,22 +65,26 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 /// rate : array_like, shape (...), optional
 ///     Ω at the start; zero by default.
 /// torque : float, array_like of shape (n,), or Load, optional
-///     τ of the motor on the wheel: constant; held from each of `times` on; or a :func:`feedback`, whose torque on the body
-///     the motor exerts as far as it is along the axis.
+///     Torque τ of the motor on the wheel: a constant; one value from each of `times` on; or a
+///     :func:`feedback`. The motor then exerts on the body the component along a of the torque of that
+///     feedback.
 /// speed : float or array_like of shape (n,), optional
-///     Ω: constant, or straight lines between `times`.
+///     Rate Ω, in radians per unit of time: a constant, or values at `times` with straight lines in between.
 /// times : array_like, shape (n,), optional
-///     Ascending. A torque is not known before the first of them, a speed neither before the first nor after the last.
+///     Times of `torque` or `speed`, ascending. A torque is not defined before the first of them; a speed is
+///     defined only from the first to the last.
 /// friction : array_like, shape (...), optional
-///     c: torque over rate, not with `speed`.
+///     Coefficient c of viscous friction: torque divided by rate. Not together with `speed`.
 /// dry_friction : array_like, shape (...), optional
-///     c₀, not with `speed`: a torque against the rate whatever its size (Coulomb's law). At rest it is whatever keeps the wheel
-///     there, and the wheel slips where that takes more than c₀. "auto" is then "dop853", which finds the times of both. A run
-///     goes forward in time.
+///     Torque c₀ of dry friction (Coulomb's law): it is against the rate and does not depend on its size. Not
+///     together with `speed`. While the wheel is at rest, friction exerts the torque that keeps it at rest;
+///     if that were larger than c₀, the wheel begins to slip. The method "auto" is then "dop853", which finds
+///     the times of stop and slip. The run must go forward in time.
 /// limit : float, optional
-///     The most that ``|τ|`` can be, beside a feedback; "auto" is then "dop853".
+///     Largest possible ``|τ|``, for a motor that follows a feedback. The method "auto" is then "dop853".
 /// name : str, optional
-///     The name of its state in `states` of the trajectory; of several with the same name the second is ``wheel_2``.
+///     Name of its state in ``states`` of the trajectory. If several have the same name, the second becomes
+///     ``wheel_2``, and so on.
 ///
 /// Returns
 /// -------
@@ -85,11 +92,11 @@ pub(crate) fn rotor(py: Python<'_>, momentum: &Bound<'_, PyAny>) -> PyResult<PyL
 ///
 /// See Also
 /// --------
-/// rotor : a momentum that stays as it is.
+/// rotor : a momentum that stays constant.
 ///
 /// Examples
 /// --------
-/// A wheel is spun up and turns the body the other way; the momentum in space stays zero:
+/// A wheel is spun up, and the body turns in the opposite sense; the total angular momentum stays zero:
 ///
 /// >>> from polhode import RigidBody, loads
 /// >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))
@@ -280,18 +287,20 @@ fn asked(
     })
 }
 
-/// A spherical damper: a slug in a viscous fluid, which takes energy from the body and keeps its momentum.
+/// A spherical damper: a ball (the slug) in a viscous fluid inside the body. It dissipates energy at constant
+/// angular momentum.
 ///
-/// Its states are σ, the angular velocity of the slug relative to space in the body frame: ``J σ̇ + ω × J σ = -k (σ - ω)``, and the
-/// body feels ``k (σ - ω)``. It stands for all that is loose or flexible in the body: nutation damps, and a long body that
-/// spins about its long axis goes over into a flat spin.
+/// Its states are σ, the angular velocity of the slug relative to space, components in the body frame. They
+/// obey ``J σ̇ + ω × J σ = -k (σ - ω)``; the torque on the body is ``k (σ - ω)``. The slug is a simple model
+/// for everything loose or flexible in a body: nutation is damped, and a long body that spins about its long
+/// axis goes over into a flat spin.
 ///
 /// Parameters
 /// ----------
 /// inertia : array_like, shape (...)
-///     J, a number; not part of the inertia of the body.
+///     Moment of inertia J of the slug, a number; the inertia of the body does not include it.
 /// damping : array_like, shape (...)
-///     k: torque over angular velocity.
+///     Coefficient k: torque divided by angular velocity.
 /// name : str, optional
 ///     The name of its states in `states` of the trajectory.
 ///
@@ -301,8 +310,8 @@ fn asked(
 ///
 /// Examples
 /// --------
-/// A long body that spins about its long axis, a little off, ends in a flat spin: all its momentum about the axis of the
-/// largest moment.
+/// A long body spins nearly about its long axis. It ends in a flat spin, with all its angular momentum about
+/// the axis of the largest moment:
 ///
 /// >>> from polhode import RigidBody, loads
 /// >>> explorer = RigidBody.from_principal(1.0, (0.2, 1.0, 1.05))

@@ -60,15 +60,16 @@ impl PyRigidBody {
         Ok(rest.into_pyobject(py)?.into_any())
     }
 
-    /// The bodies of a stack as one rigid body, or as one for each place along the other axes.
+    /// Combine the bodies of a stack into one rigid body, or those along some axes of the stack.
     ///
-    /// Composed about the common centre of mass in one pass, which is faster and rounds less than adding
-    /// body after body. Collinear rods and particles keep the smallest moment that they have.
+    /// All bodies are summed about the common centre of mass in one pass. This is faster than adding body
+    /// after body, and has smaller rounding errors. The smallest moment of collinear rods and particles stays
+    /// accurate.
     ///
     /// Parameters
     /// ----------
     /// axis : int or tuple of int, optional
-    ///     The axes of the stack to put together; all of them by default.
+    ///     Axes of the stack along which bodies are combined; all axes by default.
     ///
     /// Returns
     /// -------

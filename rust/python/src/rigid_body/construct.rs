@@ -94,7 +94,7 @@ impl PyRigidBody {
 
     /// Body with given principal moments about C.
     ///
-    /// The moments are kept exactly as given, which a tensor in rotated axes cannot do.
+    /// The body stores the moments exactly as given. A tensor in turned axes could not, because of rounding.
     ///
     /// Parameters
     /// ----------
@@ -102,12 +102,12 @@ impl PyRigidBody {
     /// moments : array_like, shape (..., 3)
     ///     Principal moments, in any order.
     /// axes : array_like, shape (..., 3, 3), or rotation, optional
-    ///     The axes they belong to as columns, in the body frame: a right-handed rotation matrix,
-    ///     quaternions (..., 4) as (x, y, z, w), or anything with ``as_quat()``. The body axes by
-    ///     default.
+    ///     Principal axes in the body frame, in the order of `moments`: a right-handed rotation matrix with
+    ///     the axes as columns, quaternions (..., 4) as (x, y, z, w), or anything with ``as_quat()``. The
+    ///     body axes by default.
     /// center_of_mass : array_like, shape (..., 3), optional
     /// rtol : float, optional
-    ///     Admits violations of the triangle inequality up to this fraction.
+    ///     Tolerance: violations of the triangle inequality up to this fraction are accepted.
     ///
     /// Returns
     /// -------
@@ -170,30 +170,36 @@ impl PyRigidBody {
     /// ----------
     /// path : str or os.PathLike
     /// density, mass : float
-    ///     Exactly one of the two for a mesh, or a mapping of the names of its components to their densities; neither for a molecule, whose atoms have their masses. Solids of CAD whose
-    ///     materials have densities need none.
+    ///     For a mesh exactly one of the two; `density` may be a mapping of the names of components to their
+    ///     densities. For a molecule neither, since its atoms have masses. CAD solids whose materials have
+    ///     densities need neither.
     /// length_unit : str, optional
-    ///     Unit of the coordinates, such as ``"mm"``: they are converted to metres. Without it the
-    ///     numbers stay as they are stored, but those of files that state their unit (STEP, IGES, DAE, 3MF, glTF) are
-    ///     converted to metres; another one than the file states is an error.
+    ///     Unit of the coordinates, such as ``"mm"``: they are converted to metres. By default coordinates of
+    ///     files that state their unit (STEP, IGES, DAE, 3MF, glTF) are converted to metres, and all others
+    ///     stay as they are. A unit that differs from that in the file is an error.
     /// weld : float, optional
-    ///     Corners at most this far from each other, in the unit of the file, are one; by default equal ones
-    ///     alone. Some exporters leave a mesh open by the last digits of its corners.
+    ///     Corners at most this far from each other, in the unit of the file, are joined; by default only
+    ///     equal corners. Some exporters write the same corner with different last digits in each triangle,
+    ///     so that the mesh is open.
     /// closure, orient
     ///     As of `from_mesh`, for a mesh that is open or wound inward.
     /// union : bool, optional
-    ///     Join components of a mesh that overlap, so that what they share counts once; by manifold3d (extra `union`). How
-    ///     far it moves corners, a part in 1e12 or so of the size, is in no bound.
+    ///     Whether to join overlapping components of a mesh, so that the common volume counts once; by
+    ///     manifold3d (extra ``union``). The join moves corners by about 1e-12 of the size of the mesh. No
+    ///     error bound includes this.
     /// repair : bool, optional
-    ///     Mend a mesh: weld corners, drop faces that stand twice, wind the others alike, fill loops, each where there is
-    ///     need. `provenance` says "repaired", and :func:`polhode.files.solid_from_file` what was done.
+    ///     Whether to mend a mesh where there is need: weld corners, drop duplicate faces, turn faces so that
+    ///     all are wound alike, fill holes. `provenance` then says "repaired";
+    ///     :func:`polhode.files.solid_from_file` tells what was done.
     /// index_base : {1, 0}, optional
-    ///     What the faces of an OBJ or plate file count vertices from.
+    ///     Number of the first vertex in an OBJ or plate file, to which its faces refer.
     /// masses : {"most_common", "average"}, optional
-    ///     Masses for a molecule where a label names no isotope: of the element's most common isotope or the average over them.
+    ///     Masses of those atoms of a molecule whose label names no isotope: that of the most common isotope
+    ///     of the element, or the average over its isotopes.
     /// progress : callable, optional
-    ///     Is told the fraction of a large mesh file done, now and then; an exception it raises ends the
-    ///     reading. Binary STL and PLY go through memory block by block, whatever their size.
+    ///     A function that is called now and then with the fraction of a large mesh file that has been read.
+    ///     An exception that it raises ends the reading. Binary STL and PLY are read block by block, so that
+    ///     a file may be larger than the memory.
     ///
     /// Returns
     /// -------
@@ -202,7 +208,7 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// FileFormatError
-    ///     When the file is not what it says.
+    ///     When the content of the file does not fit its name, or is damaged.
     /// MeshError
     ///     When the mesh does not bound a solid.
     ///

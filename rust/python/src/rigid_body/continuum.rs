@@ -21,9 +21,9 @@ use crate::stack::Stack;
 
 #[pymethods]
 impl PyRigidBody {
-    /// Body made of tetrahedra, such as the cells of a finite-element mesh; the integrals are exact.
+    /// Body made of tetrahedra, such as the cells of a finite-element mesh, by exact integrals.
     ///
-    /// Cells are what they cover: their nodes may go either way round, and cells that overlap count twice.
+    /// The nodes of a cell may be in either orientation. Where cells overlap, the overlap counts twice.
     ///
     /// Parameters
     /// ----------
@@ -31,9 +31,11 @@ impl PyRigidBody {
     /// cells : array_like of int, shape (m, 4)
     ///     The four nodes of each tetrahedron, counted from zero.
     /// density : float or array_like, shape (m,) or (n,)
-    ///     One for all, one for each cell, or one for each node and linear between them.
+    ///     One number for all cells, one for each cell, or one for each node with linear interpolation in the
+    ///     cells.
     /// at : {"cells", "nodes"}, optional
-    ///     What an array of densities belongs to; needed only where there are as many cells as nodes.
+    ///     Whether an array of densities belongs to cells or nodes; needed only if there are as many cells as
+    ///     nodes.
     ///
     /// Returns
     /// -------
@@ -81,11 +83,13 @@ impl PyRigidBody {
 
     /// Body that fills a region of space with a density given as a function.
     ///
-    /// The integrals are taken by adaptive cubature. The density should be smooth within the region: let a
-    /// jump be a boundary, with one region on each side of it and the bodies added. A jump inside is counted
-    /// in the error wherever it is; a plane across a box along its faces, a sphere about the centre of a
-    /// ball and the like still converge to any tolerance, others to a few digits. A feature much smaller
-    /// than a tenth of the region may be missed: draw the bounds closely.
+    /// The integrals are computed by adaptive cubature. The density should be smooth inside the region. If it
+    /// has a jump, take one region on each side of the jump, and add the two bodies.
+    ///
+    /// The estimated error includes that of a jump inside the region. The integrals converge to any tolerance
+    /// if the jump follows the coordinates of the region, like a plane parallel to the faces of a box or a
+    /// sphere about the centre of a ball; other jumps allow a few digits only. A feature much smaller than a
+    /// tenth of the region may be missed, so the bounds should be tight.
     ///
     /// Parameters
     /// ----------
@@ -95,11 +99,11 @@ impl PyRigidBody {
     /// bounds : Region or array_like, shape (2, 3)
     ///     A region of :mod:`polhode.regions`, or two opposite corners of a box.
     /// rtol : float, optional
-    ///     Bound on the estimated error of the mass, relative; of the centre of mass, relative to the
-    ///     radius of gyration; and of the second moments, relative to their sum.
+    ///     Bound on the estimated errors: of the mass, relative to the mass; of the centre of mass, relative
+    ///     to the radius of gyration; of the second moments, relative to their sum.
     /// max_evaluations : int, optional
-    ///     Largest number of points at which the density is evaluated; to look for jumps beside the faces of the
-    ///     cells takes up to a sixth more.
+    ///     Largest number of points at which the density is evaluated. The search for jumps next to the faces
+    ///     of the cells takes up to a sixth more.
     ///
     /// Returns
     /// -------
@@ -108,11 +112,11 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// QuadratureError
-    ///     When the evaluations do not suffice; it carries the estimate and its error.
+    ///     When `max_evaluations` are not enough. The error has the estimate and its own estimated error.
     ///
     /// Examples
     /// --------
-    /// A ball whose density falls off from its centre:
+    /// A ball whose density decreases from the centre outward:
     ///
     /// >>> import numpy as np
     /// >>> from polhode import RigidBody, regions
@@ -139,7 +143,7 @@ impl PyRigidBody {
         finished(py, from_density(&region, at, effort))
     }
 
-    /// Ball whose density depends on the distance from its centre alone: a star, a planet, a layered shell.
+    /// Ball whose density depends only on the distance from its centre: a star, a planet, a layered shell.
     ///
     /// Parameters
     /// ----------
@@ -147,13 +151,13 @@ impl PyRigidBody {
     ///     ``density(radii)``, with radii of shape (n,), returns the densities there, shape (n,): none
     ///     negative.
     /// radii : float or array_like, shape (k,)
-    ///     The radius; or ascending radii between which there is matter, at each of which the density may
-    ///     jump. A first one above zero is that of a cavity.
+    ///     The radius; or ascending radii, at each of which the density may jump. If the first of them is not
+    ///     zero, it is the radius of a cavity.
     /// rtol : float, optional
     ///     Bound on the estimated relative errors of mass and moments.
     /// max_evaluations : int, optional
-    ///     Largest number of radii at which the density is evaluated; to look for jumps beside the boundaries
-    ///     takes up to twice as many more.
+    ///     Largest number of radii at which the density is evaluated. The search for jumps next to the
+    ///     boundaries takes up to twice as many more.
     ///
     /// Returns
     /// -------
@@ -162,7 +166,7 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// QuadratureError
-    ///     When the evaluations do not suffice; it carries the estimate and its error.
+    ///     When `max_evaluations` are not enough. The error has the estimate and its own estimated error.
     ///
     /// Examples
     /// --------

@@ -28,7 +28,8 @@ impl PyRigidBody {
         found.map(|found| sigma_of(py, &found)).transpose()
     }
 
-    /// As `sigma`, with the tensor, principal moments and axes and radii of gyration about a point of the body frame.
+    /// Standard deviations as `sigma`, with tensor, principal moments, principal axes and radii of gyration
+    /// about a given point.
     ///
     /// Parameters
     /// ----------
@@ -40,7 +41,7 @@ impl PyRigidBody {
     ///
     /// Examples
     /// --------
-    /// A disk on an axle beside its centre: the sigma of the distance counts.
+    /// A disk on an axle that is not at its centre: the uncertainty of the distance counts.
     ///
     /// >>> from polhode import Uncertain, laminae
     /// >>> disk = laminae.disk(0.2, mass=Uncertain(5.0, 0.01)).translated(Uncertain((0.1, 0, 0), (0.001, 0, 0)))

@@ -82,8 +82,8 @@ impl PyRigidBody {
 
     /// Angular momentum about the origin of space in three parts, ``m R×v + m [R×(ω×c_P) + c_P×v] + I_P ω``.
     ///
-    /// For P = C the mixed part vanishes and the sum is orbital + spin; for P fixed at the origin of
-    /// space it is the spin alone.
+    /// For P = C the mixed part is zero, and the sum is orbital + spin. For P fixed at the origin of space
+    /// the sum is the spin alone.
     ///
     /// Parameters
     /// ----------
@@ -144,7 +144,7 @@ impl PyRigidBody {
             .call1(parts)
     }
 
-    /// Euler's equations forward: the angular acceleration, from ``I_P ω̇ + ω × I_P ω = N_P``.
+    /// Angular acceleration by Euler's equations, ``I_P ω̇ + ω × I_P ω = N_P``.
     ///
     /// Parameters
     /// ----------
@@ -200,14 +200,15 @@ impl PyRigidBody {
         write(py, &acceleration)
     }
 
-    /// Euler's equations inverse: the torque that gives an angular acceleration.
+    /// Torque that causes a given angular acceleration, by Euler's equations.
     ///
     /// Parameters
     /// ----------
     /// omega : array_like, shape (..., 3)
     ///     Angular velocity relative to space, components in the body frame.
     /// angular_acceleration : array_like, shape (..., 3), optional
-    ///     ω̇, components in the body frame; zero by default: the torque that keeps ω.
+    ///     ω̇, components in the body frame; zero by default. The result is then the torque that keeps ω
+    ///     constant in the body.
     /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
     ///     P: the centre of mass of a body that moves freely, or a point fixed in space.
     ///

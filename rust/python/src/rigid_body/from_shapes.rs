@@ -58,12 +58,14 @@ impl Closed {
 impl PyRigidBody {
     /// Solid of uniform density bounded by a closed triangle mesh.
     ///
-    /// The mesh is checked before any number is computed: indices in range, coordinates finite, every
-    /// edge shared by two faces that run along it in opposite directions, no face twice, normals
-    /// outward, a volume beyond rounding. Corners with the same coordinates count as one vertex.
-    /// Several components and cavities are counted as they are; a component wound inward that lies in
-    /// no other is no cavity but inside out, and an error.
-    /// Coordinates far from the origin cost no accuracy, nor does a thin shape its smallest moment.
+    /// The mesh is checked before anything is computed: indices are in range, coordinates are finite, every
+    /// edge is shared by two faces that run along it in opposite directions, no face is there twice, normals
+    /// point outward, and the volume is larger than its rounding error. Corners with the same coordinates
+    /// count as one vertex.
+    ///
+    /// The mesh may have several components and cavities. A cavity is a component that is wound inward and
+    /// lies inside another one; a component that is wound inward elsewhere is an error. A large distance from
+    /// the origin costs no accuracy, and the smallest moment of a thin shape is accurate too.
     ///
     /// Parameters
     /// ----------
@@ -73,14 +75,14 @@ impl PyRigidBody {
     /// density, mass : float
     ///     Exactly one of the two.
     /// closure : {"caps", "hull"}, optional
-    ///     What to make of an open mesh, which by itself is an error: ``"caps"`` closes each hole by
-    ///     triangles to the mean of the ends of its edges (the flat cap, where it is flat), ``"hull"`` takes the
-    ///     convex hull instead (needs SciPy). `provenance` tells the volume it changed.
+    ///     How to close an open mesh, which is an error by default. ``"caps"`` closes each hole by triangles
+    ///     from its edges to the mean of their ends; a flat hole gets a flat cap. ``"hull"`` takes the convex
+    ///     hull of the mesh (needs SciPy). `provenance` tells by how much the volume changed.
     /// orient : bool, optional
-    ///     Turn a mesh whose normals all point inward, and components that are inside out.
+    ///     Whether to turn a mesh whose normals all point inward, and components that are inside out.
     /// check : bool, optional
-    ///     False leaves out whether the mesh is closed, consistently wound and without duplicate faces:
-    ///     an open mesh then gives numbers that mean nothing, and `provenance` says "unchecked".
+    ///     False skips the checks that the mesh is closed, consistently wound and without duplicate faces.
+    ///     The numbers of an open mesh then mean nothing. `provenance` says "unchecked".
     ///
     /// Returns
     /// -------
@@ -179,15 +181,19 @@ impl PyRigidBody {
             .weighed([density, mass, None])
     }
 
-    /// Shell, thin or of finite thickness, around a triangle mesh, open or closed.
+    /// Shell along an open or closed triangle mesh, thin or of finite thickness.
     ///
-    /// A thin one has a uniform mass per area, and the faces may be wound as they like. With `thickness` it is the solid
-    /// between two offsets of the mesh, half the thickness to each side, with walls along an open rim; faces must then be
-    /// consistently wound, outward or inward, with at most two at an edge. Edges and corners are mitred: where at most
-    /// three planes meet at a vertex, every face moves by exactly half the thickness; elsewhere the vertex goes where the
-    /// planes, weighted by the angles of their faces there, are met best, which on a mesh of a curved surface is good to
-    /// the second order in the size of its triangles. A shell that folds over itself at a face is an error; parts far
-    /// apart along the surface that come to overlap are not looked for and count twice.
+    /// A thin shell has a uniform mass per area, and its faces may be wound in any sense.
+    ///
+    /// With `thickness` the shell is a solid: it lies between two offset surfaces, at half the thickness on
+    /// each side of the mesh, and has walls along an open rim. Faces must then be wound consistently, and at
+    /// most two faces may share an edge. If at most three planes meet at a vertex, the offset faces are
+    /// exactly at half the thickness. At other vertices the distances are met as well as possible, with the
+    /// angles of the faces there as weights; for the mesh of a curved surface the error is of second order in
+    /// the size of the triangles.
+    ///
+    /// A shell that folds over itself at a face is an error. Distant parts of a shell that overlap are not
+    /// detected, and the overlap counts twice.
     ///
     /// Parameters
     /// ----------
@@ -195,7 +201,7 @@ impl PyRigidBody {
     /// faces : array_like of int, shape (m, 3)
     ///     Vertices of each triangle, counted from zero.
     /// areal_density, density, mass : float
-    ///     Mass per area of a thin shell, mass per volume of one with `thickness`, or the mass in all:
+    ///     Mass per area of a thin shell, mass per volume of a shell with `thickness`, or the total mass:
     ///     exactly one of them.
     /// thickness : float, optional
     ///     Thickness from face to face; without it the shell is thin.
@@ -207,8 +213,8 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// MeshError
-    ///     Naming the face or vertex that is none, or the face at which the shell folds over itself and
-    ///     the thickness that is possible there; when there is no area.
+    ///     For a bad face or vertex, or a mesh without area. Where the shell folds over itself, the message
+    ///     names the face and the largest possible thickness.
     ///
     /// Examples
     /// --------
@@ -265,14 +271,14 @@ impl PyRigidBody {
         body.weighed([areal_density, density, mass])
     }
 
-    /// Thin wire of uniform mass per length: straight segments from point to point.
+    /// Thin wire of uniform mass per length, made of straight segments.
     ///
     /// Parameters
     /// ----------
     /// points : array_like, shape (..., n, 3)
-    ///     Two or more, in order; a closed wire ends at its first point.
+    ///     Ends of the segments in order, two or more; a closed wire ends at its first point.
     /// linear_density, mass : float
-    ///     Mass per length, or the mass in all: exactly one of the two.
+    ///     Mass per length, or the total mass: exactly one of the two.
     ///
     /// Returns
     /// -------
@@ -281,7 +287,7 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// PolhodeError
-    ///     When a coordinate is not finite or there is no length.
+    ///     When a coordinate is not finite, or the wire has no length.
     ///
     /// Examples
     /// --------

@@ -23,23 +23,23 @@ use crate::uncertain::{Quantity, carried, holds_uncertain, is_uncertain, quantit
 impl PyRigidBody {
     /// Body made of particles, or a stack of such bodies.
     ///
-    /// ``I = Σ m (r² 1 − r rᵀ)``, summed about a point of the body, so that it does not matter where the
-    /// body stands; the smallest moment of a thin body is as accurate as the coordinates are. Arrays of
-    /// C-ordered float64 are read where they are, and large ones on all cores; the result has the same bits
-    /// for any number of threads, and for a body alone or in any stack.
+    /// ``I = Σ m (r² 1 − r rᵀ)``, summed about a point of the body, so that a large distance from the origin
+    /// costs no accuracy. The smallest moment of a thin body is as accurate as the coordinates are. Arrays of
+    /// C-ordered float64 are not copied; large ones are summed on all cores. The result has the same bits for
+    /// any number of threads, and for a body alone or in any stack.
     ///
-    /// Particles of one body that are not in memory are never loaded as a whole: those of zarr arrays, HDF5
-    /// datasets (h5py) and memory maps are read a piece at a time, those of dask arrays are summed chunk by chunk
-    /// where dask computes them, on the workers of its client if there is one. They are summed as by `MassAccumulator`:
-    /// with the same bits for any chunks.
+    /// Particles of one body that are not in memory are never loaded as a whole. Zarr arrays, HDF5 datasets
+    /// (h5py) and memory maps are read piece by piece. Dask arrays are summed chunk by chunk where dask
+    /// computes them, on the workers of its client if there is one. The sum is that of `MassAccumulator`: it
+    /// has the same bits for any chunks.
     ///
     /// Parameters
     /// ----------
     /// masses : array_like, shape (..., n)
-    ///     None negative, their sum positive.
+    ///     Masses of the particles; none negative, the sum positive.
     /// positions : array_like, shape (..., n, 3)
-    ///     Leading axes broadcast against those of `masses`: the frames of a trajectory, shape (T, n, 3), take
-    ///     masses of shape (n,).
+    ///     Positions of the particles in the body frame. Leading axes broadcast against those of `masses`:
+    ///     for the frames of a trajectory, shape (T, n, 3), masses of shape (n,) will do.
     ///
     /// Returns
     /// -------
@@ -115,21 +115,22 @@ impl PyRigidBody {
         Ok(stack(py, grid.shape, bodies)?.looking(figures))
     }
 
-    /// Bodies of particles that say which body they belong to: haloes, fragments, residues.
+    /// Bodies from one list of particles, where a label tells the body of each particle: haloes, fragments,
+    /// residues.
     ///
     /// Parameters
     /// ----------
     /// masses : array_like, shape (n,)
     /// positions : array_like, shape (n, 3)
     /// labels : array_like of int, shape (n,)
-    ///     The number of each particle's body, counted from 0, in any order; −1 for a particle of no body.
-    ///     Every number up to the largest must own some mass: for arbitrary labels pass the inverse of
-    ///     ``numpy.unique(labels, return_inverse=True)``.
+    ///     Number of the body of each particle, counted from 0, in any order; −1 for a particle of no body.
+    ///     Every number up to the largest must have some mass. For labels with gaps see
+    ///     :mod:`polhode.labelled`.
     ///
     /// Returns
     /// -------
     /// RigidBody
-    ///     A stack with one body for each label, each with the bits that `from_particles` gives its
+    ///     A stack with one body for each label. Each has the same bits as `from_particles` gives for its
     ///     particles alone.
     ///
     /// Examples
@@ -168,16 +169,16 @@ impl PyRigidBody {
         }
     }
 
-    /// Body given by its density on a rectangular grid, each cell a homogeneous box.
+    /// Body given by its density on a rectangular grid, where each cell is a homogeneous box.
     ///
-    /// Exact for such cells, their own extent included: the second moment ``m h²/12`` of a cell along each of its
-    /// edges, which sums over points would lose.
+    /// The integrals are exact for such cells. They include the second moment ``m h²/12`` of each cell along
+    /// each of its edges, which a sum over the centres would miss.
     ///
     /// Parameters
     /// ----------
     /// density : array_like, shape (..., nx, ny, nz)
     ///     Mass per volume, not negative; ``density[i, j, k]`` runs along x, y, z. C-ordered float32 and
-    ///     float64 are read where they are; sums are taken in double precision.
+    ///     float64 arrays are not copied; sums are taken in double precision.
     /// spacing : float or array_like, shape (3,)
     ///     Edges of a cell.
     /// origin : array_like, shape (3,), optional

@@ -38,7 +38,8 @@ impl PyRigidBody {
     ///
     /// Examples
     /// --------
-    /// A wheel that rolls along x with unit speed: its top is twice as fast, the point of contact rests.
+    /// A wheel rolls along x with unit speed. Its highest point is twice as fast; the point of contact is at
+    /// rest:
     ///
     /// >>> from polhode import solids
     /// >>> wheel = solids.cylinder(radius=0.5, height=0.1, mass=1.0)
@@ -98,7 +99,7 @@ impl PyRigidBody {
     ///
     /// Examples
     /// --------
-    /// The point of contact of a rolling wheel rests and is drawn to the axis:
+    /// The point of contact of a rolling wheel is at rest, and its acceleration is toward the axis:
     ///
     /// >>> from polhode import solids
     /// >>> wheel = solids.cylinder(radius=0.5, height=0.1, mass=1.0)
@@ -174,7 +175,8 @@ impl PyRigidBody {
     ///
     /// Examples
     /// --------
-    /// A pendulum, a bob of 2 kg on half a metre, at its lowest point with 3 rad/s: m (g + ω² l).
+    /// A pendulum with a bob of 2 kg and a length of half a metre passes its lowest point with 3 rad/s; the
+    /// force is m (g + ω² l):
     ///
     /// >>> from polhode import solids
     /// >>> bob = solids.sphere(radius=0.0, mass=2.0).translated((0, 0, -0.5))
@@ -248,22 +250,23 @@ impl PyRigidBody {
 
     /// Stability of the steady spins of a free body about its principal axes.
     ///
-    /// The squared frequency ``ω² (I_k − I_i)(I_k − I_j)/(I_i I_j)``, seen from the body, of small
-    /// oscillations about the spin around axis k. Negative: the spin is unstable, and departures grow as
-    /// ``exp(t √−value)``. Zero: the axis has neighbours with the same moment, to which a disturbed spin
-    /// drifts.
+    /// The result for axis k is the squared frequency of small oscillations about the spin, seen from the
+    /// body: ``ω² (I_k − I_i)(I_k − I_j)/(I_i I_j)``. If it is negative, the spin is unstable, and a
+    /// disturbance grows as ``exp(t √−value)``. If it is zero, neighbouring axes have the same moment, and a
+    /// disturbed spin drifts to them.
     ///
     /// Parameters
     /// ----------
     /// rate : array_like, shape (...)
-    ///     ω of the spin.
+    ///     Angular velocity ω of the spin, in radians per unit of time.
     /// about : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
     ///     P: the centre of mass of a body that moves freely, or a point fixed in space, without torque.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (..., 3)
-    ///     For the axes with ascending moments about P. A row with a NaN gives NaN.
+    ///     Squared frequencies in (radians per unit of time)², for the principal axes in the order of
+    ///     ascending moments about P. A row with a NaN gives NaN.
     ///
     /// Examples
     /// --------

@@ -7,15 +7,15 @@ use crate::body::PyRigidBody;
 
 #[pymethods]
 impl PyRigidBody {
-    /// Body of a mesh object as other libraries have it, such as a `trimesh.Trimesh`.
+    /// Body from a mesh object of another library, such as ``trimesh.Trimesh``.
     ///
     /// Parameters
     /// ----------
     /// mesh : object
-    ///     With ``vertices`` (n, 3) and ``faces`` (m, 3); or a `trimesh.Scene`, whose meshes are placed as it
-    ///     says. Coordinates stay as they are.
+    ///     Object with ``vertices`` (n, 3) and ``faces`` (m, 3); or a ``trimesh.Scene``, whose meshes are
+    ///     placed by its transforms. The unit of the coordinates is kept.
     /// density, mass : float
-    ///     Exactly one of the two. A density that the object itself may carry is not used.
+    ///     Exactly one of the two. A density that the object itself has is not used.
     /// **options
     ///     `closure`, `orient` and `check` as of `from_mesh`.
     ///
@@ -57,33 +57,33 @@ impl PyRigidBody {
             .call_method("body_from_mesh", (mesh,), Some(&all))
     }
 
-    /// Body of a molecule as other libraries have it: ASE's `Atoms`, or RDKit's `Mol` with a conformer.
+    /// Body from a molecule of another library: an ``Atoms`` of ASE, or a ``Mol`` of RDKit with a conformer.
     ///
     /// Parameters
     /// ----------
     /// atoms : object
-    ///     With ``get_chemical_symbols()`` and ``get_positions()`` (ASE), or ``GetAtoms()`` and ``GetConformer()``
-    ///     (RDKit): ångströms, in which the result stays.
+    ///     Object with ``get_chemical_symbols()`` and ``get_positions()`` (ASE), or with ``GetAtoms()`` and
+    ///     ``GetConformer()`` (RDKit). Positions are in ångströms.
     /// conformer : int, optional
-    ///     Which of an RDKit molecule's; its first by default.
+    ///     Number of the conformer of an RDKit molecule; its first by default.
     /// masses : {"most_common", "average"}
-    ///     Masses of each element: of its most common isotope, as spectroscopists and molecules in files have it, or the
-    ///     average over its isotopes, as in a bottle. Those that the object was given stand: masses set in ASE,
-    ///     isotopes in RDKit. `provenance` tells whose they are.
+    ///     Mass of each element: that of its most common isotope, as in spectroscopy, or the average over its
+    ///     isotopes, as for a substance in a bottle. Masses that were set in ASE and isotopes that were set
+    ///     in RDKit take precedence. `provenance` tells which masses were used.
     ///
     /// Returns
     /// -------
     /// RigidBody
-    ///     In daltons and ångströms.
+    ///     The body in daltons and ångströms.
     ///
     /// Raises
     /// ------
     /// TypeError
-    ///     For an object that is neither.
+    ///     For an object of another kind.
     /// ValueError
     ///     For a molecule without a conformer.
     /// PolhodeError
-    ///     For atoms of no element, or of one without natural isotopes.
+    ///     For an atom that is no element, or an element without natural isotopes.
     #[staticmethod]
     #[pyo3(signature = (atoms, *, conformer=None, masses="most_common"))]
     fn from_atoms<'py>(

@@ -103,7 +103,7 @@ impl PyRigidBody {
     /// Parameters
     /// ----------
     /// axis : array_like, shape (..., 3)
-    ///     Its direction in the body frame; any length but zero.
+    ///     Direction of the axis in the body frame, as a vector of any length but zero.
     /// point : {"center_of_mass", "origin"} or array_like, shape (..., 3), optional
     ///     A point on the axis.
     ///
@@ -165,7 +165,7 @@ impl PyRigidBody {
         self.with_sigma_of_axes(with_rtols(py, &found)?, Some(&points))
     }
 
-    /// The body moved: C → C + displacement.
+    /// The body after a displacement: C → C + displacement.
     ///
     /// Parameters
     /// ----------
@@ -201,7 +201,8 @@ impl PyRigidBody {
         Ok(Self::doubtful(moved, doubts).looking(figures))
     }
 
-    /// The body turned about the origin: C → R C, I → R I Rᵀ. Its principal moments stay exactly as they are.
+    /// The body after a rotation about the origin: C → R C, I → R I Rᵀ. Its principal moments stay exactly
+    /// the same.
     ///
     /// Parameters
     /// ----------
@@ -284,10 +285,10 @@ impl PyRigidBody {
         Ok(Self::doubtful(scaled, doubts).looking(figures))
     }
 
-    /// Whether bodies agree, one answer for each pair.
+    /// Whether bodies agree within tolerances, one answer for each pair.
     ///
-    /// Compared are the masses, the tensors (relative to the largest element) and the centres of mass
-    /// (relative to the distance from the origin or the radius of gyration, whichever is larger).
+    /// The test compares masses, tensors (relative to the largest element) and centres of mass (relative to
+    /// the distance from the origin or to the radius of gyration, whichever is larger).
     ///
     /// Parameters
     /// ----------

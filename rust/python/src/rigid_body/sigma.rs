@@ -22,10 +22,10 @@ type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 #[pymethods]
 impl PyRigidBody {
-    /// The body with standard deviations of its numbers, independent of one another and of what it was made of.
+    /// The body with additional standard deviations of its numbers.
     ///
-    /// What it already carries stays, and variances add. Measured numbers are seldom independent: where their covariance is
-    /// known give that, by `with_covariance`.
+    /// The new errors are independent of one another and of those that the body has already: the variances
+    /// add. Measured numbers are seldom independent. If their covariance is known, use `with_covariance`.
     ///
     /// Parameters
     /// ----------
@@ -34,7 +34,7 @@ impl PyRigidBody {
     /// inertia : array_like, shape (..., 3, 3), optional
     ///     Standard deviations of the elements of the tensor about C, symmetric.
     /// source : str, optional
-    ///     A name for the draw: as of `Uncertain`.
+    ///     A name for the source of the errors, as of `Uncertain`.
     ///
     /// Returns
     /// -------
@@ -43,7 +43,8 @@ impl PyRigidBody {
     /// Raises
     /// ------
     /// InvalidInertiaError
-    ///     When no body can have these: what has no extent along an axis has no variance of it.
+    ///     When no body can have these standard deviations: for example, a number that is zero because the
+    ///     body has no extent along an axis cannot vary.
     ///
     /// Examples
     /// --------
@@ -114,9 +115,10 @@ impl PyRigidBody {
         self.with_given(py, bodies, &own, &given)
     }
 
-    /// The body with what its `error_bound` leaves open as standard deviations: the error of a quadrature or of rounding.
+    /// The body with its `error_bound`, of quadrature or rounding, turned into standard deviations.
     ///
-    /// A number that is known to lie within ± a has the deviation a/√3 (a rectangular distribution, as of the GUM).
+    /// A number that is known to ± a gets the standard deviation a/√3, that of a uniform distribution, as the
+    /// GUM recommends.
     ///
     /// Returns
     /// -------
@@ -143,9 +145,9 @@ impl PyRigidBody {
         self.with_given(py, self.bodies.clone(), &own, &given)
     }
 
-    /// The body with a covariance of its ten numbers, independent of what it was made of.
+    /// The body with an additional covariance of its ten numbers.
     ///
-    /// What it already carries stays, and covariances add.
+    /// The new errors are independent of those that the body has already: the covariances add.
     ///
     /// Parameters
     /// ----------
@@ -153,7 +155,7 @@ impl PyRigidBody {
     ///     Covariance of m, Cx, Cy, Cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz: the tensor's elements about C, off the diagonal
     ///     *minus* the products.
     /// source : str, optional
-    ///     A name for the draw: as of `Uncertain`.
+    ///     A name for the source of the errors, as of `Uncertain`.
     ///
     /// Returns
     /// -------
@@ -164,7 +166,7 @@ impl PyRigidBody {
     /// PolhodeError
     ///     For a matrix that is no covariance.
     /// InvalidInertiaError
-    ///     When no body can have it.
+    ///     When no body can have this covariance.
     #[pyo3(signature = (covariance, source=None))]
     fn with_covariance(
         &self,
@@ -205,7 +207,8 @@ impl PyRigidBody {
         }
     }
 
-    /// Covariance of the ten numbers of one body with those of another, by the sources that both depend on.
+    /// Covariance of the ten numbers of one body with those of another, caused by sources of error that they
+    /// share.
     ///
     /// Parameters
     /// ----------
@@ -214,7 +217,7 @@ impl PyRigidBody {
     /// Returns
     /// -------
     /// numpy.ndarray, shape (..., 10, 10)
-    ///     Rows for the numbers of this body, columns for those of the other, in the order of `covariance`.
+    ///     Rows are the numbers of this body, columns those of the other, in the order of `covariance`.
     ///
     /// Examples
     /// --------

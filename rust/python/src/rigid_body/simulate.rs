@@ -27,7 +27,7 @@ type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 #[pymethods]
 impl PyRigidBody {
-    /// The motion of the body at the times asked for.
+    /// Compute the motion of the body at given times, with or without a load.
     ///
     /// Solves Euler's equations together with the attitude, as a unit quaternion, and the motion of the centre of
     /// mass under a load.
@@ -42,69 +42,76 @@ impl PyRigidBody {
     ///     R_NB at the start: unit quaternions (x, y, z, w), or anything with ``as_quat()`` such as
     ///     SciPy's Rotation. The identity by default.
     /// load : Load, optional
-    ///     What acts on the body, from :mod:`polhode.loads`; nothing by default. Its torques are about
-    ///     the point `about`; its forces move a body that is free.
+    ///     Forces and torques on the body, from :mod:`polhode.loads`; none by default. Torques are about the
+    ///     point `about`. Forces move the centre of mass of a free body.
     /// position, velocity : array_like, shape (..., 3), optional
     ///     Position and velocity of the point `about` at the start, in space; zero by default.
     /// about : {"center_of_mass", "origin"}, optional
     ///     The centre of mass of a body that moves freely, or the origin of the body frame when that
     ///     point is fixed in space.
     /// method : {"auto", "exact", "taylor", "dop853", "radau", "splitting"}, optional
-    ///     "exact" is the closed form of a free body without a load, and of a symmetric top under uniform gravity
-    ///     whose axis passes through the fixed origin; its cost and error do not grow with time.
-    ///     "taylor" sums Taylor series of the order at which the work is least, 22 at an `rtol` of 2.3e-15:
-    ///     any load without callbacks. "dop853" is the explicit Runge-Kutta method
-    ///     of order 8 by Dormand and Prince with a dense output of order 7: any load. "auto" takes the first
-    ///     of these that can serve the run. "radau" is the implicit Runge-Kutta method Radau IIA of order 5:
-    ///     any load, for those that are stiff, such as strong damping. "splitting" kicks the body between
-    ///     exact free motions: loads that depend on time, attitude and position alone, for long times, since
-    ///     the energy does not drift. Its steps are equal until a check against two half steps asks for shorter
-    ///     ones; they are chosen anew where a load begins or ends. Where more than twenty of them make a radian each
-    ///     errs by less than `rtol` allows, since their errors add up.
+    ///     * "auto" takes the first of "exact", "taylor" and "dop853" that can serve the run.
+    ///     * "exact" is the closed form of a free body without a load, and of a symmetric top under uniform
+    ///       gravity whose axis passes through the fixed origin. Its cost and error do not grow with time.
+    ///     * "taylor" sums Taylor series. Their order is chosen so that the work is nearly least: 18 at the
+    ///       default `rtol`, 26 at 2.3e-15. It serves any load without callbacks.
+    ///     * "dop853" is the explicit Runge-Kutta method of order 8 by Dormand and Prince, with a dense
+    ///       output of order 7. It serves any load.
+    ///     * "radau" is the implicit Runge-Kutta method Radau IIA of order 5. It serves any load, and is made
+    ///       for stiff ones such as strong damping.
+    ///     * "splitting" alternates exact free motions with impulses of the load. It serves loads that depend
+    ///       on time, attitude and position alone, and is made for long times, since the energy does not
+    ///       drift. Its steps have one length, until a comparison with two half steps asks for shorter ones,
+    ///       or a load begins or ends. If the body takes more than twenty steps for a radian, the error of
+    ///       each step is held below `rtol`, since the errors add up.
     /// rtol : float, optional
     ///     Error allowed in a step, relative to the unit quaternion and to the largest angular speed,
-    ///     distance and speed so far; from 2.3e-15 to 0.1, and for "taylor" from 1e-28. Below 2.3e-15 (ten units
-    ///     of rounding) it sums its series in numbers of twice the precision and rounds the result once: many
-    ///     times as costly, for motions whose rounding errors grow on the way, such as those close by a
-    ///     separatrix, and for reference solutions. "auto" then takes "taylor" where "exact" would serve.
+    ///     distance and speed so far. The range is 2.3e-15 to 0.1; for "taylor" it begins at 1e-28. Below
+    ///     2.3e-15 (ten units of rounding) "taylor" sums its series in numbers of twice the precision and
+    ///     rounds the result once. This takes many times as long. It is meant for reference solutions, and
+    ///     for motions whose rounding errors grow with time, such as those near a separatrix. There "auto"
+    ///     takes "taylor" even where "exact" could serve.
     /// atol : float, optional
-    ///     Error of the angular velocity allowed besides; none by default.
+    ///     Absolute error of the angular velocity that is allowed in addition, in radians per unit of time;
+    ///     zero by default.
     /// events : callable or sequence of callables, optional
     ///     Functions ``event(t, omega, quaternion, position, velocity)`` whose passages through zero are
-    ///     looked for. Where the load has states of its own they are called with a sixth argument, a dict of these states by name. All those of a smooth function are found, also two within one step. Of a function with jumps,
-    ///     corners or narrow peaks, two passages may be missed when the body turns by less than a quarter of a radian
-    ///     between them. Attributes as in SciPy: ``direction`` positive or negative counts those that rise
-    ///     or fall in time alone; ``terminal`` True ends the run at the first, a number n at the n-th.
-    ///     :class:`polhode.Event` sets them.
+    ///     searched for. If the load has states, they are the sixth argument, a dict by name. All passages of
+    ///     a smooth function are found, also two within one step. For a function with jumps, corners or
+    ///     narrow peaks, two passages may be missed if the body turns by less than a quarter of a radian
+    ///     between them. The functions may have attributes as in SciPy. ``direction``: if it is positive,
+    ///     only passages that rise in time count; if it is negative, only those that fall. ``terminal`` True
+    ///     ends the run at the first, a number n at the n-th. :class:`polhode.Event` sets them.
     /// on_failure : {"raise", "keep"}, optional
-    ///     Whether a body whose integration cannot go on raises, or keeps the other bodies of the stack;
-    ///     see ``status`` and ``failures`` of the trajectory.
+    ///     What happens if the integration of a body cannot go on: an error ends the run, or the other bodies
+    ///     of the stack go on and ``status`` and ``failures`` of the trajectory tell about this one.
     /// progress : callable, optional
     ///     Called with the fraction done, about twenty times a second and at the end.
     /// states : dict of str and array_like, shape (..., k), optional
-    ///     States of the load at the start, by name, in place of those that it begins with: to go on from other states.
+    ///     States of the load at the start, by name, in place of its usual initial states.
     /// max_steps : int, optional
-    ///     Steps of each body at most, a thousand million by default: one that would need many more than the others fails,
-    ///     rather than being waited for. Closed forms take none.
+    ///     Largest number of steps of each body, 1e9 by default. A body that needs more fails, and the others
+    ///     need not wait for it. Closed forms take no steps.
     ///
     /// Returns
     /// -------
     /// Trajectory
-    ///     Where omega, attitude, position or velocity is an array of dask, or an `xarray.DataArray` that holds one: an
-    ///     `xarray.Dataset` of such arrays, as of ``Trajectory.to_xarray``, with a `status`. It is run chunk by chunk
-    ///     when it is computed, with the same bits. Names and coordinates of the axes go along.
+    ///     The motion. If omega, attitude, position or velocity is a dask array, or an `xarray.DataArray`
+    ///     that holds one, the result is an `xarray.Dataset` of dask arrays, as `Trajectory.to_xarray` gives
+    ///     it, with the variable ``status``. It is computed later, chunk by chunk, with the same bits. Names
+    ///     and coordinates of the axes are kept.
     ///
     /// Raises
     /// ------
     /// IntegrationError
-    ///     With the time and state that were reached and what had been computed; also where a run would take more than
-    ///     `max_steps`.
+    ///     If an integration cannot go on, or needs more than `max_steps` steps. The error has the time and
+    ///     the state that were reached, and the part that was computed.
     ///
     /// Notes
     /// -----
     /// The GIL is released unless load or events call Python; stacks run on all cores. Ctrl-C ends the run;
-    /// the KeyboardInterrupt has what was computed as ``partial``. An exception raised by a callback comes back
-    /// as it is.
+    /// the attribute ``partial`` of the KeyboardInterrupt is the trajectory so far. An exception that a
+    /// callback raises is passed on unchanged.
     ///
     /// Examples
     /// --------

@@ -12,7 +12,7 @@ use crate::body::PyRigidBody;
 
 #[pymethods]
 impl PyRigidBody {
-    /// Where the numbers come from: what the body was made of, what was checked, what was changed.
+    /// Origin of the numbers: what the body was made of, what was checked, and what was changed.
     ///
     /// Examples
     /// --------
@@ -50,13 +50,15 @@ impl PyRigidBody {
             .call1(fields)
     }
 
-    /// What rounding can have done to mass, centre of mass and tensor.
+    /// Bounds on the rounding errors of mass, centre of mass and tensor.
     ///
-    /// Bounds against exact arithmetic on the very floats that were given: worst cases, mostly far above
-    /// the actual errors. A number that was given has the bound zero. What the given numbers themselves
-    /// are worth no bound can say. A principal moment is off by at most three times the bound of the
-    /// tensor's elements and a few roundings of its trace; of a thin body it is mostly known far better, and
-    /// of particles from a stream `MassAccumulator.moment_bounds` tells how well.
+    /// The bounds are on the difference from exact arithmetic with the same input. They are worst cases,
+    /// mostly far above the actual errors. A number that was given directly has the bound zero. Errors of the
+    /// input itself are not included.
+    ///
+    /// The error of a principal moment is at most three times the bound for the elements of the tensor, plus
+    /// a few roundings of the trace. For thin bodies it is mostly much smaller; for particles in chunks see
+    /// `MassAccumulator.moment_bounds`.
     ///
     /// Examples
     /// --------

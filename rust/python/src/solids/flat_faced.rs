@@ -200,8 +200,8 @@ shape_function! {
 shape_function! {
     /// Regular tetrahedron, its apex toward +z: I = m a²/20 about every axis through the centre of mass.
     ///
-    /// The corners are (0, 0, a√6/4), (a/√3, 0, −a/√24) and (−a/√12, ±a/2, −a/√24). Any other tetrahedron:
-    /// :meth:`RigidBody.from_tetrahedra`.
+    /// The corners are (0, 0, a√6/4), (a/√3, 0, −a/√24) and (−a/√12, ±a/2, −a/√24). For any other tetrahedron
+    /// see :meth:`polhode.RigidBody.from_tetrahedra`.
     ///
     /// Parameters
     /// ----------

@@ -13,23 +13,29 @@ use crate::shape::tuple;
 
 /// Numbers that are not known exactly: values with standard deviations or a covariance.
 ///
-/// It is accepted wherever a body is made from numbers: by the constructors of `RigidBody`, the solids, laminae and rods, and by
-/// `translated`, `rotated` and `scaled`. The bodies carry the covariance from there on. What comes from one source stays one
-/// source: two bodies made of one `Uncertain` are correlated by it.
+/// An `Uncertain` is accepted wherever a body is made from numbers: by the constructors of `RigidBody`, the
+/// solids, laminae and rods, and by `RigidBody.translated`, `RigidBody.rotated` and `RigidBody.scaled`. A
+/// body that is made from it carries the covariance.
+///
+/// The errors of an `Uncertain` are random variables, its *source*. If two bodies are made from the same
+/// `Uncertain`, both have these errors, and their numbers are correlated.
 ///
 /// Parameters
 /// ----------
 /// value : array_like, or rotation
-///     The numbers. For `rotated`, anything with ``as_quat()`` such as SciPy's Rotation; `sigma` then belongs to three small
-///     angles about the fixed axes, in radians, by which the rotation is followed.
+///     The numbers; for `RigidBody.rotated` a rotation, as any object with ``as_quat()`` such as SciPy's
+///     Rotation. The error of a rotation is a small rotation that follows it: `sigma` then gives the standard
+///     deviations of its angles about the fixed axes x, y and z, in radians.
 /// sigma : array_like, optional
-///     Standard deviations, which broadcast to the numbers; the numbers are independent.
+///     Standard deviations, of a shape that broadcasts to that of the numbers. The errors of the numbers are
+///     independent of each other.
 /// covariance : array_like, shape (n, n), optional
-///     Instead of `sigma`: of the n numbers in C order.
+///     In place of `sigma`: covariance of the n numbers, in C order.
 /// source : str, optional
-///     A name for the draw. Objects with the same name are the same draw: number by number they move together, whatever their
-///     values and sigmas; where a covariance is given, for the same covariance alone. Without a name each object is a source
-///     of its own.
+///     A name for the source. Objects with the same name have the same errors, number by number, each in
+///     multiples of its own standard deviation; their values and sigmas may differ. Objects with a
+///     `covariance` have the same errors only if the covariances are equal too. Without a name the errors of
+///     each object are independent of all others.
 ///
 /// Raises
 /// ------
@@ -38,7 +44,8 @@ use crate::shape::tuple;
 ///
 /// Notes
 /// -----
-/// Draws are normal, and what follows is found to first order; where that is not enough is told by ``.sigma.linear``.
+/// The errors are taken as normally distributed, and results are computed to first order in them. The field
+/// ``linear`` of `RigidBody.sigma` tells for which results the first order is not enough.
 ///
 /// Examples
 /// --------
@@ -167,7 +174,7 @@ impl PyUncertain {
         numpy::PyArray1::from_vec(py, numbers).call_method1("reshape", ((count, count),))
     }
 
-    /// Name of the draw, if it has one.
+    /// Name of the source, or None.
     #[getter]
     fn source(&self) -> Option<&str> {
         self.source.as_deref()
