@@ -12,6 +12,7 @@ import subprocess
 import sys
 import types
 from collections.abc import Iterator
+from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -101,7 +102,9 @@ def _members(path: str, cls: type) -> Iterator[tuple[str, Any]]:
     for name, member in sorted(vars(cls).items()):  # two processes that share the tests name them alike
         if name.startswith("_"):
             continue
-        is_data = not (callable(member) or isinstance(member, property | staticmethod | classmethod))
+        is_data = not (
+            callable(member) or isinstance(member, property | cached_property | staticmethod | classmethod)
+        )
         if is_data and not inspect.isdatadescriptor(member):
             continue
         if type(member).__name__ in {"member_descriptor", "_tuplegetter"}:
@@ -110,6 +113,7 @@ def _members(path: str, cls: type) -> Iterator[tuple[str, Any]]:
 
 
 OBJECTS = dict(public_objects())
+FUNCTIONS = [n for n, v in OBJECTS.items() if inspect.isroutine(v) and not isinstance(v, cached_property)]
 WITH_EXAMPLES = [name for name, value in OBJECTS.items() if ">>>" in (inspect.getdoc(value) or "")]
 
 
@@ -187,7 +191,7 @@ class TestDocumentation:
     def test_the_main_objects_have_examples(self) -> None:
         assert {"polhode.RigidBody", "polhode.principal_axes"} <= set(WITH_EXAMPLES)
 
-    @pytest.mark.parametrize("name", [n for n in OBJECTS if inspect.isroutine(OBJECTS[n])])
+    @pytest.mark.parametrize("name", FUNCTIONS)
     def test_every_function_shows_its_parameters(self, name: str) -> None:
         value = OBJECTS[name]
         function = value.__func__ if isinstance(value, staticmethod | classmethod) else value
