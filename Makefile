@@ -33,9 +33,8 @@ test: build setup licences optional $(VENV)/.docs ## every test, Rust and Python
 quick: setup ## lints and tests of what differs from the last commit
 	$(BIN)/python tests/quick.py
 
-# Without optimization a unit test needs more than the two megabytes of stack that a thread has by itself.
 test-rust: ## the tests of the core: its units, then the crate from outside, which `make build` has compiled
-	RUST_MIN_STACK=8388608 cargo test --locked --profile units $(SHARED) --package polhode --lib
+	cargo test --locked --profile units $(SHARED) --package polhode --lib
 	cargo test --locked --profile editable $(SHARED) --test '*' --examples
 	cargo test --locked --profile editable $(SHARED) --doc
 
@@ -67,8 +66,8 @@ lint: build setup licences ## formatting, lints, types, stubs
 
 lint-rust:
 	cargo fmt --all --check
-	cargo clippy --locked --workspace --all-targets --features polhode/serde -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --package polhode --features serde --no-deps --quiet
+	cargo clippy --locked --profile editable --workspace --all-targets --features polhode/serde -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --profile editable --package polhode --features serde --no-deps --quiet
 
 lint-python:
 	$(BIN)/ruff format --check .

@@ -140,12 +140,13 @@ impl Tasks<'_, '_> {
                 })
             } else {
                 let mut almanac = locked(self.almanacs).pop().unwrap_or_default();
-                let flow = dispatch(SideBySide {
+                let side_by_side = SideBySide {
                     settings,
                     jobs,
                     watch,
                     almanac: &mut almanac,
-                });
+                };
+                let flow = side_by_side.run();
                 locked(self.almanacs).push(almanac);
                 flow
             }

@@ -49,9 +49,9 @@ pub(in crate::motion::integrate) fn run_varied(
     let jobs = &mut once(job);
     let almanac = &mut Almanac::default();
     let _stopped = match parts.directions {
-        0 => drive::<Varied, Derived<0>, 0, 1>(settings, jobs, watch, None, almanac),
-        1 => drive::<Varied, Derived<1>, 1, 1>(settings, jobs, watch, None, almanac),
-        _ => drive::<Varied, Derived<3>, 3, 1>(settings, jobs, watch, None, almanac),
+        0 => directed::<0>(settings, jobs, watch, almanac),
+        1 => directed::<1>(settings, jobs, watch, almanac),
+        _ => directed::<3>(settings, jobs, watch, almanac),
     };
     match run.end {
         End::Complete => Ok(()),
@@ -65,4 +65,15 @@ pub(in crate::motion::integrate) fn run_varied(
         End::Failed(error) => Err(error),
         _ => Err(Error::Stopped),
     }
+}
+
+/// Out of line: without optimization the three take a megabyte of the stack each.
+#[inline(never)]
+fn directed<const B: usize>(
+    settings: Settings,
+    jobs: &mut dyn Iterator<Item = Job<'_, Varied>>,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    almanac: &mut Almanac,
+) -> ControlFlow<()> {
+    drive::<Varied, Derived<B>, B, 1>(settings, jobs, watch, None, almanac)
 }
