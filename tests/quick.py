@@ -1,8 +1,8 @@
 """The lints and tests of what differs from a commit: ``python tests/quick.py [COMMIT]``, of HEAD by default.
 
 Rust tests are those of the rooms with a changed file. Python tests are those that bear the name of a changed
-file or of its room, against an extension that is compiled anew, quickly, not for speed and for any machine. It
-says which changed files no test is named after; `make test` runs everything, on all instruction sets.
+file or of its room, against an extension that is compiled anew, quickly, not for speed and for any machine.
+It says which changed files no test is named after; `make test` runs everything, on all instruction sets.
 """
 
 from __future__ import annotations
