@@ -36,7 +36,7 @@ G = (0.0, 0.0, -9.81)
 def parameters(name: str) -> set[str]:
     value = OBJECTS[name]
     value = value.__func__ if isinstance(value, staticmethod | classmethod) else value
-    is_function = inspect.isroutine(value) and callable(value)  # a cached property is a routine, and not callable
+    is_function = inspect.isroutine(value) and callable(value)  # a cached property is not callable
     return set(inspect.signature(value).parameters) if is_function else set()
 
 
