@@ -68,8 +68,9 @@ class TestEverySequence:
             again = euler_angles.to_quaternion(euler_angles.from_quaternion(q, sequence), sequence)
             assert same_rotation(again, q).max() < 1e-14
 
-    def test_at_the_pole_it_is_an_error_or_not_a_number(self, sequence: str) -> None:
-        pole = 0.0 if sequence[0] == sequence[2] else np.pi / 2
+    @pytest.mark.parametrize("far", [False, True])
+    def test_at_the_pole_it_is_an_error_or_not_a_number(self, sequence: str, far: bool) -> None:
+        pole = (0.0, np.pi)[far] if sequence[0] == sequence[2] else (np.pi / 2, -np.pi / 2)[far]
         q = Rotation.from_euler(sequence, [0.4, pole, 0.3]).as_quat()
         with pytest.raises(SingularAttitudeError, match="middle angle"):
             euler_angles.from_quaternion(q, sequence)

@@ -48,7 +48,16 @@ __all__ = [
 
 
 class KineticEnergy(NamedTuple):
-    """Kinetic energy in its three parts, T = ½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω."""
+    """Kinetic energy in its three parts, T = ½ m v² + m v·(ω×c_P) + ½ ω·I_P·ω.
+
+    P is the reference point `about`, v its velocity, c_P the vector from P to the centre of mass, I_P the
+    tensor about P.
+
+    Attributes
+    ----------
+    translational, mixed, rotational : numpy.ndarray, shape (...)
+        The three parts, in the order of the formula.
+    """
 
     translational: Floats
     mixed: Floats
@@ -64,7 +73,16 @@ class KineticEnergy(NamedTuple):
 
 
 class AngularMomentum(NamedTuple):
-    """Angular momentum in its three parts, L = m R×v + m [R×(ω×c_P) + c_P×v] + I_P ω."""
+    """Angular momentum in its three parts, L = m R×v + m [R×(ω×c_P) + c_P×v] + I_P ω.
+
+    P is the reference point `about`, R its position and v its velocity, c_P the vector from P to the centre
+    of mass, I_P the tensor about P.
+
+    Attributes
+    ----------
+    orbital, mixed, spin : numpy.ndarray, shape (..., 3)
+        The three parts, in the order of the formula.
+    """
 
     orbital: Floats
     mixed: Floats
