@@ -207,7 +207,6 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         y: &SVector<f64, N>,
         slope: &mut SVector<f64, N>,
     ) -> Result<(), L::Error> {
-        let (q, w) = (quaternion(y), vector(y, 4));
         let (view, phase) = (&self.view, &mut self.now);
         view.show(t, y, phase);
         let rates = &mut slope.as_mut_slice()[N.min(MOVING)..];
@@ -224,6 +223,8 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
         if !view.axes.are_of_body {
             torque = view.axes.columns.tr_mul(&torque);
         }
+        // Read here and not before the load acts: numbers that were just written are slow to read in other pairs.
+        let (q, w) = (quaternion(y), vector(y, 4));
         let turning = self.euler.principal_acceleration(&w, &torque)?;
         let q_rate = rate(&q, &w);
         (slope[0], slope[1], slope[2], slope[3]) = (q_rate.i, q_rate.j, q_rate.k, q_rate.w);
