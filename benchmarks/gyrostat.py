@@ -93,6 +93,16 @@ def rows() -> Iterator[Row]:
         compare=lambda _ours, _theirs: None,
         most_seconds=10e-6,
     )
+    start = BORDER * (1 - 2.0**-40)
+    assert turned.free_motion(start).mode == "single"
+    yield Row(
+        name="gyrostat, set-up next to a separatrix, axes turned",
+        peer="our free motion",
+        ours=lambda: turned.free_motion(start),
+        theirs=lambda: body.free_motion(OMEGA),
+        compare=lambda _ours, _theirs: None,
+        most_seconds=10e-6,
+    )
     yield Row(
         name="gyrostat, set-up next to a separatrix",
         peer="our free motion",

@@ -126,6 +126,7 @@ impl Unit {
     pub(super) const ONE: Self = Self(0);
 
     /// That of a shape with these lengths, and the lengths in it: between the largest and the least.
+    #[inline]
     pub(super) fn of<const N: usize>(lengths: [f64; N]) -> (Self, [f64; N]) {
         let powers = (lengths.iter().filter(|&&length| length != 0.0)).map(|&x| exponent(x));
         let (least, most) = powers.fold((i32::MAX, i32::MIN), |(least, most), power| {

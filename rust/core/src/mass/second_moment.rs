@@ -106,6 +106,7 @@ impl SecondMoment {
     ///
     /// The largest principal value of S belongs to the axis of the smallest moment.
     #[must_use]
+    #[inline]
     pub(crate) fn principal_axes(&self, s: &Eigen3) -> PrincipalAxes {
         // S is a sum of squares: a negative value is rounding, and zero is what it stands for. More than that is none, as of a
         // mesh that nobody checked, and stays for all to see.

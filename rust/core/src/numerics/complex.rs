@@ -14,6 +14,10 @@ pub(crate) struct Complex<T> {
     pub im: T,
 }
 
+/// Within these bounds no square of a part that counts has left the range of float64.
+const LEAST_SQUARE: f64 = 1e-270;
+const MOST_SQUARE: f64 = 1e300;
+
 impl<T: Real> Complex<T> {
     /// From real and imaginary part.
     #[inline]
@@ -78,6 +82,13 @@ impl<T: Real> Complex<T> {
         self.re.rounded().hypot(self.im.rounded())
     }
 
+    /// |z| within a factor of √2, sooner: the sum of the sizes of its parts.
+    #[inline]
+    #[must_use]
+    pub(crate) fn taxicab(self) -> f64 {
+        self.re.rounded().abs() + self.im.rounded().abs()
+    }
+
     /// `z²`.
     #[inline]
     #[must_use]
@@ -110,7 +121,12 @@ impl Complex<DoubleDouble> {
     #[must_use]
     pub(crate) fn sqrt(self) -> Self {
         let (x, y) = (self.re.high, self.im.high);
-        let size = x.hypot(y);
+        let square = x * x + y * y;
+        let size = if (LEAST_SQUARE..=MOST_SQUARE).contains(&square) {
+            square.sqrt()
+        } else {
+            x.hypot(y)
+        };
         let larger = (0.5 * (size + x.abs())).sqrt();
         if larger == 0.0 {
             return Self::zero();

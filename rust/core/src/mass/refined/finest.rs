@@ -1,6 +1,6 @@
 //! Principal moments and axes to four times the precision, for the few motions that are so near the separatrix.
 
-use super::vectors::{Vector, dot, within};
+use super::vectors::{Vector, along, dot, within};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::quad_double::QuadDouble;
 
@@ -56,7 +56,7 @@ impl Finest {
     /// A vector of B by its components along the principal axes.
     #[must_use]
     pub(crate) fn components(&self, vector: &Vector4) -> Vector4 {
-        self.axes.map(|axis| dot(&axis, vector))
+        self.axes.map(|axis| along(&axis, vector))
     }
 
     /// Eigenvalues and eigenvectors of the tensor (its rows) from nearly orthonormal approximate ones.

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::finest::{Finest, Source};
 use super::jacobi::diagonalize;
-use super::vectors::{Vector, dot, orthonormal, within};
+use super::vectors::{Vector, along, dot, orthonormal, within};
 use crate::error::{Error, MotionFault};
 use crate::mass::RigidBody;
 use crate::mass::provenance::MomentsFrom;
@@ -111,18 +111,15 @@ impl RefinedPrincipal {
     /// The components of a vector along the axes. Across the axis of a symmetric body what is rounding alone is zero.
     #[must_use]
     pub fn along(&self, vector: &Vector) -> Vector {
-        let mut along = self.axes.map(|axis| dot(&axis, vector));
-        let size = along
-            .iter()
-            .fold(0.0, |most: f64, x| most.max(x.rounded().abs()));
+        let mut found = self.axes.map(|axis| along(&axis, vector));
+        let size = (found.iter()).fold(0.0, |most: f64, x| most.max(x.rounded().abs()));
         let [a, b, c] = self.moments;
         for (x, y, i, j) in [(a, b, 0, 1), (b, c, 1, 2)] {
-            let across = along[i].rounded().hypot(along[j].rounded());
-            if x == y && across <= ALIKE * size {
-                (along[i], along[j]) = (DoubleDouble::default(), DoubleDouble::default());
+            if x == y && found[i].rounded().hypot(found[j].rounded()) <= ALIKE * size {
+                (found[i], found[j]) = (DoubleDouble::default(), DoubleDouble::default());
             }
         }
-        along
+        found
     }
 
     /// Of the tensor less `Σ J a aᵀ`, with moments J about axes a of any length.
@@ -227,7 +224,13 @@ impl RefinedPrincipal {
     #[must_use]
     pub fn components(&self, vector: &Vector3<f64>) -> Vector {
         let vector = [vector.x, vector.y, vector.z].map(DoubleDouble::from);
-        self.axes.map(|axis| dot(&axis, &vector))
+        self.axes.map(|axis| along(&axis, &vector))
+    }
+
+    /// The components in B of a vector that is given along the principal axes.
+    #[must_use]
+    pub(crate) fn in_body(&self, along_axes: &Vector) -> Vector {
+        [0, 1, 2].map(|i| along(&self.axes.map(|axis| axis[i]), along_axes))
     }
 
     /// Eigenvalues and eigenvectors of the tensor (its rows) from approximate ones.

@@ -32,6 +32,15 @@ pub(super) fn orthonormal<T: Real>(v: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     })
 }
 
+/// The component along an axis. Where this has zeros, as axes along those of B have, no product is taken.
+pub(super) fn along<T: Real>(axis: &[T; 3], vector: &[T; 3]) -> T {
+    let mut parts = (axis.iter().zip(vector))
+        .filter(|(a, _)| a.rounded() != 0.0)
+        .map(|(&a, &x)| a * x);
+    let first = parts.next().unwrap_or_else(|| T::from(0.0));
+    parts.fold(first, |sum, x| sum + x)
+}
+
 pub(super) fn dot<T: Real>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -61,6 +61,7 @@ impl Size for f64 {
         self.sin()
     }
 
+    #[inline]
     fn in_unit<const N: usize>(lengths: [Self; N]) -> (Unit, [Self; N]) {
         Unit::of(lengths)
     }

@@ -293,13 +293,7 @@ fn attitude(
     columns: &[[Number; 2]; 2],
     turned: f64,
 ) -> [[f64; 4]; 4] {
-    let axes = given.principal.axes();
-    let rows = start.frame.map(|axis| {
-        [0, 1, 2].map(|i| {
-            let sum = axes[(i, 0)] * axis[0] + axes[(i, 1)] * axis[1] + axes[(i, 2)] * axis[2];
-            sum.high
-        })
-    });
+    let rows = (start.frame).map(|axis| given.principal.in_body(&axis).map(DoubleDouble::rounded));
     let q_FB = from_axes(&Matrix3::from(rows).transpose()).into_inner();
     let q_NM = given.attitude.into_inner() * q_FB.conjugate();
     let (sine, cosine) = (TAU * turned).sin_cos();
@@ -337,16 +331,12 @@ fn omega(given: &Given<'_>, start: &Start, columns: &[[Number; 2]; 2]) -> [[f64;
         uv.map(|x| two(x.re)),
         uv.map(|x| -two(x.im)),
     ];
-    let axes = given.principal.axes();
     rows.map(|[x, y, z, square]| {
         let along: Vector = std::array::from_fn(|i| {
             let [e1, e2, n] = start.frame.map(|axis| axis[i]);
             let sum = start.momentum * (x * e1 + y * e2 + z * n) - given.rotor[i] * square;
             sum / given.moments[i]
         });
-        [0, 1, 2].map(|i| {
-            let sum = axes[(i, 0)] * along[0] + axes[(i, 1)] * along[1] + axes[(i, 2)] * along[2];
-            sum.high
-        })
+        given.principal.in_body(&along).map(DoubleDouble::rounded)
     })
 }

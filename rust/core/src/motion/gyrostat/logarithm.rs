@@ -37,15 +37,15 @@ pub(super) fn logarithm(means: &Means, [value, derivative]: [Number; 2]) -> Loga
     let square = x * (x + real(three)) + real(height * height);
     // √((P − E′)(P − E″)) and √(P − E), of which the smaller is by the derivative.
     let half = derivative.scaled(0.5);
-    let (mut f, mut r) = if x.size() * x.size() >= square.size() {
+    let (mut f, mut r) = if x.norm_squared().high >= square.taxicab() {
         let f = x.sqrt();
-        (f, if f.size() == 0.0 { f } else { half.over(f) })
+        (f, if f.taxicab() == 0.0 { f } else { half.over(f) })
     } else {
         let r = square.sqrt();
         (half.over(r), r)
     };
     let middle = x + real(three.scaled(0.5));
-    if (middle + r).size() < (middle - r).size() {
+    if middle.is_opposite_to(r) {
         (f, r) = (-f, -r);
     }
     let [mut a, mut b] = means.pair;
@@ -84,9 +84,9 @@ fn real(x: DoubleDouble) -> Number {
 
 /// d and f of their squares and their product, d on the side of c: the larger is a root, the other a quotient.
 fn both([d, f]: [Number; 2], product: Number, c: Number) -> (Number, Number) {
-    let (d, f) = if d.size() >= f.size() {
+    let (d, f) = if d.taxicab() >= f.taxicab() {
         let d = d.sqrt();
-        if d.size() == 0.0 {
+        if d.taxicab() == 0.0 {
             return (d, d);
         }
         (d, product.over(d))

@@ -9,7 +9,7 @@ use super::pencil::Pencil;
 use super::propagator::Propagator;
 use super::remnant::remnant;
 use super::spinor::Spinor;
-use super::start::Start;
+use super::start::{Start, dot};
 use crate::error::{Error, MotionFault, all_finite};
 use crate::mass::refined::{RefinedPrincipal, Vector};
 use crate::motion::free::evaluate;
@@ -55,8 +55,9 @@ enum Way {
     Within(Propagator),
 }
 
-/// A discriminant this small beside its terms is computed again with four times the precision.
-const LOST: f64 = 1e-24;
+/// A discriminant this small beside its terms is computed again with four times the precision. What is larger has an error of
+/// 1e-16 at most, relative to itself: twice the precision is 1e-32 of the terms.
+const LOST: f64 = 1e-16;
 /// Of a motion whose ω at the start is off by more than this part of it too many digits are lost.
 const TOO_FAR_OFF: f64 = 1e-9;
 
@@ -219,18 +220,10 @@ impl ClosedForm for GyrostatMotion {
 /// `I ω + h` in space, and `½ ω·I ω`.
 fn kept(principal: &RefinedPrincipal, rotor: &Vector, start: &State) -> (Vector3<f64>, f64) {
     let along = principal.components(&start.omega);
-    let axes = principal.axes();
-    let mut momentum = *rotor;
-    let mut twice = DoubleDouble::default();
-    for (k, (&moment, &rate)) in principal.moments.iter().zip(&along).enumerate() {
-        let part = moment * rate;
-        twice += part * rate;
-        for (i, sum) in momentum.iter_mut().enumerate() {
-            *sum += axes[(i, k)] * part;
-        }
-    }
-    let momentum = Vector3::from(momentum.map(DoubleDouble::rounded));
-    (start.attitude * momentum, 0.5 * twice.high)
+    let parts: Vector = std::array::from_fn(|k| principal.moments[k] * along[k]);
+    let of_body = principal.in_body(&parts);
+    let momentum = Vector3::from_fn(|i, _| (rotor[i] + of_body[i]).rounded());
+    (start.attitude * momentum, 0.5 * dot(&parts, &along).high)
 }
 
 /// A start with its curve and its spinor.

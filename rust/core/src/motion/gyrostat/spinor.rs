@@ -168,11 +168,10 @@ fn columns(
 /// The sense in which Z moves, Z₀ and y: `e^{iv}` or `e^{−iv}`, whichever is larger.
 fn place_of(found: &Logarithm) -> (f64, Number, Number) {
     let imaginary = Complex::new(DoubleDouble::default(), found.mean);
-    let (plus, minus) = (found.cotangent + imaginary, found.cotangent - imaginary);
-    let (sense, large) = if plus.size() >= minus.size() {
-        (1.0, plus)
+    let (sense, large) = if found.cotangent.im.high >= 0.0 {
+        (1.0, found.cotangent + imaginary)
     } else {
-        (-1.0, minus)
+        (-1.0, found.cotangent - imaginary)
     };
     let ratio = found.cosecant.over(large);
     (sense, large.over(found.cosecant), ratio.squared())
@@ -193,7 +192,7 @@ fn series(nome: DoubleDouble, y: Number, rate: Number) -> [[Number; 2]; 2] {
         let sums = if is_odd { &mut odd } else { &mut even };
         sums[0] = sums[0] + term;
         sums[1] = sums[1] + term.times(weight.into());
-        term.size() > SMALL
+        term.taxicab() > SMALL
     };
     // Upward Q^{j²} y^{−j} = Q^{j²−j} (Q/y)^j, downward Q^{j²} y^j; of Θₒ Q^{j²} (Q/y)^j and Q^{j²−j} y^j.
     let (mut less, mut full, mut step) = (DoubleDouble::from(1.0), nome, nome);

@@ -58,7 +58,9 @@ impl<const N: usize> RungeKutta<N> for Dop853<N> {
             self.slopes[0] = self.slopes[STAGES];
             let slope_at_start = self.slopes[0];
             for stage in 1..STAGES {
-                self.slopes[stage] = self.stage_slope(system, stage, &y, h)?;
+                let y = y + self.weighted(STAGE_WEIGHTS[stage]) * h;
+                let elapsed = self.progress.elapsed.0 + NODES[stage] * h;
+                (self.progress).slope(system, elapsed, &y, &mut self.slopes[stage])?;
             }
             let state = (self.progress.state).plus(&(self.weighted(STAGE_WEIGHTS[STAGES]) * h));
             let error = self.error(system, &y, &state.value, h);
@@ -71,8 +73,8 @@ impl<const N: usize> RungeKutta<N> for Dop853<N> {
                 progress.step = h * factor.clamp(SHRINK, largest);
                 system.accept(&mut progress.state);
                 let y = progress.state.value;
-                self.slopes[STAGES] = progress.slope(system, progress.elapsed.0, &y)?;
-                return Ok(());
+                let elapsed = progress.elapsed.0;
+                return progress.slope(system, elapsed, &y, &mut self.slopes[STAGES]);
             }
             self.slopes[STAGES] = slope_at_start;
             // The factor is below one, or not a number.
@@ -106,9 +108,9 @@ impl<const N: usize> Dop853<N> {
     fn polynomial<S: System<N>>(&mut self, system: &mut S) -> Result<Dense<N>, S::Error> {
         let (start, y, h) = self.last;
         for stage in STAGES + 1..EXTENDED_STAGES {
-            let weighted = self.weighted(STAGE_WEIGHTS[stage]);
-            self.slopes[stage] =
-                (self.progress).slope(system, start + NODES[stage] * h, &(y + weighted * h))?;
+            let y = y + self.weighted(STAGE_WEIGHTS[stage]) * h;
+            let elapsed = start + NODES[stage] * h;
+            (self.progress).slope(system, elapsed, &y, &mut self.slopes[stage])?;
         }
         let change = self.progress.state.value - y;
         let (before, after) = (self.slopes[0] * h, self.slopes[STAGES] * h);
@@ -124,19 +126,6 @@ impl<const N: usize> Dop853<N> {
             y,
             coefficients,
         })
-    }
-
-    #[inline]
-    fn stage_slope<S: System<N>>(
-        &mut self,
-        system: &mut S,
-        stage: usize,
-        y: &SVector<f64, N>,
-        h: f64,
-    ) -> Result<SVector<f64, N>, S::Error> {
-        let y = y + self.weighted(STAGE_WEIGHTS[stage]) * h;
-        let elapsed = self.progress.elapsed.0 + NODES[stage] * h;
-        self.progress.slope(system, elapsed, &y)
     }
 
     #[inline]
@@ -207,8 +196,14 @@ mod tests {
     impl System<2> for Oscillator {
         type Error = Error;
 
-        fn derivative(&mut self, _t: f64, y: &Vector2<f64>) -> Result<Vector2<f64>, Error> {
-            Ok(Vector2::new(y.y, -y.x))
+        fn derivative(
+            &mut self,
+            _t: f64,
+            y: &Vector2<f64>,
+            slope: &mut Vector2<f64>,
+        ) -> Result<(), Error> {
+            *slope = Vector2::new(y.y, -y.x);
+            Ok(())
         }
 
         fn error_norm(&self, _: &Vector2<f64>, _: &Vector2<f64>, error: &Vector2<f64>) -> f64 {
@@ -268,9 +263,14 @@ mod tests {
     impl System<1> for Shaken {
         type Error = Error;
 
-        fn derivative(&mut self, t: f64, _: &Vector1<f64>) -> Result<Vector1<f64>, Error> {
-            let slope = if t < 0.5 { 0.0 } else { 1e3 * (1e3 * t).sin() };
-            Ok(Vector1::new(slope))
+        fn derivative(
+            &mut self,
+            t: f64,
+            _: &Vector1<f64>,
+            slope: &mut Vector1<f64>,
+        ) -> Result<(), Error> {
+            slope.x = if t < 0.5 { 0.0 } else { 1e3 * (1e3 * t).sin() };
+            Ok(())
         }
 
         fn error_norm(&self, _: &Vector1<f64>, _: &Vector1<f64>, error: &Vector1<f64>) -> f64 {

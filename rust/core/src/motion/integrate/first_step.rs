@@ -27,7 +27,8 @@ pub(super) fn first_step<S: System<N>, const N: usize>(
     };
     let trial = trial.min(span.abs()).copysign(span);
     let there = y + slope * trial;
-    let later = system.derivative(start + trial, &there)?;
+    let mut later = SVector::zeros();
+    system.derivative(start + trial, &there, &mut later)?;
     let bend = system.error_norm(y, &there, &(later - slope)) / trial.abs();
     let fastest = speed.max(bend);
     let step = if fastest > 0.0 && fastest.is_finite() {

@@ -46,7 +46,8 @@ impl<const N: usize> Progress<N> {
             evaluations: 0,
         };
         let (span, y) = (progress.span, progress.state.value);
-        let slope = progress.slope(system, 0.0, &y)?;
+        let mut slope = SVector::zeros();
+        progress.slope(system, 0.0, &y, &mut slope)?;
         if !slope.iter().all(|x| x.is_finite()) {
             return Err(Error::Motion(MotionFault::NotFiniteMotion { time: start }).into());
         }
@@ -60,16 +61,17 @@ impl<const N: usize> Progress<N> {
         Ok((progress, slope))
     }
 
-    /// The slope in the state `y` at a time since the start.
+    /// The slope in the state `y` at a time since the start, into `slope`.
     #[inline]
     pub(super) fn slope<S: System<N>>(
         &mut self,
         system: &mut S,
         elapsed: f64,
         y: &SVector<f64, N>,
-    ) -> Result<SVector<f64, N>, S::Error> {
+        slope: &mut SVector<f64, N>,
+    ) -> Result<(), S::Error> {
         self.evaluations += 1;
-        system.derivative(self.start + elapsed, y)
+        system.derivative(self.start + elapsed, y, slope)
     }
 
     /// The step to try, and whether it is the last one.

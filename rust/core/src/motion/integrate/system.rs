@@ -10,11 +10,16 @@ pub(crate) trait System<const N: usize> {
     /// What evaluating the equations may go wrong with, besides what the stepper itself may refuse.
     type Error: From<Error>;
 
-    /// `f(t, y)`.
+    /// `f(t, y)` into `slope`, all numbers of it. It is not returned, since a copy of it would wait until it is written.
     ///
     /// # Errors
     /// Ends the integration and comes back to the caller as it is.
-    fn derivative(&mut self, t: f64, y: &SVector<f64, N>) -> Result<SVector<f64, N>, Self::Error>;
+    fn derivative(
+        &mut self,
+        t: f64,
+        y: &SVector<f64, N>,
+        slope: &mut SVector<f64, N>,
+    ) -> Result<(), Self::Error>;
 
     /// The size of `error` in a step from `y` to `y_new`, in units of what is allowed: at most one is accepted.
     fn error_norm(

@@ -28,6 +28,15 @@ struct Axes {
     are_of_body: bool,
 }
 
+/// What makes a phase, which is in body axes, of the numbers of a state.
+struct View {
+    axes: Axes,
+    /// The wheels at rest in bearings with dry friction, in this span.
+    resting: Option<Resting>,
+    /// When the reference point, if no force acts on it, was where; it keeps its velocity.
+    origin: (f64, Vector3<f64>, Vector3<f64>),
+}
+
 /// The largest |ω|, |r|, |v| and states of the load's own so far: what errors are relative to.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scales {
@@ -43,14 +52,12 @@ pub(super) struct Equations<'a, L, const N: usize> {
     mass: f64,
     /// Whether the reference point is fixed in N.
     is_held: bool,
-    axes: Axes,
+    view: View,
     load: &'a mut L,
-    /// The wheels at rest in bearings with dry friction, in this span.
-    resting: Option<Resting>,
+    /// The state that the load is asked for. It is written in place, since a copy of it would wait until it is written.
+    now: Phase,
     tolerance: Tolerance,
     pub(super) scales: Scales,
-    /// When the reference point, if no force acts on it, was where; it keeps its velocity.
-    origin: (f64, Vector3<f64>, Vector3<f64>),
     /// What counts as large of the load's own states besides.
     sizes: Vec<[f64; 2]>,
 }
@@ -77,27 +84,30 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
         };
         Self {
             sizes: load.sizes(),
-            resting: Resting::of(euler, load.bearings()),
             euler: *euler,
             mass: subject.mass,
             is_held: subject.pivoted,
-            axes: Axes {
-                q_bp: from_axes(euler.axes()),
-                columns: *euler.axes(),
-                are_of_body: *euler.axes() == Matrix3::identity(),
+            view: View {
+                axes: Axes {
+                    q_bp: from_axes(euler.axes()),
+                    columns: *euler.axes(),
+                    are_of_body: *euler.axes() == Matrix3::identity(),
+                },
+                resting: Resting::of(euler, load.bearings()),
+                origin: (start, phase.position, phase.velocity),
             },
             load,
+            now: phase.clone(),
             tolerance,
             scales,
-            origin: (start, phase.position, phase.velocity),
         }
     }
 
     /// In principal axes.
     #[inline]
     pub(super) fn principal(&self, phase: &Phase) -> SVector<f64, N> {
-        let q = (phase.attitude * self.axes.q_bp).into_inner();
-        let w = self.axes.columns.tr_mul(&phase.omega);
+        let q = (phase.attitude * self.view.axes.q_bp).into_inner();
+        let w = self.view.axes.columns.tr_mul(&phase.omega);
         let (r, v) = (phase.position, phase.velocity);
         let numbers = [
             q.i, q.j, q.k, q.w, w.x, w.y, w.z, r.x, r.y, r.z, v.x, v.y, v.z,
@@ -112,27 +122,8 @@ impl<'a, L: Load, const N: usize> Equations<'a, L, N> {
     /// In body axes, at time `t`.
     #[inline]
     pub(super) fn phase(&self, t: f64, y: &SVector<f64, N>) -> Phase {
-        let (position, velocity) = if N >= MOVING {
-            (vector(y, 7), vector(y, 10))
-        } else {
-            let (start, position, velocity) = self.origin;
-            (position + velocity * (t - start), velocity)
-        };
-        let (mut q, mut omega) = (quaternion(y), vector(y, 4));
-        if !self.axes.are_of_body {
-            q *= self.axes.q_bp.conjugate().into_inner();
-            omega = self.axes.columns * omega;
-        }
-        let mut phase = Phase {
-            attitude: UnitQuaternion::new_unchecked(q * (1.0 / q.norm_squared().sqrt())),
-            omega,
-            position,
-            velocity,
-            own: y.as_slice()[N.min(MOVING)..][..self.own()].into(),
-        };
-        if let Some(resting) = &self.resting {
-            resting.keep(&mut phase);
-        }
+        let mut phase = self.now.clone();
+        self.view.show(t, y, &mut phase);
         phase
     }
 
@@ -164,10 +155,35 @@ impl<L: Load, const N: usize> Equations<'_, L, N> {
         let mut rates = vec![0.0; self.own()];
         let wrench = self.load.act(t, phase, &mut rates)?;
         let motor = rates[bearing.index()];
-        if let Some(resting) = &self.resting {
+        if let Some(resting) = &self.view.resting {
             resting.hold(&phase.omega, &wrench.torque, &mut rates);
         }
         Ok(rates[bearing.index()] - motor)
+    }
+}
+
+impl View {
+    /// The state `y` at time `t` into `phase`, which has room for the load's own states.
+    #[inline]
+    fn show<const N: usize>(&self, t: f64, y: &SVector<f64, N>, phase: &mut Phase) {
+        let (mut q, mut omega) = (quaternion(y), vector(y, 4));
+        if !self.axes.are_of_body {
+            q *= self.axes.q_bp.conjugate().into_inner();
+            omega = self.axes.columns * omega;
+        }
+        phase.attitude = UnitQuaternion::new_unchecked(q * (1.0 / q.norm_squared().sqrt()));
+        phase.omega = omega;
+        if N >= MOVING {
+            (phase.position, phase.velocity) = (vector(y, 7), vector(y, 10));
+        } else {
+            let (start, position, velocity) = self.origin;
+            (phase.position, phase.velocity) = (position + velocity * (t - start), velocity);
+        }
+        let own = phase.own.len();
+        (phase.own).copy_from_slice(&y.as_slice()[N.min(MOVING)..][..own]);
+        if let Some(resting) = &self.resting {
+            resting.keep(phase);
+        }
     }
 }
 
@@ -185,23 +201,30 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
     type Error = L::Error;
 
     #[inline]
-    fn derivative(&mut self, t: f64, y: &SVector<f64, N>) -> Result<SVector<f64, N>, L::Error> {
-        let (q, w) = (quaternion(y), vector(y, 4));
-        let phase = self.phase(t, y);
-        let own = self.own();
-        let mut slope = SVector::<f64, N>::zeros();
-        let rates = &mut slope.as_mut_slice()[N.min(MOVING)..][..own];
+    fn derivative(
+        &mut self,
+        t: f64,
+        y: &SVector<f64, N>,
+        slope: &mut SVector<f64, N>,
+    ) -> Result<(), L::Error> {
+        let (view, phase) = (&self.view, &mut self.now);
+        view.show(t, y, phase);
+        let rates = &mut slope.as_mut_slice()[N.min(MOVING)..];
+        rates.fill(0.0);
+        let rates = &mut rates[..phase.own.len()];
         // Vector by vector, as they were written: a copy of the whole would wait for them.
-        let (force, mut torque) = match self.load.act(t, &phase, rates) {
+        let (force, mut torque) = match self.load.act(t, phase, rates) {
             Ok(Wrench { force, torque }) => (force, torque),
             Err(error) => return Err(error),
         };
-        if let Some(resting) = &self.resting {
+        if let Some(resting) = &view.resting {
             torque = resting.hold(&phase.omega, &torque, rates);
         }
-        if !self.axes.are_of_body {
-            torque = self.axes.columns.tr_mul(&torque);
+        if !view.axes.are_of_body {
+            torque = view.axes.columns.tr_mul(&torque);
         }
+        // Read here and not before the load acts: numbers that were just written are slow to read in other pairs.
+        let (q, w) = (quaternion(y), vector(y, 4));
         let turning = self.euler.principal_acceleration(&w, &torque)?;
         let q_rate = rate(&q, &w);
         (slope[0], slope[1], slope[2], slope[3]) = (q_rate.i, q_rate.j, q_rate.k, q_rate.w);
@@ -220,7 +243,7 @@ impl<L: Load, const N: usize> System<N> for Equations<'_, L, N> {
                 slope[10 + i] = moving[i];
             }
         }
-        Ok(slope)
+        Ok(())
     }
 
     /// By the norms of attitude, ω, position and velocity, since single components pass through zero every turn.

@@ -19,11 +19,7 @@ pub struct Eigen3 {
 #[inline]
 pub fn eigen3(a: &Matrix3<f64>) -> Eigen3 {
     let [[a00, a10, a20], [_, a11, a21], [_, _, a22]] = a.data.0;
-    let (values, vectors) = dispatch(One([a00, a10, a20, a10, a11, a21, a20, a21, a22]));
-    Eigen3 {
-        values,
-        vectors: vectors.into(),
-    }
+    dispatch(One([a00, a10, a20, a10, a11, a21, a20, a21, a22]))
 }
 
 /// The decompositions of many matrices, on the calling thread; matrices and eigenvectors are row-major.

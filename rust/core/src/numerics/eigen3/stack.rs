@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use super::closed_form::closed_form;
+use super::decomposition::Eigen3;
 use super::deviator::{self, Deviator};
 use super::jacobi::{self, Iterate, SWEEPS, UNFINISHED, jacobi};
 use super::symmetric::{Spectrum, Symmetric, lower_triangle};
@@ -34,10 +35,11 @@ fn needs_jacobi<L: Lane>(deviator: &Deviator<L>, spectrum: &Spectrum<L>) -> bool
 pub(super) struct One(pub(super) [f64; 9]);
 
 impl Kernel for One {
-    type Output = ([f64; 3], [[f64; 3]; 3]);
+    // As the caller returns it: a copy would wait until it is written.
+    type Output = Eigen3;
 
     #[inline(always)]
-    fn run<L: Lane>(self) -> Self::Output {
+    fn run<L: Lane>(self) -> Eigen3 {
         let a = Symmetric::from_lower_triangle(lower_triangle(&self.0).map(L::new));
         let deviator = Deviator::of(&a);
         let found = closed_form(&deviator);
@@ -49,7 +51,10 @@ impl Kernel for One {
         let Spectrum {
             values, vectors, ..
         } = spectrum.with_sign_rule();
-        (values.map(L::get), vectors.map(|column| column.map(L::get)))
+        Eigen3 {
+            values: values.map(L::get),
+            vectors: vectors.map(|column| column.map(L::get)).into(),
+        }
     }
 }
 

@@ -1,8 +1,9 @@
 //! The matrices of Newton's iteration, factored.
 
-use nalgebra::{Complex, DMatrix, DVector, Dyn, LU, SVector};
+use nalgebra::{Complex, DMatrix, SVector};
 
 use super::tableau::{COMPLEX, REAL};
+use super::triangles::Triangles;
 use crate::numerics::power_of_two::{exponent, times_power_of_two};
 
 /// `∂f/∂y`, and the sizes of the components of y.
@@ -45,8 +46,8 @@ pub(super) struct Factors<const N: usize> {
     /// Exponents of the powers of two that are the units.
     time: i32,
     units: SVector<i32, N>,
-    real: LU<f64, Dyn, Dyn>,
-    complex: LU<Complex<f64>, Dyn, Dyn>,
+    real: Triangles<f64, N>,
+    complex: Triangles<Complex<f64>, N>,
 }
 
 impl<const N: usize> Factors<N> {
@@ -61,14 +62,14 @@ impl<const N: usize> Factors<N> {
             step,
             time,
             units: jacobian.units,
-            real: real.lu(),
-            complex: complex.lu(),
+            real: Triangles::of(real),
+            complex: Triangles::of(complex),
         }
     }
 
     /// Not numbers where the matrix is singular or none.
     pub(super) fn solve_real(&self, right: &SVector<f64, N>) -> SVector<f64, N> {
-        let right = DVector::from_fn(N, |i, _| self.inward(right[i], i));
+        let right = SVector::from_fn(|i, _| self.inward(right[i], i));
         let solution = self.real.solve(&right);
         SVector::from_fn(|i, _| {
             (solution.as_ref()).map_or(f64::NAN, |x| times_power_of_two(x[i], self.units[i]))
@@ -79,7 +80,7 @@ impl<const N: usize> Factors<N> {
         &self,
         right: &SVector<Complex<f64>, N>,
     ) -> SVector<Complex<f64>, N> {
-        let right = DVector::from_fn(N, |i, _| {
+        let right = SVector::from_fn(|i, _| {
             Complex::new(self.inward(right[i].re, i), self.inward(right[i].im, i))
         });
         let solution = self.complex.solve(&right);

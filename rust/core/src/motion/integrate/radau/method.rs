@@ -130,8 +130,8 @@ impl<const N: usize> Radau<N> {
         self.last = Some((dense, error));
         self.is_current = false;
         let y = progress.state.value;
-        self.slope = progress.slope(system, progress.elapsed.0, &y)?;
-        Ok(())
+        let elapsed = progress.elapsed.0;
+        progress.slope(system, elapsed, &y, &mut self.slope)
     }
 
     /// The factor by the errors of this step and the one before (Gustafsson).
@@ -160,10 +160,10 @@ impl<const N: usize> Radau<N> {
             let scale = if scale > 0.0 { scale } else { 1.0 };
             let mut moved = y;
             moved[j] += f64::EPSILON.sqrt() * scale;
-            let change = self
-                .progress
-                .slope(system, self.progress.elapsed.0, &moved)?
-                - slope;
+            let elapsed = self.progress.elapsed.0;
+            let mut change = SVector::zeros();
+            (self.progress).slope(system, elapsed, &moved, &mut change)?;
+            change -= slope;
             let by = moved[j] - y[j];
             self.jacobian.set(j, scale, &change, by);
         }
@@ -190,11 +190,8 @@ impl<const N: usize> Radau<N> {
         for iteration in 1..=ITERATIONS {
             let mut slopes = [SVector::zeros(); 3];
             for (slope, (stage, node)) in slopes.iter_mut().zip(stages.iter().zip(NODES)) {
-                *slope = self.progress.slope(
-                    system,
-                    self.progress.elapsed.0 + node * h,
-                    &(y + stage),
-                )?;
+                let elapsed = self.progress.elapsed.0 + node * h;
+                (self.progress).slope(system, elapsed, &(y + stage), slope)?;
             }
             let right = combined(&T_INVERSE, &slopes);
             let real = factors.solve_real(&(right[0] - transformed[0] * (REAL / h)));
@@ -258,9 +255,9 @@ impl<const N: usize> Radau<N> {
         if norm <= 1.0 || !(rejected || self.last.is_none()) {
             return Ok(norm);
         }
-        let slope = self
-            .progress
-            .slope(system, self.progress.elapsed.0, &(y + error))?;
+        let elapsed = self.progress.elapsed.0;
+        let mut slope = SVector::zeros();
+        (self.progress).slope(system, elapsed, &(y + error), &mut slope)?;
         let error = factors.solve_real(&(slope + weighted));
         Ok(system.error_norm(&y, &y_new, &error))
     }

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `method` | steps: the stages, the error, the next length |
 //! | `factors` | the matrices of Newton's iteration |
+//! | `triangles` | a factored matrix, and the solutions with it |
 //! | `stages` | linear combinations of the stages |
 //! | `dense` | the state within a step |
 //! | `tableau` | the numbers of the method |
@@ -17,5 +18,6 @@ mod stages;
 mod tableau;
 #[cfg(test)]
 mod tests;
+mod triangles;
 
 pub(crate) use method::Radau;

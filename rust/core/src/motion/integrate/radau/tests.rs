@@ -13,9 +13,15 @@ struct Stiff {
 impl System<3> for Stiff {
     type Error = Error;
 
-    fn derivative(&mut self, t: f64, y: &SVector<f64, 3>) -> Result<SVector<f64, 3>, Error> {
+    fn derivative(
+        &mut self,
+        t: f64,
+        y: &SVector<f64, 3>,
+        slope: &mut SVector<f64, 3>,
+    ) -> Result<(), Error> {
         let pull = -self.rate * (y[0] - t.cos()) - t.sin();
-        Ok(SVector::from([pull, y[2], -y[1]]))
+        *slope = SVector::from([pull, y[2], -y[1]]);
+        Ok(())
     }
 
     fn error_norm(&self, _: &SVector<f64, 3>, _: &SVector<f64, 3>, error: &SVector<f64, 3>) -> f64 {
@@ -76,8 +82,14 @@ struct Pendulum {
 impl System<2> for Pendulum {
     type Error = Error;
 
-    fn derivative(&mut self, _: f64, y: &Vector2<f64>) -> Result<Vector2<f64>, Error> {
-        Ok(Vector2::new(y[1], -y[0].sin()))
+    fn derivative(
+        &mut self,
+        _: f64,
+        y: &Vector2<f64>,
+        slope: &mut Vector2<f64>,
+    ) -> Result<(), Error> {
+        *slope = Vector2::new(y[1], -y[0].sin());
+        Ok(())
     }
 
     fn error_norm(&self, _: &Vector2<f64>, _: &Vector2<f64>, error: &Vector2<f64>) -> f64 {
