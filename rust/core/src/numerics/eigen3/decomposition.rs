@@ -3,16 +3,8 @@
 use nalgebra::Matrix3;
 
 use super::stack::{One, Stack, VALUES_ONLY, WITH_VECTORS};
+use super::symmetric::Eigen3;
 use crate::numerics::dispatch::dispatch;
-
-/// A = V diag(values) Vᵀ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eigen3 {
-    /// The eigenvalues, ascending.
-    pub values: [f64; 3],
-    /// The eigenvectors as columns, a rotation.
-    pub vectors: Matrix3<f64>,
-}
 
 /// The decomposition of one matrix.
 #[must_use]

@@ -23,6 +23,6 @@ mod sign_rule;
 mod stack;
 mod symmetric;
 
-pub(crate) use decomposition::Eigen3;
 pub use decomposition::{eigen3, eigen3_many, eigenvalues3_many};
 pub(crate) use sign_rule::with_sign_rule;
+pub(crate) use symmetric::Eigen3;

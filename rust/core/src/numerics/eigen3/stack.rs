@@ -6,10 +6,9 @@
 use std::ops::Range;
 
 use super::closed_form::closed_form;
-use super::decomposition::Eigen3;
 use super::deviator::{self, Deviator};
 use super::jacobi::{self, Iterate, SWEEPS, UNFINISHED, jacobi};
-use super::symmetric::{Spectrum, Symmetric, lower_triangle};
+use super::symmetric::{Eigen3, Spectrum, Symmetric, lower_triangle};
 use crate::numerics::dispatch::Kernel;
 use crate::numerics::lane::Lane;
 use crate::numerics::planes::{Formula, Planes, ROWS};

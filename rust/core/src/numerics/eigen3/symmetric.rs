@@ -1,6 +1,17 @@
 //! Symmetric 3×3 matrices and their spectral decompositions: scaling, products, the sign rule.
 
+use nalgebra::Matrix3;
+
 use crate::numerics::lane::Lane;
+
+/// A = V diag(values) Vᵀ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eigen3 {
+    /// The eigenvalues, ascending.
+    pub values: [f64; 3],
+    /// The eigenvectors as columns, a rotation.
+    pub vectors: Matrix3<f64>,
+}
 
 /// The six independent elements of a symmetric matrix.
 #[derive(Clone, Copy, Debug)]
