@@ -179,7 +179,7 @@ impl PyRigidBody {
 
 #[pymethods]
 impl PyGyrostat {
-    /// Angular momentum inside while the body does not turn: the given momentum and ``J Ω a`` of the wheels.
+    /// Angular momentum inside the body if the body is at rest: the given momentum plus ``J Ω a`` of each wheel.
     ///
     /// Components in the body frame, shape (..., 3). For a free wheel the momentum in the motion is ``J (Ω +
     /// a·ω) a``.

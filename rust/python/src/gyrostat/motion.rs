@@ -188,8 +188,8 @@ impl PyGyrostatMotion {
 
     /// Mean rate, in radians per unit of time, at which the body precesses about L.
     ///
-    /// It is the angle that the body has turned about L after one period of ω, divided by that period. The
-    /// angle is known only up to whole turns.
+    /// It is the angle by which the body has turned about L after one period of ω, divided by that period. Only
+    /// the attitude after the period counts: whole turns are not part of the angle.
     #[getter]
     fn mean_precession<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, |motion| motion.mean_precession.rounded())
