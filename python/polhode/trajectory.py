@@ -65,8 +65,8 @@ class Trajectory:
     uncertain_start : tuple, FreeMotion, HeavyTop or None
         Angular velocity and attitude at the first time as `Uncertain`, each None where it was given without a
         sigma. If the trajectory comes from a motion in closed form that has sigmas, and its first time is not
-        0, it is that motion, because the sigmas are those of the state at t = 0. None for a trajectory that :meth:`resume` made from an
-        uncertain one.
+        0, it is that motion, because the sigmas are those of the state at t = 0. None for a trajectory that
+        :meth:`resume` made from an uncertain one.
     states : dict of str and numpy.ndarray, shape (..., T, k)
         The states of the load, by name: for a wheel its angular momentum ``J (Ω + a·ω)`` about its axis, for
         a slug its angular velocity, components in the body frame.
