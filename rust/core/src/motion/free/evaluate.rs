@@ -28,11 +28,7 @@ pub(in crate::motion) trait Use {
 
 /// The state at one time.
 pub(in crate::motion) fn at(motion: &impl Motion, time: f64) -> State {
-    let [x, y, z, w, p, q, r] = dispatch(At { motion, time });
-    State {
-        attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
-        omega: Vector3::new(p, q, r),
-    }
+    dispatch(At { motion, time })
 }
 
 /// The states at many times, quaternions as (x, y, z, w): the bits of [`at`].
@@ -53,9 +49,9 @@ pub(in crate::motion) fn sample(
     );
     if times.len() < FEW {
         for ((&time, attitude), omega) in times.iter().zip(attitudes).zip(omegas) {
-            let [x, y, z, w, p, q, r] = dispatch(At { motion, time });
-            *attitude = [x, y, z, w];
-            *omega = [p, q, r];
+            let state = at(motion, time);
+            *attitude = state.attitude.coords.into();
+            *omega = state.omega.into();
         }
         return;
     }
@@ -76,11 +72,16 @@ struct At<'a, M> {
 }
 
 impl<M: Motion> Kernel for At<'_, M> {
-    type Output = [f64; 7];
+    // As the caller returns it: a copy would wait until it is written.
+    type Output = State;
 
     #[inline(always)]
-    fn run<L: Lane>(self) -> [f64; 7] {
-        self.motion.choose(Now(L::new(self.time))).map(L::get)
+    fn run<L: Lane>(self) -> State {
+        let [x, y, z, w, p, q, r] = self.motion.choose(Now(L::new(self.time))).map(L::get);
+        State {
+            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)),
+            omega: Vector3::new(p, q, r),
+        }
     }
 }
 
