@@ -3,10 +3,10 @@
 A scratch crate depends on ``rust/core`` by its path and runs the kernels of
 ``rust/core/benches/kernels.rs``, once built by ``cargo build --release`` with no profile of its own,
 once with the profile of the workspace (whole-program optimization, one codegen unit). Each round runs
-both programs, on one thread, every second round the other one first. The time of a kernel is the least
-of all rounds, since other work on the machine only adds to it. Kernels near the limit run four times as
-many rounds more. The quartiles of the ratios within a round show how far to trust a ratio. NAMEs pick the
-kernels whose names contain them.
+both programs, on one thread, every second round the other one first. The ratio of a kernel is the median
+of the ratios of all rounds: the least times would hide a kernel that is slow in most processes, for example
+where the stack begins at an unlucky address. The quartiles show the spread. Kernels near the limit run
+four times as many rounds more. NAMEs pick the kernels whose names contain them.
 """
 
 from __future__ import annotations
@@ -64,13 +64,13 @@ def main() -> None:
             rounds = {name: pairs + more.get(name, []) for name, pairs in rounds.items()}
     far = [name for name, pairs in rounds.items() if ratio(pairs) > FAR]
     kept = {name: round(ratio(pairs), 2) for name, pairs in rounds.items()}
-    print(f"{'kernel':24} {'default':>10} {'wheel':>10} {'ratio':>7} {'quartiles':>16} {'rounds':>7}")
+    print(f"{'kernel':24} {'default':>10} {'wheel':>10} {'ratio':>7} {'quartiles':>11} {'rounds':>7}")
     for name, pairs in rounds.items():
-        default, wheel = map(min, zip(*pairs, strict=True))
+        default, wheel = map(statistics.median, zip(*pairs, strict=True))
         low, middle, high = statistics.quantiles(one / other for one, other in pairs)
         print(
-            f"{name:24} {_human(default):>10} {_human(wheel):>10} {ratio(pairs):7.3f} "
-            f"{low:6.2f}{middle:5.2f}{high:5.2f} {len(pairs):7}{' FAR' if name in far else ''}"
+            f"{name:24} {_human(default):>10} {_human(wheel):>10} {middle:7.3f} "
+            f"{low:6.2f}{high:5.2f} {len(pairs):7}{' FAR' if name in far else ''}"
         )
     print(f"{'geometric mean':46} {statistics.geometric_mean(kept.values()):7.2f}")
     if options.json:
@@ -113,8 +113,8 @@ def measured(programs: list[Path], names: list[str], rounds: int) -> dict[str, l
 
 
 def ratio(pairs: list[tuple[float, float]]) -> float:
-    """Of the least times."""
-    return min(default for default, _ in pairs) / min(wheel for _, wheel in pairs)
+    """Median of the ratios within a round."""
+    return statistics.median(default / wheel for default, wheel in pairs)
 
 
 def times(program: Path, names: list[str]) -> dict[str, float]:

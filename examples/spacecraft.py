@@ -8,7 +8,7 @@ from polhode import RigidBody, rods, solids
 
 
 def spacecraft(propellant: float) -> RigidBody:
-    """Bus, two unequal solar panels, an antenna, a magnetometer's boom, and so many kilograms in the tank."""
+    """Give bus, solar panels of two lengths, antenna, boom of a magnetometer, and propellant of this mass."""
     bus = solids.box((1.2, 1.2, 1.8), mass=420.0)
     panels = [solids.box((0.9, 3.0, 0.02), mass=24.0).translated((0.0, y, 0.2)) for y in (2.3, -2.3)]
     extra = solids.box((0.9, 1.0, 0.02), mass=8.0).translated((0.0, 4.3, 0.2))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from polhode.errors import SingularAttitudeError
 from polhode.files import xml_source
 from polhode.files.reading import MOST_TEXT
 from polhode.robots import sources
+from scipy.spatial.transform import Rotation
 from test_check import ROBOT
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -199,3 +201,24 @@ def test_the_outermost_node_of_the_rule() -> None:
     outermost = 0.5 * (1.0 - 0.991_455_371_120_812_6)
     assert round(100 * outermost, 1) == 0.4
     assert np.abs(np.array(asked) - 0.5 * outermost).min() < 1e-15
+
+
+def test_the_ratio_of_third_and_second_order_of_a_power() -> None:
+    for n in (-2, -1, 2, 3, 5, 7):
+        first, second, third = Fraction(n), Fraction(n * (n - 1), 2), Fraction(n * (n - 1) * (n - 2), 6)
+        mean = {2: 1, 4: 3}  # of the powers of a standard normal variable
+        ratio = 2 * first * third * mean[4] / (second**2 * mean[4])
+        assert ratio == Fraction(4, 3) * Fraction(n - 2, n - 1)
+        if n == -1:
+            variance = second**2 * (mean[4] - mean[2] ** 2)
+            others = variance + ratio * second**2 * mean[4]
+            taken = variance + Fraction(4, 3) * second**2 * mean[4]
+            assert others / taken == Fraction(4, 3)
+            assert Fraction(15, 1000) * others / taken == Fraction(2, 100)
+
+
+def test_the_angles_of_the_closed_form_are_those_of_zxz() -> None:
+    for mu, theta, chi in np.random.default_rng(5).uniform(0.1, 3.0, (20, 3)):
+        attitude = Rotation.from_euler("ZYZ", [mu, -theta, -chi])
+        same = Rotation.from_euler("ZXZ", [mu - np.pi / 2, theta, np.pi / 2 - chi])
+        assert (attitude * same.inv()).magnitude() < 1e-14

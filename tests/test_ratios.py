@@ -1,8 +1,9 @@
-"""The ratios of the benchmarks that a release keeps."""
+"""The benchmarks: their rows can be made, and a release keeps their ratios."""
 
 from __future__ import annotations
 
 import json
+import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -76,3 +77,30 @@ def test_a_bar_on_our_own_time(harness: Any, most: float, bar: str, met: bool) -
     )
     result = harness.measure(row, rounds=3, least_seconds=1e-4)
     assert (result.bar, result.met) == (bar, met)
+
+
+ROWS = """
+import sys
+from importlib import import_module
+sys.path.insert(0, sys.argv[1])
+from run import FILES_OF_ROWS
+for name in FILES_OF_ROWS:
+    try:
+        rows = list(import_module(name).rows())
+    except ModuleNotFoundError as error:
+        if error.name not in {"dask", "psutil", "scipy", "trimesh"}:
+            raise
+    else:
+        for row in rows:
+            print(f"{name}: {row.name}, beside {row.peer}")
+"""
+
+
+def test_all_rows_can_be_made(harness: Any) -> None:
+    """In a process of its own: the files of rows set threads, and their names are plain words."""
+    command = [sys.executable, "-c", ROWS, str(Path(harness.__file__).parent)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    rows = done.stdout.splitlines()
+    assert len(rows) == len(set(rows)) > 0
+    assert "gyrostat: gyrostat, set-up, beside our free motion" in rows

@@ -134,7 +134,7 @@ def pages(groups: dict[str, list[str]], shown: dict[str, str]) -> Iterator[tuple
     listing = [
         "# Gallery\n",
         "Each picture leads to its code. Entries with ▶ also show the motion in the browser.",
-        "The others show bodies or the values of a formula, and no single motion.\n",
+        "The others have a picture alone.\n",
     ]
     for group, names in groups.items():
         listing += [f"## {group}\n", '<div class="gallery">']

@@ -48,7 +48,8 @@ def ellipsoid(body: RigidBody, volume: ArrayLike | None = None) -> EquivalentEll
     volume : float or array_like, optional
         Volume of the body. The ellipsoid then has this volume, and the same ratios of semi-axes as the one
         with the moments of the body. For an asteroid it is called the dynamically equivalent equal-volume
-        ellipsoid. Its moments are those of the body only if both have the same density.
+        ellipsoid. Its moments are those of the body only if the ellipsoid that is found without `volume` has
+        this volume.
 
     Returns
     -------

@@ -187,13 +187,14 @@ def check(
         A robot from :func:`read_robot`.
     packages : sequence of str or os.PathLike
         Folders that hold the packages of ``package://`` and ``model://`` addresses; folders above the file,
-        ``ROS_PACKAGE_PATH``, ``GZ_SIM_RESOURCE_PATH`` and ``AMENT_PREFIX_PATH`` are searched too.
+        ``ROS_PACKAGE_PATH``, ``GZ_SIM_RESOURCE_PATH``, ``SDF_PATH`` and ``AMENT_PREFIX_PATH`` are searched
+        too.
     allow_outside : bool
         Whether meshes may be in any folder. By default they are read only in these folders and where the
         model is: in the package that contains it (marked by ``package.xml``, ``manifest.xml`` or
         ``model.config``) or, without one, its checkout (``.git``, ``.hg``), its Python package, or its own
         folder. If the name of this folder is ``urdf``, ``sdf``, ``mjcf``, ``xml``, ``robots`` or ``worlds``,
-        its parent folder is allowed too; Other packages above or beside it are read too, if they are marked
+        its parent folder is allowed too. Other packages above or beside it are read too, if they are marked
         as packages. Symbolic links to files elsewhere are not followed. The notes of the link name the files
         that were not read.
     density : float, optional

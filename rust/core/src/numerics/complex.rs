@@ -220,6 +220,30 @@ mod tests {
     }
 
     #[test]
+    fn roots_keep_their_digits_on_both_sides_of_where_squares_leave_the_range() {
+        for bound in [LEAST_SQUARE.sqrt(), MOST_SQUARE.sqrt()] {
+            for factor in [1e-3, 0.99, 1.01, 1e3] {
+                let size = bound * factor;
+                for (x, y) in [(0.6, 0.8), (-0.6, 0.8), (-1.0, 1e-9), (0.0, -1.0)] {
+                    let z = Complex::new(DoubleDouble::from(x * size), (y * size).into());
+                    let root = z.sqrt();
+                    let off = root.squared() - z;
+                    assert!(off.size() <= 1e-30 * z.size(), "{x} {y} times {size:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_sum_of_parts_is_the_size_within_the_root_of_two() {
+        for k in 0..64 {
+            let (y, x) = (0.1 * f64::from(k)).sin_cos();
+            let sum = Complex::new(x, y).taxicab();
+            assert!((1.0 - 1e-15..=std::f64::consts::SQRT_2 + 1e-15).contains(&sum));
+        }
+    }
+
+    #[test]
     fn what_is_more_than_a_right_angle_apart_is_opposite() {
         let number = |re: f64, im: f64| Complex::new(DoubleDouble::from(re), im.into());
         for (a, is_opposite) in [(-1e-9, true), (0.0, false), (1e-9, false)] {

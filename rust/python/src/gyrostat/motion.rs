@@ -188,8 +188,9 @@ impl PyGyrostatMotion {
 
     /// Mean rate, in radians per unit of time, at which the body precesses about L.
     ///
-    /// It is the angle by which the body has turned about L after one period of ω, divided by that period. Only
-    /// the attitude after the period counts: whole turns are not part of the angle.
+    /// After one period of ω the body has turned about L by an angle. This angle, divided by the period, is the
+    /// mean rate. The closed form gives the angle except for whole turns, so the true mean rate may differ by
+    /// whole turns per period.
     #[getter]
     fn mean_precession<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.numbers(py, |motion| motion.mean_precession.rounded())

@@ -7,8 +7,8 @@
 //! (I' + Σ J a aᵀ) ω̇ = N' + Σ a τ − ω × I'ω,   f = J a·ω̇ − τ
 //! ```
 //!
-//! where I' is the tensor without the wheels, N' the torque beside it, which counts `−a τ` of the motors, and f the torque of the
-//! bearing on the wheel. A wheel rests as long as |f| is at most that of the friction.
+//! where I' is the tensor without the wheels, N' the torque beside it, which counts `−a τ` of the motors and `−ω × h a` of the
+//! wheels, and f the torque of the bearing on the wheel. A wheel rests as long as |f| is at most that of the friction.
 
 use nalgebra::{Matrix3, Vector3};
 

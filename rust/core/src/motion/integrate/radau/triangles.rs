@@ -47,3 +47,37 @@ impl<T: ComplexField + Copy + AddAssign, const N: usize> Triangles<T, N> {
         Some(x)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Complex;
+
+    fn check<T: ComplexField<RealField = f64> + Copy + AddAssign>(numbers: [T; 9]) {
+        let matrix = DMatrix::from_row_slice(3, 3, &numbers);
+        let right = SVector::from([numbers[1], numbers[3], numbers[8]]);
+        let x = Triangles::<T, 3>::of(matrix.clone())
+            .solve(&right)
+            .expect("regular");
+        assert!((matrix * x - right).norm() <= 1e-14 * x.norm());
+    }
+
+    #[test]
+    fn solutions_solve_also_where_rows_change_their_places() {
+        let numbers = [0.0, 2.0, 1.0, 1.0, 1e-9, -3.0, 4.0, -1.0, 0.5];
+        check(numbers);
+        check(numbers.map(|x| Complex::new(x, 1.0 - x * x)));
+    }
+
+    #[test]
+    fn a_singular_matrix_has_no_solution() {
+        let rows = |last: f64| DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, last]);
+        let right = SVector::from([1.0, 1.0]);
+        assert!(Triangles::<f64, 2>::of(rows(4.0)).solve(&right).is_none());
+        assert!(
+            Triangles::<f64, 2>::of(rows(4.0 + 1e-15))
+                .solve(&right)
+                .is_some()
+        );
+    }
+}
