@@ -9,7 +9,7 @@ What has to stand there:
 - on the pages of promises, which are all but the theory, also "every", "all", "any", "never", "exact".
 
 What has not: code, which ``test_docs.py`` and ``test_commands_in_pages.py`` run; headings; formulas, unless
-they are a number alone; labels of the course; years; numbers of axes and of equations. The exercises are left
+they are a number alone; labels of the course; years; numbers of axes, of equations and of steps. The exercises are left
 to ``test_docs.py``, which runs their code, and to ``test_textbook.py``, which has random numbers in them.
 """
 
@@ -47,11 +47,13 @@ NO_SENTENCE = re.compile(
       ^```.*?^```$            # code, directives
     | ^\ {4}(?=\S)[^\n]*$     # a drawing in letters
     | ^\#[^\n]*$              # headings
+    | ^\d+\.\ (?=\S)         # the number of an item in a list of steps
     | ^\([\w/]+\)=$           # anchors
     | (?:\{[\w:]+\})?`[^`]*`  # code within a sentence, names, formulas of one
     | (?<=\])\([^)\s]*\)      # targets of links
     | \b(?:mex|mln|msl)\d+    # labels of the course
     | \b(?:1[89]\d\d|20[0-2]\d)\b  # years
+    | \bsteps?\ \d(?:\ and\ \d)? | \bStep\ \d(?=:) | \bSteps\ \d\ and\ \d
     | \bax[ei]s\ \d(?:\ and\ \d)? | \bcolumns?\ \d(?:\ and\ \d)?
     | \bequations\ [\d.]+\ to\ [\d.]+ | §[\d.]+ | \d+\s\(\d{4}\)\ \d+  # of a book, of a journal
     | [α-ω]\ [<=>]\ \d
