@@ -9,8 +9,9 @@ What has to stand there:
 - on the pages of promises, which are all but the theory, also "every", "all", "any", "never", "exact".
 
 What has not: code, which ``test_docs.py`` and ``test_commands_in_pages.py`` run; headings; formulas, unless
-they are a number alone; labels of the course; years; numbers of axes, of equations and of steps. The exercises are left
-to ``test_docs.py``, which runs their code, and to ``test_textbook.py``, which has random numbers in them.
+they are a number alone; labels of the course; years; numbers of axes, of equations and of steps. The
+exercises are left to ``test_docs.py``, which runs their code, and to ``test_textbook.py``, which has random
+numbers in them.
 """
 
 from __future__ import annotations
