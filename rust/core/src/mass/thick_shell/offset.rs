@@ -97,9 +97,9 @@ pub(super) fn offset<I: Index>(
             Ok(())
         },
     )?;
-    let mut ways: Vec<Way> = Vec::with_capacity(around.len());
-    each_watched(around.iter(), watch, |at| {
-        ways.push(at.way());
+    let mut ways = vec![Way::default(); around.len()];
+    each_watched(ways.iter_mut().zip(&around), watch, |(way, at)| {
+        at.set_way(way);
         Ok(())
     })?;
     for _ in 0..REFINED {
@@ -162,14 +162,14 @@ impl Around {
         self.square += normal * normal.transpose() * angle;
     }
 
-    /// The way of the vertex, as well as the square of the normals knows it.
+    /// Sets the way of the vertex, as well as the square of the normals knows it; that of a vertex without faces is zero.
     ///
     /// Planes that nearly are one, or nearly share a line, may meet far away: a vertex that would go aside by more than
     /// twice the angle over which the normals spread goes the way of the fewer planes that they nearly are.
     #[inline]
-    fn way(&self) -> Way {
+    fn set_way(&self, way: &mut Way) {
         if self.weight <= 0.0 {
-            return Way::default();
+            return;
         }
         let PrincipalAxes {
             moments: values,
@@ -185,19 +185,22 @@ impl Around {
             if values[unused] <= FLAT {
                 continue;
             }
-            let inverse: Matrix3<f64> = (unused..3)
-                .map(|k| axes.column(k) * axes.column(k).transpose() / values[k])
-                .sum();
-            let d = inverse * mean;
-            if d.dot(&self.middle) >= within * d.norm() {
-                return Way::new(d, inverse, values[unused]);
+            way.inverse = Matrix3::zeros();
+            for k in unused..3 {
+                way.inverse += axes.column(k) * axes.column(k).transpose() / values[k];
+            }
+            way.direction = way.inverse * mean;
+            if way.direction.dot(&self.middle) >= within * way.direction.norm() {
+                way.least = values[unused];
+                return;
             }
         }
         // One plane: Σ w (n·m α − 1)² is least at this α.
         let m = self.middle;
-        let square = m.dot(&(self.square * m)) / self.weight;
-        let d = m * (m.dot(&mean) / square.max(f64::MIN_POSITIVE));
-        Way::new(d, m * m.transpose() / square.max(f64::MIN_POSITIVE), 1.0)
+        let square = (m.dot(&(self.square * m)) / self.weight).max(f64::MIN_POSITIVE);
+        way.direction = m * (m.dot(&mean) / square);
+        way.inverse = m * m.transpose() / square;
+        way.least = 1.0;
     }
 }
 
@@ -219,15 +222,6 @@ struct Way {
 }
 
 impl Way {
-    fn new(direction: Vector3<f64>, inverse: Matrix3<f64>, least: f64) -> Self {
-        Self {
-            direction,
-            inverse,
-            least,
-            ..Self::default()
-        }
-    }
-
     /// Counts what the face with this normal misses.
     #[inline]
     fn miss(&mut self, normal: &Vector3<f64>, angle: f64) {
@@ -252,6 +246,7 @@ impl Way {
 
     /// What rounding can have done to the length of d: the normals are off by a few units, their planes meet a part as the
     /// root of the least value farther off, and what they miss at the meeting weighs twice as much (Wedin 1973).
+    #[inline]
     fn error(&self) -> f64 {
         if self.least <= 0.0 {
             return 0.0;
@@ -341,7 +336,9 @@ mod tests {
         for normal in normals {
             around.cosine = around.cosine.min(around.middle.dot(&normal));
         }
-        around.way().direction
+        let mut way = Way::default();
+        around.set_way(&mut way);
+        way.direction
     }
 
     #[test]

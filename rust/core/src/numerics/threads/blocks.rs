@@ -73,6 +73,7 @@ fn in_blocks<T: Send, E: Send>(
 ///
 /// # Errors
 /// [`Halt::Stopped`] if `watch` said so, else [`Halt::Failed`] with the error of the first item that failed.
+#[inline]
 pub(crate) fn each_watched<T, E>(
     items: impl ExactSizeIterator<Item = T>,
     watch: &mut Watch<'_>,
