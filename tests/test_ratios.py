@@ -61,11 +61,22 @@ def test_the_page_tells_spread_machine_and_date(
     found = json.loads(path.read_text("utf-8"))
     page = measured.performance(found | json.loads(harness.RATIOS.read_text("utf-8")))
     assert "| a row | a peer | 4 | 3.6 to 4.94 |" in page
-    assert (
-        "| moments and axes, 1e6 tensors | numpy.linalg.eigh | 43.2 |\n" in page
-    )  # no spread was kept: no column
+    named = "| moments and axes of a million tensors | NumPy: `linalg.eigh` | 43.2 |\n"
+    assert named in page  # no spread was kept: no column
+    assert page.count("least to largest |") == 1
     assert f"Measured on {found['0.2.0']['date']}: {found['0.2.0']['machine']['cpu']}, " in page
     assert "Measured on 2026-11-22: AMD EPYC, 2 cores, Python 3.11.7." in page
+
+
+def test_each_kept_row_has_words_on_the_page(harness: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[1] / "docs" / "site"))
+    measured: Any = import_module("measured")
+    told = {name for rows in measured.ROWS.values() for name in rows}
+    for found in json.loads(harness.RATIOS.read_text("utf-8")).values():
+        assert set(found["ratios"]) <= told, "give the rows words in docs/site/measured.py"
+    page = measured.performance(json.loads(harness.RATIOS.read_text("utf-8")))
+    assert "Other rows" not in page
+    assert page.count("\n|") == sum(len(rows) + 2 for rows in measured.ROWS.values())
 
 
 @pytest.mark.parametrize(

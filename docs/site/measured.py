@@ -130,16 +130,18 @@ def validation(found: dict[str, Any]) -> str:
 
 def performance(ratios: dict[str, Any]) -> str:
     """Give the page of times beside the peers."""
+    has_spread = any(isinstance(kept, list) for found in ratios.values() for kept in found["ratios"].values())
     lines = [
         "# How fast it is\n",
-        "The ratio is the time of the other program for the same answer, divided by the time of polhode. "
-        "Above 1, polhode is faster. In some rows polhode is compared with itself: the same work in another "
-        "way, or for another body. The two ran alternately in one process, on one thread, in several rounds. "
-        "The "
-        "ratio is the median of the rounds. If the least and the largest ratio of a release were "
-        "kept, the table shows them as the spread. "
-        "`make bench` measures anew; `python benchmarks/run.py --keep RELEASE` keeps what "
-        "this table shows, and `make docs` writes the page.\n",
+        "Each row compares the times of two calculations. polhode does the first one, in the column *polhode "
+        "does*. The second one, in the column *compared with*, is another way to the same result, or a part "
+        "of the work that cannot be avoided, or a similar calculation of polhode itself.\n",
+        "The ratio is the time of the second calculation divided by the time of the first. Above 1, the "
+        "first is faster. If the second one was done for fewer bodies, the times for one body are compared. "
+        "Both ran on one thread, unless the row says otherwise. They took turns in several rounds, and each "
+        "round gave a ratio. The table shows the median of these ratios." + SPREAD * has_spread + "\n",
+        "`make bench` measures anew. `python benchmarks/run.py --keep RELEASE` keeps the ratios, and "
+        "`make docs` writes them into this page.\n",
     ]
     for release, found in ratios.items():
         machine = found["machine"]
@@ -148,19 +150,207 @@ def performance(ratios: dict[str, Any]) -> str:
             f"Measured on {found['date']}: {machine['cpu']}, {machine['cores']} cores, "
             f"Python {machine['python']}.\n",
         ]
-        has_spread = any(isinstance(kept, list) for kept in found["ratios"].values())
-        lines += [
-            "| what | compared with | ratio |" + " spread |" * has_spread,
-            "|---|---|---|" + "---|" * has_spread,
-        ]
-        for name, kept in found["ratios"].items():
-            what, _, peer = name.partition(", beside ")
-            ratio, *spread = kept if isinstance(kept, list) else [kept]
-            row = f"| {what} | {peer} | {ratio:g} |".replace("Π(n; φ|m)", "Π(n; φ, m)")
-            if has_spread:
-                row += f" {spread[0]:g} to {spread[1]:g} |" if spread else " not kept |"
-            lines.append(row)
+        left = dict(found["ratios"])
+        for section, words in ROWS.items():
+            rows = {name: left.pop(name) for name in words if name in left}
+            lines += table(section, rows, words)
+        lines += table("Other rows", left, {})
     return "\n".join([*lines, ""])
+
+
+SPREAD = " If the least and the largest of these ratios were kept, the column *least to largest* shows them."
+
+
+def table(section: str, rows: dict[str, Any], words: dict[str, tuple[str, str]]) -> list[str]:
+    """Give the table of some rows under a heading; nothing without rows."""
+    if not rows:
+        return []
+    has_spread = any(isinstance(kept, list) for kept in rows.values())
+    lines = [
+        f"### {section}\n",
+        "| polhode does | compared with | ratio |" + " least to largest |" * has_spread,
+        "|---|---|---|" + "---|" * has_spread,
+    ]
+    for name, kept in rows.items():
+        first, _, second = name.rpartition(", beside ")
+        what, peer = words.get(name, (first, second))
+        ratio, *spread = kept if isinstance(kept, list) else [kept]
+        row = f"| {what} | {peer} | {ratio:g} |"
+        if has_spread:
+            row += f" {spread[0]:g} to {spread[1]:g} |" if spread else " not kept |"
+        lines.append(row)
+    return [*lines, ""]
+
+
+_SCIPY = "SciPy: integration by DOP853 at 1e-12"
+_STACKED = "NumPy: matrix products and `linalg.eigh`"
+_WATERTIGHT = "trimesh: mass properties, and the test that the mesh is closed"
+_ONE_THREAD = "the same on one thread"
+ROWS: dict[str, dict[str, tuple[str, str]]] = {
+    "Start": {
+        "import in a fresh interpreter, beside import numpy": (
+            "`from polhode import RigidBody` in a new interpreter",
+            "`import numpy` in a new interpreter",
+        ),
+        "polhode --help, beside import cyclopts, rich": (
+            "the command `polhode --help`",
+            "only the imports of cyclopts and rich, which it needs",
+        ),
+        "polhode report, 10 000 triangles, beside the bare imports": (
+            "the command `polhode report`, for an STL file of 10 000 triangles",
+            "only the imports that it needs",
+        ),
+    },
+    "Principal moments and axes": {
+        "moments and axes, 1e6 tensors, beside numpy.linalg.eigh": (
+            "moments and axes of a million tensors",
+            "NumPy: `linalg.eigh`",
+        ),
+        "moments alone, 1e6 tensors, beside numpy.linalg.eigvalsh": (
+            "moments of a million tensors, without axes",
+            "NumPy: `linalg.eigvalsh`",
+        ),
+        "moments and axes, one tensor, beside numpy.linalg.eigh": (
+            "moments and axes of one tensor",
+            "NumPy: `linalg.eigh`",
+        ),
+    },
+    "Bodies of particles and voxels": {
+        "inertia of 1e7 particles, beside numpy: a plain sum": (
+            "mass, centre and tensor of ten million particles",
+            "NumPy: only `masses.sum()` and `positions.sum()` of the same arrays",
+        ),
+        "inertia of 1e7 particles, beside numpy: matrix products": (
+            "mass, centre and tensor of ten million particles",
+            "NumPy: the same by matrix products",
+        ),
+        "a thin body of 1e7 particles, beside polhode: an ordinary one": (
+            "ten million particles of a body that is a thousand times as long as thick",
+            "polhode: ten million particles of a body that is about as long as thick",
+        ),
+        "1e7 particles through a stream, beside polhode: at once": (
+            "ten million particles in chunks, by `MassAccumulator`",
+            "polhode: all particles in one call",
+        ),
+        "1e6 particles with 1e3 labels, beside numpy: sorted, body by body": (
+            "a thousand bodies from a million particles with labels",
+            "NumPy: the particles sorted by label, then one body after the other",
+        ),
+        "1e4 bodies x 20 particles, moments and axes, beside numpy: products, eigh": (
+            "moments and axes of ten thousand bodies of 20 particles",
+            _STACKED,
+        ),
+        "1e4 frames of 20 particles, moments and axes, beside numpy: products, eigh": (
+            "moments and axes of 20 particles in ten thousand positions",
+            _STACKED,
+        ),
+        "256^3 voxels, float32, beside numpy: separable sums": (
+            "a body of 256 × 256 × 256 voxels, densities in 32 bits",
+            "NumPy: sums over planes of voxels",
+        ),
+        "128 x 256^2 voxels, float64, beside numpy: separable sums": (
+            "a body of 128 × 256 × 256 voxels, densities in 64 bits",
+            "NumPy: sums over planes of voxels",
+        ),
+    },
+    "Meshes": {
+        "checked solid, 1e5 triangles, beside trimesh": (
+            "a solid from a mesh of a hundred thousand triangles, with all checks",
+            _WATERTIGHT,
+        ),
+        "checked solid, 2e6 triangles, beside trimesh": (
+            "a solid from a mesh of two million triangles, with all checks",
+            _WATERTIGHT,
+        ),
+        "binary STL of 5e6 triangles, checked, beside trimesh": (
+            "a solid from a binary STL file of five million triangles, with all checks",
+            _WATERTIGHT,
+        ),
+    },
+    "Motion in closed form": {
+        "many times of one body, 1e+05 states, beside one Π(n; φ|m) each, SciPy": (
+            "a hundred thousand states of one free body",
+            "SciPy: Jacobi's functions, and an elliptic integral of the third kind for each state",
+        ),
+        "1e+05 bodies at 10 rotations, beside SciPy DOP853, 10 rotations": (
+            "a hundred thousand free bodies, the state of each after ten rotations",
+            f"{_SCIPY}, over the same time",
+        ),
+        "1e+05 bodies at 1e6 rotations, beside SciPy DOP853, 10 rotations": (
+            "a hundred thousand free bodies, the state of each after a million rotations",
+            f"{_SCIPY}, over ten rotations only",
+        ),
+        "heavy top: 1000 states over 10 turns, beside scipy: DOP853 at 1e-12": (
+            "a thousand states of a heavy top, over ten turns",
+            _SCIPY,
+        ),
+        "heavy top: 1e4 states, beside one by one, beside polhode: a call for each": (
+            "ten thousand states of a heavy top in one call",
+            "polhode: one call for each state",
+        ),
+        "heavy top: 4 tops, one state at 10 turns, beside scipy: DOP853 at 1e-12": (
+            "four heavy tops, the state of each after ten turns",
+            _SCIPY,
+        ),
+    },
+    "Simulation": {
+        "free, asymmetric, a rotation, beside SciPy DOP853 at 1e-12": (
+            "a free body with three different moments, by Taylor series",
+            _SCIPY,
+        ),
+        "heavy symmetric top, a rotation, beside SciPy DOP853 at 1e-12": (
+            "a heavy symmetric top, by Taylor series",
+            _SCIPY,
+        ),
+        "heavy asymmetric top, a rotation, beside SciPy DOP853 at 1e-12": (
+            "a heavy top with three different moments, by Taylor series",
+            _SCIPY,
+        ),
+        "torque of a Python function, DOP853, beside bare loop of the calls": (
+            "a motion under the torque of a Python function, by DOP853",
+            "Python: only the calls of this function, in a loop",
+        ),
+        "force and torque of a Python function, DOP853, beside bare loop of the calls": (
+            "a motion under force and torque of a Python function, by DOP853",
+            "Python: only the calls of this function, in a loop",
+        ),
+        "torque of a compiled function, DOP853, beside the Python function": (
+            "a motion under the torque of a compiled function, by DOP853",
+            "polhode: the same torque as a Python function",
+        ),
+    },
+    "Two threads": {
+        "a plain sum over 1e7 particles, two threads, beside one thread": (
+            "for comparison, NumPy: a sum over ten million particles on two threads",
+            _ONE_THREAD,
+        ),
+        "inertia of 1e7 particles, two threads, beside one thread": (
+            "mass, centre and tensor of ten million particles on two threads",
+            _ONE_THREAD,
+        ),
+        "a thin body of 1e7 particles, two threads, beside one thread": (
+            "ten million particles of a thin body on two threads",
+            _ONE_THREAD,
+        ),
+        "1e7 particles through a stream, two threads, beside one thread": (
+            "ten million particles by `MassAccumulator` on two threads",
+            _ONE_THREAD,
+        ),
+        "1e5 bodies x 20 particles, two threads, beside one thread": (
+            "a hundred thousand bodies of 20 particles on two threads",
+            _ONE_THREAD,
+        ),
+        "256^3 voxels, float32, two threads, beside one thread": (
+            "a body of 256 × 256 × 256 voxels on two threads",
+            _ONE_THREAD,
+        ),
+        "checked solid, 1e6 triangles, two threads, beside one thread": (
+            "a solid from a mesh of a million triangles on two threads",
+            _ONE_THREAD,
+        ),
+    },
+}
+"""What the rows of ``benchmarks/ratios.json`` say in words, under the headings of the page."""
 
 
 def seconds(value: float) -> str:
