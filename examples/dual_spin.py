@@ -1,4 +1,7 @@
-"""A wheel inside makes the spin about the intermediate axis stable. Without a wheel it is unstable."""
+"""A wheel makes the spin about the intermediate axis stable, if its momentum is large enough.
+
+The momentum has to be larger than (I3 - I2) ω, along the spin ω. Without a wheel the spin is unstable.
+"""
 
 import sys
 
@@ -7,7 +10,7 @@ from matplotlib.figure import Figure
 from polhode import RigidBody, animation, plot, wheel
 
 SATELLITE = RigidBody.from_principal(150.0, (20.0, 25.0, 30.0))
-SPIN = (0.002, 0.1, 0.002)  # rad/s, nearly about the middle axis
+SPIN = (0.002, 0.1, 0.002)  # rad/s, nearly about the middle axis: (I3 - I2) ω = 0.5 N m s
 
 
 def draw() -> Figure:
@@ -20,7 +23,9 @@ def draw() -> Figure:
         print(f"h = {momentum:g} N m s: off the axis by up to {off(states.omega):.1f}°")
         ax = plot.angular_velocity(states, figure.add_subplot(1, 3, k))
         ax.set_title(f"wheel with {momentum:g} N m s", pad=22)
-    plot.portrait(motion, ax=figure.add_subplot(1, 3, 3, projection="3d", computed_zorder=False))
+    sphere = figure.add_subplot(1, 3, 3, projection="3d", computed_zorder=False)
+    sphere.view_init(elev=20.0, azim=50.0)
+    plot.portrait(motion, ax=sphere)
     return figure
 
 

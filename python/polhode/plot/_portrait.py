@@ -284,19 +284,23 @@ def _mark(kind: str) -> Any:
 def _names(ax: Axes3D, inside: Floats) -> None:
     """Name the axes of the body, and the direction of h."""
     viewer = toward_viewer(ax)
+    to_the_right = np.array([-np.sin(np.deg2rad(ax.azim)), np.cos(np.deg2rad(ax.azim)), 0.0])
     size = np.linalg.norm(inside)
     unit = inside / size if size > 0.0 else np.zeros(3)
-    meets = unit > 0.97  # h stands at the end of this axis: their names stand side by side
+    meets = unit > 0.97  # h stands at the end of this axis: one text has both names
     for k, name in enumerate("xyz"):
         axis = np.zeros(3)
         axis[k] = 1.0
         order = 5 if axis @ viewer >= 0.0 else 1
         ax.plot(*np.stack([axis, 1.2 * axis], axis=-1), color="0.25", linewidth=1.2, zorder=order)
-        side = "right" if meets[k] else "center"
-        ax.text(*(1.36 * axis), f"$L_{name}$", color="0.15", ha=side, va="center", fontsize=11, zorder=8)
+        words, side, beyond = f"$L_{name}$", "center", 1.36
+        if meets[k]:  # beyond the line of h, which is thicker and longer than that of an axis
+            words, beyond, across = f"$L_{name}$, $h$", 1.44, float(axis @ to_the_right)
+            side = "left" if across > 0.3 else "right" if across < -0.3 else "center"
+        ax.text(*(beyond * axis), words, color="0.15", ha=side, va="center", fontsize=11, zorder=8)
     if size > 0.0:
         order = 6 if unit @ viewer >= 0.0 else 1
         ax.plot(*np.stack([unit, 1.3 * unit], axis=-1), color="0.0", linewidth=2.4, zorder=order)
         ax.plot(*unit[:, np.newaxis], linestyle="none", marker="o", markersize=3.5, color="0.0", zorder=order)
-        beyond, side, name = (1.36, "left", "  h") if meets.any() else (1.42, "center", "h")
-        ax.text(*(beyond * unit), name, color="0.0", ha=side, va="center", fontsize=12, zorder=8)
+        if not meets.any():
+            ax.text(*(1.42 * unit), "$h$", color="0.0", ha="center", va="center", fontsize=12, zorder=8)
