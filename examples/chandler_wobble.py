@@ -17,7 +17,8 @@ def draw() -> Figure:
     spin = DAY * np.array([off, 0.0, 1.0])
     motion = EARTH.free_motion(spin)
     period = 2 * np.pi / abs(tops.free_precession(EARTH, spin).body_rate)
-    print(f"a rigid Earth wobbles in {period:.1f} days, A/(C - A) days; Chandler found 433")
+    print(f"a rigid Earth wobbles in {period:.1f} days of 24 hours; Chandler found 433")
+    print(f"A/(C - A) = {1.0 / FLATTENING - 1.0:.1f} turns of the Earth relative to the stars")
     t = np.linspace(0.0, 0.9 * period, 300)
     pole = 6.37e6 * motion.at(t).omega[:, :2] / DAY
     figure = Figure(figsize=(5.4, 5.0), layout="constrained")

@@ -1,4 +1,7 @@
-"""A spacecraft of several parts. While propellant is used, its centre of mass moves and its axes turn."""
+"""A spacecraft of several parts. While propellant is used, its centre of mass moves and its axes turn.
+
+The moving picture shows its two solar panels. The one toward +y is longer by a metre.
+"""
 
 import sys
 
@@ -8,7 +11,7 @@ from polhode import RigidBody, rods, solids
 
 
 def spacecraft(propellant: float) -> RigidBody:
-    """Give bus, solar panels of two lengths, antenna, boom of a magnetometer, and propellant of this mass."""
+    """Give bus, two solar panels, antenna, boom of a magnetometer, and propellant of this mass."""
     bus = solids.box((1.2, 1.2, 1.8), mass=420.0)
     panels = [solids.box((0.9, 3.0, 0.02), mass=24.0).translated((0.0, y, 0.2)) for y in (2.3, -2.3)]
     extra = solids.box((0.9, 1.0, 0.02), mass=8.0).translated((0.0, 4.3, 0.2))
