@@ -56,9 +56,9 @@ def animate(
         of wheels, which is part of L; and the path of ω on the ellipsoid of inertia in the body. For a free
         body it also shows that ellipsoid rolling on its plane, and has sliders for another start, whose
         motion the page computes itself. For a top it shows the path of the axis. It shows the speeds of
-        wheels, and kinetic energy T, potential energy V and their sum if the load has a potential. A wheel
-        that turns by more than 20 degrees from picture to picture is drawn 2, 5, 10, … times slower, and a
-        label says so.
+        wheels, and kinetic energy T, potential energy V and their sum if the load has a potential; these are
+        in the units of the input. A wheel that turns by more than 20 degrees from picture to picture is drawn
+        2, 5, 10, … times slower, and a label says so.
     end : float, optional
         For a motion in closed form, which has no times of its own: the motion is shown from 0 to this time.
     shape : (vertices, faces) or list, optional
@@ -68,10 +68,11 @@ def animate(
         read from a saved file, it is the uniform box with the same inertia. In a given mesh with more than
         20,000 triangles, nearby corners are joined, and a message says so.
     frames : int, optional
-        Number of states shown, evenly chosen. By default, for a free body or a heavy top under gravity alone,
-        there are as many as needed: states between the samples come from the closed form, so that the body
-        turns by at most 20 degrees between two pictures of a film, and by at most 40 degrees between two
-        frames of a page, which interpolates. For any other motion the states are the samples themselves.
+        Number of states shown, evenly chosen. By default there are as many as needed for a free body, or for
+        a heavy top under gravity alone. The closed form then gives further states between the samples, so
+        that the body turns by at most 20 degrees between two pictures of a film, and by at most 40 degrees
+        between two states of a page, which interpolates between them. For any other motion the states are
+        the samples themselves.
     duration : float, optional
         Duration on the screen, in seconds. By default a page shows the motion in real time, or slower or
         faster by a round factor, which it names. A film takes 10 seconds by default, or longer so that the
@@ -105,7 +106,9 @@ def animate(
     Warns
     -----
     UserWarning
-        If it turns by more than 30 degrees, or the end of the motion is not shown.
+        If it turns by more than 30 degrees between two samples, or between two pictures of a film for which
+        `frames`, `duration` or `fps` is given; or if the end of the motion is not shown. A page for which the
+        closed form gives the states needs no warning.
     """
     file = _checked(path)
     if fps is not None and not 1.0 <= fps <= (GIF_RATE if file.suffix.lower() == ".gif" else 240.0):

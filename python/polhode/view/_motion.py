@@ -55,8 +55,8 @@ def motion(
     Parameters
     ----------
     trajectory : Trajectory, FreeMotion, HeavyTop or GyrostatMotion
-        Motion of one body. For a torque-free motion as many states are shown as needed. For any other motion
-        its samples are shown, between which the body should turn by no more than 30 degrees.
+        Motion of one body. For a motion in closed form as many states are shown as needed. For any other
+        motion its samples are shown; the body should turn by no more than 30 degrees from one to the next.
     plotter : pyvista.Plotter, optional
         Where to show it; a new one by default. If it shows the motion already, another `at` sets its time.
     end : float, optional
