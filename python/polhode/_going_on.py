@@ -50,18 +50,21 @@ def sensitivity(self: Trajectory, method: Literal["series", "differences"] = "se
     was computed with. A feedback reverses its torque at half a turn from its target; the derivatives jump
     there, and the jump is computed. For free bodies :meth:`FreeMotion.sensitivity` is exact at any time.
 
-    If the initial states of a load were not given to `simulate`, they follow from other numbers: the momentum
-    of a wheel is ``h = J (Ω + a·ω)`` at the start. The derivatives by the inertia, the axis and the rate of
-    the wheel include the change of h. The derivatives by ω at the first time do not: they hold h fixed. For
-    derivatives by ω with the rate Ω held fixed, add the part that comes from the change of h; the field
-    ``begins`` of :class:`polhode.MotionSensitivity` serves for that.
+    If the initial states of a load were not given to `simulate`, they follow from other numbers. At the start
+    a wheel has the momentum ``h = J (Ω + a·ω)``, where J is its moment of inertia, a its axis and Ω its rate
+    relative to the body. The derivatives with respect to J, a and Ω include the change of h. The derivatives
+    with respect to ω at the first time do not: h stays fixed there. The field ``begins`` of
+    :class:`polhode.MotionSensitivity` says how to find those with Ω fixed.
 
-    Differences remain right where the law of the load changes on the way, as when a wheel stops in its
-    bearing or a motor saturates: each of the neighbouring motions finds its own time of the change. For an
-    orbit they vary all numbers: J₂, radius and pole of an oblate attractor too, and each position of a table.
-    Each number takes six runs. Some numbers are not varied: those inside a function, the attitude of a target
-    at rest, and the arguments of a stack of loads, of a load multiplied by a factor, or of a load that is
-    added to a compiled function.
+    Differences remain right where the law of the load changes on the way, for example when a wheel stops in
+    its bearing or a motor saturates: each of the neighbouring motions finds its own time of the change. All
+    numbers of an orbit are varied: also J₂, radius and pole of an oblate attractor, and each position of a
+    table. Each number takes six runs. There are no differences by
+
+    - numbers inside a function,
+    - the attitude of a target at rest,
+    - the arguments of a stack of loads,
+    - the arguments of a load that is multiplied by a factor, or is added to a compiled function.
 
     Examples
     --------

@@ -62,7 +62,9 @@ class Flyby:
     Attributes
     ----------
     body : RigidBody
+        The body that the clones are copies of.
     before, after : Tumble
+        Their motion at the start and at the end.
     failed : numpy.ndarray of bool, shape (n,)
         Clones whose integration failed. Their other fields are NaN.
     """

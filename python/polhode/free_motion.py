@@ -151,10 +151,11 @@ class Cones(NamedTuple):
     Attributes
     ----------
     axis : int or numpy.ndarray, shape (...)
-        Index of the principal axis that ω circles in the body: 0 or 2. Angles are measured from its side next
-        to ω.
+        The principal axis that ω circles in the body, as an index counted from 0: 0 stands for axis 1, of the
+        least moment, and 2 for axis 3, of the greatest. It is the column of ``body.principal.axes``.
     body : numpy.ndarray, shape (..., 2)
-        Least and greatest angle between ω and that axis.
+        Least and greatest angle between ω and that axis, measured from the end of the axis that is nearer to
+        ω.
     space : numpy.ndarray, shape (..., 2)
         Least and greatest angle between ω and L.
     """

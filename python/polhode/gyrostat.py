@@ -29,8 +29,8 @@ class Bifurcations(NamedTuple):
     direction : numpy.ndarray, shape (n, 3)
         ``L/|L|`` there, in the body frame.
     momentum : numpy.ndarray, shape (n,)
-        The ``|L|`` of the bifurcation for the given h. The two equilibria that meet, at a pitchfork
-        the pair, exist only for larger ``|L|``.
+        The ``|L|`` of the bifurcation for the given h. The two equilibria of a fold, or the pair of a
+        pitchfork, exist only for larger ``|L|``.
     rotor : numpy.ndarray, shape (n,)
         The ``|h|`` of the bifurcation for the given ``|L|`` and the given direction of h. The same two
         equilibria exist only for smaller ``|h|``.

@@ -343,40 +343,48 @@ class Invariants(NamedTuple):
 
 
 class MotionSensitivity(NamedTuple):
-    """Derivatives of attitude and angular velocity at every time by the input of a simulation.
+    """Derivatives of a simulated motion with respect to its start, the body and the load.
 
-    They are derivatives of (δ, ω), where δ is a small rotation from the attitude, ``R → R exp(δ×)``,
-    components in the body frame, in radians. If the load has k states, these come after ω, in the order of
-    ``states`` of the trajectory; every 6 below is then 6 + k.
+    The state at each time is six numbers, (δ, ω). Here δ describes the attitude: it is a small rotation from
+    the attitude R of this motion, ``R → R exp(δ×)``, components in the body frame, in radians; ω is the
+    angular velocity. If the load has states of its own, k numbers in all, they follow after ω, in the order
+    of ``states`` of the trajectory. Each 6 in the shapes below is then 6 + k.
 
     Attributes
     ----------
     state : numpy.ndarray, shape (..., T, 6, 6)
-        Derivatives by (δ, ω) and the states of the load at the first time, each with the others fixed: the
-        state-transition matrix. For a wheel whose speed is given, the momentum is not free, and the
-        derivatives by it are zero.
+        Derivatives with respect to the state at the first time: the state-transition matrix. The momentum of
+        a wheel with a given speed cannot be chosen; the derivatives with respect to it are zero.
     moments : numpy.ndarray, shape (..., T, 6, 3)
-        Derivatives by the principal moments about the point `about` of the motion, in ascending order, with
-        principal axes, mass and centre of mass fixed. These and `products` are NaN for a body with a zero
-        moment.
+        Derivatives with respect to the principal moments, in ascending order. They are the moments about the
+        point `about` of the motion. Principal axes, mass and centre of mass stay fixed. NaN for a body with a
+        zero moment.
     products : numpy.ndarray, shape (..., T, 6, 3)
-        Derivatives by the elements 23, 31 and 12 of the tensor about that point, in its principal axes.
+        Derivatives with respect to the elements 23, 31 and 12 of the tensor about the same point, with
+        components along the principal axes. NaN for a body with a zero moment.
     center_of_mass : numpy.ndarray, shape (..., T, 6, 3)
-        Derivatives by the centre of mass in the body frame, with that tensor fixed.
+        Derivatives with respect to the centre of mass, components in the body frame. The mass and the tensor
+        about the same point stay fixed.
     mass : numpy.ndarray, shape (..., T, 6)
-        Derivatives by the mass, with that tensor fixed.
+        Derivatives with respect to the mass. Centre of mass and tensor about the same point stay fixed.
     load : tuple of dict
-        One dict for each term of the load. Its keys are the arguments of the function of :mod:`polhode.loads`
-        that made the term; the values are the derivatives by this argument, of shape (..., T, 6) followed by
-        the shape of the argument. For the target of a feedback they are derivatives by a small rotation of
-        it. For a term that was multiplied by a factor, they are derivatives by the arguments after the
-        multiplication. A wheel whose motor follows a feedback has the arguments of both. There are no
-        derivatives by frames, times of samples, windows and epochs.
+        One dict for each term of the load. Its keys are the names of the arguments of the function of
+        :mod:`polhode.loads` that made the term. The values are the derivatives with respect to these
+        arguments, of shape (..., T, 6) followed by the shape of the argument.
+
+        - The target of a feedback is varied by a small rotation δ, as the attitude is: shape (..., T, 6, 3).
+        - The term ``2 * constant_torque(v)`` counts as ``constant_torque(2 * v)``. Its derivatives are with
+          respect to ``2 * v``.
+        - If the motor of a wheel follows a feedback, the dict has the arguments of the wheel and also those
+          of the feedback.
+        - Frames, times of samples, windows and epochs are not varied.
     begins : numpy.ndarray, shape (..., k, 3)
-        Derivatives of the initial states of the load by ω at the first time; for a wheel this is ``J a``.
-        They are zero for states that were given. `state` holds the momentum of a wheel fixed. The derivatives
-        by ω with the rate of the wheel fixed instead are ``state[..., 3:6] + state[..., 6:] @ begins[...,
-        None, :, :]``.
+        Derivatives of the states of the load at the first time with respect to ω at the first time. A wheel
+        that starts with a given rate Ω has the angular momentum ``h = J (Ω + a·ω)``, where J is its moment of
+        inertia and a the unit vector along its axis. Its row is therefore ``J a``. The rows of states that
+        were given to `simulate` are zero.
+        This field is needed because `state` holds h fixed while ω changes. The derivatives with respect to ω
+        with Ω fixed instead are ``state[..., 3:6] + state[..., 6:] @ begins[..., None, :, :]``.
     """
 
     state: Floats

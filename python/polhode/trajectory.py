@@ -63,16 +63,19 @@ class Trajectory:
     pivoted : bool
         Whether the point `about` is fixed in space.
     uncertain_start : tuple, FreeMotion, HeavyTop or None
-        Angular velocity and attitude at the first time as `Uncertain`, each None where it was given without a
-        sigma. If the trajectory comes from a motion in closed form that has sigmas, and its first time is not
-        0, it is that motion, because the sigmas are those of the state at t = 0. None for a trajectory that
-        :meth:`resume` made from an uncertain one.
+        The sigmas of the start. In most cases this is a tuple: the angular velocity and the attitude at the
+        first time, each as an `Uncertain`, or None if it was given without a sigma. There are two other
+        cases. A motion in closed form has the sigmas of its state at t = 0. If the first time of the
+        trajectory is not 0, this attribute is that motion. A trajectory that :meth:`resume` made from an
+        uncertain one has None here, and its :attr:`covariance` cannot be computed.
     states : dict of str and numpy.ndarray, shape (..., T, k)
-        The states of the load, by name: for a wheel its angular momentum ``J (Ω + a·ω)`` about its axis, for
-        a slug its angular velocity, components in the body frame.
+        The states of the load, by name. Of a wheel it is the angular momentum ``J (Ω + a·ω)`` about its axis
+        a, with its moment of inertia J and its rate Ω relative to the body. Of a slug it is the angular
+        velocity, components in the body frame.
     carried : tuple of numpy.ndarray, shapes (..., T, 3) and (..., T), or None
-        Angular momentum (components in the body frame) and energy of the wheels, rotors and slugs of the
-        load, in addition to ``I ω`` and ``½ ω·I ω``. None if the load has none of these.
+        What the wheels, rotors and slugs of the load add to the body: first the angular momentum in addition
+        to ``I ω``, components in the body frame; then the energy in addition to ``½ ω·I ω``. A rotor adds
+        angular momentum, but no energy: see :meth:`kinetic_energy`. None if the load has none of these.
     """
 
     body: _core.RigidBody
@@ -178,8 +181,9 @@ class Trajectory:
         Returns
         -------
         KineticEnergy
-            Each part of shape (..., T). The energy of wheels and slugs is in the rotational part. That of a
-            rotor is not counted: with a rotor the energy that stays constant is ``½ ω·I ω``.
+            Each part of shape (..., T). The rotational part includes the energy of wheels and slugs. It does
+            not include the energy of a rotor, of which only the momentum is known. For a body with a rotor
+            and no other load, ``½ ω·I ω`` stays constant.
         """
         found = self._bodies().kinetic_energy(
             self.omega,

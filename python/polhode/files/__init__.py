@@ -1,7 +1,9 @@
-"""Reading and writing: bodies from meshes and molecules, and bodies and motions that keep every bit.
+"""Reading and writing: bodies from meshes, molecules and CAD, and bodies and motions that keep every bit.
 
-:func:`load` opens a file that holds a mesh or a molecule; :meth:`polhode.RigidBody.from_file` makes a body of
-it. :meth:`polhode.RigidBody.save` and :meth:`polhode.Trajectory.save` write JSON and NumPy's npz;
+:func:`load` opens a file that holds a mesh, a molecule or solids of CAD; :meth:`polhode.RigidBody.from_file`
+makes a body of it.
+
+:meth:`polhode.RigidBody.save` and :meth:`polhode.Trajectory.save` write JSON and NumPy's npz;
 :meth:`polhode.RigidBody.load` and :meth:`polhode.Trajectory.from_file` read them. :data:`BODY_SCHEMA` and
 :data:`TRAJECTORY_SCHEMA` describe the JSON files, as JSON Schema.
 

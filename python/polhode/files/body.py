@@ -50,15 +50,16 @@ def body_from_file(
     Parameters
     ----------
     path : str or os.PathLike
-        A mesh (STL, OBJ and ``v``/``f`` plate files, PLY, OFF, GLB; see :func:`read_mesh`) or a molecule
-        (XYZ; see :func:`read_xyz`).
+        A mesh, a molecule or solids of CAD; :func:`load` lists the formats.
     density, mass : float or Uncertain, optional
-        Exactly one of them for a mesh, neither for a molecule. A mapping of names to densities gives each
-        component of a mesh its own: by the names of the groups of OBJ, or by numbers from 1, as ``polhode
-        report`` lists them.
+        Exactly one of them for a mesh, neither for a molecule. CAD solids whose materials have densities need
+        neither. A mapping of names to densities gives each component of a mesh its own: by the names of the
+        groups of OBJ, or by numbers from 1, as ``polhode report`` lists them.
     length_unit : str, optional
-        Unit of the coordinates (see :mod:`polhode.units`); they are converted to metres, and a molecule's
-        masses to kilograms. Without it coordinates stay as stored, and a molecule is in u and angstrom.
+        Unit of the coordinates (see :mod:`polhode.units`). They are converted to metres, and the masses of a
+        molecule to kilograms. Without it, coordinates are converted to metres if the file or its format
+        states their unit (STEP, IGES, DAE, 3MF, glTF, GLB). All others stay as they are, and a molecule is in
+        u and angstrom. A unit that differs from the one in the file is an error.
     weld, closure, orient, repair, index_base
         Of a mesh; see :func:`solid_from_file`.
     union : bool

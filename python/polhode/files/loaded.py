@@ -44,9 +44,8 @@ _TEXT_SUFFIXES: Final = tuple(suffix for suffix, known in EXPECTED_CONTENT.items
 class Loaded:
     """What a file holds.
 
-    The format is recognised by the content. Triangles of binary STL, binary PLY and v/f text are read when
-    `mesh` is first asked for. All other files are read at once, in the same opening that recognised the
-    format.
+    Triangles of binary STL, binary PLY and v/f text are read when `mesh` is first asked for. All other files
+    are read at once.
 
     Attributes
     ----------
@@ -142,13 +141,22 @@ class Loaded:
 
 
 def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
-    r"""Open a file of matter, tell its format from its content and read it.
+    r"""Open a file that holds a mesh, a molecule or solids of CAD.
+
+    The suffix of its name says which formats the file may have, and its content which of these it has: for
+    example text or binary STL. Content of any other format is an error.
 
     Parameters
     ----------
     path : str or os.PathLike
-        A mesh (see :func:`read_mesh`), a molecule (XYZ, see :func:`read_xyz`; PDB, MOL and SDF) or solids of
-        CAD (STEP, IGES; extra ``cad``); the suffix tells which, and it may be packed (``.gz``).
+        The suffix is one of
+
+        - of a mesh: ``.stl``, ``.obj``, ``.tab``, ``.txt``, ``.ply``, ``.off``, ``.glb``, ``.gltf``,
+          ``.dae``, ``.3mf``, ``.vtk``, ``.vtu``, ``.vtp``; see :func:`read_mesh`;
+        - of a molecule: ``.xyz``, ``.extxyz``, ``.pdb``, ``.ent``, ``.mol``, ``.sdf``;
+        - of solids of CAD: ``.step``, ``.stp``, ``.igs``, ``.iges`` (extra ``cad``).
+
+        Each may be packed with gzip, with ``.gz`` after its own suffix.
     index_base : {1, 0}
         Number of the first vertex in v/f text: 1 in OBJ and in most plate files, 0 in some.
 
@@ -159,7 +167,7 @@ def load(path: str | os.PathLike[str], *, index_base: int = 1) -> Loaded:
     Raises
     ------
     FileFormatError
-        If the file is empty, cut short, damaged or in another format than its suffix says.
+        If the file is empty, cut short or damaged, or if its content does not fit its suffix.
     OSError
         If the file cannot be read.
 
@@ -301,11 +309,11 @@ def read_mesh(path: str | os.PathLike[str], *, index_base: int = 1, weld: float 
     Parameters
     ----------
     path : str or os.PathLike
-        Binary and ASCII STL, and ``v``/``f`` text (``.obj``, ``.tab``, ``.txt``) are read without any further
-        library, as are DAE and 3MF; PLY, OFF, GLB and glTF by trimesh (extra ``mesh``), VTK, VTU and VTP by
-        PyVista (extra ``view``), and no other format. Each may be packed with gzip (``.gz``). The meshes of a
-        scene are placed by their transforms and joined. Coordinates are those in the file; :func:`load` tells
-        the unit, if the file states one.
+        A mesh, which may be packed with gzip (``.gz``). STL, ``v``/``f`` text and other plate models
+        (``.obj``, ``.tab``, ``.txt``), DAE and 3MF are read without any further library. PLY, OFF, GLB and
+        glTF are read by trimesh (extra ``mesh``), and VTK, VTU and VTP by PyVista (extra ``view``). (A body
+        from a binary PLY needs no trimesh.) The meshes of a scene are placed by their transforms and joined.
+        Coordinates are those in the file; :func:`load` tells the unit, if the file states one.
     index_base : {1, 0}
         Number of the first vertex in v/f text: 1 in OBJ and in most plate files, 0 in some.
     weld : float

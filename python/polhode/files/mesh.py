@@ -28,7 +28,8 @@ class Mesh(NamedTuple):
     faces : numpy.ndarray, shape (m, 3)
         Rows of `vertices`, counted from 0.
     format : str
-        ``"binary STL"``, ``"ASCII STL"``, ``"v/f text"`` (OBJ and plate files), ``"PLY"``, ...
+        ``"binary STL"``, ``"ASCII STL"``, ``"v/f text"`` (OBJ and plate files), ``"PLY"`` or another of the
+        meshes among :attr:`Loaded.format`.
     """
 
     vertices: Floats

@@ -27,16 +27,17 @@ _LATTICE: Final = re.compile(r"(?:^|\s)Lattice=", re.IGNORECASE)
 
 
 class Molecule(NamedTuple):
-    """Atoms as an XYZ file holds them.
+    """Atoms as a file of a molecule holds them: XYZ, PDB, MOL or SDF.
 
     Attributes
     ----------
     labels : tuple of str
         Element symbols, isotopes or atomic numbers, as :func:`polhode.molecules.isotopes` reads them.
     positions : numpy.ndarray, shape (n, 3)
-        In the unit of the file: angstrom by the format's custom.
+        In the unit of the file, which is angstrom for all of these formats by custom.
     comment : str
-        The second line of the file.
+        What the file says of the molecule: the second line of XYZ, the first line of MOL and SDF, the first
+        ``TITLE`` or ``COMPND`` of PDB.
     rounding : float
         Largest amount by which a coordinate was rounded, in the unit of the file: half a unit of the last
         digit that the file prints. 0 if no coordinate has digits after the decimal point: the rounding is
@@ -53,7 +54,9 @@ class Molecule(NamedTuple):
 
 
 def read_xyz(path: str | os.PathLike[str]) -> Molecule:
-    """Read a molecule: a count, a comment, then one ``symbol x y z`` per atom.
+    """Read a molecule from an XYZ file: a count, a comment, then one ``symbol x y z`` per atom.
+
+    :func:`load` reads the other formats of molecules too.
 
     Parameters
     ----------

@@ -1,4 +1,8 @@
-"""Pictures with matplotlib (extra ``plot``). Every function takes ``ax=`` and returns it.
+"""Pictures with matplotlib (extra ``plot``).
+
+A function draws into the axes that are given as ``ax=``, by default into those of a new figure, and returns
+the axes. There are two exceptions: `portraits` draws a row of pictures, always in a new figure, and returns
+an array of axes; `principal_axes` adds to a picture, so its ``ax`` must be given.
 
 The colours are those of Okabe and Ito, which are distinct for any colour vision. Lines also differ in their
 dashes.

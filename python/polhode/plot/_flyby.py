@@ -33,7 +33,9 @@ def flyby(
     found : Flyby
         Result of :func:`polhode.flybys.flyby`.
     of : {"spin_ratio", "pole_shift", "rotation_period", "precession_period"}
+        The number: a property of :class:`polhode.flybys.Flyby`, or a period after the flyby.
     ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
     time_unit : str, optional
         Unit of the periods, for the label.
     time_scale : float, optional

@@ -50,25 +50,26 @@ class Sigmas(NamedTuple):
 class Ledger:
     """A tree of parts rolled up to every level; made by `ledger`.
 
-    Arrays are in the order of the table's rows.
+    A node is a part or an assembly. Each array has one entry for each node, in the order of the rows of the
+    table.
 
     Attributes
     ----------
     ids, parents : tuple of str
-        The parent of the root is "".
+        Name of each node, and name of its parent; "" as the parent of the root.
     root : str
         The id of the whole.
-    depth : numpy.ndarray
-        0 for the root.
-    is_part : numpy.ndarray of bool
-        Whether a node has no children.
-    mass : numpy.ndarray
-        Basic mass, shape (n,).
-    center_of_mass : numpy.ndarray
-        Shape (n, 3).
-    inertia : numpy.ndarray
-        Tensor of each node about its own centre of mass, shape (n, 3, 3).
-    predicted_mass : numpy.ndarray
+    depth : numpy.ndarray of int, shape (n,)
+        Number of steps from the root down to the node; 0 for the root.
+    is_part : numpy.ndarray of bool, shape (n,)
+        Whether the node is a part, that is, has no children.
+    mass : numpy.ndarray, shape (n,)
+        Basic mass, without growth allowance.
+    center_of_mass : numpy.ndarray, shape (n, 3)
+        Centre of mass, in the frame of the whole.
+    inertia : numpy.ndarray, shape (n, 3, 3)
+        Tensor of each node about its own centre of mass, along the axes of the whole.
+    predicted_mass : numpy.ndarray, shape (n,)
         Basic mass plus mass growth allowance, rolled up.
     unstated : int
         Number of parts without standard deviations; these count as exact.
@@ -125,14 +126,14 @@ class Ledger:
     def variance_shares(self, of: str = "mass", at: str | None = None) -> Shares:
         """Compute the contribution of each part to the variance of a number.
 
-        It shows which measurement to improve.
+        The part with the largest share is the one to measure more accurately.
 
         Parameters
         ----------
         of : str, optional
-            ``"mass"``, ``"Cx"`` … ``"Iyz"``.
+            The number: ``"mass"``, ``"Cx"`` … ``"Iyz"``.
         at : str, optional
-            The id of a node; the root by default.
+            The id of the node whose number it is; the root by default.
 
         Raises
         ------
@@ -277,8 +278,9 @@ class Part:
     Attributes
     ----------
     ledger : Ledger
+        The ledger that the node belongs to.
     row : int
-        Row of the node in the ledger.
+        Its place in the arrays of the ledger, counted from 0.
     """
 
     ledger: Ledger
@@ -286,7 +288,7 @@ class Part:
 
     @property
     def id(self) -> str:
-        """Its id."""
+        """Name of the node."""
         return self.ledger.ids[self.row]
 
     @property
@@ -302,7 +304,7 @@ class Part:
 
     @property
     def depth(self) -> int:
-        """0 for the root."""
+        """Number of steps from the root down to the node."""
         return int(self.ledger.depth[self.row])
 
     @property
@@ -317,13 +319,13 @@ class Part:
 
     @property
     def center_of_mass(self) -> Floats:
-        """Centre, in the frame of the whole."""
+        """Centre of mass, in the frame of the whole."""
         center: Floats = self.ledger.center_of_mass[self.row]
         return center
 
     @property
     def inertia(self) -> Floats:
-        """Tensor about the own centre."""
+        """Tensor about its own centre of mass, along the axes of the whole."""
         tensor: Floats = self.ledger.inertia[self.row]
         return tensor
 

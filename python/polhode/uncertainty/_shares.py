@@ -21,24 +21,25 @@ __all__ = ["Shares"]
 class Shares:
     """Contributions to the variance of one number, the largest first.
 
+    Each contribution comes from one part, or from all parts that share a source.
+
     Attributes
     ----------
     of : str
-        Which of the ten numbers, of `at`.
+        The number: mass, a coordinate of the centre, or an element of the tensor.
     at : str
-        The id of the node.
+        The id of the node whose number it is.
     names : tuple of str
-        Name of the part; for parts that share a source, the name of the source.
-    is_source : numpy.ndarray of bool
+        Name of each part; for parts that share a source, the name of the source.
+    is_source : numpy.ndarray of bool, shape (n,)
         Whether the name is that of a shared source.
-    fraction : numpy.ndarray
+    fraction : numpy.ndarray, shape (n,)
         Share of each in the variance; the shares add up to 1.
-    by_number : numpy.ndarray
-        The same shares, divided by the ten numbers of the part, shape (n, 10): mass, Cx, Cy, Cz, Ixx, Iyy,
-        Izz, Ixy, Ixz, Iyz. If the table states a tensor about the origin, a shape with its mass, or a
-        density, the numbers are those that it states; a density counts as mass.
+    by_number : numpy.ndarray, shape (n, 10)
+        The same shares, split by the number of the part whose error causes them: mass, Cx, Cy, Cz, Ixx, Iyy,
+        Izz, Ixy, Ixz, Iyz, as the row of the part states them. A stated density counts as mass.
     sigma : float
-        Standard deviation whose square is divided into these shares.
+        Standard deviation of the number; its square is the variance that is shared out.
     """
 
     of: str
@@ -53,7 +54,7 @@ class Shares:
         return len(self.names)
 
     def largest(self, row: int) -> str:
-        """Give the name of that number of the part in a row which contributes most."""
+        """Give the name of the number that contributes most, of the part with this place in `names`."""
         return NUMBERS[int(np.argmax(self.by_number[row]))]
 
     def __repr__(self) -> str:

@@ -1,9 +1,14 @@
 """A ledger of parts: mass properties of every level of a tree of parts, with uncertainties.
 
-A table gives mass, centre of mass and tensor of each part with their standard deviations, and the assembly
-that the part belongs to. All centres are in one frame, that of the whole. The parts are summed up (*rolled
-up*) to every level of the tree. Errors are propagated to first order with all their correlations: the moments
-of an assembly depend on the same masses and centres, so that their errors are correlated.
+The parts and assemblies of a body form a tree. Each of them is a *node*, and each node has one row in a
+table. The *root* is the node of the whole. Every other row names its parent, the assembly that it belongs to.
+A node that other rows name as their parent is an assembly; a node without such rows is a part. The row of a
+part gives its mass, centre of mass and tensor, with their standard deviations. All centres are in one frame,
+that of the whole.
+
+The parts are summed up (*rolled up*) to every level of the tree. Errors are propagated to first order with
+all their correlations: the moments of an assembly depend on the same masses and centres, so that their errors
+are correlated.
 """
 
 from __future__ import annotations
@@ -49,13 +54,14 @@ def ledger(
     Parameters
     ----------
     table : path, mapping or iterable of mappings
-        A file of comma- or tab-separated text, columns by name, or rows; see the notes for the columns.
+        The table: a file of comma- or tab-separated text; a mapping of the names of columns to lists; or one
+        mapping for each row. The notes explain the columns.
     tree : path, mapping or iterable of mappings, optional
-        The edges, with the columns ``child`` (or ``id``) and ``parent``, where the table has no column
-        ``parent``.
+        A second table that says which node belongs to which. Its columns are ``child`` (or ``id``) and
+        ``parent``. It is needed if the first table has no column ``parent``.
     overwrite : bool, optional
-        Whether numbers in the row of an assembly are ignored, as in the R package massProps. By default they
-        are an error.
+        Whether mass, centre and tensor in the row of an assembly are replaced by the sums of its parts, as in
+        the R package massProps. By default such numbers are an error.
     ignore : collection of str, optional
         Unknown columns that are ignored. Other unknown columns are an error.
     rtol : float, optional
@@ -73,21 +79,28 @@ def ledger(
 
     Notes
     -----
-    Columns, of which all but the first two may be absent:
+    The columns of the table. ``id`` is required, and so is ``parent``, unless `tree` is given. All other
+    columns may be absent, if no part needs them.
 
-    - ``id``, ``parent``: empty for the root. ``name``, ``comment``: words for the reader.
-    - ``mass``, ``Cx`` ``Cy`` ``Cz``, ``Ixx`` ``Iyy`` ``Izz`` ``Ixy`` ``Ixz`` ``Iyz``, and ``sigma_mass`` …
-      ``sigma_Iyz``: empty for rows with children. Standard deviations that are not stated are zero; the ten
-      errors of a part are independent.
-    - ``POIconv``: ``+`` for products of inertia ∫ x y dm, ``-`` for minus that, the element of the tensor.
-    - ``about``: ``center_of_mass`` (the default) or ``origin``, about which the tensor is stated.
-    - ``Ipoint``: TRUE takes a part as a point, whatever tensor it states.
-    - ``source``: parts with the same word in it share their ten draws (made to one drawing, weighed on one
-      scale): each of their errors is the same multiple of its sigma.
+    - ``id``: the name of the node.
+    - ``parent``: the id of the assembly that the node belongs to; empty for the root.
+    - ``name``, ``comment``: words for the reader.
+    - ``mass``, ``Cx`` ``Cy`` ``Cz``, ``Ixx`` ``Iyy`` ``Izz`` ``Ixy`` ``Ixz`` ``Iyz``: the ten numbers of a
+      part; empty for an assembly.
+    - ``sigma_mass`` … ``sigma_Iyz``: their standard deviations; empty for an assembly. One that is not stated
+      is zero. The ten errors of a part are independent of each other.
+    - ``POIconv``: ``+`` if the products of inertia are ∫ x y dm, ``-`` if they are minus that, the elements
+      of the tensor.
+    - ``about``: the point that the tensor refers to, ``center_of_mass`` (the default) or ``origin``.
+    - ``Ipoint``: TRUE if the part is a point mass; a tensor in its row is then ignored.
+    - ``source``: parts with the same word here have the same errors, for example because they were weighed on
+      one scale. If the mass of one of them is wrong by 0.7 of its sigma, so are the masses of the others,
+      each by 0.7 of its own sigma. The same holds for the other nine numbers.
     - ``growth``: mass growth allowance, a fraction of the basic mass (0.15 or 15%), as in AIAA S-120A.
-    - ``file`` or ``solid``, its ``arguments`` (``radius=0.1 height=0.3``), and ``mass`` or ``density`` with
-      ``sigma_mass`` or ``sigma_density``, with which the tensor grows in proportion; ``Cx`` ``Cy`` ``Cz``
-      move its centre there.
+    - ``solid`` with its ``arguments`` (``radius=0.1 height=0.3``), or ``file``: a shape that gives the
+      tensor, in place of the six numbers. It needs ``mass`` or ``density``, which may have ``sigma_mass`` or
+      ``sigma_density``; an error of it changes mass and tensor by the same factor. ``Cx`` ``Cy`` ``Cz`` say
+      where the centre of mass of the shape is placed.
 
     Examples
     --------

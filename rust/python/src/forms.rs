@@ -290,8 +290,10 @@ pub(crate) fn from_parameters(
 
 /// Log-Cholesky parameters: ten numbers without constraints, any values of which belong to a possible body.
 ///
-/// The pseudo-inertia about the origin is ``J = U Uᵀ`` with
+/// The pseudo-inertia about the origin O is ``J = U Uᵀ`` with
 /// ``U = e^α [[e^d1, s12, s13, t1], [0, e^d2, s23, t2], [0, 0, e^d3, t3], [0, 0, 0, 1]]``.
+/// Here ``e^(2α)`` is the mass, t the vector from O to the centre of mass C, and the upper left block belongs
+/// to the second moment about C.
 ///
 /// Parameters
 /// ----------

@@ -179,8 +179,9 @@ impl PyFreeMotion {
     /// Returns
     /// -------
     /// Cones
-    ///     ``axis``: index of the principal axis that ω circles, 0 or 2. ``body``, shape (..., 2): angles
-    ///     between ω and that axis. ``space``, shape (..., 2): angles between ω and L.
+    ///     ``axis``: the principal axis that ω circles, as an index counted from 0: 0 for axis 1, 2 for axis 3.
+    ///     ``body``, shape (..., 2): angles between ω and that axis. ``space``, shape (..., 2): angles between
+    ///     ω and L.
     ///
     /// Examples
     /// --------

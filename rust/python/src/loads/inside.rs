@@ -16,7 +16,7 @@ type Floats<'py> = Bound<'py, PyArrayDyn<f64>>;
 #[pymethods]
 impl PyLoad {
     /// Angular momentum and energy of the wheels, rotors and slugs of the load, in addition to ``I ω`` and
-    /// ``½ ω·I ω``.
+    /// ``½ ω·I ω``. A rotor adds angular momentum, but no energy.
     ///
     /// Parameters
     /// ----------

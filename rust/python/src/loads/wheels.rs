@@ -17,8 +17,8 @@ use crate::stack::{Broadcast, Stack};
 
 /// A rotor whose angular momentum h is constant in the body; its torque on the body is ``-ω × h``.
 ///
-/// A body with such a rotor is called a gyrostat. The angular momentum of the trajectory includes h. Its
-/// kinetic energy is ``½ ω·I ω``, which is constant.
+/// A body with such a rotor is called a gyrostat. The angular momentum of a trajectory includes h. Its kinetic
+/// energy does not include the energy of the rotor: it is ``½ ω·I ω``, which is constant if nothing else acts.
 ///
 /// Parameters
 /// ----------
@@ -31,7 +31,8 @@ use crate::stack::{Broadcast, Stack};
 ///
 /// Examples
 /// --------
-/// A body is at rest, while a wheel turns in it. A torque turns the body; afterwards it nutates:
+/// A wheel turns fast about the third axis of a body, and the body turns slowly about its first axis. No torque
+/// acts. The body then nutates; the total angular momentum and the energy stay constant:
 ///
 /// >>> from polhode import RigidBody, loads
 /// >>> body = RigidBody.from_principal(1.0, (1.0, 2.0, 2.5))

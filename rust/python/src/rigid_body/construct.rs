@@ -163,8 +163,8 @@ impl PyRigidBody {
         Self::doubtful(bodies, doubts).possible(py)
     }
 
-    /// Body from a file: a mesh (STL, OBJ, PLY, DAE, 3MF, glTF, plate models, …), solids of CAD (STEP, IGES) or a molecule
-    /// (XYZ, PDB, MOL, SDF); each may be packed with gzip.
+    /// Body from a file: a mesh (STL, OBJ, PLY, OFF, DAE, 3MF, glTF, GLB, VTK, plate models), solids of CAD (STEP, IGES) or a
+    /// molecule (XYZ, PDB, MOL, SDF); each may be packed with gzip.
     ///
     /// Parameters
     /// ----------
@@ -174,9 +174,10 @@ impl PyRigidBody {
     ///     densities. For a molecule neither, since its atoms have masses. CAD solids whose materials have
     ///     densities need neither.
     /// length_unit : str, optional
-    ///     Unit of the coordinates, such as ``"mm"``: they are converted to metres. By default coordinates of
-    ///     files that state their unit (STEP, IGES, DAE, 3MF, glTF) are converted to metres, and all others
-    ///     stay as they are. A unit that differs from that in the file is an error.
+    ///     Unit of the coordinates, such as ``"mm"``. They are converted to metres, and the masses of a
+    ///     molecule to kilograms. Without it, coordinates are converted to metres if the file or its format
+    ///     states their unit (STEP, IGES, DAE, 3MF, glTF, GLB). All others stay as they are, and a molecule is
+    ///     in u and angstrom. A unit that differs from the one in the file is an error.
     /// weld : float, optional
     ///     Corners at most this far from each other, in the unit of the file, are joined; by default only
     ///     equal corners. Some exporters write the same corner with different last digits in each triangle,
@@ -198,8 +199,8 @@ impl PyRigidBody {
     ///     of the element, or the average over its isotopes.
     /// progress : callable, optional
     ///     A function that is called now and then with the fraction of a large mesh file that has been read.
-    ///     An exception that it raises ends the reading. Binary STL and PLY are read block by block, so that
-    ///     a file may be larger than the memory.
+    ///     An exception that it raises ends the reading. Binary STL and binary PLY are read block by block, so
+    ///     that a file may be larger than the memory.
     ///
     /// Returns
     /// -------

@@ -17,8 +17,8 @@ use crate::shape::tuple;
 /// solids, laminae and rods, and by `RigidBody.translated`, `RigidBody.rotated` and `RigidBody.scaled`. A
 /// body that is made from it carries the covariance.
 ///
-/// The errors of an `Uncertain` are random variables, its *source*. If two bodies are made from the same
-/// `Uncertain`, both have these errors, and their numbers are correlated.
+/// The errors of an `Uncertain` are random variables. Together they are called its *source*. If two bodies are
+/// made from the same `Uncertain`, both have these errors, and their numbers are correlated.
 ///
 /// Parameters
 /// ----------
