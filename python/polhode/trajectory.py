@@ -64,18 +64,19 @@ class Trajectory:
         Whether the point `about` is fixed in space.
     uncertain_start : tuple, FreeMotion, HeavyTop or None
         The sigmas of the start. In most cases this is a tuple: the angular velocity and the attitude at the
-        first time, each as an `Uncertain`, or None if it was given without a sigma. There are two other
-        cases. A motion in closed form has the sigmas of its state at t = 0. If the first time of the
-        trajectory is not 0, this attribute is that motion. A trajectory that :meth:`resume` made from an
-        uncertain one has None here, and its :attr:`covariance` cannot be computed.
+        first time, each as an `Uncertain`, or None if it was given without a sigma. For states of a motion in
+        closed form, the sigmas are those at t = 0. If the first time is not 0, this attribute is therefore
+        the motion itself. It is None for a trajectory that :meth:`resume` made from an uncertain one; its
+        :attr:`covariance` cannot be computed.
     states : dict of str and numpy.ndarray, shape (..., T, k)
         The states of the load, by name. Of a wheel it is the angular momentum ``J (Ω + a·ω)`` about its axis
         a, with its moment of inertia J and its rate Ω relative to the body. Of a slug it is the angular
         velocity, components in the body frame.
     carried : tuple of numpy.ndarray, shapes (..., T, 3) and (..., T), or None
-        What the wheels, rotors and slugs of the load add to the body: first the angular momentum in addition
-        to ``I ω``, components in the body frame; then the energy in addition to ``½ ω·I ω``. A rotor adds
-        angular momentum, but no energy: see :meth:`kinetic_energy`. None if the load has none of these.
+        What the wheels, rotors and slugs of the load, or of a gyrostat, add to the body: first the angular
+        momentum in addition to ``I ω``, components in the body frame; then the energy in addition to
+        ``½ ω·I ω``. A rotor adds angular momentum, but no energy: see :meth:`kinetic_energy`. None if there
+        are none of these.
     """
 
     body: _core.RigidBody
@@ -183,7 +184,8 @@ class Trajectory:
         KineticEnergy
             Each part of shape (..., T). The rotational part includes the energy of wheels and slugs. It does
             not include the energy of a rotor, of which only the momentum is known. For a body with a rotor
-            and no other load, ``½ ω·I ω`` stays constant.
+            and no other load, ``½ ω·I ω`` stays constant. For a gyrostat in closed form the total is
+            :attr:`polhode.GyrostatMotion.kinetic_energy`.
         """
         found = self._bodies().kinetic_energy(
             self.omega,

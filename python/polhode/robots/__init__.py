@@ -187,8 +187,8 @@ def check(
         A robot from :func:`read_robot`.
     packages : sequence of str or os.PathLike
         Folders that hold the packages of ``package://`` and ``model://`` addresses; folders above the file,
-        ``ROS_PACKAGE_PATH``, ``GZ_SIM_RESOURCE_PATH``, ``SDF_PATH`` and ``AMENT_PREFIX_PATH`` are searched
-        too.
+        ``ROS_PACKAGE_PATH``, ``GZ_SIM_RESOURCE_PATH``, ``IGN_GAZEBO_RESOURCE_PATH``, ``GAZEBO_MODEL_PATH``,
+        ``SDF_PATH`` and ``AMENT_PREFIX_PATH`` are searched too.
     allow_outside : bool
         Whether meshes may be in any folder. By default they are read only in these folders and where the
         model is: in the package that contains it (marked by ``package.xml``, ``manifest.xml`` or

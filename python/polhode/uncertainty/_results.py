@@ -135,6 +135,10 @@ class Ledger:
         at : str, optional
             The id of the node whose number it is; the root by default.
 
+        Returns
+        -------
+        Shares
+
         Raises
         ------
         PolhodeError
