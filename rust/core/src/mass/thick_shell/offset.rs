@@ -186,6 +186,10 @@ impl Around {
                 continue;
             }
             way.inverse = Matrix3::zeros();
+            #[expect(
+                clippy::needless_range_loop,
+                reason = "columns and values are counted together"
+            )]
             for k in unused..3 {
                 way.inverse += axes.column(k) * axes.column(k).transpose() / values[k];
             }
