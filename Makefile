@@ -4,6 +4,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 export CARGO_TERM_COLOR ?= auto
 
+# Python compiles a module when it is first imported, and keeps it for the many processes of tests and pages whatever the
+# environment says: most of what is installed is never imported.
+INSTALL := $(BIN)/python -m pip install --quiet --no-compile
+export PYTHONDONTWRITEBYTECODE :=
+
 # Extension and tests of the core share what is compiled: same features, and the profile `editable`.
 SHARED := --features polhode/serde
 
@@ -41,8 +46,6 @@ test-rust: ## the tests of the core: its units, then the crate from outside, whi
 test-python: build setup optional docs ## the tests of the package, on all cores; then those that measure time, by themselves
 	@$(MAKE) --no-print-directory pytest
 
-# Tests start hundreds of processes: modules are compiled once for all of them, whatever the environment says.
-pytest: export PYTHONDONTWRITEBYTECODE :=
 pytest:
 	$(BIN)/python -m pytest -m "not long and not alone" --numprocesses auto --dist loadfile
 	$(BIN)/python -m pytest -m "alone and not long" $$(grep -lw mark.alone tests/test_*.py)
@@ -110,7 +113,7 @@ package-tests: ## all tests of the source distribution with the wheel of `make p
 	$(BIN)/python packaging/try_tests.py dist
 
 bench: build setup ## times beside the peers, as ratios, of the extension as in a wheel; NAMES= picks files of rows
-	$(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[all]" \
+	$(INSTALL) --no-build-isolation --editable ".[all]" \
 		--config-settings=build-args="--profile release"
 	$(BIN)/python benchmarks/run.py $(NAMES)
 	cargo bench --locked --package polhode
@@ -129,11 +132,11 @@ $(VENV)/.python:
 	@command -v cargo >/dev/null \
 		|| { echo "cargo not found: install Rust 1.89 or newer (rustup.rs, or your system's packages)"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
+	$(INSTALL) --upgrade "pip>=25.1"
 	@touch $@
 
 $(VENV)/.tools: pyproject.toml $(VENV)/.python
-	$(BIN)/python -m pip install --quiet --group dev
+	$(INSTALL) --group dev
 	@touch $@
 
 $(VENV)/.optional: pyproject.toml tests/optional.py $(VENV)/.tools $(VENV)/.built
@@ -141,22 +144,22 @@ $(VENV)/.optional: pyproject.toml tests/optional.py $(VENV)/.tools $(VENV)/.buil
 	@touch $@
 
 $(VENV)/.docs: pyproject.toml $(VENV)/.tools
-	$(BIN)/python -m pip install --quiet --group docs
+	$(INSTALL) --group docs
 	@touch $@
 
 $(VENV)/.package: pyproject.toml $(VENV)/.tools
-	$(BIN)/python -m pip install --quiet --group package
+	$(INSTALL) --group package
 	@touch $@
 
 $(VENV)/.maturin: pyproject.toml $(VENV)/.python
-	$(BIN)/python -m pip install --quiet --group build
+	$(INSTALL) --group build
 	@touch $@
 
 # What it needs is installed while it is compiled.
 $(VENV)/.built: $(VENV)/.maturin $(RUST)
 	@echo "The Rust core is compiled and the Python packages are installed. This takes some minutes; nothing is printed meanwhile."
-	$(BIN)/python packaging/needs.py all | $(BIN)/python -m pip install --quiet --requirement /dev/stdin & needs=$$!; \
-		$(BIN)/python -m pip install --quiet --no-build-isolation --no-deps --editable . \
+	$(BIN)/python packaging/needs.py all | $(INSTALL) --requirement /dev/stdin & needs=$$!; \
+		$(INSTALL) --no-build-isolation --no-deps --editable . \
 			--config-settings=build-args="$(SHARED)" && wait $$needs
 	@touch $@
 

@@ -114,7 +114,7 @@ def prepared(room: Path, sources: Path, wheel: Path, python: str, quick: bool) -
     """The Python of an environment with the wheel and what the tests need."""
     subprocess.run([python, "-m", "venv", room / "venv"], check=True)
     own = room / "venv" / ("Scripts" if sys.platform == "win32" else "bin") / "python"
-    pip = [own, "-m", "pip", "install", "--quiet"]
+    pip = [own, "-m", "pip", "install", "--quiet", "--no-compile"]
     subprocess.run([*pip, "--upgrade", "pip>=25.1"], check=True)
     if quick:
         subprocess.run([*pip, wheel, *NEEDS], check=True)

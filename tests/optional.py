@@ -53,7 +53,7 @@ def install(library: Library) -> bool:
     pip = [sys.executable, "-m", "pip"]
     words = ["--no-deps"] if library.alone else []
     commands = (
-        [*pip, "install", "--quiet", *words, library.requirement],
+        [*pip, "install", "--quiet", "--no-compile", *words, library.requirement],
         [sys.executable, "-c", library.program],
     )
     if all(subprocess.run(command, check=False, capture_output=True).returncode == 0 for command in commands):
