@@ -1,6 +1,6 @@
 //! A heavy top in its own units and axes: what is left when sizes, directions and the choice of the body's frame are taken away.
 //!
-//! Seen from a frame that turns about the symmetry axis with `σ = (1 − I_s/I_t) ω_s` relative to the body, every symmetric top
+//! Seen from a frame relative to which the body turns about its symmetry axis with `σ = (1 − I_s/I_t) ω_s`, every symmetric top
 //! moves as a spherical one with `b = I_s ω_s/I_t` in place of its spin (F. Klein and A. Sommerfeld, Über die Theorie des
 //! Kreisels, chapter IV). In that frame, with the third axis along the symmetry axis, and in a space whose third axis points
 //! up, `α = q_w + i q_z`, `β = q_x + i q_y` and `W = ω₁ + i ω₂` obey
