@@ -186,12 +186,8 @@ impl Around {
                 continue;
             }
             way.inverse = Matrix3::zeros();
-            #[expect(
-                clippy::needless_range_loop,
-                reason = "columns and values are counted together"
-            )]
-            for k in unused..3 {
-                way.inverse += axes.column(k) * axes.column(k).transpose() / values[k];
+            for (k, &value) in values.iter().enumerate().skip(unused) {
+                way.inverse += axes.column(k) * axes.column(k).transpose() / value;
             }
             way.direction = way.inverse * mean;
             if way.direction.dot(&self.middle) >= within * way.direction.norm() {
