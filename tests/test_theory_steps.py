@@ -114,6 +114,71 @@ def test_steady_rates_of_a_heavy_top(seed: int) -> None:
     assert abs(mean(lambda u, _: (a - b) / (2 * (1 - u))) - beta - sign(a - b) * turn) < tolerance
     of_w = mean(lambda u, _: -b / 2 - (a - b * end) / (2 * (end - u))) + sign(a - b * end) * turn
     assert abs(of_w - (beta - alpha + sign(a - b * max(1, end)) * turn)) < tolerance
+    # The count of turns in one period, from the three half turns and the curve round zero.
+    at_ends = sign(a - b * u1), sign(a - b * u2)
+    round_zero = at_ends[0] if at_ends[0] != at_ends[1] else 0
+    count = sign(a - b * end) + sign(a - b) - sign(a + b) + 2 * round_zero
+    assert count == sign(a - b * max(1, end))
+
+
+@pytest.mark.parametrize(
+    ("start", "turned"),
+    [((0.3, 0.2, 1.1), (-1, -1, 1)), ((1.1, 0.2, 0.3), (1, -1, -1))],
+    ids=["short", "long"],
+)
+def test_two_rates_change_their_sign_in_half_a_period(
+    start: tuple[float, ...], turned: tuple[int, ...]
+) -> None:
+    """The page on the sensitivity: those of the axes that ω does not circle."""
+    w = [mpf(str(rate)) for rate in start]
+    contrasts = mpf("0.5"), mpf("0.75"), mpf("0.4")  # of the moments 1, 2, 2.5
+    p = contrasts[0] * (contrasts[2] * w[1] ** 2 + contrasts[1] * w[2] ** 2)
+    q = contrasts[2] * (contrasts[1] * w[0] ** 2 + contrasts[0] * w[1] ** 2)
+    half = 2 * mpmath.ellipk(min(p, q) / max(p, q)) / mpmath.sqrt(max(p, q))
+    with mp.workdps(15):
+        solution = mpmath.odefun(
+            lambda _, x: [
+                -contrasts[0] * x[1] * x[2],
+                contrasts[1] * x[2] * x[0],
+                -contrasts[2] * x[0] * x[1],
+            ],
+            0,
+            w,
+        )
+        end = solution(half)
+    for rate, sign, at_start in zip(end, turned, w, strict=True):
+        assert abs(rate - sign * at_start) < mpf(10) ** -11
+
+
+@pytest.mark.parametrize(("i", "j", "k"), [(0, 1, 2), (1, 2, 0), (2, 0, 1)])
+def test_the_angle_of_the_axes_is_positive_from_j_towards_i(i: int, j: int, k: int) -> None:
+    """First and second order of the page on uncertainty, against eigenvectors: minus the right-handed angle."""
+    moments = [mpf(1), mpf(2), mpf("3.5")]
+    change = mpmath.matrix([[3, 1, -2], [1, -1, 4], [-2, 4, 2]]) / 4
+
+    def about(axis: int, step: Any) -> Any:
+        """The component of the rotation vector of the axes."""
+        _, axes = mpmath.eigsy(mpmath.diag(moments) + step * change)
+        columns = [axes[:, c] * mpmath.sign(axes[c, c]) for c in range(3)]
+        turn = mpmath.acos((sum(columns[c][c] for c in range(3)) - 1) / 2)
+        after, last = (axis + 1) % 3, (axis + 2) % 3
+        return turn / (2 * mpmath.sin(turn)) * (columns[after][last] - columns[last][after])
+
+    with mp.workdps(50):
+        step = mpf(10) ** -12
+        forth, back = about(k, step), about(k, -step)
+        first, second = (forth - back) / (2 * step), (forth + back) / (2 * step**2)
+
+    def gap(m: int, n: int) -> Any:
+        return moments[m] - moments[n]
+
+    of_first = change[i, j] / gap(j, i)
+    of_second = (
+        (change[i, i] - change[j, j]) * change[i, j] / gap(j, i)
+        + change[i, k] * change[k, j] / 2 * (1 / gap(j, k) - 1 / gap(k, i))
+    ) / gap(j, i)
+    assert abs(first + of_first) < mpf(10) ** -12
+    assert abs(second + of_second) < mpf(10) ** -9
 
 
 PAULI = [np.array([[0, 1], [1, 0]]), np.array([[0, -1j], [1j, 0]]), np.diag([1, -1])]
