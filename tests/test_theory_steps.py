@@ -152,7 +152,7 @@ def test_two_rates_change_their_sign_in_half_a_period(
 
 @pytest.mark.parametrize(("i", "j", "k"), [(0, 1, 2), (1, 2, 0), (2, 0, 1)])
 def test_the_angle_of_the_axes_is_positive_from_j_towards_i(i: int, j: int, k: int) -> None:
-    """First and second order of the page on uncertainty, against eigenvectors: minus the right-handed angle."""
+    """First and second order of the page on uncertainty: minus the right-handed angle."""
     moments = [mpf(1), mpf(2), mpf("3.5")]
     change = mpmath.matrix([[3, 1, -2], [1, -1, 4], [-2, 4, 2]]) / 4
 
